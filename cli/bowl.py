@@ -1,5 +1,7 @@
 """``feeder bowl``."""
 
+import math
+
 import click
 
 from feederscrew_cli import grouped, options, orientation, quantity, waiting
@@ -98,7 +100,7 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
     mass and inertia of that body take the place of the estimate.
     """
     from feederscrew import bowl as bowls
-    from feederscrew.output import columns, machine, offers, proof
+    from feederscrew.output import columns, machine, marking, offers, proof
     from feederscrew.output.machine import tables
     from feederscrew.studies import bowl as study
     from feederscrew.studies import solidbowl as solids
@@ -121,9 +123,23 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
         tried, record = bowls.verified(path), bowls.record(settings)
         own = solid, record, orientation.name(wanted)
         out.warn(*found.remarks, *proof.warnings(tried, *own))
-        offers.write(folder, machine.offers(found), pictures=pictures)
+        holding = tried if proof.holds(tried, *own) else None
+        same = found.order is None or _same_stroke(found, record)
+        if holding and not same:
+            tried_mm, taken_mm = (2e3 * one.drive.amplitude for one in (record, found.bowl))
+            out.warn(
+                f"drive.amplitude: its trial was at {tried_mm:.3g} mm peak to peak, this sheet takes "
+                f"{taken_mm:.3g} mm by the static rule for that rate - see the papers of feeder design"
+            )
+        mark = marking.of_trial(holding)
+        offers.write(folder, machine.offers(found, holding if same else None, mark), pictures=pictures)
         document = proof.beside(tables.document(found), tried, *own)
-        out.show(tables.summary(found, tried if proof.holds(tried, *own) else None), document)
+        out.show(tables.summary(found, holding), document)
+
+
+def _same_stroke(sheet, bowl):
+    """Whether a sheet has the stroke of its bowl file."""
+    return math.isclose(sheet.bowl.drive.amplitude, bowl.drive.amplitude, rel_tol=1e-3)
 
 
 def _found(bowl, measured, out):

@@ -123,7 +123,7 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
 
     With -o: design.yaml, a bowl file that says what its trial showed, and design.html, the page to hand on.
     Also acceptance.csv, design_trials.csv, and the files of feeder tooling and feeder bowl, with the bowl as
-    a solid.
+    a solid. Drawings of what falls short bear a mark across; what delivers nothing has none.
     """
     if others:
         _of_one_part(asked, taken, part)
@@ -206,8 +206,18 @@ def _written(out, folder, found, settings, pictures):
     if found.bowl is not None:  # read back and compared, whether or not it is kept
         design_file.bowl_file(found, settings, made.sheet)
     out.warn(*found.warnings, *([f"no solid of the bowl is made: {made.why}"] if made.why else []))
-    offers.write(folder, files.offers(found, settings, made), pictures=pictures)
+    if not (found.partial and _keeps_earlier(out, folder, "design.html")):
+        offers.write(folder, files.offers(found, settings, made), pictures=pictures)
     return found
+
+
+def _keeps_earlier(out, folder, page):
+    """Leave a folder as it is where it holds a design that was proved to its end; whether it does."""
+    if folder is None or not folder.has_file("design", page):
+        return False
+    folder.untouched = True
+    out.warn(f"{folder.path} keeps the files of an earlier design: nothing of the stopped one is written")
+    return True
 
 
 def _family(out, parts, asked, written):
@@ -228,6 +238,7 @@ def _family(out, parts, asked, written):
     found = dataclasses.replace(found, members=tuple(members))
     inputs = {name: value for part in parts for name, value in part.inputs.items()}
     with out.folder("family", inputs | bowls.identity(path), bowls.texts(settings)) as folder:
-        offers.write(folder, family_page.offers(found), pictures=pictures)
+        if not (found.partial and _keeps_earlier(out, folder, "family.html")):
+            offers.write(folder, family_page.offers(found), pictures=pictures)
         out.show(family.summary(found), family.document(found))
     _ended(found)

@@ -172,6 +172,8 @@ class Output:
             return
         with ResultFolder(self.directory, name, identity) as folder:
             yield folder
+            if folder.untouched:
+                return
             if folder.left_out:
                 self.warn(f"stopped while drawing: without {', '.join(folder.left_out)}")
             with held_back():  # all of them or none

@@ -60,6 +60,9 @@ class Layer:
     rings: tuple = ()  # of (K, 2) [m], each becomes a closed polyline
     lines: tuple = ()  # of (K, 2) [m], each becomes an open polyline
     texts: tuple[tuple[str, tuple[float, float]], ...] = ()  # with the place [m] where each begins
+    across: tuple[str, tuple[float, float], float, float] | None = (
+        None  # text, middle [m], height [m], turn [rad]
+    )
 
 
 def closed_polylines(path: Path, layer: str, where: str) -> list[list[tuple[float, float]]]:
@@ -406,6 +409,12 @@ def _draw(space: Any, layer: Layer) -> None:
             space.add_lwpolyline(corners, close=closed, dxfattribs=look)
     for text, place in layer.texts:
         space.add_text(text, height=LETTERS, dxfattribs=look).set_placement([1e3 * float(x) for x in place])
+    if layer.across is not None:
+        from ezdxf.enums import TextEntityAlignment
+
+        text, middle, height, turn = layer.across
+        written = space.add_text(text, height=1e3 * height, rotation=math.degrees(turn), dxfattribs=look)
+        written.set_placement([1e3 * float(x) for x in middle], align=TextEntityAlignment.MIDDLE_CENTER)
 
 
 @contextlib.contextmanager

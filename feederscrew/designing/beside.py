@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -41,6 +41,8 @@ TRACK = (
     ("radius", 1e-3, "mm"),
     ("width", 1e-3, "mm"),
 )
+FIGURES = ": asked for "  # between what is wrong with a drive and its figures, in a DriveMismatch
+SAME_STROKE = 1e-3  # [1] strokes that are nearer than this are one
 
 
 def tooled(
@@ -93,6 +95,7 @@ class Built:
     sheet: MachineSheet | None = None  # as it is driven; None where no machine can be
     drawn: MachineSheet | None = None  # the same with its order and its solid; None where there is no solid
     why: str = ""  # there is none
+    remarks: tuple[str, ...] = ()  # of `feeder bowl` of that file with the part and the rate
 
 
 def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
@@ -125,11 +128,34 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
         under = [f"machine.{name}={text}" for name, text in _machine(machine)]
         stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
         lines = _last((*kept, *own, stroke, *under, *_fill(study.part, sized)))
-        sheet = machines.machine((*bowls.settings(None, lines), *devices))
+        own_settings = (*bowls.settings(None, lines), *devices)
+        sheet = machines.machine(own_settings)
     except FeederError as fault:
         return Built(why=str(fault))
     sheet = replace(sheet, turns=sized.turns)
-    return Built(sheet, _drawn(sheet, sized), why)
+    said = {*study.warnings, *checks.remarks(sheet)}
+    return Built(sheet, _drawn(sheet, sized), why, tuple(_ordered(own_settings, study, said)))
+
+
+def _ordered(settings: Sequence[Setting], study: DesignStudy, said: Collection[str]) -> Iterator[str]:
+    """What ``feeder bowl`` with the part and the rate warns of: it takes a stroke by the static rule.
+
+    What is ``said`` of the design already is not said again.
+    """
+    rate = f"{study.request.target * units.MINUTE:.4g}/min"
+    try:
+        sheet = machines.bowl(settings, study.part, study.request.target)
+    except FeederError as fault:
+        yield f"feeder bowl finds no machine of this file for {rate}: {fault}"
+        return
+    stroke, tried = (2e3 * drive.amplitude for drive in (sheet.bowl.drive, cast(Bowl, study.bowl).drive))
+    another = abs(stroke - tried) > SAME_STROKE * tried
+    lead = f"feeder bowl takes {stroke:.3g} mm peak to peak for {rate}, {tried:.3g} mm were tried: "
+    drives = {one.partition(FIGURES)[0] for one in said if FIGURES in one}
+    for remark in sheet.remarks:
+        drive, figures, _ = remark.partition(FIGURES)
+        if remark not in said and not (figures and drive in drives):  # the drive is told as it was tried
+            yield f"{lead if another else ''}{remark}"
 
 
 def settings_of(bowl: Bowl, given: Collection[str] = ()) -> tuple[Setting, ...]:
@@ -183,6 +209,7 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
         return study
     warnings = [*checks.remarks(sheet)]
     warnings += [] if built.drawn is None else checks.of_the_solid(built.drawn)
+    warnings += built.remarks
     other = sheet.mismatch
     lacking = (
         (f"the vibration angle {other.text}",)

@@ -253,6 +253,11 @@ class DesignStudy(Shown):
         return (draws if robust.draws else "no draw was tried", *_followed(self.queues))
 
     @property
+    def delivers(self) -> bool:
+        """Whether any wanted part has left its queues, and it was not stopped: what may be built from."""
+        return self.bowl is not None and not self.partial and self.delivered[0] > 0.0
+
+    @property
     def shortfalls(self) -> tuple[str, ...]:
         """Where it does not do what was asked, a sentence each."""
         return tuple(_shortfalls(self))

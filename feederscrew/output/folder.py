@@ -50,6 +50,7 @@ class ResultFolder:
         self.identity = dict(identity)
         self.staged = {}
         self.left_out = []  # pictures that an interrupt kept from being drawn
+        self.untouched = False  # what an earlier run has left stays as it is
 
     def __enter__(self):
         self._check_writable()
@@ -64,6 +65,20 @@ class ResultFolder:
         if not _inside(name) or name == RECORD:
             raise ValueError(f"{name!r} is not a name for a result")
         self.staged[name] = tables.encoded(content)
+
+    def has_file(self, command, name):
+        """Return whether an earlier run of a command has left a file of that name here.
+
+        Parameters
+        ----------
+        command : str
+        name : str
+
+        Returns
+        -------
+        bool
+        """
+        return name in self._records().get(command, {}).get("files", [])
 
     def keep(self, command, *, arguments=(), effective=None, warnings=()):
         """Put every file in place and record the run.

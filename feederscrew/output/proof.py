@@ -58,10 +58,9 @@ def beside(document, verified, part, bowl, wanted=None):
     """
     if not holds(verified, part, bowl, wanted):
         return document if verified is None else document | {"verified": None}
-    known = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
-    tried = dict(zip(known, (end / PER_MINUTE for end in (verified.delivered, verified.low, verified.high))))
-    document = document | {"verified": _block(verified, tried)}
-    own = {name: document[name] for name in known if name in document}
+    tried = _rates(verified)
+    document = document | {"verified": block(verified)}
+    own = {name: document[name] for name in tried if name in document}
     if not own:
         return document
     lead = tried if verified.up or tried["parts_per_minute"] <= own["parts_per_minute"] else own
@@ -69,12 +68,19 @@ def beside(document, verified, part, bowl, wanted=None):
     return document | led | {"parts_per_minute_static": own["parts_per_minute"]}
 
 
-def _block(verified, tried):
+def _rates(verified):
+    """The rate of a trial with its ends [1/min]."""
+    names = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
+    return dict(zip(names, (end / PER_MINUTE for end in (verified.delivered, verified.low, verified.high))))
+
+
+def block(verified):
+    """Return what a trial has shown as a dict."""
     return {
         "status": verified.status,
         "wanted": verified.wanted,
         "up": verified.up,
-        **tried,
+        **_rates(verified),
         "purity": verified.purity,
         "jams": verified.jams,
         "queue_seconds": verified.queue_seconds,

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,13 +10,15 @@ import shapes
 from matplotlib.text import Text
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl import reading
 from feederscrew.designing import beside
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
-from feederscrew.output.designs import files, tables
+from feederscrew.output.designs import design_file, files, tables
 from feederscrew.output.machine import figures
 from feederscrew.output.machine import tables as machine_tables
 from feederscrew.output.solidbowl import drawing_sheet
 from feederscrew.output.tooling import drawing
+from feederscrew.studies import bowl as machines
 from feederscrew.tooling.orientations import ROUNDED
 
 PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
@@ -191,3 +194,26 @@ def test_the_file_of_a_design_makes_the_same_bowl_again(papers, run, tmp_path):
     assert alone["bowl_depth_mm"] == pytest.approx(papers["bowl"]["bowl_depth_mm"], rel=1e-6)
     assert alone["full_bowl"]["mass_kg"] == pytest.approx(papers["bowl"]["full_bowl"]["mass_kg"], rel=1e-5)
     assert alone["spring_angle_deg"] == pytest.approx(papers["bowl"]["spring_angle_deg"])
+
+
+def test_a_design_warns_of_what_feeder_bowl_warns_of_for_its_part_and_rate(papers):
+    """`feeder bowl PART --target 30/min` takes a smaller stroke, at which the parts are slow."""
+    own = papers["study"]
+    settings = reading.settings_of_text(papers["path"].read_text(), "design.yaml")
+    sheet = machines.bowl(settings, PART, own.request.target)
+    assert len(sheet.remarks) >= 2 and any("slower" in one for one in sheet.remarks)
+    for remark in sheet.remarks:
+        said = [one for one in own.warnings if remark in one]
+        assert said, remark
+        stroke = 2e3 * sheet.bowl.drive.amplitude
+        assert f"{stroke:.3g} mm peak to peak" in said[0] and "0.84 mm were tried" in said[0]
+    assert sheet.fill.mass == pytest.approx(papers["bowl"]["full_bowl"]["mass_kg"], rel=1e-6)
+
+
+def test_the_title_block_has_orientation_and_rate_of_the_trial(papers):
+    tried = design_file.trial(papers["study"])
+    drawn = words(drawing_sheet.sheet(papers["built"].drawn, tried).figure)
+    assert re.search(r"orientation\nA@0\n", drawn) and re.search(r"rate of its trial\n60/min", drawn)
+    assert "all that pass" not in drawn and "FALLS SHORT" not in drawn
+    short = words(drawing_sheet.sheet(papers["built"].drawn, replace(tried, status="falls short")).figure)
+    assert "FALLS SHORT - not for manufacture" in short

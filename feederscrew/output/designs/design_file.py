@@ -6,7 +6,7 @@ from feederscrew import __version__, units
 from feederscrew import bowl as bowls
 from feederscrew.bowl import devices, reading, unbalance
 from feederscrew.bowl.devices import SECTION
-from feederscrew.bowl.verified import NOTHING_LEFT, body_fingerprint, fingerprint
+from feederscrew.bowl.verified import NOTHING_LEFT, Verified, body_fingerprint, fingerprint
 from feederscrew.designing.record import NOT_PROVED
 from feederscrew.errors import FeederError
 
@@ -107,6 +107,28 @@ def _unbalance(machine):
 def _text(record, word, unit, dimension):
     scale = units.factor(unit, dimension) if unit else 1.0
     return f"{getattr(record, word) / scale:.9g} {unit}".strip()
+
+
+def trial(study):
+    """Return what a design has shown, as its bowl file says it; None where nothing has left a queue.
+
+    Parameters
+    ----------
+    study : DesignStudy
+
+    Returns
+    -------
+    Verified or None
+    """
+    if study.bowl is None or study.status == NOT_PROVED or not any(one.left for one in study.queues):
+        return None
+    value, low, high = study.delivered
+    purity = study.purity[0]
+    return Verified(
+        study.status, study.wanted, study.request.target, value, low, high, purity, study.jams,
+        study.queue_seconds, study.robust.draws, study.robust.held, __version__, study.part.sha256[:16],
+        fingerprint(study.bowl), ", ".join(study.request.up), body_fingerprint(study.part),
+    )  # fmt: skip
 
 
 def _verified(study, bowl):

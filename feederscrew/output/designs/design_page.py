@@ -60,9 +60,11 @@ def _sections(study, built):
         yield Chapter(tuple(_played(study)), anchor="trial", title="The trial")
     if study.queues:
         yield Chapter(tuple(_proof(study, d)), anchor="proof", title="The proof")
-    if built is not None and study.bowl is not None:
+    if built is not None and study.delivers:
         shown = tuple(turnable.blocks(built.drawn and built.drawn.solid, study.part, built.why))
         yield Chapter(shown, anchor="bowl", title="The bowl")
+    if not study.delivers:  # nothing to build from, nothing to accept
+        return
     sheet = tables.acceptance(study)
     blocks = (
         Text("Computed values, with empty cells for what is measured at the machine."),
@@ -76,6 +78,8 @@ def _sections(study, built):
 
 def _answer(study, d):
     yield Text(_said(study))
+    if d["machine"]:
+        yield Text(f"The machine: {tables.machine_text(d['machine'])}.")
     yield Table(tables.two_columns(tables.outcome(d, study.devices)))
     if d["bowl"]:
         yield Table(tables.two_columns(tables.dimensions(d)))

@@ -82,6 +82,9 @@ def summary(study):
         text = f"{one.status}, {one.wanted or NOTHING}"
         text += "" if one.partial else f", {rate:.4g} a minute (at least {low:.4g})"
         rows.append((one.part.name, text + (f": {one.why}" if one.why else "")))
+        told = tables.machine(one)
+        if told is not None:
+            rows.append((f"machine of {one.part.name}", tables.machine_text(told)))
     for what, how, values in changes(study):
         rows.append((f"{how}: {what}", "; ".join(values)))
     return tables.two_columns([line for row in rows for line in tables.folded(*row)])

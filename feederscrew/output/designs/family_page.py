@@ -24,6 +24,11 @@ def page(study):
 
 def _chapters(study):
     answer = [Text(_said(study)), Table(frame(parts(study)))]
+    answer += [Text("The machine that each part asks for:"), Notes(tuple(_machines(study)))]
+    warned = tuple(
+        dict.fromkeys(f"{one.part.name}: {said}" for one in study.members for said in one.warnings)
+    )
+    answer += [Notes(warned, loud=True)] if warned else []
     answer += [Notes(tuple(said), loud=True) for said in (_risks(study),) if said]
     yield Chapter(tuple(answer), tuple(_tiles(study)), anchor="answer", title="The answer")
     changed = family.changeover(study)
@@ -58,6 +63,13 @@ def _tiles(study):
     rows = family.changes(study)
     by_hand = sum(how == family.SWAPPED for _, how, _ in rows)
     yield Tile("changed", f"{len(rows)}", f"{by_hand} of them by hand")
+
+
+def _machines(study):
+    for one in study.members:
+        told = tables.machine(one)
+        text = "no bowl" if told is None else tables.machine_text(told)
+        yield f"{one.part.name}: {text}"
 
 
 def _risks(study):

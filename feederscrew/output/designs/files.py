@@ -1,7 +1,7 @@
 """What ``feeder design`` leaves in its folder."""
 
 from feederscrew.designing import record
-from feederscrew.output import machine, solidbowl
+from feederscrew.output import machine, marking, solidbowl
 from feederscrew.output import offers as offer
 from feederscrew.output.designs import design_file, tables
 from feederscrew.output.solidbowl import tables as tables_of_solid
@@ -23,8 +23,8 @@ def offers(study, settings, built=None):
     -------
     list of Offer
         Document, page and acceptance sheet; of a design with a bowl the bowl file, and everything of the
-        tooling, of the machine and of the bowl as a solid. Of one that is not proved what was tried only:
-        nothing to build from.
+        tooling, of the machine and of the bowl as a solid. Of one that is not proved, or that delivers
+        nothing, what was tried only: nothing to build from. Drawings of what falls short bear a mark.
     """
     if study.status == record.NOT_PROVED:
         return list(_unproved(study, settings))
@@ -32,7 +32,6 @@ def offers(study, settings, built=None):
     found = [
         offer.document("design.json", tables.document, study),
         offer.text("design.html", _page, study, built),
-        offer.table("acceptance.csv", tables.acceptance, study),
         offer.table("design_trials.csv", tables.attempts, study),
         offer.picture("design_history.png", "Each short trial of the loop", _history, study),
     ]
@@ -42,13 +41,17 @@ def offers(study, settings, built=None):
     if study.bowl is None:
         return found
     found.append(offer.text("design.yaml", design_file.bowl_file, study, settings, sheet))
+    if not study.delivers:
+        return found
+    tried = design_file.trial(study)
+    found.append(offer.table("acceptance.csv", tables.acceptance, study))
     if sheet is not None:
-        found += machine.offers(sheet)
+        found += machine.offers(sheet, tried)
     if drawn is not None:
-        found += solidbowl.offers(drawn)
+        found += solidbowl.offers(drawn, tried)
         found.append(offer.document("bowl_solid.json", tables_of_solid.document, drawn.solid))
     if study.tooling is not None:
-        own = tooling_files.offers(study.tooling, settings)
+        own = tooling_files.offers(study.tooling, settings, mark=marking.of_trial(tried))
         found += [one for one in own if one.name != "tooling.yaml"]  # design.yaml has the devices
     return found
 

@@ -5,7 +5,7 @@ import textwrap
 import numpy as np
 
 from feederscrew import units
-from feederscrew.conveying.answer import throw_number
+from feederscrew.conveying.answer import answer, throw_number
 from feederscrew.designing import record
 from feederscrew.machine.feasibility import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import columns, tables
@@ -13,7 +13,18 @@ from feederscrew.output import columns, tables
 PER_MINUTE = units.factor("/min", "rate")
 MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
 
-SAID_FIRST = {"drive_kind", "drive_needs", "drive_of_the_springs", "vibration_angle_deg"}  # or elsewhere
+SAID_FIRST = {  # or elsewhere
+    "drive_kind", "drive_needs", "drive_of_the_springs", "vibration_angle_deg", "phase_deg", "frequency_hz",
+    "peak_to_peak_mm", "throw_number",
+}  # fmt: skip
+ONE_SET = "one set of leaf springs makes it"
+OTHER_SET = "the leaf springs that are drawn make another one"
+CAMERAS = {  # by what a sensor sees
+    "outline": "camera from above",
+    "side": "camera from the side",
+    "height": "height sensor",
+    "relief": "laser line",
+}
 WIDTH = 62  # letters of a value that is printed beside its name
 
 
@@ -45,6 +56,7 @@ def document(study):
         "seed": study.request.seed,
         "partial": study.partial,
         "proved_so_far": [] if proved else list(study.proved_so_far),
+        "machine": machine(study),
         "bowl": bowl(study),
         "queues": [queue(one) for one in study.queues],
         "attempts": attempts(study).rows(),
@@ -90,6 +102,65 @@ def bowl(study):
         ),
         "throw_number": float(throw_number(study.bowl)),
     }
+
+
+def machine(study):
+    """Return the machine that a design asks for as a dict; None where there is no bowl."""
+    if study.bowl is None:
+        return None
+    drive, two_axis = study.bowl.drive, is_two_axis(study.bowl.drive)
+    velocity = answer(study.bowl).velocity
+    seen = [one for one in study.devices if one.senses]
+    return {
+        "drive": TWO_AXIS if two_axis else LEAF_SPRING,
+        "drive_needs": TWO_MAGNETS if two_axis else ONE_SET if study.drive_mismatch is None else OTHER_SET,
+        "phase_deg": drive.phase / DEG,
+        "frequency_hz": drive.frequency,
+        "stroke_peak_to_peak_mm": 2.0 * drive.amplitude / MM,
+        "throw_number": float(throw_number(study.bowl)),
+        "velocity_mm_s": float(velocity) / MM_S if np.isfinite(velocity) else None,
+        "cameras": len(seen),
+        "cameras_see": [one.sees for one in seen],
+        "valves": len(seen),  # one for the pulses of each
+        "air": any(hasattr(one, "jet") for one in study.devices),
+    }
+
+
+def machine_text(told):
+    """Return the dict of ``machine`` as one sentence."""
+    travels = "" if told["velocity_mm_s"] is None else f", {told['velocity_mm_s']:.3g} mm/s"
+    return (
+        f"{_drive_kind(told)}; {told['frequency_hz']:.4g} Hz, stroke {told['stroke_peak_to_peak_mm']:.3g} mm "
+        f"peak to peak, throw number {told['throw_number']:.3g}{travels}; {_served_by(told)}"
+    )
+
+
+def _drive_kind(told):
+    led = f", phase {told['phase_deg']:.4g} deg" if told["drive"] == TWO_AXIS else ""
+    return f"{told['drive']}{led}: {told['drive_needs']}"
+
+
+def _served_by(told):
+    """Cameras, valves and air, in words."""
+    seen = f" ({', '.join(CAMERAS[one] for one in told['cameras_see'])})" if told["cameras"] else ""
+    counts = [
+        units.counted(told[name], name.removesuffix("s")) if told[name] else f"no {name.removesuffix('s')}"
+        for name in ("cameras", "valves")
+    ]
+    return f"{counts[0]}{seen}, {counts[1]}, {'compressed air' if told['air'] else 'no air'}"
+
+
+def _machine(told):
+    """Rows of the dict of ``machine``."""
+    if told is None:
+        return
+    yield "drive", _drive_kind(told)
+    yield "frequency [Hz]", f"{told['frequency_hz']:.4g}"
+    yield "stroke, peak to peak [mm]", f"{told['stroke_peak_to_peak_mm']:.4g}"
+    yield "throw number", f"{told['throw_number']:.4g}"
+    if told["velocity_mm_s"] is not None:
+        yield "velocity [mm/s]", f"{told['velocity_mm_s']:.4g}"
+    yield "cameras, valves, air", _served_by(told)
 
 
 def risk(one):
@@ -182,6 +253,7 @@ def outcome(d, devices):
     """Return rows of the answer of a design's document, and of its devices as the trade names them."""
     head = [
         ("status", d["status"]),
+        *_machine(d.get("machine")),
         *_drive(d.get("bowl") or {}),
         ("leaves as", _leaves_as(d)),
         ("asked for [1/min]", f"{d['target_per_minute']:.4g}"),
@@ -193,7 +265,7 @@ def outcome(d, devices):
 
 def _leaves_as(d):
     """The orientation that leaves, and which aspects count at any heading."""
-    up = f", counting {', '.join(d['up'])} at any heading" if d["up"] else ""
+    up = f", counting {', '.join(d['up'])} at any heading" if d.get("up") else ""
     return (d["wanted"] or "-") + up
 
 
@@ -225,9 +297,7 @@ def dimensions(d):
 
 
 def _drive(bowl):
-    """Rows of a drive that one set of leaf springs cannot make; none of one that it makes."""
-    if bowl.get("drive_needs"):
-        yield "drive", f"{bowl['drive_kind']}, phase {bowl['phase_deg']:.4g} deg: {bowl['drive_needs']}"
+    """The drive that the drawn springs make, where it is another one."""
     if bowl.get("drive_of_the_springs"):
         yield "its drawn springs make", bowl["drive_of_the_springs"]
 

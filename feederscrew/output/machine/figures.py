@@ -17,19 +17,21 @@ DIMENSION = {"arrowstyle": "<->", "color": style.INK, "linewidth": 0.8, "shrinkA
 LEADER = {"arrowstyle": "-", "color": style.INK, "linewidth": 0.7, "shrinkA": 1, "shrinkB": 0}
 
 
-def bowl(study):
+def bowl(study, tried=None):
     """Draw a bowl with its machine.
 
     Parameters
     ----------
     study : MachineSheet
+    tried : Verified, optional
+        What a trial of the bowl has shown.
 
     Returns
     -------
     Figure
     """
     page = style.page(WIDE, HIGH)
-    _title(page, study)
+    _title(page, study, tried)
     half = ROOM * study.bowl.track.radius / MM
     above, section = page.add_axes((0.015, 0.40, 0.475, 0.50)), page.add_axes((0.51, 0.40, 0.475, 0.50))
     share = 0.50 * HIGH / (0.475 * WIDE)
@@ -42,11 +44,15 @@ def bowl(study):
     return page
 
 
-def _title(page, study):
+def _title(page, study, tried):
     words, moved = "The machine of this bowl", study.stroke
     if study.order is not None:
         rate = study.order.target / PER_MINUTE
         words = f"{study.order.part.name}: a bowl for {rate:.4g} parts a minute"
+    elif tried is not None:
+        words = f"A bowl for {tried.target / PER_MINUTE:.4g} parts a minute"
+    if tried is not None:
+        words += f", {tried.wanted}: its trial delivers {sheets.rate_of_trial(tried)}"
     facts = (
         f"{moved.frequency:.4g} Hz, {moved.peak_to_peak / MM:.3g} mm peak to peak, "
         f"{1e3 * study.answer.velocity:.3g} mm/s"

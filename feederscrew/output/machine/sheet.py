@@ -44,10 +44,20 @@ def quotation(study, tried=None):
     )
 
 
-def machine(study):
+def machine(study, tried=None):
     """Return the lines of a machine without an order, as ``quotation`` does."""
     first = _drive_first(study)
-    return _lines([*first, *_springs(study), *_readings(study), *_travel(study), *_full(study)])
+    return _lines(
+        [
+            *first,
+            *_asked_of_trial(tried),
+            *_tried(tried),
+            *_springs(study),
+            *_readings(study),
+            *_travel(study),
+            *_full(study),
+        ]
+    )
 
 
 def _lines(pairs):
@@ -87,6 +97,13 @@ def _part(study):
     yield "size [mm]", f"{size}; at most {room.longest / MM:.4g} along the wall, {room.tallest / MM:.4g} high"
 
 
+def _asked_of_trial(found):
+    """What a trial was of, for a machine that has no order."""
+    if found is not None:
+        yield "orientation that leaves", found.wanted
+        yield "rate asked for [1/min]", f"{found.target / PER_MINUTE:.6g}"
+
+
 def _tried(found):
     """What a trial has delivered, before what is computed."""
     if found is not None:
@@ -95,6 +112,12 @@ def _tried(found):
             "rate as its trial showed [1/min]",
             f"{found.delivered / PER_MINUTE:.4g} ({ends}): {found.status}",
         )
+
+
+def rate_of_trial(found):
+    """Return what a trial has delivered as text for titles and drawings."""
+    value, low = (f"{end / PER_MINUTE:.4g}" for end in (found.delivered, found.low))
+    return f"{value}/min, at least {low}: {found.status}"
 
 
 def material(part):

@@ -242,5 +242,5 @@ def emptying(study):
 
 def summary(study, tried=None):
     """Return the record as a frame for people: the quotation sheet, with what was tried, or the machine."""
-    rows = sheets.quotation(study, tried) if study.order is not None else sheets.machine(study)
+    rows = sheets.quotation(study, tried) if study.order is not None else sheets.machine(study, tried)
     return tables.frame({name: [row[name] for row in rows] for name in ("quantity", "value")})

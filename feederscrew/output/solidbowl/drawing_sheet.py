@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from feederscrew.output import marking
 from feederscrew.output.solidbowl import lists, unrolled_strip, views
 from feederscrew.output.solidbowl.paper import THICK, THIN, Paper
 from feederscrew.solidbowl import facets
@@ -19,23 +20,27 @@ STRIP = 205.0, 26.0  # [mm] of paper for the unrolled track
 FRAME = 20.0, 10.0, 410.0, 287.0
 
 
-def pdf(study):
+def pdf(study, tried=None, mark=None):
     """Return the drawing sheet of a bowl as the bytes of a PDF.
 
     Parameters
     ----------
     study : MachineSheet
         With its order and its solid.
+    tried : Verified, optional
+        What a trial of the bowl has shown.
+    mark : str, optional
+        Across the sheet; that of the trial without it.
 
     Returns
     -------
     bytes
     """
-    return sheet(study).pdf(f"{study.order.part.name}: bowl")
+    return sheet(study, tried, mark).pdf(f"{study.order.part.name}: bowl")
 
 
-def sheet(study):
-    """Return the drawing sheet of a bowl as a Paper."""
+def sheet(study, tried=None, mark=None):
+    """Return the drawing sheet of a bowl as a Paper; what falls short bears a mark across it."""
     paper, solid = Paper(), study.solid.with_lugs
     found = measures(study.solid)
     found = replace(found, extent=tuple(float(x) for x in np.ptp(solid.vertices, axis=0)))
@@ -48,7 +53,8 @@ def sheet(study):
     _unrolled(paper, solid)
     lists.cuts(paper, study, (25.0, 84.0))
     lists.parts(paper, study, (246.0, 134.0))
-    lists.title(paper, study, found, scale)
+    lists.title(paper, study, found, scale, tried)
+    marking.across(paper.figure, marking.of_trial(tried, mark))
     return paper
 
 

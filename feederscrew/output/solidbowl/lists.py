@@ -13,6 +13,7 @@ CUT = "±0.1"  # [mm] of an edge that parts meet
 GENERAL = "ISO 2768-m"
 MOST = 12  # rows of a list
 LONG = 46  # letters of a line in the title block
+NARROW = 38  # letters of its left column
 
 
 def cuts(paper, study, at):
@@ -70,15 +71,15 @@ def parts(paper, study, at):
     paper.table(*at, [10.0, 18.0, 136.0], rows)
 
 
-def title(paper, study, found, scale):
-    """Draw the title block in the lower right corner."""
+def title(paper, study, found, scale, tried=None):
+    """Draw the title block in the lower right corner; of a bowl that was tried as it was tried."""
     left, low, right, high = 246.0, 10.0, 410.0, 78.0
     paper.box(left, low, right, high, 1.2)
     solid, order = study.solid, study.order
     paper.text(left + 2.0, high - 6.0, f"Bowl for {_short(order.part.name)}", size=4.0, fontweight="bold")
     for k, line in enumerate(_not_made(study)):
         paper.text(left, high + 5.4 - 3.2 * k, line, size=1.85, color="#d55e00")
-    pairs = _fields(study, solid, found, scale)
+    pairs = _fields(study, solid, found, scale, tried)
     half = (len(pairs) + 1) // 2
     for k, (name, value) in enumerate(pairs):
         x, y = left + 2.0 + 82.0 * (k // half), high - 13.0 - 5.6 * (k % half)
@@ -95,11 +96,11 @@ def _not_made(study):
         yield f"these springs make {study.mismatch.machine.text}"
 
 
-def _short(words):
-    return words if len(words) <= LONG else f"{words[: LONG - 1]}…"
+def _short(words, letters=LONG):
+    return words if len(words) <= letters else f"{words[: letters - 1]}…"
 
 
-def _fields(study, solid, found, scale):
+def _fields(study, solid, found, scale, tried):
     """Names and values of the title block."""
     plan, order = solid.plan, study.order
     centre = ", ".join(f"{x / MM:.1f}" for x in solid.centre)
@@ -112,7 +113,8 @@ def _fields(study, solid, found, scale):
     return [
         ("drawing of part", _short(order.part.source.rpartition("/")[2])),
         ("rate asked for", f"{order.target / MIN:.4g} a minute"),
-        ("orientation", wanted),
+        ("orientation", wanted if tried is None else _short(tried.wanted, NARROW)),
+        *([] if tried is None else [("rate of its trial", _short(sheets.rate_of_trial(tried), NARROW))]),
         ("part material", sheets.material(order.part)),
         ("fill, hopper", f"{study.fill.mass:.3g} kg, {order.hopper / LITRE:.3g} l"),
         ("drive", f"{study.stroke.frequency:.4g} Hz, {study.stroke.peak_to_peak / MM:.3g} mm"),
@@ -131,7 +133,7 @@ def _fields(study, solid, found, scale):
         ("size", f"{extent} mm"),
         ("general tolerance", f"{GENERAL}; cuts {CUT} mm"),
         ("scale, sheet", f"1 : {1.0 / scale:g}, A3, sizes in mm"),
-        ("drawn by", "feeder bowl"),
+        ("drawn by", "feeder bowl" if tried is None else "feeder design, feeder bowl"),
     ]
 
 

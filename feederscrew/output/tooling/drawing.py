@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew import dxf as files
 from feederscrew.dxf import Layer
+from feederscrew.output import marking
 from feederscrew.tooling.orientations import ROUNDED
 from feederscrew.units import factor
 
@@ -25,6 +26,7 @@ COLOURS = {
     "LEDGE": 6,
     "NOZZLE": 3,
     "SLOPE": 6,
+    "MARK": 1,
 }
 PENS = {  # of the SVG: stroke, fill, dashes
     "TRACK": ("#22303c", "#eef1f4", ""),
@@ -44,7 +46,7 @@ EDGES = f"edges broken at most {ROUNDED / MM:.3g} mm"  # as they are tried
 SHOP = f"values +-0.1 mm; {EDGES}; lands 1 mm and the sheet's thickness at least"
 
 
-def dxf(strip, ghosts=()):
+def dxf(strip, ghosts=(), mark=""):
     """Return the drawing of a strip as the bytes of a DXF file.
 
     Parameters
@@ -52,15 +54,17 @@ def dxf(strip, ghosts=()):
     strip : TrackSection
     ghosts : sequence of ((K, 2) float [m], float [m])
         Outlines of parts from the wall, each with its place along it; they are not cut.
+    mark : str
+        Written across the drawing, on the layer ``MARK``, and among its notes.
 
     Returns
     -------
     bytes
     """
-    return files.written(layers(strip, ghosts))
+    return files.written(layers(strip, ghosts, mark))
 
 
-def layers(strip, ghosts=()):
+def layers(strip, ghosts=(), mark=""):
     """Return the layers of a strip: unrolled, below it as bent, to the right the openings of gates.
 
     Parameters
@@ -68,6 +72,8 @@ def layers(strip, ghosts=()):
     strip : TrackSection
     ghosts : sequence of ((K, 2) float [m], float [m])
         Outlines of parts from the wall, each with its place along it.
+    mark : str
+        As for ``dxf``.
 
     Returns
     -------
@@ -83,25 +89,38 @@ def layers(strip, ghosts=()):
     plain = tuple(np.add(ring, [place, 0.0]) for ring, place in ghosts)
     found += _both(strip, "GHOST", plain, tuple(strip.laid(*ghost) for ghost in ghosts))
     found += [Layer(name, COLOURS["OPENING"], rings=rings) for name, rings in _openings(strip)]
-    return [*found, Layer("TEXT", COLOURS["TEXT"], texts=_texts(strip))]
+    found.append(Layer("TEXT", COLOURS["TEXT"], texts=_texts(strip, mark)))
+    if not mark:
+        return found
+    low, high = _corners(found)
+    height, turn = marking.diagonal(high - low, mark)
+    return [*found, Layer("MARK", COLOURS["MARK"], across=(mark, tuple(0.5 * (low + high)), height, turn))]
 
 
-def svg(strip, ghosts=()):
+def _corners(drawn):
+    """The lower left and the upper right corner [m] of all outlines."""
+    corners = np.vstack([ring for one in drawn for ring in one.rings])
+    return corners.min(axis=0), corners.max(axis=0)
+
+
+def svg(strip, ghosts=(), mark=""):
     """Return the drawing of a strip as an SVG file of its true size.
 
     Parameters
     ----------
     strip : TrackSection
     ghosts : sequence of ((K, 2) float [m], float [m])
+    mark : str
+        Written across the drawing.
 
     Returns
     -------
     str
     """
     drawn = [one for one in layers(strip, ghosts) if one.name != "TEXT"]
-    texts = _texts(strip)
-    corners = np.vstack([ring for one in drawn for ring in one.rings])
-    low, high = corners.min(axis=0) / MM - 5.0, corners.max(axis=0) / MM + 5.0
+    texts = _texts(strip, mark)
+    low, high = (corner / MM for corner in _corners(drawn))
+    low, high = low - 5.0, high + 5.0
     size = high - low + [20.0, 0.0]
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{size[0]:.2f}mm" height="{size[1]:.2f}mm" '
@@ -115,6 +134,15 @@ def svg(strip, ghosts=()):
         f'fill="#22303c">{html.escape(text)}</text>'
         for text, (x, y) in texts
     ]
+    if mark:
+        height, turn = marking.diagonal(size, mark)
+        x, y = low[0] + 0.5 * size[0], -high[1] + 0.5 * size[1]
+        lines.append(
+            f'<text class="MARK" x="{x:.2f}" y="{y:.2f}" font-family="sans-serif" font-weight="bold" '
+            f'font-size="{height:.2f}" fill="{marking.COLOUR}" fill-opacity="{marking.STRENGTH}" '
+            f'text-anchor="middle" dominant-baseline="middle" '
+            f'transform="rotate({-np.degrees(turn):.2f} {x:.2f} {y:.2f})">{html.escape(mark)}</text>'
+        )
     return "\n".join([*lines, "</svg>"]) + "\n"
 
 
@@ -154,7 +182,7 @@ def _openings(strip):
     return found
 
 
-def _texts(strip):
+def _texts(strip, mark=""):
     above = strip.width + 3e-3
     named = [(_label(station), (station.start, above)) for station in strip.stations]
     gates = [station for station in strip.stations if station.openings]
@@ -169,6 +197,7 @@ def _texts(strip):
             (0.0, -_drop(strip) - WALL - 4.5e-3),
         ),
         (SHOP, (0.0, -WALL - 9e-3)),
+        *([(mark, (0.0, -WALL - 13.5e-3))] if mark else []),
     ]
     return tuple(named + seen + notes)
 

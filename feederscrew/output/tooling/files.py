@@ -2,12 +2,13 @@
 
 import numpy as np
 
+from feederscrew.output import marking
 from feederscrew.output import offers as offer
 from feederscrew.output.tooling import bowl_file, tables
 from feederscrew.tooling.strip import strip
 
 
-def offers(study, settings, step=False):
+def offers(study, settings, step=False, mark=""):
     """Offer the files of a ToolingStudy, as a list of Offer.
 
     Parameters
@@ -17,6 +18,8 @@ def offers(study, settings, step=False):
         Of its bowl.
     step : bool
         Offer the section of track as STEP as well, which needs OpenCASCADE.
+    mark : str
+        Across every drawing and picture.
 
     Returns
     -------
@@ -30,16 +33,17 @@ def offers(study, settings, step=False):
         offer.picture("tooling.png", "Orientations and what isolates them", picture, study),
     ]
     if study.design is None or not study.design.devices:
-        return found
-    return [
+        return marking.pictures(found, mark)
+    found = [
         *found,
         offer.text("tooling.yaml", bowl_file.bowl_file, study, settings),
-        offer.text("tooling.dxf", _drawn, "dxf", study),
-        offer.text("tooling.svg", _drawn, "svg", study),
+        offer.text("tooling.dxf", _drawn, "dxf", study, mark),
+        offer.text("tooling.svg", _drawn, "svg", study, mark),
         offer.text("tooling.stl", _printed, study),
         *([offer.text("tooling.step", _quoted, study)] if step else []),
         *_views(study),
     ]
+    return marking.pictures(found, mark)
 
 
 def picture(study):
@@ -107,14 +111,14 @@ def solid_picture(devices, every, shares, wanted):
     return offer.picture("tooling_3d.png", text, draw)
 
 
-def _drawn(kind, study):
+def _drawn(kind, study, mark):
     from feederscrew.output.tooling import drawing
 
     made = _strip(study)
     one = study.orientations[study.wanted]
     outline = np.add(one.outline, [0.0, one.distance])
     places = [station.start + 0.5 * station.length for station in made.stations if station.hole is None]
-    return getattr(drawing, kind)(made, [(outline, place) for place in (0.6 * one.length, *places)])
+    return getattr(drawing, kind)(made, [(outline, place) for place in (0.6 * one.length, *places)], mark)
 
 
 def _printed(study):

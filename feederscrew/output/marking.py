@@ -1,0 +1,100 @@
+"""The mark across every drawing of a bowl whose trial falls short."""
+
+import numpy as np
+
+from feederscrew.bowl.verified import FALLS_SHORT
+from feederscrew.output import offers
+
+MARK = "FALLS SHORT - not for manufacture"
+COLOUR, STRENGTH = "#d40000", 0.45  # of the letters, and how much they hide [1]
+DIAGONAL_SHARE, SIDE_SHARE = 0.75, 0.88  # [1] of the diagonal and the longer side that a mark takes at most
+LETTER_WIDTH = 0.62  # [1] of a bold letter over its size, in the mean
+POINTS = 72.0  # of an inch
+
+
+def of_trial(tried, mark=None):
+    """Return the mark of a bowl whose trial falls short; '' of any other.
+
+    Parameters
+    ----------
+    tried : Verified or None
+    mark : str, optional
+        Taken in its place where it is given.
+    """
+    if mark is not None:
+        return mark
+    return MARK if tried is not None and tried.status == FALLS_SHORT else ""
+
+
+def diagonal(sheet, mark):
+    """Return the size of a mark's letters and its turn [rad].
+
+    Parameters
+    ----------
+    sheet : (float, float)
+        Width and height; the size has the same unit.
+    mark : str
+    """
+    length = min(DIAGONAL_SHARE * float(np.hypot(*sheet)), SIDE_SHARE * max(sheet))
+    return length / (LETTER_WIDTH * len(mark)), float(np.arctan2(sheet[1], sheet[0]))
+
+
+def across(figure, mark):
+    """Write a mark from corner to corner of a figure.
+
+    Parameters
+    ----------
+    figure : Figure or None
+    mark : str
+        '' leaves the figure as it is.
+
+    Returns
+    -------
+    Figure or None
+        The same one.
+    """
+    if figure is None or not mark:
+        return figure
+    image = getattr(figure.canvas, "image", None)
+    if image is None:
+        _write(figure, mark)
+        return figure
+    from feederscrew.output import style  # matplotlib, where a picture is drawn anyway
+
+    rows, columns, _ = image.shape  # a picture of pixels alone: the letters are laid over them
+    letters = style.page(columns, rows)
+    letters.patch.set_alpha(0.0)
+    _write(letters, mark)
+    letters.canvas.draw()
+    drawn = np.asarray(letters.canvas.buffer_rgba())
+    hidden = drawn[..., 3:] / 255.0
+    mixed = image * (1.0 - hidden) + drawn[..., :3] * hidden
+    figure.canvas.image = np.rint(mixed).astype(np.uint8)
+    return figure
+
+
+def _write(figure, mark):
+    size, turn = diagonal(figure.get_size_inches(), mark)
+    figure.text(
+        0.5, 0.5, mark, fontsize=POINTS * size, rotation=np.degrees(turn), ha="center", va="center",
+        rotation_mode="anchor", fontweight="bold", color=COLOUR, alpha=STRENGTH, zorder=100,
+    ).set_in_layout(False)  # fmt: skip
+
+
+def pictures(offered, mark):
+    """Return offers whose pictures bear a mark; the others as they are.
+
+    Parameters
+    ----------
+    offered : iterable of Offer
+    mark : str
+
+    Returns
+    -------
+    list of Offer
+    """
+    return [_marked(one, mark) if mark and one.is_picture else one for one in offered]
+
+
+def _marked(offer, mark):
+    return offers.picture(offer.name, f"{offer.alt} ({mark})", lambda: across(offer.view(), mark))

@@ -1,0 +1,200 @@
+"""What a design hands over: which machine it asks for, and drawings that say where it falls short."""
+
+import io
+import json
+from dataclasses import replace
+
+import ezdxf
+import numpy as np
+import pytest
+import shapes
+from matplotlib.text import Text
+
+from feederscrew import bowl as bowls
+from feederscrew.designing import beside, loop
+from feederscrew.designing.families import FamilyStudy
+from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
+from feederscrew.output import marking, style
+from feederscrew.output.designs import design_file, design_page, family, family_page, files, tables
+from feederscrew.output.machine import figures
+from feederscrew.output.machine import sheet as sheets
+from feederscrew.output.tooling import drawing
+from feederscrew.tooling.strip import strip
+
+PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
+SHORT = "FALLS SHORT"
+BOWL = (
+    "drive.amplitude=0.42 mm", "drive.frequency=50 Hz", "drive.vibration_angle=25 deg", "track.radius=150 mm",
+    "track.width=14 mm", "track.climb=3.7 deg",
+)  # fmt: skip
+SENSOR = "devices:\n  - sorter: {of: A@0, play: 1 mm, sees: outline}\n  - gap: 5 mm\n"
+
+
+def queue(right, left=200):
+    return FilledQueue("normal", 0.2, 12, 200.0, 200.0, float(left), right, left, 0, 0, 0)
+
+
+def study(target=0.5, right=200, left=200, bowl=None, part=PART, **known):
+    queues = {"queues": (queue(right, left),), "robust": RobustRun(20, 20, "")} | known
+    return DesignStudy(part, DesignRequest(target), bowl or bowls.read(None, BOWL), "A@0", 0, **queues)
+
+
+@pytest.fixture
+def sensing(tmp_path):
+    """A bowl with a camera, and one device that needs no air."""
+    (tmp_path / "bowl.yaml").write_text(SENSOR)
+    return bowls.read(tmp_path / "bowl.yaml", BOWL)
+
+
+@pytest.fixture(scope="module")
+def built():
+    """The machine of a design that leaves no solid."""
+    one = study()
+    sheet = beside.machines.machine(bowls.settings(None, BOWL))
+    return one, beside.Built(sheet)
+
+
+def offered(one, built=None):
+    return {offer.name: offer for offer in files.offers(one, (), built)}
+
+
+def test_a_design_says_which_machine_it_asks_for(sensing):
+    told = tables.document(study(bowl=sensing))["machine"]
+    assert (told["drive"], told["cameras"], told["valves"], told["air"]) == ("leaf-spring drive", 1, 1, True)
+    assert (told["frequency_hz"], told["stroke_peak_to_peak_mm"]) == pytest.approx((50.0, 0.84))
+    # A w^2 sin(25 deg) over g cos(3.7 deg)
+    peak = 0.42e-3 * (100.0 * np.pi) ** 2 * np.sin(np.radians(25.0))
+    assert told["throw_number"] == pytest.approx(peak / (9.80665 * np.cos(np.radians(3.7))), rel=1e-3)
+    assert told["velocity_mm_s"] > 0.0
+    plain = tables.document(study())["machine"]
+    assert (plain["cameras"], plain["valves"], plain["air"]) == (0, 0, False)
+    phased = replace(sensing, drive=replace(sensing.drive, phase=-1.0))
+    told = tables.document(study(bowl=phased))["machine"]
+    assert told["drive"] == "two-axis drive" and "two magnets" in told["drive_needs"]
+    assert tables.document(DesignStudy(PART, DesignRequest(0.5), None, None, None))["machine"] is None
+
+
+def test_the_machine_is_in_the_first_lines_of_text_and_page(sensing):
+    one = study(bowl=sensing)
+    first = list(tables.summary(one)["quantity"][:7])
+    assert first == [
+        "status", "drive", "frequency [Hz]", "stroke, peak to peak [mm]", "throw number", "velocity [mm/s]",
+        "cameras, valves, air",
+    ]  # fmt: skip
+    page = design_page.page(one).partition("<table")[0].lower()
+    assert all(word in page for word in ("leaf spring", "throw number", "stroke", "1 camera", "1 valve"))
+
+
+def test_a_family_says_the_machine_and_the_warnings_of_each_part():
+    other = replace(study(part=replace(PART, name="other")), machine_warnings=("the magnet strikes",))
+    both = FamilyStudy((study(), other), False)
+    page = family_page.page(both)
+    assert page.lower().count("throw number") == 2 and "other: the magnet strikes" in page
+    rows = family.summary(both)
+    text = " ".join(rows["value"])
+    assert text.count("leaf-spring drive") == 2 and "machine of other" in list(rows["quantity"])
+
+
+def test_drawings_of_what_falls_short_bear_a_mark(built):
+    one, machine = built
+    for target, marked in ((1.6, True), (0.5, False)):
+        found = replace(one, request=DesignRequest(target))
+        offers = offered(found, machine)
+        assert (found.status == "falls short") is marked
+        texts = [text.get_text() for text in offers["bowl.png"].view().findobj(Text)]
+        assert any(SHORT in text for text in texts) is marked
+        assert any("A@0" in text and "60/min" in text for text in texts)
+        sheet = dict(zip(*(offers["bowl.csv"].view()[name] for name in ("quantity", "value")), strict=True))
+        assert sheet["orientation that leaves"] == "A@0" and found.status in str(sheet)
+        document = json.loads(offers["bowl.json"].make())
+        assert document["verified"]["status"] == found.status
+        assert document["verified"]["parts_per_minute"] == pytest.approx(60.0)
+
+
+def test_a_mark_is_laid_over_a_picture_of_pixels():
+    image = np.full((90, 160, 3), 255, dtype=np.uint8)
+    plain, marked = (style.pixels(image.copy()) for _ in range(2))
+    assert marking.across(plain, "") is plain and (plain.canvas.image == 255).all()
+    drawn = marking.across(marked, marking.MARK).canvas.image
+    red = drawn[..., 1] < 200
+    assert 0.01 < red.mean() < 0.5 and (drawn[..., 0] > 200).all()
+    rows, columns = np.nonzero(red)
+    assert np.corrcoef(rows, columns)[0, 1] < -0.8  # from the lower left to the upper right
+
+
+def test_drawings_of_cuts_bear_a_mark_on_a_layer_of_its_own(sensing):
+    gap = replace(sensing, devices=sensing.devices[1:])
+    every = beside.machines.orientations(PART, loop.find(PART), gap.track)
+    made = strip(gap.track, gap.devices, every)
+    read = ezdxf.read(io.StringIO(drawing.dxf(made, mark=marking.MARK).decode()))
+    across = [one for one in read.modelspace() if one.dxf.layer == "MARK"]
+    assert [one.dxftype() for one in across] == ["TEXT"] and SHORT in across[0].dxf.text
+    assert 0.0 < across[0].dxf.rotation < 90.0
+    notes = [one.dxf.text for one in read.modelspace() if one.dxf.layer == "TEXT"]
+    assert marking.MARK in notes
+    assert "rotate(-" in drawing.svg(made, mark=marking.MARK) and SHORT in drawing.svg(
+        made, mark=marking.MARK
+    )
+    assert SHORT not in drawing.svg(made) and b"MARK" not in drawing.dxf(made)
+
+
+def test_what_delivers_nothing_leaves_no_papers(built):
+    _, machine = built
+    kept = {"design.json", "design.html", "design_trials.csv", "design_history.png", "design.yaml"}
+    for one in (study(right=0), study(right=0, left=0), study(queues=())):
+        assert one.status in ("falls short", "none")
+        assert set(offered(one, machine)) == kept
+        assert "acceptance" not in design_page.page(one, machine).lower().replace("acceptance.csv", "")
+    assert set(offered(study(queues=(), partial=True), machine)) < kept
+
+
+def test_the_trial_that_papers_have_is_that_of_the_bowl_file(built, tmp_path):
+    one, machine = built
+    one = replace(one, request=DesignRequest(1.6, up=("A", "B")))
+    (tmp_path / "design.yaml").write_text(design_file.bowl_file(one, (), machine.sheet))
+    read, own = bowls.verified(tmp_path / "design.yaml"), design_file.trial(one)
+    for name in ("status", "wanted", "up", "jams", "draws", "held", "version", "part", "body", "bowl"):
+        assert getattr(read, name) == getattr(own, name), name
+    for name in ("target", "delivered", "low", "high", "purity", "queue_seconds"):
+        assert getattr(read, name) == pytest.approx(getattr(own, name), rel=1e-3), name
+    assert "falls short" in sheets.rate_of_trial(own)
+    assert design_file.trial(study(queues=())) is None
+    assert figures.bowl(machine.sheet, own) is not None
+
+
+def test_a_stopped_design_leaves_the_files_of_an_earlier_one(run, tmp_path, monkeypatch):
+    shapes.box(12.0, 10.0, 8.0).export(tmp_path / "box.stl")
+    monkeypatch.setattr(beside, "built", lambda *_: beside.Built())
+    answers = [study(queues=(), partial=True), study(), study(queues=(), partial=True)]
+
+    def design(part, *_, **__):
+        return replace(answers.pop(0), part=part)
+
+    monkeypatch.setattr(loop, "design", design)
+    line = ("design", tmp_path / "box.stl", "--target", "30/min", "--no-pictures", "-o", tmp_path / "out")
+
+    def written():
+        return {path.name: path.read_bytes() for path in (tmp_path / "out/box").iterdir()}
+
+    assert run(*line).exit_code == 130
+    assert "design.html" not in written()  # of a stopped one what was tried is kept
+    assert run(*line).exit_code == 0
+    before = written()
+    assert "design.html" in before
+    done = run(*line)
+    assert done.exit_code == 130 and "earlier" in done.stderr and "Wrote" not in done.stderr
+    assert written() == before
+
+
+def test_feeder_bowl_of_a_file_that_falls_short_marks_its_picture(built, run, tmp_path, monkeypatch):
+    one, machine = built
+    text = design_file.bowl_file(replace(one, request=DesignRequest(1.6)), (), machine.sheet)
+    (tmp_path / "design.yaml").write_text(text)
+    drawn = []
+    monkeypatch.setattr(marking, "across", lambda figure, mark: drawn.append(mark) or figure)
+    done = run("bowl", "--config", tmp_path / "design.yaml", "-o", tmp_path / "out")
+    assert done.exit_code == 0 and drawn == [marking.MARK]
+    sheet = (tmp_path / "out/design/bowl.csv").read_text()
+    assert "falls short" in sheet and "A@0" in sheet and "falls short" in done.stdout
+    document = json.loads((tmp_path / "out/design/bowl.json").read_text())
+    assert document["verified"]["status"] == "falls short"
