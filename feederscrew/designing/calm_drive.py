@@ -24,6 +24,8 @@ STEEP_BANKS = tuple(np.radians((8.0, 3.0)))  # hold there what rolls
 WORST = (0.6, 1.4)  # [1] of the nominal friction
 STEADY = 0.6  # of the velocity asked for that is left at the worst friction
 LEAST = 0.05  # [m/s] through tooling: what creeps rolls off the wall, or stands at a slot and falls in late
+CALMER = 0.6  # of the velocity of a drive that turns or loses what is wanted: the next one that is tried
+CALMER_STEP = 0.01  # [1] of the throw number: less is no calmer drive
 HALVINGS = 12  # of the amplitude
 STROKE_STEP = 1e-6  # [m] to which an amplitude is rounded
 # frequency [Hz], vibration angle and lead of the normal motion [rad]: the simplest drive first
@@ -127,6 +129,26 @@ def driven(made: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
             return _slowed(bowl, velocity)
         tried.append((fastest, -len(tried), bowl))
     return max(tried)[2]
+
+
+def calmer(made: PlainBowl, bowl: Bowl) -> Bowl | None:
+    """Return a bowl with a calmer drive than another one's, ``CALMER`` times as fast and without hops.
+
+    Parameters
+    ----------
+    made : PlainBowl
+        The bowl without devices, as for ``driven``.
+    bowl : Bowl
+        With the drive that turned or lost a part.
+
+    Returns
+    -------
+    Bowl or None
+        Without devices. None where the user gave the stroke, or none is calmer.
+    """
+    found = driven(made, CALMER * speed(bowl))
+    gentler = throw_number(found) < min(throw_number(bowl), CALM + 1e-3) - CALMER_STEP
+    return found if gentler and speed(found) > 0.0 else None
 
 
 def _drives(made: PlainBowl, hops: bool) -> Iterator[Bowl]:

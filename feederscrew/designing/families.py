@@ -126,7 +126,7 @@ def _member(part, lead, plain, given, request, *, told, before):
     used = {one.kind for one in lead.devices}
     less = replace(request, without=(*request.without, *(name for name in PROPOSED if name not in used)))
     tracked = replace(plain, track=lead.bowl.track)
-    found = loop.design(part, tracked, given | set(TRACK), less, **own)
+    found = loop.design(part, tracked, given | set(TRACK), less, **own, with_nearest=False)
     if found.status == HOLDS or found.partial:
         return replace(found, request=request)
     other = loop.design(part, plain, given, request, **own)
