@@ -318,9 +318,13 @@ class DesignStudy(Shown):
             return ""
         if self.partial:
             return "; ".join(("stopped before all was tried", *self.proved_so_far))
+        return "; ".join((self.reasons, *(() if self.nearest is None else (self.nearest.text,))))
+
+    @property
+    def reasons(self) -> str:
+        """Where it falls short, and the cause; '' of a design that holds or was stopped."""
         cause, sentence = self._cause
-        near = () if self.nearest is None else (self.nearest.text,)
-        return "; ".join((*self.shortfalls, f"the cause is the {cause}: {sentence}", *near))
+        return "; ".join((*self.shortfalls, f"the cause is the {cause}: {sentence}")) if cause else ""
 
     @property
     def left_instead(self) -> tuple[tuple[str, int], ...]:

@@ -17,6 +17,7 @@ from feederscrew.trial import runs
 
 Progress = Callable[[str, int, int, float, float], None]
 USUAL_S = {"trial": 4.0, "draws": 1.5, "queue": 20.0}  # [s] a trial, a draw, a queue, before any was timed
+USUAL_SLOWNESS_S = 10.0  # [s] of stages that count as having taken as long as usual
 USUAL_TRIALS = 5  # of a design; the median of those of docs/design.md is 4
 QUEUES = 3  # of a design, one at each fill
 TELL_EVERY_S = 0.5  # [s] between two calls of progress in a queue
@@ -95,7 +96,7 @@ class Search:
         if not self.clock.timed:
             return ""
         rest = self.clock.rest(len(self.attempts), self.limit, self.request.draws)
-        return f"; {self.clock.gone:.0f} s gone, about {_about(rest):.0f} s to go if the next ones pass"
+        return f"; {self.clock.gone:.0f} s gone, about {_about(rest):.0f} s to go"
 
     @property
     def spent(self) -> bool:
@@ -193,8 +194,12 @@ class Clock:
         if stage in self.spent:
             seconds, number = self.spent[stage]
             return seconds / number
-        speeds = [seconds / number / USUAL_S[name] for name, (seconds, number) in self.spent.items()]
-        return USUAL_S[stage] * (sum(speeds) / len(speeds) if speeds else 1.0)
+        seconds = sum(one for one, _ in self.spent.values())
+        usual = sum(number * USUAL_S[name] for name, (_, number) in self.spent.items())
+        slower = (seconds + USUAL_SLOWNESS_S) / (
+            usual + USUAL_SLOWNESS_S
+        )  # one quick trial is no fast machine
+        return USUAL_S[stage] * slower
 
     def rest(self, trials: int, limit: int, draws: int) -> float:
         """Return a guess of the seconds to go: as if a usual number of trials led to one proof."""

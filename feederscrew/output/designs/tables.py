@@ -201,7 +201,9 @@ def _brief(device):
 def summary(study):
     """Return what is printed: the answer first, then what it stands on; long lines go on in the next row."""
     d = document(study)
-    why = [("why", d["why"])] if d["why"] else []
+    why = [("why", study.reasons or d["why"])] if d["why"] else []
+    if study.nearest is not None:
+        why.append(("nearest that holds", study.nearest.text.removeprefix("nearest that holds: ")))
     first, *rows = outcome(d)
     rows = [first, *why, *rows, *dimensions(d), *(("risk", one) for one in d["risks"])]
     rows.append(("trials, parts", f"{len(d['attempts'])}, {d['trial_parts']}"))
