@@ -16,6 +16,7 @@ from feederscrew.designing.record import (
     DesignStudy,
     FilledQueue,
     NearestDesign,
+    RobustRun,
 )
 from feederscrew.designing.robust import robust_run
 from feederscrew.designing.searching import Candidate, Progress, Search
@@ -113,9 +114,9 @@ def _nearest(search: Search, proofs: Proofs) -> tuple[NearestDesign | None, Desi
         return None, None
     slow = [one for one in proofs if nearest.only_slow(one[0]) and not nearest.whole(one[0])]
     if slow:  # its queue ended as soon as it was too slow
-        _, candidate = max(slow, key=lambda one: merit(one[0]))
+        study, candidate = max(slow, key=lambda one: merit(one[0]))
         proofs[:] = [one for one in proofs if one[1] is not candidate]
-        proofs.append((proved(search, candidate, whole=True), candidate))
+        proofs.append((proved(search, candidate, whole=True, drawn=study.robust), candidate))
         if proofs[-1][0].partial:
             return None, None
     return nearest.nearest(_best(search, proofs), search, proofs, _proved_at_any_rate)
@@ -201,30 +202,35 @@ def _make_whole(search: Search, proofs: Proofs) -> None:
         return
     if proofs:
         study, candidate = max(proofs, key=lambda one: merit(one[0]))
+        drawn = study.robust
         if nearest.whole(study):
             return
     else:
-        likeliest = _likeliest(search)
+        drawn, likeliest = None, _likeliest(search)
         if likeliest is None:
             return
         candidate = likeliest
     proofs[:] = [one for one in proofs if one[1] is not candidate]
-    proofs.append((proved(search, candidate, whole=True), candidate))
+    proofs.append((proved(search, candidate, whole=True, drawn=drawn), candidate))
 
 
-def proved(search: Search, candidate: Candidate, *, whole: bool) -> DesignStudy:
-    """Return the design with its draws and its queue; unless ``whole``, only as far as it holds."""
-    request, part = search.request, search.part
+def proved(
+    search: Search, candidate: Candidate, *, whole: bool, drawn: RobustRun | None = None
+) -> DesignStudy:
+    """Return the design with its draws and its queue; unless ``whole``, only as far as it holds.
+
+    Parameters
+    ----------
+    search : Search
+    candidate : Candidate
+    whole : bool
+    drawn : RobustRun, optional
+        All draws of that candidate, where they were made: they would come out the same.
+    """
     known, candidate = exploring.at_its_drive(search, candidate)
-    bowl, ways, weights, row = candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.row
+    bowl, ways, row = candidate.bowl, candidate.ways, candidate.proposal.row
     study = _unproved(search, candidate, known)
-    search.begin_proof(
-        f"draws: {candidate.attempt.wanted}, {request.draws} of part, friction, drive and cuts"
-    )
-    tested = robust_run(
-        part, bowl, ways, weights, candidate.proposal.rows, draws=request.draws,
-        tolerance=request.tolerance, run=search.run("draws"), any_heading=candidate.proposal.any_heading,
-    )  # fmt: skip
+    tested = drawn or _drawn(search, candidate)
     study = replace(study, robust=tested, partial=tested.partial)
     if tested.partial or not (whole or tested.share >= DRAWS_HELD):
         return study
@@ -232,9 +238,21 @@ def proved(search: Search, candidate: Candidate, *, whole: bool) -> DesignStudy:
         study = _in_queues(search, study, candidate, known, whole=whole)
     except KeyboardInterrupt:
         return replace(study, partial=True)
-    every = [ways.lying[k] for k in trying.often(weights)]
-    found = risks.risks(ways.lying[row], bowl, study.queues, every=every, seed=request.seed)
+    every = [ways.lying[k] for k in trying.often(candidate.weights)]
+    found = risks.risks(ways.lying[row], bowl, study.queues, every=every, seed=search.request.seed)
     return replace(study, risks=found)
+
+
+def _drawn(search: Search, candidate: Candidate) -> RobustRun:
+    """The draws of a design."""
+    request = search.request
+    text = f"{request.draws} of part, friction, drive and cuts"
+    search.begin_proof(f"draws: {candidate.attempt.wanted}, {text}")
+    return robust_run(
+        search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.rows,
+        draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
+        any_heading=candidate.proposal.any_heading,
+    )  # fmt: skip
 
 
 def _in_queues(
