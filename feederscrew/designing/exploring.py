@@ -184,11 +184,13 @@ def _tried_out(search, made, proposal, weights):
     lost = 0
     for _ in range(MENDED + 1):
         candidate = _screened(search, attempted(search, made, proposal, weights))
-        candidate = _calmed(search, made, candidate, weights)
+        calmed = _calmed(search, made, candidate, weights)
+        if calmed.attempt.clean:
+            search.passed.append(calmed)
+        if calmed.attempt.clean and calmed.attempt.rate >= search.request.target:
+            yield calmed
+            return
         if candidate.attempt.clean:
-            search.passed.append(candidate)
-            if candidate.attempt.rate >= search.request.target:
-                yield candidate
             return
         search.failed.append(candidate)
         if not candidate.attempt.efficiency > 0.0 and not candidate.proposal.hangs:

@@ -213,8 +213,8 @@ def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
     left, seen = TRIALS, {id(candidate) for _, candidate in proofs}
     for study, candidate in proofs:
         if _by_motion(study) and left:
-            left -= 1
             other = _calmer(search, candidate)
+            left -= other is not None
             if other is not None and other.attempt.clean:
                 yield Variant(f"a calmer drive, {_drive(other.bowl)}", other, search)
     clean = [one for one in search.passed if id(one) not in seen]
@@ -228,17 +228,17 @@ def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
     yield from _any_heading(search, proofs)
     for study, candidate in proofs:
         if left and study.queues and not study.purity[0] >= PURE:
-            left -= 1
             other = _one_device_more(search, study, candidate)
+            left -= other is not None
             if other is not None and other.attempt.clean:
                 yield Variant(f"one device more, {other.proposal.step}", other, search)
     for one in sorted(search.failed, key=lambda one: (-one.attempt.efficiency, len(one.attempt.faults))):
         if not left:
             break
-        if not one.attempt.efficiency > 0.0:
+        if not one.attempt.efficiency > 0.0 and one.attempt.throw_number <= calm_drive.CALM + 1e-3:
             continue
-        left -= 1
         other = _calmer(search, one)
+        left -= other is not None
         if other is not None and other.attempt.clean:
             yield Variant(f"a calmer drive, {_drive(other.bowl)}", other, search)
     yield from _other_ways_up(search)

@@ -261,3 +261,41 @@ def test_a_stopped_search_for_the_nearest_is_not_proved(monkeypatch, ways):
 def test_the_nearest_in_words():
     none = NearestDesign(None, "", trials=4, proofs=1, denied=("a calmer drive: 2 jams",), helps=("--up A",))
     assert "4 short trials" in none.text and "2 jams" in none.text and none.text.endswith("--up A")
+
+
+def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(monkeypatch, ways):
+    """Of the chains that failed: where parts hop, though nothing left, and where some left calmly."""
+    search, _ = searching()
+    lively = calm_drive.driven(calm_drive.PlainBowl(BOWL, frozenset(), None), 0.18, hops=True)
+    fast = calm_drive.driven(calm_drive.PlainBowl(BOWL, frozenset(), None), 0.12)
+    slowest = calm_drive.driven(calm_drive.PlainBowl(BOWL, frozenset(), None), 0.0)
+    for bowl, efficiency in ((lively, 0.0), (fast, 0.0), (fast, 0.4), (slowest, 0.4)):
+        one = candidate(ways, bowl, ("A@0 is lost (returned at sorter)",), throw_number=throw_number(bowl))
+        search.failed.append(replace(one, attempt=replace(one.attempt, efficiency=efficiency)))
+    asked = []
+
+    def attempted(search, made, proposal, weights, driven):
+        asked.append(driven.drive)
+        return candidate(ways, driven, rate=9.0)
+
+    monkeypatch.setattr(exploring, "attempted", attempted)
+    found = list(nearest.variants(search, []))
+    assert len(found) == len(asked) == 2 and all("a calmer drive, " in one.change for one in found)
+    for drive, bowl in zip(asked, (fast, lively), strict=True):
+        assert throw_number(replace(BOWL, drive=drive)) < throw_number(bowl)
+
+
+def test_any_heading_of_what_left_and_one_device_more_are_tried(monkeypatch, ways):
+    """A third left on A at other headings, a third across: the first counts, the second is dropped."""
+    search, _ = searching()
+    monkeypatch.setattr(calm_drive, "calmer", lambda *_: None)
+    across = next(one.name for one in ways.lying if one.aspect == "A" and one.name != "A@0")
+    instead = (("A, heading off", 12), (across, 12))
+    impure = study(40.0, queues=fills(right=21, left=45, instead=instead))
+    monkeypatch.setattr(
+        exploring, "attempted", lambda _, made, proposal, *__: replace(candidate(ways), proposal=proposal)
+    )
+    heading, device = nearest.variants(search, [(impure, candidate(ways))])
+    assert heading.candidate.proposal.any_heading == ("A",) and not heading.asked
+    assert heading.search.request.up == ("A",) and "--up A" in heading.change
+    assert across in device.candidate.proposal.cuts[0].returns and device.asked
