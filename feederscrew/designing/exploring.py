@@ -57,7 +57,7 @@ def _searched(search, made, ways, weights):
         yield from _tried_out(search, made, alone, weights)
     seen, rows = set(), proposals.promising(ways, weights, search.request)[: proposals.ROWS]
     if not any(_promise(search, made, ways, weights, row) >= search.request.target for row in rows):
-        search.most = SHORT
+        search.most = search.first + SHORT
     for how in proposals.HOWS:
         for row in rows:
             if search.spent:

@@ -223,7 +223,7 @@ def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
         change = f"a calmer drive, {_drive(one.bowl)}" if calm else _slower(one)
         wanted = [candidate.attempt.wanted for _, candidate in proofs]
         if wanted and one.attempt.wanted not in wanted:
-            change = f"another way up, {one.attempt.wanted}, at {_drive(one.bowl)}"
+            change = _other_way(one)
         yield Variant(change, one, search)
     yield from _any_heading(search, proofs)
     for study, candidate in proofs:
@@ -308,18 +308,30 @@ def _one_device_more(search: Search, study: DesignStudy, candidate: Candidate) -
 
 def _other_search(search: Search, request: DesignRequest) -> Search:
     """A search for another request that tells and counts as the first one does."""
-    return replace(search, request=request, passed=[], failed=[], avoided={}, most=np.inf, further=None)
+    return replace(
+        search, request=request, passed=[], failed=[], avoided={}, most=np.inf, further=None,
+        first=len(search.attempts),
+    )  # fmt: skip
 
 
 def _other_ways_up(search: Search) -> Iterator[Variant]:
-    """The first ways up that are clean in a trial, of all where only some were asked for."""
+    """Ways up that are clean in a trial, of all where only some were asked for: fast ones first."""
     asked = search.request
     if asked.aspect is None and not asked.up and asked.outcome == "any":
         return
-    request = replace(asked, aspect=None, heading=None, up=(), outcome="any", target=1e-3 * asked.target)
+    request = replace(asked, aspect=None, heading=None, up=(), outcome="any")
     free = _other_search(search, replace(request, budget=len(search.attempts) + FREE_TRIALS))
+    seen = set()
     for candidate in exploring.candidates(free):
-        yield Variant(f"another way up, {candidate.attempt.wanted}", candidate, free, False)
+        seen.add(id(candidate))
+        yield Variant(_other_way(candidate), candidate, free, False)
+    for candidate in sorted(free.passed, key=lambda one: -one.attempt.rate):
+        if id(candidate) not in seen:
+            yield Variant(_other_way(candidate), candidate, free, False)
+
+
+def _other_way(candidate: Candidate) -> str:
+    return f"another way up, {candidate.attempt.wanted}, at {_drive(candidate.bowl)}"
 
 
 def _helps(search: Search, study: DesignStudy, chosen: Candidate | None) -> Iterator[str]:

@@ -42,6 +42,7 @@ class Search:
     least: float = 0.0  # [m/s] through tooling, where what is wanted was lost at a slower drive
     avoided: dict = field(default_factory=dict)  # kinds of devices at which a row was lost, by row
     most: float = np.inf  # short trials that are worth it
+    first: int = 0  # trials that were made before this search began
     shares_given: bool = False  # the user says what arrives
     progress: Progress | None = None  # told what is done, how many of how many, seconds gone and to go
     further: int | None = None  # trials at most, where the nearest that holds is looked for
