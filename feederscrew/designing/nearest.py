@@ -1,5 +1,6 @@
 """The nearest design that holds where one does not: what is changed for it is tried, and proved as any."""
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
@@ -24,6 +25,7 @@ MINUTE = 60.0
 PROOFS = 3  # designs beside those of the search that go through draws and queues
 TRIALS = 4  # short trials beside those of the search, of calmer drives and of one device more
 FREE_TRIALS = 3  # of other ways up, where only some were asked for
+SLIGHT = 1e-9  # of rounding
 DIGITS = 2  # of a rate that holds: it is rounded down
 Prove = Callable[[Search, Candidate], DesignStudy]
 Proofs = list[tuple[DesignStudy, Candidate]]
@@ -80,7 +82,7 @@ def _rounded_down(value: float) -> float:
     if not value > 0.0:
         return 0.0
     step = 10.0 ** (np.floor(np.log10(value)) - DIGITS + 1)
-    return float(np.floor(value / step + 1e-9) * step)
+    return float(np.floor(value / step + SLIGHT) * step)
 
 
 def nearest(
@@ -184,8 +186,11 @@ def _holding(
 ) -> NearestDesign:
     """The nearest that holds, with what else was tried and what else helps."""
     found = tried_nearest(study, rate, variant.change, trials=len(search.attempts), proofs=proofs)
-    helps = tuple(_helps(search, study, variant.candidate))
-    return replace(found, denied=tuple(denied), helps=helps)
+    helps = [*_helps(search, study, variant.candidate)]
+    bowls = math.ceil(search.request.target / rate - SLIGHT)
+    if bowls > 1:
+        helps.append(f"{bowls} such bowls bring the {MINUTE * search.request.target:.4g}/min asked for")
+    return replace(found, denied=tuple(denied), helps=tuple(helps))
 
 
 def _slower(candidate: Candidate) -> str:

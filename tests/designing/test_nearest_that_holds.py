@@ -299,3 +299,31 @@ def test_any_heading_of_what_left_and_one_device_more_are_tried(monkeypatch, way
     assert heading.candidate.proposal.any_heading == ("A",) and not heading.asked
     assert heading.search.request.up == ("A",) and "--up A" in heading.change
     assert across in device.candidate.proposal.cuts[0].returns and device.asked
+
+
+def test_where_one_way_up_was_asked_for_others_are_tried_the_fast_ones_first(monkeypatch, ways):
+    search, _ = searching(aspect="A", heading=0.0)
+    search.attempts += [attempt(0.0, ("nothing leaves as wanted",), "device")] * 5
+    asked = []
+
+    def candidates(free):
+        asked.append(free)
+        free.passed += [candidate(ways, rate=rate, wanted="B@0") for rate in (10.0, 30.0, 20.0)]
+        yield candidate(ways, rate=900.0, wanted="C@0")
+
+    monkeypatch.setattr(exploring, "candidates", candidates)
+    found = list(nearest.variants(search, []))
+    assert [round(60.0 * one.candidate.attempt.rate) for one in found] == [900, 30, 20, 10]
+    assert all("another way up" in one.change and not one.asked for one in found)
+    (free,) = asked
+    assert (free.request.aspect, free.request.heading, free.request.target) == (None, None, 10.0)
+    assert free.limit == len(search.attempts) + nearest.FREE_TRIALS and not search.passed
+    search.request = DesignRequest(10.0)
+    assert list(nearest.variants(search, [])) == []
+
+
+def test_so_many_bowls_bring_what_was_asked_for(ways):
+    search, _ = searching()
+    slow = study(600.0)
+    found, _ = nearest.nearest(slow, search, [(slow, candidate(ways))], None)
+    assert "14 such bowls bring the 600/min" in found.text  # 46 a minute each
