@@ -16,7 +16,7 @@ from feederscrew.studies.rate import Shares
 from feederscrew.trial import runs
 
 Progress = Callable[[str, int, int, float, float], None]
-USUAL_S = {"trial": 4.0, "draws": 1.5, "queue": 20.0}  # [s] a trial, a draw, a queue, before any was timed
+USUAL_S = {"trial": 4.0, "draws": 1.0, "queue": 30.0}  # [s] a trial, a draw, a queue, before any was timed
 USUAL_SLOWNESS_S = 10.0  # [s] of stages that count as having taken as long as usual
 USUAL_TRIALS = 5  # of a design; the median of those of docs/design.md is 4
 QUEUES = 3  # of a design, one at each fill
