@@ -190,7 +190,8 @@ def short_attempts(study):
     """Return the history as a page has room for it: of each device its kind, and one number if it has one."""
     history = attempts(study)
     chains = [", ".join(map(_brief, one.chain)) or "none" for one in study.attempts]
-    return tables.frame({name: chains if name == "chain" else history[name] for name in history})
+    names = [name for name in history if name != "peak_to_peak_mm"]  # the throw number says as much
+    return tables.frame({name: chains if name == "chain" else history[name] for name in names})
 
 
 def _brief(device):
