@@ -163,12 +163,17 @@ def _ended(found):
 def _stoppable(out):
     """What tells of a search, and ends it where a Ctrl-C was dropped while something loaded."""
     with noted() as again:
+        shown = waiting.design(out)
 
         def told(text):
             again()
+            shown.clear()
             out.say(text)
 
-        yield {"told": told, "before": lambda: waiting.trial(out)}
+        try:
+            yield {"told": told, "before": lambda: waiting.trial(out), "progress": shown.reach}
+        finally:
+            shown.end()
 
 
 OF_ONE = (

@@ -73,5 +73,59 @@ class Progress:
             click.echo(f"{self.what}: {done} of {total} after {gone:.0f} s{rest}", err=True)
 
 
+class StageBar:
+    """How far a run of several stages is: on stderr a bar of the time, elsewhere now and then a line.
+
+    Parameters
+    ----------
+    shown : bool
+        False for nothing at all.
+    """
+
+    WIDTH = 24  # letters of the bar
+
+    def __init__(self, shown=True):
+        self.terminal = shown and sys.stderr.isatty()
+        self.lines, self.drawn, self.last_line = shown and not self.terminal, False, time.monotonic()
+
+    def reach(self, stage, done, total, gone, rest):
+        """So many of a stage are done of so many; ``gone`` and ``rest`` are seconds of the whole run."""
+        if self.terminal:
+            full = round(self.WIDTH * gone / max(gone + rest, 1e-9))
+            bar = "#" * full + "-" * (self.WIDTH - full)
+            times = f"{_time(gone)} gone, about {_time(rest)} to go"
+            self._write(f"\r\033[K{_stage(stage, done, total)}  [{bar}]  {times}")
+            self.drawn = True
+        elif self.lines and time.monotonic() - self.last_line >= LINE_EVERY_S:
+            self.last_line = time.monotonic()
+            self._write(f"{_stage(stage, done, total)} after {gone:.0f} s, about {rest:.0f} s to go\n")
+
+    def clear(self):
+        """Take the bar away, so that a line can be printed; a line there is as good as one of its own."""
+        if self.drawn:
+            self._write("\r\033[K")
+        self.drawn, self.last_line = False, time.monotonic()
+
+    def end(self):
+        """Take the bar away."""
+        self.clear()
+
+    @staticmethod
+    def _write(text):
+        with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
+            click.echo(text, err=True, nl=False, color=True)
+
+
+def _stage(stage, done, total):
+    """A stage in words: 'trial 3 of 16', 'draws: 4 of 20', 'queue: 40 %'."""
+    if stage == "queue":
+        return f"queue: {100.0 * done / max(total, 1):.0f} %"
+    return f"trial {done + 1} of {total}" if stage == "trial" else f"{stage}: {done} of {total}"
+
+
+def _time(seconds):
+    return f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.0f} min"
+
+
 def _said(widest):
     return None if widest is None else f"widest interval ±{100.0 * widest:.2g} %"

@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli.progress import Progress
+from feederscrew_cli.progress import Progress, StageBar
 
 
 def drops(out):
@@ -35,6 +35,11 @@ def conveying(out):
 
     if not sweep.compiled():
         out.say("Compiling the conveying kernel, once on this machine: about ten seconds.")
+
+
+def design(out):
+    """Return what shows how far the search for a design is: a StageBar, hidden where nobody waits."""
+    return StageBar(not out.quiet)
 
 
 def told(out, what):

@@ -13,8 +13,9 @@ from feederscrew.bowl import unbalance
 from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import KEYS
 from feederscrew.bowl.settings import Setting, of_device
+from feederscrew.designing.nearest import tried_nearest
 from feederscrew.designing.proposals import Proposal
-from feederscrew.designing.record import DesignRequest, DesignStudy
+from feederscrew.designing.record import HOLDS, DesignRequest, DesignStudy
 from feederscrew.errors import FeederError
 from feederscrew.machine import checks, drive_sought
 from feederscrew.part.record import Part
@@ -216,7 +217,7 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
         if other is not None and other.other_angle and not other.two_axis
         else ()
     )
-    return replace(
+    made = replace(
         study,
         bowl=replace(study.bowl, machine=sheet.bowl.machine),
         machine_drawn=True,
@@ -224,6 +225,12 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
         machine_warnings=tuple(dict.fromkeys(warnings)),
         machine_lacks=lacking,
     )
+    if study.status != HOLDS or not lacking or other is None:
+        return made
+    angle = np.degrees(other.wanted.spring_angle)
+    change = f"springs that stand at {angle:.3g} deg"
+    found = tried_nearest(study, study.request.target, change, trials=len(study.attempts))
+    return replace(made, nearest=found)
 
 
 def _last(lines: Iterable[str]) -> tuple[str, ...]:

@@ -24,6 +24,10 @@ STEEP_BANKS = tuple(np.radians((8.0, 3.0)))  # hold there what rolls
 WORST = (0.6, 1.4)  # [1] of the nominal friction
 STEADY = 0.6  # of the velocity asked for that is left at the worst friction
 LEAST = 0.05  # [m/s] through tooling: what creeps rolls off the wall, or stands at a slot and falls in late
+STROKES = {"drive.amplitude", "drive.peak_to_peak"}  # keys that give it
+CALMER = 0.45  # of the velocity of a drive that turns or loses what is wanted: two such steps reach ``LEAST``
+CALMER_STEP = 0.01  # [1] of the throw number: so much above ``CALM`` counts as that
+CALMER_SHARE = 0.9  # of the velocity: what is faster is no calmer drive
 HALVINGS = 12  # of the amplitude
 STROKE_STEP = 1e-6  # [m] to which an amplitude is rounded
 # frequency [Hz], vibration angle and lead of the normal motion [rad]: the simplest drive first
@@ -117,7 +121,7 @@ def driven(made: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
     ----------
     A. H. Redford, G. Boothroyd, "Vibratory feeding", Proc. Inst. Mech. Eng. 182, 135-152, 1967.
     """
-    if "drive.amplitude" in made.given or "drive.peak_to_peak" in made.given:
+    if STROKES & made.given:
         return made.bowl
     tried: list[tuple[float, int, Bowl]] = []
     velocity = velocity if hops else max(velocity, LEAST)
@@ -127,6 +131,28 @@ def driven(made: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
             return _slowed(bowl, velocity)
         tried.append((fastest, -len(tried), bowl))
     return max(tried)[2]
+
+
+def calmer(made: PlainBowl, bowl: Bowl) -> Bowl | None:
+    """Return a bowl with a calmer drive than another one's, ``CALMER`` times as fast and without hops.
+
+    Parameters
+    ----------
+    made : PlainBowl
+        The bowl without devices, as for ``driven``.
+    bowl : Bowl
+        With the drive that turned or lost a part.
+
+    Returns
+    -------
+    Bowl or None
+        Without devices. None where the user gave the stroke, or none is calmer.
+    """
+    if STROKES & made.given:
+        return None
+    found = driven(made, CALMER * speed(bowl))
+    gentler = throw_number(bowl) > CALM + CALMER_STEP or speed(found) <= CALMER_SHARE * speed(bowl)
+    return found if gentler and 0.0 < throw_number(found) <= CALM + CALMER_STEP else None
 
 
 def _drives(made: PlainBowl, hops: bool) -> Iterator[Bowl]:

@@ -6,9 +6,10 @@ import numpy as np
 
 from feederscrew.bowl.devices import check_written
 from feederscrew.designing import calm_drive, proposals, trying
-from feederscrew.designing.record import Attempt
+from feederscrew.designing.record import DEVICE, DRIVE, PART, Attempt
 from feederscrew.designing.robust import denied, robust_run
 from feederscrew.designing.searching import Candidate
+from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.rates import arrivals, spacing
 from feederscrew.rates.tipping import FLAT
 from feederscrew.studies.rate import shares
@@ -17,6 +18,7 @@ from feederscrew.tooling.hanging import neck
 EACH = 2  # parts of each orientation in a short trial
 MENDED = 3  # times that one proposal is mended
 LOST = 2  # trials of it in which nothing leaves as wanted, and it is given up
+CALMER_TRIALS = 2  # calmer drives that one chain is tried at, where the drive loses what is wanted
 LEAST_USE = 0.5  # of the best clean rate: an orientation that promises less is not tried
 SHORT = 5  # short trials where no orientation comes often enough for the target at any calm drive
 SCREENED = 6  # draws before a clean chain is proved
@@ -55,7 +57,7 @@ def _searched(search, made, ways, weights):
         yield from _tried_out(search, made, alone, weights)
     seen, rows = set(), proposals.promising(ways, weights, search.request)[: proposals.ROWS]
     if not any(_promise(search, made, ways, weights, row) >= search.request.target for row in rows):
-        search.most = SHORT
+        search.most = search.first + SHORT
     for how in proposals.HOWS:
         for row in rows:
             if search.spent:
@@ -182,10 +184,13 @@ def _tried_out(search, made, proposal, weights):
     lost = 0
     for _ in range(MENDED + 1):
         candidate = _screened(search, attempted(search, made, proposal, weights))
+        calmed = _calmed(search, made, candidate, weights)
+        if calmed.attempt.clean:
+            search.passed.append(calmed)
+        if calmed.attempt.clean and calmed.attempt.rate >= search.request.target:
+            yield calmed
+            return
         if candidate.attempt.clean:
-            search.passed.append(candidate)
-            if candidate.attempt.rate >= search.request.target:
-                yield candidate
             return
         search.failed.append(candidate)
         if not candidate.attempt.efficiency > 0.0 and not candidate.proposal.hangs:
@@ -197,6 +202,47 @@ def _tried_out(search, made, proposal, weights):
             break
         proposal = changed
     search.avoid(proposal, candidate.tried)
+
+
+def _calmed(search, made, candidate, weights):
+    """The candidate at a calmer drive that is clean, where the one it had turns or loses what is wanted."""
+    first = candidate
+    for _ in range(CALMER_TRIALS):
+        if candidate.attempt.clean or search.spent or not _moved_out(candidate):
+            break
+        other = calmer(search, made, candidate, weights)
+        if other is None:
+            break
+        search.most += 1  # no other chain is left out for it
+        candidate = _screened(search, other)
+    return candidate if candidate.attempt.clean else first
+
+
+def _moved_out(candidate):
+    """Whether the drive loses what is wanted: in a trial on the track, or in draws by turning it."""
+    drawn = candidate.drawn
+    return bool(trying.lost_by_motion(candidate.tried)) or (
+        drawn is not None and "is lost (" in drawn.worst and "on the track" in drawn.worst
+    )
+
+
+def calmer(search, made, candidate, weights):
+    """Return a Candidate: the same chain tried at a calmer drive; None where there is none.
+
+    Parameters
+    ----------
+    search : Search
+    made : PlainBowl
+        The bowl without devices.
+    candidate : Candidate
+        At the drive that turned or lost what is wanted.
+    weights : (M,) float [1]
+    """
+    bowl = calm_drive.calmer(made, candidate.bowl)
+    if bowl is None:
+        return None
+    step = f"calmer drive, {2e3 * bowl.drive.amplitude:.3g} mm peak to peak"
+    return attempted(search, made, replace(candidate.proposal, step=step), weights, bowl)
 
 
 def _screened(search, candidate):
@@ -218,17 +264,28 @@ def _screened(search, candidate):
     return replace(candidate, attempt=attempt, drawn=drawn)
 
 
-def attempted(search, made, proposal, weights):
-    """Return a Candidate: one short trial at the drive that the target asks for."""
+def attempted(search, made, proposal, weights, driven=None):
+    """Return a Candidate: one short trial at the drive that the target asks for, or at that of a bowl.
+
+    Parameters
+    ----------
+    search : Search
+    made : PlainBowl
+    proposal : Proposal
+    weights : (M,) float [1]
+    driven : Bowl, optional
+        Whose drive is taken.
+    """
     part = search.part
     check_written(proposal.devices, "design.yaml")
     bowl = replace(made.bowl, devices=proposal.devices)
     ways = proposals.known_through(part, search.known.aspects, bowl)
     gain = trying.gain(ways, weights, proposal.states(ways))
-    bowl = replace(_at_velocity(search, made, proposal, ways, weights, gain), devices=proposal.devices)
+    own = _at_velocity(search, made, proposal, ways, weights, gain) if driven is None else driven
+    bowl = replace(own, devices=proposal.devices)
     ways = arrivals.oriented(proposals.known_through(part, search.known.aspects, bowl), search.known.measured)
     name = ways.lying[proposal.row].name
-    search.told(f"trial {len(search.attempts) + 1}: {name}, {proposal.step}")
+    search.begin_trial(f"{name}, {proposal.step}")
     tried = _short(search, bowl, ways, weights, proposal)
     attempt = Attempt(
         wanted=ways.states[tried.state].name,
@@ -242,9 +299,24 @@ def attempted(search, made, proposal, weights):
         stopped=tried.stopped,
         rate=tried.rate,
         faults=tuple(denied(tried)),
+        cause=_cause(tried, proposal),
+        peak_to_peak=2.0 * bowl.drive.amplitude,
+        throw_number=float(throw_number(bowl)),
     )
     search.attempts.append(attempt)
+    search.end_trial()
     return Candidate(proposal, bowl, ways, weights, tried, attempt)
+
+
+def _cause(tried, proposal):
+    """Which of CAUSES a trial shows: what loses the wanted orientation first, then what lets others leave."""
+    if not list(denied(tried)):
+        return ""
+    right = set(trying.wanted_rows(tried.known, tried.states))
+    if trying.lost_by_motion(tried) or not tried.velocity > 0.0:
+        return DRIVE
+    lost = any(k in right and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
+    return DEVICE if lost or proposal.devices else PART
 
 
 def _at_velocity(search, made, proposal, ways, weights, gain):
@@ -262,7 +334,7 @@ def _at_velocity(search, made, proposal, ways, weights, gain):
 def _short(search, bowl, ways, weights, proposal):
     """The short trial: what is wanted first; where none of it leaves, the others are not tried."""
     request, rows = search.request, trying.often(weights, (proposal.row,))
-    own = {"run": replace(request.run, before=search.before)}
+    own = {"run": request.run}
     own |= {"aspects": search.known.aspects, "any_heading": proposal.any_heading}
     right = set(trying.wanted_rows(ways, proposal.states(ways)))
     first = [k for k in rows if k in right] or [proposal.row]

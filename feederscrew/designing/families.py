@@ -60,7 +60,7 @@ def named_apart(parts):
             )
 
 
-def family(parts, plain, given, request, *, told=None, before=None):
+def family(parts, plain, given, request, *, told=None, before=None, progress=None):
     """Design one bowl for several parts, each tried in it.
 
     The part that needs the widest track is designed first; its track and its kinds of devices are offered
@@ -75,7 +75,7 @@ def family(parts, plain, given, request, *, told=None, before=None):
     given : collection of str
     request : DesignRequest
         The same for each; no aspect, no heading.
-    told, before : callable, optional
+    told, before, progress : callable, optional
         As for ``loop.design``.
 
     Returns
@@ -96,7 +96,8 @@ def family(parts, plain, given, request, *, told=None, before=None):
         for k in (first, *(k for k in range(len(parts)) if k != first)):
             told(f"{parts[k].name}:")
             lead = found.get(first)
-            found[k] = _member(parts[k], lead, plain, given, request, told=told, before=before)
+            own = {"told": told, "before": before, "progress": progress}
+            found[k] = _member(parts[k], lead, plain, given, request, own)
             if found[k].partial:
                 return FamilyStudy(tuple(found[n] for n in sorted(found)))
         members = tuple(found[k] for k in range(len(parts)))
@@ -118,15 +119,17 @@ def _common(parts, plain, given, request):
     return replace(plain, track=track), given | {"track.radius", "track.width"}, widths.index(max(widths))
 
 
-def _member(part, lead, plain, given, request, *, told, before):
-    """The design of one part: with what the first one has where it holds so, else its own."""
-    own = {"told": told, "before": before}
+def _member(part, lead, plain, given, request, own):
+    """The design of one part: with what the first one has where it holds so, else its own.
+
+    ``own`` are the keywords of ``loop.design`` that say who is told.
+    """
     if lead is None or lead.status != HOLDS:
         return loop.design(part, plain, given, request, **own)
     used = {one.kind for one in lead.devices}
     less = replace(request, without=(*request.without, *(name for name in PROPOSED if name not in used)))
     tracked = replace(plain, track=lead.bowl.track)
-    found = loop.design(part, tracked, given | set(TRACK), less, **own)
+    found = loop.design(part, tracked, given | set(TRACK), less, **own, with_nearest=False)
     if found.status == HOLDS or found.partial:
         return replace(found, request=request)
     other = loop.design(part, plain, given, request, **own)

@@ -8,9 +8,18 @@ import numpy as np
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import beside, calm_drive, exploring, nearest, proposals, queues, trying
 from feederscrew.designing.hazards import risks
-from feederscrew.designing.record import DRAWS_HELD, RATE_KEPT, DesignRequest, DesignStudy, FilledQueue
+from feederscrew.designing.record import (
+    DRAWS_HELD,
+    HOLDS,
+    RATE_KEPT,
+    DesignRequest,
+    DesignStudy,
+    FilledQueue,
+    NearestDesign,
+    RobustRun,
+)
 from feederscrew.designing.robust import robust_run
-from feederscrew.designing.searching import Candidate, Search
+from feederscrew.designing.searching import Candidate, Progress, Search
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
@@ -24,6 +33,7 @@ from feederscrew.tooling.isolating.design import place
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial.result import TrialRun
 
+ANY_RATE = 1e-6  # [1/s] a target below any rate
 PROVED = 3  # designs that go through draws and queue
 FASTER = 1.3  # times as fast, where draws lose what is wanted: what creeps over a slot falls in late
 Proofs = list[tuple[DesignStudy, Candidate]]
@@ -38,6 +48,8 @@ def design(
     known: Shares | None = None,
     told: Callable[[str], None] | None = None,
     before: Callable[[], None] | None = None,
+    progress: Progress | None = None,
+    with_nearest: bool = True,
 ) -> DesignStudy:
     """Design a bowl that brings a part at a rate, and try it.
 
@@ -55,7 +67,12 @@ def design(
     told : callable, optional
         Called with what is being tried, a sentence.
     before : callable, optional
-        Called before anything is compiled.
+        Called before anything is compiled, and before the first trial is told.
+    progress : callable, optional
+        Called with what is done ('trial', 'draws', 'queue'), how many of how many, the seconds gone and a
+        guess of those to go.
+    with_nearest : bool
+        Whether the nearest that holds is looked for where it does not.
 
     Returns
     -------
@@ -67,7 +84,10 @@ def design(
         If the part has no surface or very many facets, fits no bowl, or has no such aspect.
     """
     _check_named(part, plain, request, known)
-    search = Search(part, request, plain, frozenset(given), told or (lambda text: None), known, before=before)
+    search = Search(
+        part, request, plain, frozenset(given), told or (lambda text: None), known, before=before,
+        progress=progress,
+    )  # fmt: skip
     search.shares_given = known is not None
     proofs: Proofs = []
     try:
@@ -75,13 +95,39 @@ def design(
             _prove(search, candidate, proofs)
             if _settled(proofs):
                 break
-        _make_whole(search, proofs)
+        near, nearby = _nearest(search, proofs) if with_nearest else (None, None)
+        if nearby is None:
+            _make_whole(search, proofs)
     except KeyboardInterrupt:
         return replace(_best(search, proofs), attempts=tuple(search.attempts), partial=True)
-    best = replace(_best(search, proofs), attempts=tuple(search.attempts))
+    best = replace(nearby or _best(search, proofs), attempts=tuple(search.attempts))
     if any(study.partial for study, _ in proofs):  # which of them it is
         return replace(best, partial=True)
-    return replace(best, nearest=nearest.nearest(best, search))
+    return best if best.status == HOLDS else replace(best, nearest=near)
+
+
+def _nearest(search: Search, proofs: Proofs) -> tuple[NearestDesign | None, DesignStudy | None]:
+    """The nearest that holds, and its design where that leaves what was asked for.
+
+    None where a design holds, or was stopped.
+    """
+    if any(study.status == HOLDS or study.partial for study, _ in proofs):
+        return None, None
+    slow = [one for one in proofs if nearest.only_slow(one[0]) and not nearest.whole(one[0])]
+    if slow:  # its queue ended as soon as it was too slow
+        study, candidate = max(slow, key=lambda one: merit(one[0]))
+        proofs[:] = [one for one in proofs if one[1] is not candidate]
+        proofs.append((proved(search, candidate, whole=True, drawn=study.robust), candidate))
+        if proofs[-1][0].partial:
+            return None, None
+    return nearest.nearest(_best(search, proofs), search, proofs, _proved_at_any_rate)
+
+
+def _proved_at_any_rate(search: Search, candidate: Candidate) -> DesignStudy:
+    """The design with its draws and its queue, which ends where it is impure or jams, however slow it is."""
+    request = replace(search.request, target=ANY_RATE)
+    study = proved(replace(search, request=request), candidate, whole=False)
+    return replace(study, request=search.request)
 
 
 def _best(search: Search, proofs: Proofs) -> DesignStudy:
@@ -157,28 +203,35 @@ def _make_whole(search: Search, proofs: Proofs) -> None:
         return
     if proofs:
         study, candidate = max(proofs, key=lambda one: merit(one[0]))
-        if whole(study):
+        drawn = study.robust
+        if nearest.whole(study):
             return
     else:
-        likeliest = _likeliest(search)
+        drawn, likeliest = None, _likeliest(search)
         if likeliest is None:
             return
         candidate = likeliest
     proofs[:] = [one for one in proofs if one[1] is not candidate]
-    proofs.append((proved(search, candidate, whole=True), candidate))
+    proofs.append((proved(search, candidate, whole=True, drawn=drawn), candidate))
 
 
-def proved(search: Search, candidate: Candidate, *, whole: bool) -> DesignStudy:
-    """Return the design with its draws and its queue; unless ``whole``, only as far as it holds."""
-    request, part = search.request, search.part
+def proved(
+    search: Search, candidate: Candidate, *, whole: bool, drawn: RobustRun | None = None
+) -> DesignStudy:
+    """Return the design with its draws and its queue; unless ``whole``, only as far as it holds.
+
+    Parameters
+    ----------
+    search : Search
+    candidate : Candidate
+    whole : bool
+    drawn : RobustRun, optional
+        All draws of that candidate, where they were made: they would come out the same.
+    """
     known, candidate = exploring.at_its_drive(search, candidate)
-    bowl, ways, weights, row = candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.row
+    bowl, ways, row = candidate.bowl, candidate.ways, candidate.proposal.row
     study = _unproved(search, candidate, known)
-    search.told(f"draws: {candidate.attempt.wanted}, {request.draws} of part, friction, drive and cuts")
-    tested = robust_run(
-        part, bowl, ways, weights, candidate.proposal.rows, draws=request.draws,
-        tolerance=request.tolerance, run=request.run, any_heading=candidate.proposal.any_heading,
-    )  # fmt: skip
+    tested = drawn or _drawn(search, candidate)
     study = replace(study, robust=tested, partial=tested.partial)
     if tested.partial or not (whole or tested.share >= DRAWS_HELD):
         return study
@@ -186,9 +239,21 @@ def proved(search: Search, candidate: Candidate, *, whole: bool) -> DesignStudy:
         study = _in_queues(search, study, candidate, known, whole=whole)
     except KeyboardInterrupt:
         return replace(study, partial=True)
-    every = [ways.lying[k] for k in trying.often(weights)]
-    found = risks.risks(ways.lying[row], bowl, study.queues, every=every, seed=request.seed)
+    every = [ways.lying[k] for k in trying.often(candidate.weights)]
+    found = risks.risks(ways.lying[row], bowl, study.queues, every=every, seed=search.request.seed)
     return replace(study, risks=found)
+
+
+def _drawn(search: Search, candidate: Candidate) -> RobustRun:
+    """The draws of a design."""
+    request = search.request
+    text = f"{request.draws} of part, friction, drive and cuts"
+    search.begin_proof(f"draws: {candidate.attempt.wanted}, {text}")
+    return robust_run(
+        search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.rows,
+        draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
+        any_heading=candidate.proposal.any_heading,
+    )  # fmt: skip
 
 
 def _in_queues(
@@ -199,7 +264,7 @@ def _in_queues(
     line = queues.FollowedRow(
         search.part, candidate.bowl, known.aspects, candidate.ways, candidate.weights,
         candidate.tried.states, search.request.seed, search.told, RATE_KEPT * search.request.target,
-        candidate.proposal.any_heading,
+        candidate.proposal.any_heading, search.run("queue").progress,
     )  # fmt: skip
     study = _queued(study, queues.filled(line, whole=whole))
     return _queued(study, queues.longer(line, study))
@@ -236,12 +301,6 @@ def _counting(name: str, request: DesignRequest) -> str:
     """The name of what leaves, with the aspects that count as it."""
     others = [one for one in request.up if one.casefold() != name.partition("@")[0].casefold()]
     return " or ".join((name, *others))
-
-
-def whole(study: DesignStudy) -> bool:
-    """Return whether a design was proved to the end, holding or not."""
-    followed = sum(one.seconds > 0.99 * queues.SECONDS for one in study.queues)
-    return study.robust.draws >= study.request.draws and followed == len(queues.FILLS)
 
 
 def _static(search: Search, candidate: Candidate) -> float:

@@ -175,7 +175,7 @@ def _guarded_stops(proposal, through, rule):
     if not stops.any():
         return proposal
     wanted = trying.wanted_rows(through, proposal.states(through))
-    return _before(proposal, list(np.flatnonzero(stops)), wanted, through.lying)
+    return dropped_before(proposal, list(np.flatnonzero(stops)), wanted, through.lying)
 
 
 def rounded(cut, every, row):
@@ -246,13 +246,23 @@ def guarded(proposal, tried, every):
     """
     wanted = trying.wanted_rows(tried.known, tried.states)
     wrong = [k for n, k in enumerate(tried.rows) if tried.wrong[n] or tried.held[n]]
-    return _before(proposal, [k for k in wrong if k not in wanted], wanted, every)
+    return dropped_before(proposal, [k for k in wrong if k not in wanted], wanted, every)
 
 
-def _before(proposal, others, wanted, every):
-    """The proposal with a drop before it: that which tells most others from what is wanted, and by the most.
+def dropped_before(proposal, others, wanted, every):
+    """Return the proposal with a drop before it, the one that tells most others from what is wanted.
 
-    What no drop tells is left to the trial.
+    Parameters
+    ----------
+    proposal : Proposal
+    others, wanted : sequence of int
+        Rows that are to be dropped, and those that are to stay.
+    every : sequence of Orientation
+
+    Returns
+    -------
+    Proposal or None
+        None where no drop tells any of them; what no drop tells is left to the trial.
     """
     if not others or not wanted:
         return None

@@ -1,5 +1,6 @@
 """The queue at low, normal and high fill, as a buyer accepts a feeder."""
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -7,7 +8,14 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import trying
-from feederscrew.designing.record import PURE, RATE_KEPT, DesignStudy, FilledQueue
+from feederscrew.designing.record import (
+    HEADING_OFF,
+    PURE,
+    RATE_KEPT,
+    DesignStudy,
+    FilledQueue,
+    joined_counts,
+)
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
@@ -38,6 +46,7 @@ class FollowedRow:
     told: Callable | None = None  # called with what is being followed, a sentence
     least: float = 0.0  # wanted parts [1/s] below which a fill does not hold
     any_heading: tuple[str, ...] = ()  # aspects on which parts are wanted, whatever their heading
+    progress: Callable[[int, int], None] | None = None  # told how many periods are done, of how many
 
     def followed(self, fill: str, gaps: float, seed: int, denied: Denied | None = None) -> FilledQueue:
         """Return the FilledQueue of PARTS that come with a mean free way of so many lengths between them.
@@ -47,13 +56,14 @@ class FollowedRow:
         if self.told:
             self.told(f"queue of {PARTS} at {fill} fill, {SECONDS:g} s")
         poses = trying.counted(self.known, self.states, self.any_heading)
+        run = RunSettings(seed, progress=self.progress)
 
         def ends(seen: QueuedParts) -> bool:
             return denied is not None and denied(self.count(fill, gaps, seen))
 
         seen = queue_of(
             self.part, self.bowl, self.aspects, self.known.lying, poses, self.shares,
-            QueuePlan(PARTS, SECONDS, gaps, ends if denied else None), RunSettings(seed),
+            QueuePlan(PARTS, SECONDS, gaps, ends if denied else None), run,
         )  # fmt: skip
         return self.count(fill, gaps, seen)
 
@@ -70,6 +80,26 @@ class FollowedRow:
         right[[k for k in self.states if lying[k].aspect not in free], :] = True
         return int(seen.whole[right].sum())
 
+    def left_instead(self, seen: QueuedParts) -> tuple[tuple[str, int], ...]:
+        """Return what whole parts left otherwise than wanted, and how many, the most first.
+
+        What lies on an aspect at a heading that is none of the known is 'C, heading off'.
+        """
+        lying, names = self.known.states, list(self.aspects.names)
+        free = () if isinstance(lying[self.states[0]], Hanging) else self.any_heading
+        counts, known = Counter[str](), Counter[str]()
+        for k, one in enumerate(lying):
+            hangs = isinstance(one, Hanging)
+            known["" if hangs else one.aspect] += int(seen.leaving[k])
+            if k not in self.states and (hangs or one.aspect not in free):
+                counts[one.name] += int(seen.leaving[k])
+        for k, name in enumerate(names):
+            if name not in free:
+                counts[f"{name}{HEADING_OFF}"] += max(int(seen.aspects[k]) - known[name], 0)
+        rest = int(seen.leaving.sum()) - self.wanted_parts(seen) - counts.total()
+        counts["in no known pose"] += max(rest, 0)
+        return tuple((name, number) for name, number in counts.most_common() if number)
+
     def count(self, fill: str, gaps: float, seen: QueuedParts) -> FilledQueue:
         """Return what a queue did as a FilledQueue."""
         return FilledQueue(
@@ -85,6 +115,7 @@ class FollowedRow:
             jams=seen.jams,
             climbs=seen.climbs,
             partial=seen.partial,
+            left_instead=self.left_instead(seen),
         )
 
 
@@ -173,7 +204,8 @@ def minutes(study: DesignStudy) -> int:
 def _joined(first: FilledQueue, second: FilledQueue) -> FilledQueue:
     """Both as one queue."""
     sums = {name: getattr(first, name) + getattr(second, name) for name in ADDED}
-    return replace(first, **sums, partial=second.partial)
+    instead = joined_counts(first.left_instead, second.left_instead)
+    return replace(first, **sums, partial=second.partial, left_instead=instead)
 
 
 def _denied(found: tuple[FilledQueue, ...], least: float) -> bool:

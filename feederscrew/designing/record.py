@@ -1,5 +1,6 @@
 """What is asked of a design, and what it stands on."""
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -23,6 +24,10 @@ from feederscrew.trial.result import TrialRun
 from feederscrew.units import counted
 
 OUTCOMES = ("any", "lying", "hanging")
+DRIVE, DEVICE, ARRIVAL, PART = CAUSES = ("drive", "device", "arrival", "part")
+HEADING_OFF = (
+    ", heading off"  # behind the name of an aspect: it lies so, at a heading that is none of the known
+)
 NONE, NOT_PROVED = "none", "not proved"
 
 
@@ -71,6 +76,9 @@ class Attempt:
     stopped: float  # [1] share of the parts offered that stay at a device
     rate: float  # [1/s] that it would deliver
     faults: tuple[str, ...]  # 'C@66 is stopped at profile'
+    cause: str = ""  # of CAUSES: why what is wanted is lost, or others leave; '' of a clean one
+    peak_to_peak: float = 0.0  # [m] stroke of its drive
+    throw_number: float = 0.0  # [1] of its drive
 
     @property
     def clean(self) -> bool:
@@ -110,6 +118,7 @@ class FilledQueue:
     jams: int
     climbs: int
     partial: bool = False  # stopped by the user
+    left_instead: tuple[tuple[str, int], ...] = ()  # what left otherwise: ('C, heading off', 33), most first
 
     @property
     def rate(self) -> float:
@@ -137,6 +146,42 @@ class FilledQueue:
         return self.rate * self.offered / self.right if self.right else 0.0
 
 
+@dataclass(frozen=True)
+class NearestDesign:
+    """What holds where a design does not, as it was tried; or that nothing that was tried holds."""
+
+    rate: float | None  # [1/s] that holds; None where none of what was tried does
+    change: str  # what is changed for it: 'a lower rate', 'a calmer drive: 0.8 mm peak to peak'
+    wanted: str | None = None  # orientation that leaves
+    chain: tuple[str, ...] = ()  # 'gap: 9.5 mm'
+    frequency: float | None = None  # [Hz] of the drive
+    peak_to_peak: float | None = None  # [m]
+    throw_number: float | None = None  # [1]
+    trials: int = 0  # short trials that were made to find it, those of the search among them
+    proofs: int = 0  # designs that went through draws and queues
+    draws: int = 0  # of the one that holds
+    draws_held: int = 0
+    queue_seconds: float = 0.0  # [s]
+    parts_right: int = 0  # left its queues as wanted
+    parts_left: int = 0
+    denied: tuple[str, ...] = ()  # what else was tried, and what came of it
+    helps: tuple[str, ...] = ()  # what else was seen to help, or may
+
+    @property
+    def text(self) -> str:
+        """The same in a sentence."""
+        also = "".join(f"; {one}" for one in self.helps)
+        if self.rate is None:
+            counts = f"{counted(self.trials, 'short trial')}, {counted(self.proofs, 'design')} through draws"
+            denied = "".join(f"; {one}" for one in self.denied)
+            return f"nothing near it holds of what was tried ({counts} and queues){denied}{also}"
+        figures = (
+            f"tried: {self.draws_held} of {counted(self.draws, 'draw')} sort, {self.parts_right} of "
+            f"{counted(self.parts_left, 'part')} left {self.queue_seconds:.3g} s of queue as wanted"
+        )
+        return f"nearest that holds: {60.0 * self.rate:.3g}/min with {self.change} ({figures}){also}"
+
+
 @dataclass(frozen=True, eq=False)
 class DesignStudy(Shown):
     """A bowl for a part and a rate, with everything that was tried on the way."""
@@ -152,7 +197,7 @@ class DesignStudy(Shown):
     robust: RobustRun = field(default_factory=lambda: RobustRun(0, 0, ""))
     queues: tuple[FilledQueue, ...] = ()
     risks: tuple[Risk, ...] = ()
-    nearest: tuple[str, ...] = ()  # what would hold instead
+    nearest: NearestDesign | None = None  # what holds instead; None of one that holds or was stopped
     partial: bool = False
     tooling: ToolingStudy | None = None  # the chain as `feeder tooling` knows it; None without one
     source: str = ""  # whose shares were taken
@@ -263,13 +308,108 @@ class DesignStudy(Shown):
         return tuple(_shortfalls(self))
 
     @property
+    def cause(self) -> str:
+        """Which of CAUSES keeps it from holding; '' of one that holds or was stopped."""
+        return self._cause[0]
+
+    @property
+    def _cause(self) -> tuple[str, str]:
+        return ("", "") if self.status == HOLDS or self.partial else _cause_of(self)
+
+    @property
     def why(self) -> str:
-        """Why it does not hold: where it falls short and the nearest that would hold; '' where it holds."""
+        """Where it falls short, the cause, and the nearest that holds; '' where it holds."""
         if self.status == HOLDS:
             return ""
         if self.partial:
             return "; ".join(("stopped before all was tried", *self.proved_so_far))
-        return "; ".join((*self.shortfalls, *self.nearest)) or "no orientation gets through its own trial"
+        return "; ".join((self.reasons, *(() if self.nearest is None else (self.nearest.text,))))
+
+    @property
+    def reasons(self) -> str:
+        """Where it falls short, and the cause; '' of a design that holds or was stopped."""
+        cause, sentence = self._cause
+        return "; ".join((*self.shortfalls, f"the cause is the {cause}: {sentence}")) if cause else ""
+
+    @property
+    def left_instead(self) -> tuple[tuple[str, int], ...]:
+        """What left all queues otherwise than wanted, and how many, the most first."""
+        return joined_counts(*(one.left_instead for one in self.queues))
+
+
+def joined_counts(*counts: tuple[tuple[str, int], ...]) -> tuple[tuple[str, int], ...]:
+    """Return names with their numbers added up, the most first."""
+    total = Counter[str]()
+    for one in counts:
+        total.update(dict(one))
+    return tuple(total.most_common())
+
+
+def _instead(study: DesignStudy) -> str:
+    """What left instead of what is wanted, and the option that counts it where its heading alone is off."""
+    listed, left = study.left_instead, sum(one.left for one in study.queues)
+    if not listed:
+        return ""
+    text = ", ".join(f"{name}: {count} of {left}" for name, count in listed[:3])
+    aspects = [name.removesuffix(HEADING_OFF) for name, _ in listed if name.endswith(HEADING_OFF)]
+    own = [one for one in aspects if (study.wanted or "").partition("@")[0] == one]
+    offer = f" (--up {own[0]} counts {own[0]} at any heading)" if own else ""
+    return f"; what left instead: {text}{offer}"
+
+
+def _cause_of(study: DesignStudy) -> tuple[str, str]:
+    """Which of CAUSES it is, and a sentence."""
+    if study.machine_lacks:
+        return DRIVE, "the springs that are drawn do not make the drive that was tried"
+    if not study.queues:
+        return _cause_of_trials(study)
+    if study.jams:
+        return DEVICE, f"parts stand at {_chain(study)} and have to be taken out"
+    purity, _ = study.purity
+    if not study.delivered[0] > 0.0 and not any(one.left for one in study.queues):
+        return DRIVE, "no part came to the outlet in its queues"
+    if not purity >= PURE:
+        own = (study.wanted or "").partition("@")[0]
+        off = sum(n for name, n in study.left_instead if name == own + HEADING_OFF)
+        if 2 * off >= sum(n for _, n in study.left_instead) > 0:
+            return DRIVE, f"it turns {study.wanted} to other headings in a queue"
+        if study.devices:
+            return DEVICE, f"what is not wanted gets through {_chain(study)} in a queue"
+        return PART, "without a device nothing tells what is wanted from the rest"
+    if study.robust.share < DRAWS_HELD and study.robust.worst:
+        return _cause_in_words(study.robust.worst, bool(study.devices))
+    queue = study.slowest
+    if queue is None or not queue.right:
+        return ARRIVAL, "too little of what is wanted leaves its queues"
+    right, offered = (sum(getattr(one, k) for one in study.queues) for k in ("right", "offered"))
+    return ARRIVAL, (
+        f"{60.0 * queue.pace:.3g} parts a minute come along, and {100.0 * right / offered:.3g} % of them "
+        f"leave as {study.wanted}"
+    )
+
+
+def _cause_of_trials(study: DesignStudy) -> tuple[str, str]:
+    """The cause where no queue was followed: what the trials say, of the best of them."""
+    if not study.attempts:
+        return PART, "no device tells an orientation that was asked for from the others"
+    best = max(study.attempts, key=lambda one: (one.efficiency, one.rate))
+    if not best.faults:
+        return ARRIVAL, f"{best.wanted} comes too seldom: {60.0 * best.rate:.3g}/min at the most"
+    return best.cause or PART, f"{best.wanted}: {', '.join(best.faults[:2])}"
+
+
+def _cause_in_words(fault: str, devices: bool) -> tuple[str, str]:
+    """The cause of what a draw shows, by how it says it."""
+    if " at " in fault.partition("(")[2]:  # 'A@0 is lost (stopped at rails)'
+        return DEVICE, fault
+    if "carried through" in fault:
+        return (DEVICE if devices else PART), fault
+    return DRIVE, fault
+
+
+def _chain(study: DesignStudy) -> str:
+    """Its devices in words: 'gap, sorter'."""
+    return ", ".join(one.kind for one in study.devices) or "the track"
 
 
 def _followed(queues: tuple[FilledQueue, ...]) -> Iterator[str]:
@@ -302,7 +442,7 @@ def _shortfalls(study: DesignStudy) -> Iterator[str]:
             )
     if not purity >= PURE:
         text = "nothing left the queue" if np.isnan(purity) else f"purity {100.0 * purity:.3g} %"
-        yield f"{text}, {100.0 * PURE:.3g} % are asked for"
+        yield f"{text}, {100.0 * PURE:.3g} % are asked for{_instead(study)}"
     if study.jams:
         yield f"{counted(study.jams, 'jam')} in {study.queue_seconds:.3g} s of queue"
     if study.robust.share < DRAWS_HELD:

@@ -259,7 +259,8 @@ def faults(tried):
         name = tried.known.lying[k].name
         if k in right or (tried.right[place] and k not in alike):
             if tried.right[place] < tried.parts[place]:
-                where = ", ".join(tried.places[place]) or "turned"
+                turns = tried.turns[place] if tried.turns else {}
+                where = ", ".join((*tried.places[place], *turns)) or "turned"
                 found.append(f"{name} is lost ({where})")
         elif tried.wrong[place]:
             found.append(f"{name}{CARRIED}")

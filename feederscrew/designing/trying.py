@@ -12,6 +12,7 @@ from feederscrew.part.record import Part
 from feederscrew.rates import spacing, stream
 from feederscrew.resting.aspects import Aspects
 from feederscrew.running import RunSettings
+from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.hanging import Hanging
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.trial import course, runs
@@ -42,6 +43,7 @@ class Tried:
     deepest: float  # [m]
     apart: float = 0.0  # [m] free way between parts that the devices need
     seen: tuple = ()  # of Course: what was followed
+    turns: tuple[dict[str, int], ...] = ()  # (R,) where parts turned that left so: 'turned on the track'
 
     @property
     def weights(self) -> np.ndarray:
@@ -79,6 +81,7 @@ class Tried:
             self,
             **both,
             places=(*self.places, *other.places),
+            turns=(*self.turns, *other.turns),
             velocity=float(np.mean(speeds)) if speeds else 0.0,
             deepest=max(self.deepest, other.deepest),
             seen=(*self.seen, *other.seen),
@@ -238,6 +241,7 @@ def single(
     return Tried(
         known, shares, rows, parts, right, wrong, held,
         places=tuple(_places(seen, one) for one in own),
+        turns=tuple(_turns(seen, one & ~asked) for one in own),
         velocity=float(moving.mean()) if len(moving) else 0.0,
         state=states[0], states=states, deepest=float(seen.depths.max(initial=0.0)),
         apart=spacing.needed(bowl.devices, known.lying, bowl), seen=(seen,),
@@ -259,8 +263,41 @@ def _places(seen: course.Course, own: np.ndarray) -> dict[str, int]:
     """Where parts ended that did not leave, and how: {'returned at gap': 2}."""
     found: dict[str, int] = {}
     for n in np.flatnonzero(own & ~np.isin(seen.fates, (course.PASSED, course.TURNED))):
-        name = (
-            f"{course.FATES[seen.fates[n]].replace('_', ' ')} at {seen.stations[seen.ended[n]].device.name}"
-        )
+        where = at_station(seen.stations[seen.ended[n]].device)
+        name = f"{course.FATES[seen.fates[n]].replace('_', ' ')} {where}"
         found[name] = found.get(name, 0) + 1
     return found
+
+
+def _turns(seen: course.Course, own: np.ndarray) -> dict[str, int]:
+    """Where parts came into the orientation in which they left, and how many: {'turned on the track': 2}."""
+    found: dict[str, int] = {}
+    for n in np.flatnonzero(own & np.isin(seen.fates, (course.PASSED, course.TURNED))):
+        others = np.flatnonzero(seen.orientations[:, n] != seen.orientations[-1, n])
+        station = int(others[-1]) if len(others) else 0
+        name = f"turned {at_station(seen.stations[station].device)}"
+        found[name] = found.get(name, 0) + 1
+    return found
+
+
+def at_station(device: Device) -> str:
+    """Return where a station is, in words: 'at gap', or 'on the track' of one without a device."""
+    return "on the track" if device.kind in ("", Device.kind) else f"at {device.name}"
+
+
+def lost_by_motion(tried: Tried) -> int:
+    """Return how many parts of what is wanted were turned, or ended on the track before any device.
+
+    Parameters
+    ----------
+    tried : Tried
+
+    Returns
+    -------
+    int
+        What a device returns, stops or turns is not among them.
+    """
+    right = set(wanted_rows(tried.known, tried.states))
+    own = [n for n, k in enumerate(tried.rows) if k in right]
+    counts = [one[n] for one in (tried.places, tried.turns) if one for n in own]
+    return sum(number for count in counts for name, number in count.items() if name.endswith("on the track"))

@@ -51,7 +51,7 @@ def test_a_queue_counts_an_aspect_that_is_asked_for_however_its_parts_are_turned
 
 
 def test_a_wanted_orientation_counts_beside_an_aspect_that_may_be_up(block):
-    part, aspects, ways, _ = block
+    part, aspects, ways, names = block
     leaving = np.zeros(len(ways.states) + 1, int)
     other = next(k for k, one in enumerate(ways.states) if one.aspect == "B")
     leaving[[names["A@0"], other, -1]] = 3, 5, 4

@@ -207,3 +207,5 @@ def test_a_design_whose_drawn_springs_do_not_make_its_angle_does_not_hold():
     settings = bowls.settings(None, (*ONE, "drive.vibration_angle=50 deg", "drive.amplitude=0.15 mm"))
     found = beside.with_machine(one, beside.Built(machines.machine(settings)))
     assert found.status == "falls short" and "the springs make it" in found.why
+    assert found.cause == "drive" and found.nearest.rate == one.request.target
+    assert "springs that stand at" in found.nearest.change and found.nearest.draws_held == 20

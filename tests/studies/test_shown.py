@@ -88,10 +88,11 @@ def test_a_bowl_shows_what_was_given(tmp_path):
 
 def test_a_design_is_a_record_too(part):
     from feederscrew.designing.families import FamilyStudy
-    from feederscrew.designing.record import DesignRequest, DesignStudy
+    from feederscrew.designing.record import DesignRequest, DesignStudy, NearestDesign
 
-    study = DesignStudy(part, DesignRequest(target=1.0), None, None, None, nearest=("try 20/min",))
-    assert re.search(r"DesignStudy\(part: none - try 20/min", repr(study))
+    near = NearestDesign(20.0 / 60.0, "a lower rate")
+    study = DesignStudy(part, DesignRequest(target=1.0), None, None, None, nearest=near)
+    assert re.search(r"DesignStudy\(part: none - .*nearest that holds: 20/min", repr(study))
     assert "<table" in study._repr_html_()
     family = FamilyStudy((study,))
     assert repr(family).startswith("FamilyStudy(none, ") and "<table" in family._repr_html_()

@@ -49,6 +49,9 @@ def document(study):
         },
         "chain": [{"device": one.kind, "value": one.text} for one in study.devices],
         "why": study.why,
+        "cause": study.cause or None,
+        "nearest": nearest(study),
+        "left_instead": dict(study.left_instead),
         "risks": [one.text for one in study.risks],
         "findings": [risk(one) for one in study.risks],
         "trial_parts": study.trial_parts,
@@ -76,6 +79,39 @@ def _proof(study):
     rates = (end / PER_MINUTE for end in (*study.delivered, study.worst))
     values = (*rates, None if np.isnan(purity) else purity, purity_low, study.jams)
     return dict(zip(PROOF, (*values, high if np.isfinite(high) else None), strict=True))
+
+
+def nearest(study):
+    """Return the nearest that holds as a dict, ``tried`` what was run for it; None of what holds."""
+    one = study.nearest
+    if one is None:
+        return None
+    return {
+        "rate_per_minute": None if one.rate is None else _digits(one.rate / PER_MINUTE),
+        "change": one.change or None,
+        "wanted": one.wanted,
+        "chain": list(one.chain),
+        "frequency_hz": one.frequency,
+        "peak_to_peak_mm": None if one.peak_to_peak is None else one.peak_to_peak / MM,
+        "throw_number": one.throw_number,
+        "tried": {
+            "short_trials": one.trials,
+            "proofs": one.proofs,
+            "draws": one.draws,
+            "draws_held": one.draws_held,
+            "queue_seconds": one.queue_seconds,
+            "parts_left": one.parts_left,
+            "parts_right": one.parts_right,
+            "denied": list(one.denied),
+        },
+        "helps": list(one.helps),
+        "text": one.text,
+    }
+
+
+def _digits(value):
+    """A number without the digits that dividing by a unit has left."""
+    return float(f"{value:.12g}")
 
 
 def bowl(study):
@@ -186,6 +222,7 @@ def queue(one):
         "returned": one.returned,
         "jams": one.jams,
         "climbs": one.climbs,
+        "left_instead": ", ".join(f"{name}: {count} of {one.left}" for name, count in one.left_instead),
         "partial": one.partial,
     }
 
@@ -204,14 +241,17 @@ def attempts(study):
             "efficiency": one.efficiency,
             "purity": one.purity,
             "stopped": one.stopped,
+            "peak_to_peak_mm": one.peak_to_peak / MM,
+            "throw_number": one.throw_number,
             "rate_per_minute": one.rate / PER_MINUTE,
             "denied": "; ".join(one.faults),
+            "cause": one.cause,
         }
         for place, one in enumerate(study.attempts, start=1)
     ]
     names = (
         "trial", "wanted", "chain", "why", "bank_deg", "velocity_mm_s", "parts", "efficiency", "purity",
-        "stopped", "rate_per_minute", "denied",
+        "stopped", "peak_to_peak_mm", "throw_number", "rate_per_minute", "denied", "cause",
     )  # fmt: skip
     return tables.frame({name: [row[name] for row in rows] for name in names})
 
@@ -220,7 +260,8 @@ def short_attempts(study):
     """Return the history as a page has room for it: of each device its kind, and one number if it has one."""
     history = attempts(study)
     chains = [", ".join(map(_brief, one.chain)) or "none" for one in study.attempts]
-    return tables.frame({name: chains if name == "chain" else history[name] for name in history})
+    names = [name for name in history if name != "peak_to_peak_mm"]  # the throw number says as much
+    return tables.frame({name: chains if name == "chain" else history[name] for name in names})
 
 
 def _brief(device):
@@ -231,7 +272,9 @@ def _brief(device):
 def summary(study):
     """Return what is printed: the answer first, then what it stands on; long lines go on in the next row."""
     d = document(study)
-    why = [("why", d["why"])] if d["why"] else []
+    why = [("why", study.reasons or d["why"])] if d["why"] else []
+    if study.nearest is not None:
+        why.append(("nearest that holds", study.nearest.text.removeprefix("nearest that holds: ")))
     first, *rows = outcome(d, study.devices)
     rows = [first, *why, *rows, *dimensions(d), *(("risk", one) for one in d["risks"])]
     rows.append(("trials, parts", f"{len(d['attempts'])}, {d['trial_parts']}"))
