@@ -94,7 +94,9 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
                     under_way.finish(outcome)
             return _finished(store, requests, under_way.kept, workers)
         except KeyboardInterrupt:
-            done = under_way.finished & {request.name for request in requests}
+            done = {
+                one.name for one in requests if one.name in under_way.finished or _stays(store, one, choices)
+            }
             raise StoppedBatchError(len(done), len(requests), _stopped(store, requests, done)) from None
 
 
@@ -116,10 +118,21 @@ def count_stale(requests, directory, choices=None):
     store, found = Store(directory), Counter[str]()
     for request in requests:
         with contextlib.suppress(FeederError):
-            data = source.file(request.source).data
-            reason = store.why_again(Task.of(request, choices or Choices(), data))
+            reason = _why_again(store, request, choices or Choices())
             found.update([reason] if reason else [])
     return dict(found.most_common())
+
+
+def _why_again(store, request, choices):
+    return store.why_again(Task.of(request, choices, source.file(request.source).data))
+
+
+def _stays(store, request, choices):
+    """Whether results that a run did not come to are those asked for, left by an earlier one."""
+    try:
+        return bool(store.record(request.name)) and _why_again(store, request, choices) is None
+    except FeederError:
+        return False
 
 
 class _UnderWay:

@@ -279,9 +279,9 @@ def test_a_stopped_run_lists_what_is_done_and_says_how_much_that_is(tmp_path, th
         assert (caught.value.done, caught.value.total) == (count, 3)
         assert caught.value.summary == out / "summary.csv"
         assert list(statuses(out / "summary.csv").values()).count("done") == count
-    with pytest.raises(batch.StoppedBatchError) as caught:  # what is kept is done as well
-        ran(three, out, workers=Here(stop_after=0), resume=True)
-    assert caught.value.done == 2
+    with pytest.raises(batch.StoppedBatchError) as caught:  # what is kept is done, also what comes later
+        ran(three[::-1], out, workers=Here(stop_after=0), resume=True)
+    assert caught.value.done == 2 and statuses(out / "summary.csv")["c"] == "not computed"
     ran(three, out, workers=Here(), resume=True)
     assert set(statuses(out / "summary.csv").values()) == {"done"}
 
