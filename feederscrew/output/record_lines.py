@@ -39,7 +39,7 @@ def _part(part: Any) -> str:
 
 def _bowl(bowl: Any) -> str:
     drive, friction, track = bowl.drive, bowl.friction, bowl.track
-    devices = ", ".join(device.kind for device in bowl.devices) or "none"
+    devices = ", ".join(device.name for device in bowl.devices) or "none"
     return (
         f"{_origin(bowl)}: amplitude {number(drive.amplitude, MM)} mm at {number(drive.frequency)} Hz and "
         f"{number(drive.vibration_angle, DEGREE)} deg, friction {number(friction.static)}, "
@@ -152,7 +152,7 @@ def _tooling(study: Any) -> str:
 
 def _isolated(orientations: Any, design: Any) -> str:
     """A design in words: 'A at heading 90 deg isolated by wiper (efficiency 80 %, purity 100 %)'."""
-    where, cuts = _orientation(orientations[design.wanted]), [cut.device.kind for cut in design.cuts]
+    where, cuts = _orientation(orientations[design.wanted]), [cut.device.name for cut in design.cuts]
     if not design.isolated and not cuts:
         return f"{where} not isolated"
     shares = f"efficiency {number(design.efficiency, PERCENT)} %, purity {number(design.purity, PERCENT)} %"
@@ -176,7 +176,7 @@ def _design(study: Any) -> str:
     value, low, high = (number(rate * MINUTE) for rate in study.delivered)
     return (
         f"{study.part.name}: {study.status}, {study.wanted} at {value} parts/min ({low} to {high}) through "
-        f"{', '.join(device.kind for device in study.devices) or 'no device'}{_why(study)}"
+        f"{', '.join(device.name for device in study.devices) or 'no device'}{_why(study)}"
     )
 
 

@@ -37,7 +37,7 @@ def test_any_other_has_none(text):
 
 
 def test_the_note_is_true_of_a_part():
-    """Turned back by its heading, an orientation has its face ahead of its weight: x leads ahead."""
+    """In the axes of the track the middle of the face lies at the heading from the way ahead."""
     found = parts.load("parts/lbracket_30x20x15.stl")
     every = orientations(found, find(found), bowls.record(bowls.settings(None, ())).track)
     for one in every:
