@@ -100,6 +100,7 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
     mass and inertia of that body take the place of the estimate.
     """
     from feederscrew import bowl as bowls
+    from feederscrew.errors import FeederError
     from feederscrew.output import columns, machine, marking, offers, proof
     from feederscrew.output.machine import tables
     from feederscrew.studies import bowl as study
@@ -117,11 +118,19 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
     with out.folder(name, identity | bowls.identity(path), effective) as folder:
         waiting.conveying(out)
         shape = solids.asked(settings, **made)
-        found = (
-            study.bowl(settings, solid, target, **wanted, solid=shape) if solid else study.machine(settings)
-        )
         tried, record = bowls.verified(path), bowls.record(settings)
         own = solid, record, orientation.name(wanted)
+        try:
+            found = (
+                study.bowl(settings, solid, target, **wanted, solid=shape)
+                if solid
+                else study.machine(settings)
+            )
+        except FeederError as fault:  # a bowl that was tried has its machine, whatever the static rule says
+            if made["solid"] or not proof.holds(tried, *own):
+                raise
+            out.warn(f"{fault}; what follows is the machine as it was tried")
+            found = study.machine(settings)
         out.warn(*found.remarks, *proof.warnings(tried, *own))
         holding = tried if proof.holds(tried, *own) else None
         same = found.order is None or _same_stroke(found, record)

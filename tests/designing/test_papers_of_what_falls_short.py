@@ -14,11 +14,13 @@ from feederscrew import bowl as bowls
 from feederscrew.designing import beside, loop
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
+from feederscrew.errors import FeederError
 from feederscrew.output import marking, style
 from feederscrew.output.designs import design_file, design_page, family, family_page, files, tables
 from feederscrew.output.machine import figures
 from feederscrew.output.machine import sheet as sheets
 from feederscrew.output.tooling import drawing
+from feederscrew.part import load
 from feederscrew.tooling.strip import strip
 
 PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
@@ -198,3 +200,22 @@ def test_feeder_bowl_of_a_file_that_falls_short_marks_its_picture(built, run, tm
     assert "falls short" in sheet and "A@0" in sheet and "falls short" in done.stdout
     document = json.loads((tmp_path / "out/design/bowl.json").read_text())
     assert document["verified"]["status"] == "falls short"
+
+
+def test_feeder_bowl_shows_the_machine_that_was_tried_where_its_rule_finds_none(run, tmp_path, monkeypatch):
+    path = tmp_path / "box.stl"
+    shapes.box(12.0, 10.0, 8.0).export(path)
+    part = load(path)
+    one = replace(study(part=part), request=DesignRequest(4000.0 / 60.0))
+    sheet = beside.machines.machine(bowls.settings(None, BOWL))
+    (tmp_path / "design.yaml").write_text(design_file.bowl_file(one, (), sheet))
+
+    def unreachable(*_, **__):
+        raise FeederError("target", "no bowl reaches it", "split it")
+
+    monkeypatch.setattr(beside.machines, "bowl", unreachable)
+    line = ("bowl", path, "--target", "4000/min", "--format", "json")
+    done = run(*line, "--config", tmp_path / "design.yaml")
+    assert done.exit_code == 0 and "no bowl reaches it" in done.stderr
+    assert json.loads(done.stdout)["peak_to_peak_mm"] == pytest.approx(0.84)
+    assert run(*line).exit_code == 1
