@@ -52,7 +52,8 @@ def ways():
 
 
 def attempt(rate=30.0, faults=(), cause="", wanted="A@0", **more):
-    return Attempt(wanted, (), "proposed", 0.0, 0.1, 8, 0.4, 1.0, 0.0, rate / 60.0, faults, cause, **more)
+    made = Attempt(wanted, (), "proposed", 0.0, 0.1, 8, 0.4, 1.0, 0.0, rate / 60.0, faults, cause)
+    return replace(made, **more)
 
 
 def candidate(ways, bowl=BOWL, fault=(), **more):
@@ -328,3 +329,14 @@ def test_so_many_bowls_bring_what_was_asked_for(ways):
     slow = study(600.0)
     found, _ = nearest.nearest(slow, search, [(slow, candidate(ways))], None)
     assert "14 such bowls bring the 600/min" in found.text  # 46 a minute each
+
+
+def test_the_cause_and_the_faults_are_of_what_was_asked_for():
+    """Two trials of A with one fault, then one of another way up: the cause is of A, and said once."""
+    lost = attempt(0.0, ("A@0 is lost (returned at gap)",), "device", efficiency=0.0)
+    made = DesignStudy(
+        PART, DesignRequest(1.0, aspect="a"), None, None, None,
+        attempts=(lost, lost, attempt(9.0, ("B@0 is lost (turned on the track)",), "drive", wanted="B@0")),
+    )  # fmt: skip
+    assert made.cause == "device" and "B@0" not in made.reasons
+    assert made.shortfalls == ("A@0: A@0 is lost (returned at gap)",)
