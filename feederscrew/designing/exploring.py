@@ -55,7 +55,8 @@ def _searched(search, made, ways, weights):
     alone = proposals.bare(ways, weights, search.request, search.plain.devices)
     if alone is not None:
         yield from _tried_out(search, made, alone, weights)
-    seen, rows = set(), proposals.promising(ways, weights, search.request)[: proposals.ROWS]
+    seen = {one.chain for one in search.attempts[: search.first]}
+    rows = proposals.promising(ways, weights, search.request)[: proposals.ROWS]
     if not any(_promise(search, made, ways, weights, row) >= search.request.target for row in rows):
         search.most = search.first + SHORT
     for how in proposals.HOWS:

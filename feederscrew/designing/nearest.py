@@ -24,8 +24,9 @@ from feederscrew.dropping.plate.drive import throw_number
 MINUTE = 60.0
 PROOFS = 3  # designs beside those of the search that go through draws and queues
 TRIALS = 4  # short trials beside those of the search, of calmer drives and of one device more
-FREE_TRIALS = 3  # of other ways up, where only some were asked for
+FREE_TRIALS = 6  # of other ways up, where only some were asked for
 SLIGHT = 1e-9  # of rounding
+FREE_CALMED = 2  # of them at a calmer drive
 DIGITS = 2  # of a rate that holds: it is rounded down
 Prove = Callable[[Search, Candidate], DesignStudy]
 Proofs = list[tuple[DesignStudy, Candidate]]
@@ -237,15 +238,8 @@ def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
             left -= other is not None
             if other is not None and other.attempt.clean:
                 yield Variant(f"one device more, {other.proposal.step}", other, search)
-    for one in sorted(search.failed, key=lambda one: (-one.attempt.efficiency, len(one.attempt.faults))):
-        if not left:
-            break
-        if not one.attempt.efficiency > 0.0 and one.attempt.throw_number <= calm_drive.CALM + 1e-3:
-            continue
-        other = _calmer(search, one)
-        left -= other is not None
-        if other is not None and other.attempt.clean:
-            yield Variant(f"a calmer drive, {_drive(other.bowl)}", other, search)
+    for other in _calmed(search, left):
+        yield Variant(f"a calmer drive, {_drive(other.bowl)}", other, search)
     yield from _other_ways_up(search)
 
 
@@ -333,6 +327,22 @@ def _other_ways_up(search: Search) -> Iterator[Variant]:
     for candidate in sorted(free.passed, key=lambda one: -one.attempt.rate):
         if id(candidate) not in seen:
             yield Variant(_other_way(candidate), candidate, free, False)
+    for candidate in _calmed(free, FREE_CALMED):
+        yield Variant(_other_way(candidate), candidate, free, False)
+
+
+def _calmed(search: Search, most: int) -> Iterator[Candidate]:
+    """Chains that failed, clean at a calmer drive: those of which most left first; so many trials at most."""
+    left = most
+    for one in sorted(search.failed, key=lambda one: (-one.attempt.efficiency, len(one.attempt.faults))):
+        if not left:
+            break
+        if not one.attempt.efficiency > 0.0 and one.attempt.throw_number <= calm_drive.CALM + 1e-3:
+            continue
+        other = _calmer(search, one)
+        left -= other is not None
+        if other is not None and other.attempt.clean:
+            yield other
 
 
 def _other_way(candidate: Candidate) -> str:

@@ -392,10 +392,17 @@ def _cause_of_trials(study: DesignStudy) -> tuple[str, str]:
     """The cause where no queue was followed: what the trials say, of the best of them."""
     if not study.attempts:
         return PART, "no device tells an orientation that was asked for from the others"
-    best = max(study.attempts, key=lambda one: (one.efficiency, one.rate))
+    best = max(_asked_for(study), key=lambda one: (one.efficiency, one.rate))
     if not best.faults:
         return ARRIVAL, f"{best.wanted} comes too seldom: {60.0 * best.rate:.3g}/min at the most"
     return best.cause or PART, f"{best.wanted}: {', '.join(best.faults[:2])}"
+
+
+def _asked_for(study: DesignStudy) -> tuple[Attempt, ...]:
+    """The trials of what was asked for; where other ways up were tried beside it, those are left out."""
+    names = {one.casefold() for one in (*study.request.up, study.request.aspect or "") if one}
+    own = [one for one in study.attempts if one.wanted.partition("@")[0].casefold() in names]
+    return tuple(own) or study.attempts
 
 
 def _cause_in_words(fault: str, devices: bool) -> tuple[str, str]:
@@ -426,8 +433,8 @@ def _shortfalls(study: DesignStudy) -> Iterator[str]:
     minute, (purity, _) = 60.0, study.purity
     low = study.delivered[1]
     if study.bowl is None:
-        for one in study.attempts[:3]:
-            yield f"{one.wanted}: {', '.join(one.faults[:3]) or 'nothing leaves'}"
+        lines = [f"{one.wanted}: {', '.join(one.faults[:3]) or 'too slow'}" for one in _asked_for(study)]
+        yield from tuple(dict.fromkeys(lines))[:3]
         return
     if low < RATE_KEPT * study.request.target:
         yield (

@@ -18,7 +18,7 @@ from feederscrew.trial import runs
 Progress = Callable[[str, int, int, float, float], None]
 USUAL_S = {"trial": 4.0, "draws": 1.0, "queue": 30.0}  # [s] a trial, a draw, a queue, before any was timed
 USUAL_SLOWNESS_S = 10.0  # [s] of stages that count as having taken as long as usual
-USUAL_TRIALS = 5  # of a design; the median of those of docs/design.md is 4
+USUAL_TRIALS = 5  # of a design: the mean of those of docs/design.md is 5.4
 QUEUES = 3  # of a design, one at each fill
 TELL_EVERY_S = 0.5  # [s] between two calls of progress in a queue
 RESERVE = 1.6  # of the target, for which a bowl is driven: queues bring less than rows, counts scatter

@@ -52,7 +52,8 @@ def ways():
 
 
 def attempt(rate=30.0, faults=(), cause="", wanted="A@0", **more):
-    return Attempt(wanted, (), "proposed", 0.0, 0.1, 8, 0.4, 1.0, 0.0, rate / 60.0, faults, cause, **more)
+    made = Attempt(wanted, (), "proposed", 0.0, 0.1, 8, 0.4, 1.0, 0.0, rate / 60.0, faults, cause)
+    return replace(made, **more)
 
 
 def candidate(ways, bowl=BOWL, fault=(), **more):
@@ -214,13 +215,11 @@ def test_what_left_instead_is_said_and_up_is_offered(ways):
 def test_a_queue_names_what_left_by_aspect_and_heading(ways):
     aspects = find(PART)
     names = [one.name for one in ways.states]
-    leaving, lying = np.zeros(len(names) + 1, int), np.zeros(len(aspects.names) + 1, int)
-    leaving[0], leaving[1], leaving[-1] = 4, 2, 6
-    own = aspects.names.index(ways.states[0].aspect)
-    lying[own] = 4 + (2 if ways.states[1].aspect == ways.states[0].aspect else 0) + 5
-    if ways.states[1].aspect != ways.states[0].aspect:
-        lying[aspects.names.index(ways.states[1].aspect)] = 2
-    seen = SimpleNamespace(leaving=leaving, aspects=lying)
+    own, other = (aspects.names.index(ways.states[k].aspect) for k in (0, 1))
+    whole = np.zeros((len(names) + 1, len(aspects.names) + 1), int)
+    whole[0, own], whole[1, other], whole[-1, own], whole[-1, -1] = 4, 2, 5, 1
+    leaving, lying = whole.sum(axis=1), whole.sum(axis=0)
+    seen = SimpleNamespace(leaving=leaving, aspects=lying, whole=whole)
     row = queues.FollowedRow(PART, BOWL, aspects, ways, None, (0,), seed=1)
     found = dict(row.left_instead(seen))
     assert found == {f"{aspects.names[own]}, heading off": 5, names[1]: 2, "in no known pose": 1}
@@ -328,3 +327,14 @@ def test_so_many_bowls_bring_what_was_asked_for(ways):
     slow = study(600.0)
     found, _ = nearest.nearest(slow, search, [(slow, candidate(ways))], None)
     assert "14 such bowls bring the 600/min" in found.text  # 46 a minute each
+
+
+def test_the_cause_and_the_faults_are_of_what_was_asked_for():
+    """Two trials of A with one fault, then one of another way up: the cause is of A, and said once."""
+    lost = attempt(0.0, ("A@0 is lost (returned at gap)",), "device", efficiency=0.0)
+    made = DesignStudy(
+        PART, DesignRequest(1.0, aspect="a"), None, None, None,
+        attempts=(lost, lost, attempt(9.0, ("B@0 is lost (turned on the track)",), "drive", wanted="B@0")),
+    )  # fmt: skip
+    assert made.cause == "device" and "B@0" not in made.reasons
+    assert made.shortfalls == ("A@0: A@0 is lost (returned at gap)",)

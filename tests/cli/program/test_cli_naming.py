@@ -11,7 +11,11 @@ from feederscrew_cli.main import feeder
 
 LIBRARY = Path(__file__).parents[3] / "feederscrew"
 OPTION = re.compile(r"(?:^|[\s(`])(--[a-z]\S*)")
-SAID = {("settings.py", "--set")}  # the column of 'config show' that says where a value came from
+SAID = {
+    ("settings.py", "--set"),  # the column of 'config show' that says where a value came from
+    ("record.py", "--up"), ("nearest.py", "--up"),  # what a design offers its user to type
+    ("bowl.py", "--aspect"), ("bowl.py", "--config"),  # the command line that finds devices
+}  # fmt: skip
 
 
 def sentences(path):
