@@ -22,16 +22,17 @@ help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
 # The steps compile what the main job needs: the kernels of drops, of the plate, of the trial and of conveying.
+# The last lines go to stderr, behind the remarks of the steps.
 demo: $(READY) ## a bolt: how it lies, the devices that let one way up leave, tried, and the bowl for 30 a minute
 	$(FEEDER) aspects parts/$(BOLT).stl -o results
 	$(FEEDER) tooling parts/$(BOLT).stl --aspect A -o results
 	$(FEEDER) bowl parts/$(BOLT).stl --target 30/min --aspect A --config results/$(BOLT)/tooling.yaml -o results
-	@echo
-	@echo "The devices that let one way up of the bolt leave, and the bowl for 30 a minute. Pictures:"
-	@ls results/$(BOLT)/*.png
-	@echo
-	@echo "The main job, from a part and a rate to a bowl that feeds it:"
-	@echo "  $(FEEDER) design parts/$(BOLT).stl --target 30/min -o results"
+	@{ echo; \
+	   echo "The devices that let one way up of the bolt leave, and the bowl for 30 a minute. Pictures:"; \
+	   ls results/$(BOLT)/*.png; \
+	   echo; \
+	   echo "The main job, from a part and a rate to a bowl that feeds it:"; \
+	   echo "  $(FEEDER) design parts/$(BOLT).stl --target 30/min -o results"; } >&2
 
 # Bytecode is kept where Python is told not to: without it each process of the suite compiles what it imports.
 test: lint ## format, lint, types and every test, warnings as errors
