@@ -281,7 +281,7 @@ def _isolated(study, place):
 def _device(device, place):
     value = f" {device.text}" if np.isfinite(device.limit) else ""
     value += " {:.4g} to {:.4g} mm".format(*np.divide(device.span, MM)) if device.span else ""
-    play = f" with {device.like[2] / MM:.3g} mm play" if device.like else ""
+    play = f" {device.like[2] / MM:.3g} mm" if device.like else ""
     return f"{place + 1}  {device.name}{value}{play}"
 
 

@@ -114,7 +114,7 @@ def _told(met, word):
     where = "half way through" if met.verdict.passes > 0.0 else "in front of it"
     if _over_a_cut(met):
         where = "where it bears least; outline: hull of its support, dot: its weight"
-    return f"{met.orientation.name} {word} the {kind}, {ink.margin(met.verdict)}", where
+    return f"{met.orientation.name} {word} the {kind}", f"{ink.margin(met.verdict)}, {where}"
 
 
 def track_below(met, every):
