@@ -76,8 +76,8 @@ def surface(vertices, faces, where, unit, allow_open=False):
     joined = None if edges.closed else cracks.join_cracks(vertices, faces, tolerance, size, where, allow_open)
     if not edges.closed and (joined is None or not joined.edges.closed):
         # Cracks about as wide as the tolerance are half joined: the rest then closes from the start only.
-        *loose, open_edges, said = mend.mended(*loose, tolerance, where, corners=False)
-        whole = cracks.join_cracks(*loose, tolerance, size, where) if not open_edges.closed else None
+        corners, sides, _, said = mend.mended(*loose, tolerance, where, corners=False)
+        whole = cracks.join_cracks(corners, sides, tolerance, size, where)
         joined, mended = (joined, mended) if whole is None else (whole, said)
     if joined is not None:
         vertices, faces, edges = joined.vertices, joined.faces, joined.edges
