@@ -14,6 +14,20 @@ def was_heard():
     return _heard.is_set()
 
 
+def heeding(tell):
+    """Return ``tell``, which raises the interrupt again that a library dropped while it was loading.
+
+    For work that says how far it is, and that nothing of is given where it is stopped.
+    """
+
+    def told(*values):
+        if was_heard():
+            raise KeyboardInterrupt
+        tell(*values)
+
+    return told
+
+
 @contextlib.contextmanager
 def listening():
     """Note every Ctrl-C of the block beside letting it through: a library may drop it, a run end early."""

@@ -4,6 +4,7 @@ import click
 
 from feederscrew_cli import grouped, options, orientation, quantity, waiting
 from feederscrew_cli.angle import Angle
+from feederscrew_cli.interrupt import heeding
 from feederscrew_cli.progress import Progress
 
 ASKED = (
@@ -140,7 +141,7 @@ def tooling(part, asked, cad, static, taken, bowl, pictures, out):
     with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
         given = {"known": known.aspects, **asked}
         with Progress(None, not out.quiet, "orientations") as bar:
-            found = study(solid, record, told=bar.reach, **given)
+            found = study(solid, record, told=heeding(bar.reach), **given)
         if not static:
             again = partial(tooling_without, part=solid, bowl=record, **given)
             found = own_trial.own_trials(found, again, before=lambda: waiting.trial(out))

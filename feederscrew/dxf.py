@@ -199,6 +199,8 @@ def _points(kind: str, entity: Any, sagitta: float) -> tuple[list[Point], bool]:
         return [tuple(point) for point in found], False
     if kind == "SPLINE" and len(entity.control_points):
         return _spline(entity, sagitta), False
+    if kind == "SPLINE":
+        raise _Unread("holds a SPLINE of fit points alone", "draw it of control points, or as a polyline")
     raise _Unread(
         f"holds {units.one_line(kind)}, which is not read",
         "draw the hole of polylines, lines, arcs, circles, ellipses and splines",

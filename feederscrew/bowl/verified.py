@@ -83,7 +83,9 @@ class Verified:
         """
         if part is not None and part.sha256[: len(self.part)] != self.part:
             yield "the part is another one than was tried"
-        elif part is not None and self.body and body_fingerprint(part) != self.body:
+        elif part is not None and not self.body:
+            yield "it does not say of which units, density, centre of mass and names the part was (no body)"
+        elif part is not None and body_fingerprint(part) != self.body:
             yield "the part has other units, density, centre of mass or names than was tried"
         if wanted is not None and not self.counts(wanted):
             tried, other = units.one_line(self.wanted), units.one_line(wanted)

@@ -83,10 +83,17 @@ def void(tmp_path, of=None, asked="A@0", **changes):
     return list(found.void(of, BOWL, VERSION, asked))
 
 
+def test_a_block_that_does_not_say_which_units_and_density_is_void_for_a_part(tmp_path):
+    """A washer of mm, read as cm, was given the rate of its trial."""
+    part = replace(PART, sha256=BLOCK["part"].strip('"'))
+    (why,) = void(tmp_path, part, body=None)
+    assert "units" in why
+
+
 @pytest.mark.parametrize("part", [None, replace(PART, sha256=BLOCK["part"].strip('"'))])
 def test_a_whole_block_holds(tmp_path, part):
     assert void(tmp_path, part) == []
-    assert void(tmp_path, part, **dict.fromkeys(OPTIONAL)) == []
+    assert void(tmp_path, part, **dict.fromkeys(set(OPTIONAL) - {"body"})) == []
     found = block(tmp_path)
     assert (found.purity, found.jams, found.draws, found.up) == (1.0, 0, 20, "A, B")
     assert "12/min (11 to 13) of A@0" in found.sentence

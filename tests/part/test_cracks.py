@@ -51,6 +51,16 @@ def test_cracks_are_joined_with_their_width(tmp_path, rng, most, by_plane):
     assert 0.2 * most < widths(text)[0] < 4.0 * most  # two corners are at most 2 sqrt(3) apart
 
 
+@pytest.mark.parametrize("most", [8e-6, 1e-5, 1.2e-5])
+def test_cracks_about_as_wide_as_corners_that_are_one_anyway(tmp_path, most):
+    triangles = extruded(L_SHAPE, 4.0)
+    for seed in range(8):
+        path = as_obj(tmp_path, apart(triangles, most, np.random.default_rng(seed)))
+        part = load(path)
+        assert part.volume * 1e9 == pytest.approx(112.0, abs=120.0 * most)
+        assert not part.open_surface
+
+
 def test_cracks_along_which_edges_meet_several_shorter_ones(tmp_path, rng):
     x, y = np.meshgrid(np.linspace(0, 10, 4), np.linspace(0, 20, 6), indexing="ij")
     grid = np.stack([x, y, np.full_like(x, 30.0)], axis=-1) + rng.uniform(-3e-4, 3e-4, (*x.shape, 3))

@@ -192,6 +192,20 @@ def test_an_extension_that_changes_the_shape_is_refused():
 
 
 ENTITY = '<!DOCTYPE model [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>'
+
+
+@pytest.mark.parametrize(("unit", "size"), [("Millimetres", 10e-3), ("inch", 254e-3), ("", 10e-3)])
+def test_a_unit_as_people_write_it(unit, size):
+    root = model([thing(1, mesh(BLOCK))], ['objectid="1"']).replace("millimeter", unit, 1)
+    assert np.ptp(loaded(package(root)).vertices[:, 0]) == pytest.approx(size)
+
+
+@pytest.mark.parametrize("unit", ["furlong", "mil", "\u202emm"])
+def test_a_unit_that_is_none_is_refused(unit):
+    root = model([thing(1, mesh(BLOCK))], ['objectid="1"']).replace("millimeter", unit, 1)
+    assert "unit" in refused(package(root))
+
+
 MANY = "".join(f"<a{k}/>" for k in range(2_000))
 
 

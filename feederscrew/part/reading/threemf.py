@@ -124,7 +124,11 @@ def soup(data: bytes, where: str) -> Soup:
     with archives.opened(data) as archive:
         package = Package3MF(archive, where)
         pieces = package.pieces()
-    unit, factor = UNITS.get(package.root.unit.strip().lower().rstrip("s"), ("mm", 1.0))
+    name = package.root.unit.strip().lower().rstrip("s").replace("metre", "meter") or "millimeter"
+    if name not in UNITS:
+        known = " or ".join(UNITS)
+        raise MeshError(where, f"its unit is {shown(package.root.unit)}", f"write {known} there")
+    unit, factor = UNITS[name]
     kept, warnings = _by_role(pieces, package.left_out, where)
     names = tuple(piece.name for piece in kept)
     sizes = np.cumsum([0, *(len(piece.vertices) for piece in kept)])

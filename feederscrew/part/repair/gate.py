@@ -71,8 +71,14 @@ def surface(vertices, faces, where, unit, allow_open=False):
     size = _size(vertices, faces, where)
     step, blurred = _precision(vertices, size, where, unit)
     tolerance = JOINED * size + 2.0 * step
+    loose = vertices, faces
     vertices, faces, edges, mended = mend.mended(vertices, faces, tolerance, where)
     joined = None if edges.closed else cracks.join_cracks(vertices, faces, tolerance, size, where, allow_open)
+    if not edges.closed and (joined is None or not joined.edges.closed):
+        # Cracks about as wide as the tolerance are half joined: the rest then closes from the start only.
+        corners, sides, _, said = mend.mended(*loose, tolerance, where, corners=False)
+        whole = cracks.join_cracks(corners, sides, tolerance, size, where)
+        joined, mended = (joined, mended) if whole is None else (whole, said)
     if joined is not None:
         vertices, faces, edges = joined.vertices, joined.faces, joined.edges
         mended, tolerance = (*mended, _joined(joined, unit)), max(tolerance, joined.width)

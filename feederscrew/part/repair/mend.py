@@ -22,7 +22,7 @@ class Seams:
     width: float  # [unit of the file] largest distance of a corner from such an edge
 
 
-def mended(vertices, faces, tolerance, where):
+def mended(vertices, faces, tolerance, where, corners=True):
     """Triangles after every repair that leaves the shape alone.
 
     Parameters
@@ -33,6 +33,8 @@ def mended(vertices, faces, tolerance, where):
         Corners closer than this are one.
     where : str
         The file, for error lines.
+    corners : bool
+        Join corners and seams too; else leave them where they are, for the search for cracks.
 
     Returns
     -------
@@ -49,12 +51,8 @@ def mended(vertices, faces, tolerance, where):
     """
     edges = gate_edges.table(faces, len(vertices))
     vertices, faces, said = leave_out_strays(vertices, faces, edges, tolerance)
-    for step in (
-        _without_repeats,
-        _near_corners_joined,
-        turn_one_way_round,
-        _seams_closed,
-    ):
+    steps = (_without_repeats, _near_corners_joined, turn_one_way_round, _seams_closed)
+    for step in steps if corners else (_without_repeats, turn_one_way_round):
         edges = gate_edges.table(faces, len(vertices))
         if edges.paired:
             return vertices, faces, edges, said

@@ -282,6 +282,20 @@ Fence("feeder", commands=[click.Command("nap", callback=nap)])(["nap"])
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_work_that_goes_on_after_a_dropped_interrupt_ends_at_its_next_step():
+    """`feeder tooling` went on for minutes where a library had dropped it."""
+    steps = []
+    with interrupt.listening():
+        tell = interrupt.heeding(steps.append)
+        tell(1)
+        with contextlib.suppress(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):
+            tell(2)
+    assert steps == [1]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 @pytest.mark.parametrize("held", [contextlib.nullcontext, interrupt.held_back, interrupt.noted])
 @pytest.mark.parametrize(
     "after", [None, ImportError("half-loaded"), MeshError("a", "b", "c"), click.exceptions.Exit(1)]
