@@ -121,8 +121,8 @@ def nearest(
         study, candidate = proofs[n]
         variant = Variant(_slower(candidate), candidate, search)
         return _holding(search, rate, variant, study, denied, len(proofs)), study
-    done = 0
-    for variant in variants(search, proofs):
+    done, pending = 0, [variants(search, proofs)]
+    for variant in _in_turn(pending):
         search.told(f"nearest that holds: {variant.candidate.attempt.wanted}, {variant.change}")
         study, done = prove(variant.search, variant.candidate), done + 1
         if study.partial:
@@ -134,6 +134,7 @@ def nearest(
         denied.append(f"{variant.change} ({variant.candidate.attempt.wanted}): {_lacks(study)}")
         if done >= PROOFS:
             break
+        pending.append(_calmer_variants(variant, study))
     none = NearestDesign(
         None, "", trials=len(search.attempts), proofs=len(proofs) + done, denied=tuple(denied),
         helps=tuple(_helps(search, best, None)),
@@ -247,6 +248,23 @@ def _by_motion(study: DesignStudy) -> bool:
     """Whether a calmer drive may mend a design: it is not slow alone, and no device let others through."""
     impure = bool(study.queues) and (bool(study.jams) or not study.purity[0] >= PURE)
     return impure or "is lost (" in study.robust.worst
+
+
+def _in_turn(pending: list[Iterator[Variant]]) -> Iterator[Variant]:
+    """Yield from the last of several iterators; others may be added behind it meanwhile."""
+    while pending:
+        variant = next(pending[-1], None)
+        if variant is None:
+            pending.pop()
+        else:
+            yield variant
+
+
+def _calmer_variants(variant: Variant, study: DesignStudy) -> Iterator[Variant]:
+    """A variant at a calmer drive, where its proof was denied by motion and the calmer one is clean."""
+    other = _calmer(variant.search, variant.candidate) if _by_motion(study) else None
+    if other is not None and other.attempt.clean:
+        yield replace(variant, change=f"a calmer drive, {_drive(other.bowl)}", candidate=other)
 
 
 def _calmer(search: Search, candidate: Candidate) -> Candidate | None:

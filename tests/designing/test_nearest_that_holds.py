@@ -285,6 +285,26 @@ def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(monkeypa
         assert calm_drive.speed(replace(BOWL, drive=drive)) < 0.75 * calm_drive.speed(bowl)
 
 
+def test_a_lower_rate_that_jams_in_its_proof_is_tried_at_a_calmer_drive(monkeypatch, ways):
+    """A cap of ABS at throw number 1.5: one jam in its queue; calmer it holds 16/min."""
+    search, _ = searching()
+    lively = calm_drive.driven(calm_drive.PlainBowl(BOWL, frozenset(), None), 0.18, hops=True)
+    search.passed.append(candidate(ways, lively))
+    monkeypatch.setattr(
+        exploring, "attempted", lambda search, made, proposal, weights, driven: candidate(ways, driven)
+    )
+    speeds = []
+
+    def prove(_, one):
+        speeds.append(calm_drive.speed(one.bowl))
+        return study(600.0, queues=fills(jams=1) if len(speeds) == 1 else fills())
+
+    found, made = nearest.nearest(study(600.0, queues=()), search, [], prove)
+    assert made is not None and found.rate > 0.0 and found.change.startswith("a calmer drive, ")
+    assert len(speeds) == 2 and speeds[1] < 0.75 * speeds[0]
+    assert len(found.denied) == 1 and "jam" in found.denied[0]
+
+
 def test_any_heading_of_what_left_and_one_device_more_are_tried(monkeypatch, ways):
     """A third left on A at other headings, a third across: the first counts, the second is dropped."""
     search, _ = searching()
