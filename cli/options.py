@@ -19,7 +19,18 @@ class Place(click.Path):
 
 
 FILE = Place(allow_dash=True)
-UNITS = click.Choice(["mm", "cm", "m", "um", "in"])
+MICRO_SIGNS = str.maketrans("\u00b5\u03bc", "uu")  # the sign of its own, and the Greek letter
+
+
+class LengthUnit(click.Choice):
+    """A unit of a file; that of a micrometre also with its sign."""
+
+    def convert(self, value, param, ctx):
+        """The unit, or a wrong call."""
+        return super().convert(value.translate(MICRO_SIGNS) if isinstance(value, str) else value, param, ctx)
+
+
+UNITS = LengthUnit(["mm", "cm", "m", "um", "in"])
 LAUNCHES = click.Choice(["place", "drop", "flip", "roll", "feed", "tumble"])  # the last: once that of roll
 
 

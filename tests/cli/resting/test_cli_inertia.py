@@ -7,6 +7,7 @@ from pathlib import Path
 
 import part_files as files
 import pytest
+import shapes
 
 PARTS = Path(__file__).parents[3] / "parts"
 BROKEN = Path(__file__).parents[2] / "data" / "broken"
@@ -140,3 +141,11 @@ def test_no_number_of_a_table_is_zero_beside_a_larger_one(run, tmp_path, metres)
     box = [float(printed[f"bounding_box_{axis}_mm"]) for axis in "xyz"]
     assert box == pytest.approx([1e3 * metres, 0.9e3 * metres, 0.8e3 * metres], rel=1e-3)
     assert abs(float(printed["principal_axis_1_x"])) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("unit", ["um", "\u00b5m", "\u03bcm"])
+def test_micrometres_may_be_typed_with_their_sign(run, tmp_path, unit):
+    """'Did you mean m?' was said of it, a factor of a million."""
+    shapes.box(20_000, 12_000, 5_000).export(tmp_path / "small.stl")
+    done = run("inertia", "small.stl", "--units", unit, "--format", "json", "-q")
+    assert json.loads(done.stdout)["volume_mm3"] == pytest.approx(1200.0)
