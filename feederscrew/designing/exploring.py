@@ -42,6 +42,7 @@ def candidates(search):
             search.given,
             diameter=search.request.diameter,
             bank=bank,
+            drive=search.request.drive,
         )
         start = replace(calm_drive.driven(made, 0.0), devices=search.plain.devices)
         if search.known is None:

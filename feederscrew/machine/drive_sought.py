@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -9,10 +10,12 @@ from feederscrew.bowl.direction import vibration_angle
 from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import BY_NAME
 from feederscrew.bowl.settings import Setting, default
-from feederscrew.machine import building, filling, sizing, throughput, tuning
+from feederscrew.machine import building, feasibility, filling, sizing, throughput, tuning
+from feederscrew.machine.springs import leaf_stress, springs
 from feederscrew.machine.stroke import stroke
 
 FULL_WAVE = 2.0
+MPA = 1e6  # [Pa]
 EVEN = 1e-9  # [1] flows closer than this are equal
 ROUNDS = 4  # of strokes and leaves that follow from each other
 ALONE, CONTROLLED = "strokes", "controlled"  # fields of an Emptying
@@ -153,10 +156,57 @@ def on_leaves(bowl: Bowl, given: Collection[str]) -> Machine:
     return replace(least[0], leaves=float(least[1].leaves), leaf_thickness=least[1].thickness)
 
 
+@lru_cache(maxsize=4096)
+def lacks(bowl: Bowl, given: frozenset[str]) -> str:
+    """Return why the machine under a bowl does not make its drive; '' where it does.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        With its drive, a leaf-spring drive.
+    given : frozenset of str
+        Names of the keys that the user gave, 'machine.leaves': these stay.
+
+    Returns
+    -------
+    str
+        Of a machine that is sized from the track alone: the angle of the springs, the tuning of the leaves,
+        their stress, or the pull of the magnets.
+    """
+    under = building.machine_on(bowl, given, exact=True)
+    made = replace(bowl, machine=under)
+    other = feasibility.can_make(made)
+    if other is not None:
+        return other.text
+    if "machine.leaves" not in given:
+        words = {name.partition(".")[2] for name in given if name.startswith("machine.")}
+        under = on_leaves(made, words)
+    return leaves_lack(replace(made, machine=under))
+
+
+def leaves_lack(bowl: Bowl) -> str:
+    """Return what keeps the leaves and the magnets of a machine from making its drive; '' for nothing.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        With its machine.
+    """
+    rules, machine, moved = bowl.sizing, bowl.machine, stroke(bowl)
+    natural = springs(machine).natural_frequency
+    detuning = natural / moved.frequency - 1.0
+    if not rules.least_detuning <= detuning <= rules.greatest_detuning:
+        return f"its leaves tune it to {natural:.4g} Hz, {100.0 * detuning:.2g} % above the drive"
+    stress = leaf_stress(machine, moved.springs)
+    if stress > rules.fatigue_stress:
+        return f"its leaves bend to {stress / MPA:.4g} MPa"
+    return ""
+
+
 def _frequencies(bowl: Bowl, settings: Iterable[Setting]) -> tuple[float, ...]:
     """The drive's frequency as given; else that of the size, then the other wave of the mains."""
     if "frequency" in given(settings, "drive") or "supply" in given(settings, "machine"):
         return (bowl.drive.frequency,)
-    mains = bowl.machine.supply / FULL_WAVE
+    mains = bowl.sizing.mains_frequency
     large = 2.0 * bowl.track.radius > bowl.sizing.half_wave_diameter
     return (mains, FULL_WAVE * mains) if large else (FULL_WAVE * mains, mains)
