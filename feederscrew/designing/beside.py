@@ -127,7 +127,8 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
         made = bowls.settings(None, (*kept, *own))
         sized, why = _sized((*made, *devices), study)
         driven = replace(sized.bowl, drive=study.bowl.drive)  # at the stroke that was tried
-        machine = drive_sought.on_leaves(driven, drive_sought.given(listed, "machine"))
+        words = drive_sought.given(listed, "machine")
+        machine = driven.machine if "leaves" in words else drive_sought.on_leaves(driven, words)
         under = [f"machine.{name}={text}" for name, text in _machine(machine)]
         stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
         lines = _last((*kept, *own, stroke, *under, *_fill(study.part, sized)))
@@ -136,7 +137,7 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     except FeederError as fault:
         return Built(why=str(fault))
     sheet = replace(sheet, turns=sized.turns)
-    owned = "leaves" in drive_sought.given(listed, "machine") or is_two_axis(sheet.bowl.drive)
+    owned = "leaves" in words or is_two_axis(sheet.bowl.drive)
     lacks = "" if owned else drive_sought.leaves_lack(sheet.bowl)
     said = {*study.warnings, *checks.remarks(sheet)}
     return Built(sheet, _drawn(sheet, sized), why, tuple(_ordered(own_settings, study, said)), lacks)

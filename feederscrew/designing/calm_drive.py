@@ -17,6 +17,7 @@ from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.errors import ConfigError
 from feederscrew.machine import building, drive_sought, sizing
 from feederscrew.machine.feasibility import is_two_axis
+from feederscrew.machine.springs import springs
 from feederscrew.machine.stroke import greatest_amplitude
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
@@ -162,16 +163,18 @@ def driven(made: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
     ----------
     A. H. Redford, G. Boothroyd, "Vibratory feeding", Proc. Inst. Mech. Eng. 182, 135-152, 1967.
     """
-    velocity = velocity if hops else max(velocity, LEAST)
-    fastest: list[Bowl] = []
-    for candidates in _kinds(made, hops):
-        for level in candidates if math.isfinite(velocity) else ():
-            enough = [bowl for bowl in level if _fast(bowl) >= velocity and _can_build(made, bowl)]
-            if enough:
-                least = enough if made.has_stroke else [_slowed(bowl, velocity) for bowl in enough]
-                return min(least, key=_calmness)
-        fastest += itertools.chain(*candidates)
-    order = sorted(fastest, key=_fast, reverse=True)  # of equal ones the calmest stays first
+    velocity, kinds = velocity if hops else max(velocity, LEAST), list(_kinds(made, hops))
+    order = sorted(itertools.chain(*itertools.chain(*kinds)), key=_fast, reverse=True)  # calm ones first
+    if math.isfinite(velocity) and _fast(order[0]) >= velocity:
+        levels = [[one for one in level if _fast(one) >= velocity] for level in itertools.chain(*kinds)]
+        for can_build in (_can_build, _always):  # where no machine makes any, as if one did
+            for level in levels:
+                enough = [bowl for bowl in level if can_build(made, bowl)]
+                if enough:
+                    least = enough if made.has_stroke else [_slowed(bowl, velocity) for bowl in enough]
+                    return min(least, key=_calmness)
+            if any(_can_build(made, bowl) for bowl in order):
+                break
     return next((bowl for bowl in order if _can_build(made, bowl)), order[0])
 
 
@@ -247,10 +250,17 @@ def _frequencies(made: PlainBowl) -> tuple[float, ...]:
         return (made.bowl.drive.frequency,)
     rules = made.bowl.sizing
     if rules.control == "frequency":
-        return CONTROLLED_HZ
+        return (_controlled(made),) if "machine.leaves" in made.given else CONTROLLED_HZ
     if has_machine(made.given):
         return (made.bowl.machine.supply,)
     return tuple(wave * rules.mains_frequency for wave in WAVES)
+
+
+def _controlled(made: PlainBowl) -> float:
+    """The frequency [Hz] at which a controller runs a machine that has its leaves, below its natural one."""
+    rules, machine = made.bowl.sizing, building.machine_on(made.bowl, made.given)
+    detuning = 0.5 * (rules.least_detuning + rules.greatest_detuning)
+    return round(float(springs(machine).natural_frequency) / (1.0 + detuning), 1)
 
 
 def _angles(made: PlainBowl) -> tuple[float, ...]:
@@ -281,10 +291,14 @@ def _thrown(bowl: Bowl, throw: float) -> Bowl:
 
 
 def _can_build(made: PlainBowl, bowl: Bowl) -> bool:
-    """Whether a machine of usual springs and magnets makes the drive; what the user gave counts as built."""
-    if is_two_axis(bowl.drive) or made.has_stroke:
+    """Whether a machine of usual springs and magnets makes the drive; what the user owns counts as built."""
+    if is_two_axis(bowl.drive) or made.has_stroke or "machine.leaves" in made.given:
         return True
     return not drive_sought.lacks(bowl, frozenset(made.given))
+
+
+def _always(made: PlainBowl, bowl: Bowl) -> bool:
+    return True
 
 
 def with_amplitude(bowl: Bowl, amplitude: float) -> Bowl:
