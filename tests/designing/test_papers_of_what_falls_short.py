@@ -219,3 +219,32 @@ def test_feeder_bowl_shows_the_machine_that_was_tried_where_its_rule_finds_none(
     assert done.exit_code == 0 and "no bowl reaches it" in done.stderr
     assert json.loads(done.stdout)["peak_to_peak_mm"] == pytest.approx(0.84)
     assert run(*line).exit_code == 1
+
+
+def test_feeder_bowl_takes_the_drive_that_was_tried_until_the_file_is_changed(run, tmp_path):
+    """Its papers are those of the design; the stroke of the static rule, far less, is a note."""
+    path, config = tmp_path / "box.stl", tmp_path / "design.yaml"
+    shapes.box(12.0, 10.0, 8.0).export(path)
+    sheet = beside.machines.machine(bowls.settings(None, BOWL))
+    config.write_text(design_file.bowl_file(study(part=load(path)), (), sheet))
+    line = ("bowl", path, "--target", "30/min", "--format", "json", "--config", config)
+    tried, static = run(*line), run(*line, "--set", "friction.static=0.5")
+    document = json.loads(tried.stdout)
+    assert document["peak_to_peak_mm"] == pytest.approx(0.84, rel=1e-9)
+    assert document["leaves"] == int(sheet.bowl.machine.leaves)
+    assert "the drive is the one that was tried, 0.84 mm peak to peak: the static rule takes" in tried.stderr
+    assert "for 30/min" in tried.stderr and "is void" not in tried.stderr
+    assert "the trial of this bowl file is void" in static.stderr and "static rule" not in static.stderr
+    assert json.loads(static.stdout)["peak_to_peak_mm"] < 0.6
+
+
+def test_feeder_bowl_takes_it_too_where_the_static_rule_finds_none(run, tmp_path):
+    path, config = tmp_path / "box.stl", tmp_path / "design.yaml"
+    shapes.box(12.0, 10.0, 8.0).export(path)
+    sheet = beside.machines.machine(bowls.settings(None, BOWL))
+    config.write_text(design_file.bowl_file(study(part=load(path)), (), sheet))
+    line = ("bowl", path, "--target", "20000/min", "--format", "json")
+    done = run(*line, "--config", config)
+    assert "the static rule finds none for 2e+04/min" in done.stderr
+    assert json.loads(done.stdout)["peak_to_peak_mm"] == pytest.approx(0.84, rel=1e-9)
+    assert "20000/min are not kept" in done.stderr or "2e+04/min are not kept" in done.stderr
