@@ -1,7 +1,5 @@
 """``feeder bowl``."""
 
-import math
-
 import click
 
 from feederscrew_cli import grouped, options, orientation, quantity, waiting
@@ -101,7 +99,7 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
     """
     from feederscrew import bowl as bowls
     from feederscrew.errors import FeederError
-    from feederscrew.output import columns, machine, marking, offers, proof
+    from feederscrew.output import columns, machine, offers, proof
     from feederscrew.output.machine import tables
     from feederscrew.studies import bowl as study
     from feederscrew.studies import solidbowl as solids
@@ -118,37 +116,23 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
     with out.folder(name, identity | bowls.identity(path), effective) as folder:
         waiting.conveying(out)
         shape = solids.asked(settings, **made)
-        tried, record = bowls.verified(path), bowls.record(settings)
-        own = solid, record, orientation.name(wanted)
+        tried, own = bowls.verified(path), (solid, bowls.record(settings), orientation.name(wanted))
+        holding = tried if proof.holds(tried, *own) else None
         try:
             found = (
-                study.bowl(settings, solid, target, **wanted, solid=shape)
+                study.bowl(settings, solid, target, **wanted, solid=shape, as_tried=holding is not None)
                 if solid
                 else study.machine(settings)
             )
         except FeederError as fault:  # a bowl that was tried has its machine, whatever the static rule says
-            if made["solid"] or not proof.holds(tried, *own):
+            if made["solid"] or holding is None:
                 raise
             out.warn(f"{fault}; what follows is the machine as it was tried")
             found = study.machine(settings)
         out.warn(*found.remarks, *proof.warnings(tried, *own))
-        holding = tried if proof.holds(tried, *own) else None
-        same = found.order is None or _same_stroke(found, record)
-        if holding and not same:
-            tried_mm, taken_mm = (2e3 * one.drive.amplitude for one in (record, found.bowl))
-            out.warn(
-                f"drive.amplitude: its trial was at {tried_mm:.3g} mm peak to peak, this sheet takes "
-                f"{taken_mm:.3g} mm by the static rule for that rate - see the papers of feeder design"
-            )
-        mark = marking.of_trial(holding)
-        offers.write(folder, machine.offers(found, holding if same else None, mark), pictures=pictures)
+        offers.write(folder, machine.offers(found, holding), pictures=pictures)
         document = proof.beside(tables.document(found), tried, *own)
         out.show(tables.summary(found, holding), document)
-
-
-def _same_stroke(sheet, bowl):
-    """Whether a sheet has the stroke of its bowl file."""
-    return math.isclose(sheet.bowl.drive.amplitude, bowl.drive.amplitude, rel_tol=1e-3)
 
 
 def _found(bowl, measured, out):

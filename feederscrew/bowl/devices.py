@@ -174,8 +174,7 @@ def _alike(a: object, b: object) -> bool:
     if isinstance(a, tuple) and isinstance(b, tuple):
         return len(a) == len(b) and all(map(_alike, a, b))
     if isinstance(a, float | int) and isinstance(b, float | int):
-        same = math.isclose(a, b, rel_tol=WRITTEN_SHARE, abs_tol=0.51 * WRITTEN_STEP_M)
-        return same or (math.isnan(a) and math.isnan(b))
+        return math.isclose(a, b, rel_tol=WRITTEN_SHARE, abs_tol=0.51 * WRITTEN_STEP_M)
     if is_dataclass(a) and is_dataclass(b):
         return not differences(a, b)
     return a == b

@@ -153,6 +153,8 @@ def _own(value: object) -> str:
     """What only devices of some kinds have, such as an angle: to four digits, as files write six."""
     if isinstance(value, tuple):
         return f"({' '.join(map(_own, value))})"
+    if value is None:
+        return "nan"  # as it stands in the fingerprints of files that were tried before
     return f"{value:.4g}" if isinstance(value, float) and math.isfinite(value) else str(value)
 
 

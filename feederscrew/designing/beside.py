@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -44,7 +44,6 @@ TRACK = (
     ("width", 1e-3, "mm"),
 )
 FIGURES = ": asked for "  # between what is wrong with a drive and its figures, in a DriveMismatch
-SAME_STROKE = 1e-3  # [1] strokes that are nearer than this are one
 
 
 def tooled(
@@ -144,24 +143,21 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
 
 
 def _ordered(settings: Sequence[Setting], study: DesignStudy, said: Collection[str]) -> Iterator[str]:
-    """What ``feeder bowl`` with the part and the rate warns of: it takes a stroke by the static rule.
+    """What ``feeder bowl`` with the part and the rate warns of: it takes the drive that was tried.
 
     What is ``said`` of the design already is not said again.
     """
     rate = f"{study.request.target * units.MINUTE:.4g}/min"
     try:
-        sheet = machines.bowl(settings, study.part, study.request.target)
+        sheet = machines.bowl(settings, study.part, study.request.target, as_tried=True)
     except FeederError as fault:
         yield f"feeder bowl finds no machine of this file for {rate}: {fault}"
         return
-    stroke, tried = (2e3 * drive.amplitude for drive in (sheet.bowl.drive, cast(Bowl, study.bowl).drive))
-    another = abs(stroke - tried) > SAME_STROKE * tried
-    lead = f"feeder bowl takes {stroke:.3g} mm peak to peak for {rate}, {tried:.3g} mm were tried: "
     drives = {one.partition(FIGURES)[0] for one in said if FIGURES in one}
     for remark in sheet.remarks:
         drive, figures, _ = remark.partition(FIGURES)
         if remark not in said and not (figures and drive in drives):  # the drive is told as it was tried
-            yield f"{lead if another else ''}{remark}"
+            yield remark
 
 
 def settings_of(bowl: Bowl, given: Collection[str] = ()) -> tuple[Setting, ...]:

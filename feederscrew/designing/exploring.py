@@ -12,6 +12,7 @@ from feederscrew.designing.searching import Candidate
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.rates import arrivals, spacing
 from feederscrew.rates.tipping import FLAT
+from feederscrew.studies import solidbowl
 from feederscrew.studies.rate import shares
 from feederscrew.tooling.hanging import neck
 
@@ -280,11 +281,12 @@ def attempted(search, made, proposal, weights, driven=None):
     """
     part = search.part
     check_written(proposal.devices, "design.yaml")
+    made = _drawable(search, made, proposal)
     bowl = replace(made.bowl, devices=proposal.devices)
     ways = proposals.known_through(part, search.known.aspects, bowl)
     gain = trying.gain(ways, weights, proposal.states(ways))
     own = _at_velocity(search, made, proposal, ways, weights, gain) if driven is None else driven
-    bowl = replace(own, devices=proposal.devices)
+    bowl = replace(own, track=made.bowl.track, devices=proposal.devices)
     ways = arrivals.oriented(proposals.known_through(part, search.known.aspects, bowl), search.known.measured)
     name = ways.lying[proposal.row].name
     search.begin_trial(f"{name}, {proposal.step}")
@@ -308,6 +310,16 @@ def attempted(search, made, proposal, weights, driven=None):
     search.attempts.append(attempt)
     search.end_trial()
     return Candidate(proposal, bowl, ways, weights, tried, attempt)
+
+
+def _drawable(search, made, proposal):
+    """The bowl, its track as steep as a spacing section that leads down needs it: else it has no solid."""
+    if "track.climb" in search.given or not any(one.leans for one in proposal.devices):
+        return made
+    bowl = replace(made.bowl, devices=proposal.devices)
+    ways = proposals.known_through(search.part, search.known.aspects, bowl)
+    track = replace(bowl.track, climb=solidbowl.drawable_climb(bowl, search.part, ways))
+    return replace(made, bowl=replace(made.bowl, track=track))
 
 
 def _cause(tried, proposal):

@@ -76,6 +76,24 @@ def brought(sought: Sought, flow: Callable[[Bowl | None], throughput.Flow]) -> t
         now = own  # there are only so many orientations to turn over
 
 
+def as_given(sought: Sought) -> Bowl:
+    """Return the bowl with the drive of its file as it stands, and the machine that is sized for it.
+
+    Parameters
+    ----------
+    sought : Sought
+
+    Returns
+    -------
+    Bowl
+        What the user gave of the machine is kept, as for ``brought``.
+    """
+    plain, settings = sought.bowl, sought.settings
+    under = building.machine_for(plain, sought.size, given(settings, "machine"), exact=True)
+    made = replace(plain, machine=replace(under, supply=plain.drive.frequency))
+    return _with(made, plain.drive.amplitude, settings)
+
+
 def _driven(sought: Sought, flow: throughput.Flow) -> Bowl:
     """The bowl with machine, frequency and the smallest stroke that reaches the target."""
     plain, settings = sought.bowl, sought.settings

@@ -1,4 +1,7 @@
-"""The mark across every drawing of a bowl whose trial falls short."""
+"""The mark on every drawing and solid of a bowl whose trial falls short."""
+
+import re
+from pathlib import PurePosixPath
 
 import numpy as np
 
@@ -10,6 +13,9 @@ COLOUR, STRENGTH = "#d40000", 0.45  # of the letters, and how much they hide [1]
 DIAGONAL_SHARE, SIDE_SHARE = 0.75, 0.88  # [1] of the diagonal and the longer side that a mark takes at most
 LETTER_WIDTH = 0.62  # [1] of a bold letter over its size, in the mean
 POINTS = 72.0  # of an inch
+NAME_END = "_falls_short"  # of the name of a file that nobody sees a mark on
+STEP_HEAD = re.compile(rb"(FILE_DESCRIPTION\(\('[^']*)'")
+STEP_PRODUCT = re.compile(rb"(PRODUCT\('[^']*)','([^']*)'")  # its number and its name
 
 
 def of_trial(tried, mark=None):
@@ -24,6 +30,52 @@ def of_trial(tried, mark=None):
     if mark is not None:
         return mark
     return MARK if tried is not None and tried.status == FALLS_SHORT else ""
+
+
+def named(text, mark):
+    """Return the name of a body or the title of a file with a mark: 'bowl - FALLS SHORT - ...'."""
+    return f"{text} - {mark}" if mark else text
+
+
+def file_name(name, mark):
+    """Return the name of a solid's file, which says that what is in it falls short.
+
+    A slicer and a machine shop see the name of a file alone.
+
+    Parameters
+    ----------
+    name : str
+        'bowl.stl'.
+    mark : str
+        '' leaves the name as it is.
+
+    Returns
+    -------
+    str
+        'bowl_falls_short.stl'.
+    """
+    path = PurePosixPath(name)
+    return f"{path.stem}{NAME_END}{path.suffix}" if mark else name
+
+
+def step(data, mark):
+    """Return a STEP file whose head and products bear a mark.
+
+    Parameters
+    ----------
+    data : bytes
+    mark : str
+        In letters of ASCII, without an apostrophe; '' leaves the file as it is.
+
+    Returns
+    -------
+    bytes
+    """
+    if not mark:
+        return data
+    end = f" - {mark}'".encode("ascii")
+    data = STEP_HEAD.sub(rb"\1" + end, data)
+    return STEP_PRODUCT.sub(rb"\1" + end + rb",'\2" + end, data)
 
 
 def diagonal(sheet, mark):

@@ -48,7 +48,7 @@ class Stands:
 
     way: str  # STAYS, ROCKS, OVER, BACK or THROWN
     tilt: float = 0.0  # [rad] that one stroke brings at most
-    lean: float = np.nan  # [rad] from which it goes on by itself; NaN where it stays
+    lean: float = np.inf  # [rad] from which it goes on by itself; infinite where it stays
 
     @property
     def said(self) -> str:

@@ -8,12 +8,12 @@ from typing import Any, Unpack, cast
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew import check
+from feederscrew import check, units
 from feederscrew.bowl.direction import vibration_angle
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.bowl.settings import Setting, has_machine
 from feederscrew.conveying import answer
-from feederscrew.errors import ArgumentError
+from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.machine import checks, drive_sought, feasibility, filling, sizing, throughput, tuning
 from feederscrew.machine.springs import Springs, gain, leaf_stress, springs, upright_pull
 from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, stroke
@@ -34,6 +34,7 @@ from feederscrew.tooling.orientations import orientations
 ASSUMED_DENSITY = 7850.0  # [kg/m3] of a fill of which nothing is known: steel, solid
 PART, FILE, ASSUMED = "of the part", "as sizing.fill_density says", "steel assumed: give the part"  # fills
 ENOUGH = 1.0 - 1e-6  # of a target
+SAME_STROKE = 1e-3  # [1] strokes that are nearer than this are one
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +55,7 @@ class Order(Shown):
     handbook: float  # [1/s] the handbook's estimate for the same share
     shape: sizing.SizedShape  # one part on the track, to draw
     climb_for_devices: bool = False  # whether a device that leads the track down asks for the climb
+    static_drive: str = ""  # what the static rule takes, where the drive is that of a trial; '' elsewhere
 
 
 @dataclass(frozen=True)
@@ -102,7 +104,8 @@ class MachineSheet(Shown):
         if self.order is None:
             return (*checks.remarks(self), *own)
         small = small_part_remarks(self.order.part, {}, width)
-        return (*_sorting(self.bowl, self.order), *checks.remarks(self), *small, *own)
+        note = (self.order.static_drive,) if self.order.static_drive else ()
+        return (*note, *_sorting(self.bowl, self.order), *checks.remarks(self), *small, *own)
 
     @property
     def rocking(self) -> tuple[Rocking, Rocking] | None:
@@ -158,6 +161,7 @@ def bowl(
     heading: float | None = None,
     rule: str = "recommended",
     known: Aspects | None = None,
+    as_tried: bool = False,
     **options: Unpack[solidbowl.SizingKeywords],
 ) -> MachineSheet:
     """Compute the bowl, the drive and the stroke that bring a part at a rate.
@@ -176,6 +180,9 @@ def bowl(
     rule : str
     known : Aspects, optional
         Of the part, with the answer to take, where they are known already.
+    as_tried : bool
+        Whether a trial has shown what the settings say: their drive is kept, and what the static rule takes
+        is only told.
     **options
         gap : float [m], fill : float [1] : as for ``studies.rate.rate``.
         solid : Asked, of the bowl as a solid: its rise and mass take the place of the estimate.
@@ -188,7 +195,7 @@ def bowl(
     Raises
     ------
     FeederError
-        If no bowl is so large, or none reaches the target.
+        If no bowl is so large, or none reaches the target; the latter not of what was tried.
     """
     own = check.options("bowl", solidbowl.SizingOptions, options)
     plain = solidbowl.in_material(answer.conveying(bowls.record(settings)), own.solid)
@@ -216,7 +223,7 @@ def bowl(
     wanted, counted["target"], plain = one, one, replace(plain, track=track)
     room = cast(float, part.volume if part.hull is None else part.hull.volume)  # a card has no size
     sought = drive_sought.Sought(plain, size, tuple(settings), target, part.mass / room)
-    driven, flow = drive_sought.brought(sought, lambda bowl: throughput.flow(ways(bowl), **counted))
+    driven, flow, note = _driven(sought, lambda bowl: throughput.flow(ways(bowl), **counted), as_tried)
     order = Order(
         part=part,
         target=target,
@@ -232,8 +239,27 @@ def bowl(
         handbook=plain.sizing.handbook_speed * flow.share / flow.length,
         shape=sizing.shape(part, found, track, wanted),
         climb_for_devices=least is not None,
+        static_drive=note,
     )
     return replace(_sheet(driven, settings, size.depth, (sought.bulk, PART), order), solid=made)
+
+
+def _driven(
+    sought: drive_sought.Sought, flow: Callable[[Bowl | None], throughput.Flow], as_tried: bool
+) -> tuple[Bowl, throughput.Flow, str]:
+    """The bowl with its drive, its flow, and what the static rule takes where that is another drive."""
+    if not as_tried:
+        return (*drive_sought.brought(sought, flow), "")
+    driven = drive_sought.as_given(sought)
+    rate, own = f"{sought.target * units.MINUTE:.4g}/min", 2e3 * driven.drive.amplitude
+    lead = f"the drive is the one that was tried, {own:.3g} mm peak to peak"
+    try:
+        other, _ = drive_sought.brought(sought, flow)
+    except FeederError:
+        return driven, flow(driven), f"{lead}: the static rule finds none for {rate}"
+    stroke = 2e3 * other.drive.amplitude
+    same = np.isclose(stroke, own, rtol=SAME_STROKE, atol=0.0)
+    return driven, flow(driven), "" if same else f"{lead}: the static rule takes {stroke:.3g} mm for {rate}"
 
 
 def _sorting(bowl: Bowl, order: Order) -> Iterator[str]:

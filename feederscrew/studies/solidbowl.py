@@ -103,6 +103,40 @@ def asked(
     )
 
 
+def drawable_climb(bowl: Bowl, part: Part, coming: stream.Orientations) -> float:
+    """Return the climb [rad] of the track at which a bowl with its devices can be drawn as a solid.
+
+    A device that leads the track down needs room below it: a steeper track leaves more.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        With its devices.
+    part : Part
+    coming : rates.stream.Orientations
+        Of the part along that track.
+
+    Returns
+    -------
+    float [rad]
+        The bowl's own climb where it is enough, or where none up to ``STEEPEST_RAD`` mends it.
+    """
+    rules, track = bowl.sizing, bowl.track
+    depth = rules.outlet_height if rules.outlet_height > 0.0 else 2.0 * rules.depth * track.radius
+    size = Size(2.0 * track.radius, {}, track.width, 0.0, 0.0, track.climb, depth, np.nan, np.nan)
+    wanted = Asked(
+        material=STEEL, shape=rules.shape, outlet_height=rules.outlet_height, friction=bowl.friction.static
+    )
+    made = in_material(bowl, wanted)
+    try:
+        _planned(made, size, part, coming, wanted)
+    except TrackTooLow:
+        return _least_climb(made, size, part, coming, wanted) or track.climb
+    except FeederError:  # another fault, which no climb mends
+        return track.climb
+    return track.climb
+
+
 def in_material(bowl: Bowl, asked: Asked | None) -> Bowl:
     """Return the bowl with the thickness and density of what its solid is made of.
 

@@ -45,7 +45,7 @@ def seconds(device, one, bowl):
     if device.face is None:
         return 0.0
     sweep, friction = device.face
-    friction = bowl.friction.static if math.isnan(friction) else friction
+    friction = bowl.friction.static if friction is None else friction
     speed = along_blade(bowl, sweep, friction)
     way = max(one.track.width - one.distance, 0.0)
     return way / speed if speed > STILL else math.inf

@@ -27,8 +27,8 @@ def test_a_device_written_and_read_back_is_the_same_and_a_changed_one_is_not(tmp
     assert fingerprint(of_one(tmp_path, kind, value_text(one))) == tried
     for own in (each.name for each in fields(one) if each.name not in SHARED):
         value = getattr(one, own)
-        if isinstance(value, float):
-            changed = replace(one, **{own: 1.01 * value if value == value and value else 0.5})
+        if value is None or isinstance(value, float):
+            changed = replace(one, **{own: 1.01 * value if value else 0.5})
             assert fingerprint(replace(bowl, devices=(changed,))) != tried, own
 
 
@@ -41,6 +41,15 @@ def test_another_view_or_climb_or_bank_is_another_bowl(tmp_path):
     )
     for kind, first, second in pairs:
         assert fingerprint(of_one(tmp_path, kind, first)) != fingerprint(of_one(tmp_path, kind, second))
+
+
+def test_what_is_not_given_stands_in_the_fingerprint_as_it_did(tmp_path):
+    """The digits that version 0.2.0 gave this file, when what was not given was NaN."""
+    (tmp_path / "b.yaml").write_text(
+        "devices:\n  - wiper: 6 mm\n  - wiper: {clearance: 6 mm, sweep: 30 deg}\n"
+        "  - sorter: {of: A@90, play: 0.5 mm, sees: outline}\n  - yield: {A: 0.9}\n"
+    )
+    assert fingerprint(bowls.read(tmp_path / "b.yaml")) == "180c20cb2caa5dea"
 
 
 PART = shapes.part(shapes.box(10, 10, 10))

@@ -2,7 +2,9 @@
 
 import io
 import json
+import zipfile
 from dataclasses import replace
+from types import SimpleNamespace
 
 import ezdxf
 import numpy as np
@@ -15,10 +17,13 @@ from feederscrew.designing import beside, loop
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
 from feederscrew.errors import FeederError
-from feederscrew.output import marking, style
+from feederscrew.output import marking, solidbowl, style
 from feederscrew.output.designs import design_file, design_page, family, family_page, files, tables
 from feederscrew.output.machine import figures
 from feederscrew.output.machine import sheet as sheets
+from feederscrew.output.page import as_html
+from feederscrew.output.page.blocks import Chapter, Page
+from feederscrew.output.solidbowl import turnable
 from feederscrew.output.tooling import drawing
 from feederscrew.part import load
 from feederscrew.tooling.strip import strip
@@ -219,3 +224,79 @@ def test_feeder_bowl_shows_the_machine_that_was_tried_where_its_rule_finds_none(
     assert done.exit_code == 0 and "no bowl reaches it" in done.stderr
     assert json.loads(done.stdout)["peak_to_peak_mm"] == pytest.approx(0.84)
     assert run(*line).exit_code == 1
+
+
+def test_feeder_bowl_takes_the_drive_that_was_tried_until_the_file_is_changed(run, tmp_path):
+    """Its papers are those of the design; the stroke of the static rule, far less, is a note."""
+    path, config = tmp_path / "box.stl", tmp_path / "design.yaml"
+    shapes.box(12.0, 10.0, 8.0).export(path)
+    sheet = beside.machines.machine(bowls.settings(None, BOWL))
+    config.write_text(design_file.bowl_file(study(part=load(path)), (), sheet))
+    line = ("bowl", path, "--target", "30/min", "--format", "json", "--config", config)
+    tried, static = run(*line), run(*line, "--set", "friction.static=0.5")
+    document = json.loads(tried.stdout)
+    assert document["peak_to_peak_mm"] == pytest.approx(0.84, rel=1e-9)
+    assert document["leaves"] == int(sheet.bowl.machine.leaves)
+    assert "the drive is the one that was tried, 0.84 mm peak to peak: the static rule takes" in tried.stderr
+    assert "for 30/min" in tried.stderr and "is void" not in tried.stderr
+    assert "the trial of this bowl file is void" in static.stderr and "static rule" not in static.stderr
+    assert json.loads(static.stdout)["peak_to_peak_mm"] < 0.6
+
+
+def test_feeder_bowl_takes_it_too_where_the_static_rule_finds_none(run, tmp_path):
+    path, config = tmp_path / "box.stl", tmp_path / "design.yaml"
+    shapes.box(12.0, 10.0, 8.0).export(path)
+    sheet = beside.machines.machine(bowls.settings(None, BOWL))
+    config.write_text(design_file.bowl_file(study(part=load(path)), (), sheet))
+    line = ("bowl", path, "--target", "20000/min", "--format", "json")
+    done = run(*line, "--config", config)
+    assert "the static rule finds none for 2e+04/min" in done.stderr
+    assert json.loads(done.stdout)["peak_to_peak_mm"] == pytest.approx(0.84, rel=1e-9)
+    assert "20000/min are not kept" in done.stderr or "2e+04/min are not kept" in done.stderr
+
+
+STEP = (
+    b"ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('Open CASCADE Model'),'2;1');\nENDSEC;\nDATA;\n"
+    b"#7 = PRODUCT('bowl','bowl','',(#8));\n#9 = PRODUCT_CONTEXT('',#2,'mechanical');\nENDSEC;\n"
+)
+
+
+def test_solids_of_what_falls_short_say_so_in_their_names_heads_and_bodies():
+    """A shop sees the name of an STL, a slicer that of a body, a CAD program that of a product."""
+    solid = SimpleNamespace(
+        vertices=PART.vertices, faces=PART.faces, gates=(), segments=None, step=SimpleNamespace(data=STEP)
+    )
+    sheet = SimpleNamespace(order=SimpleNamespace(part=PART), solid=solid)
+    plain, marked = (
+        {one.name: one for one in solidbowl.offers(sheet, None, mark)} for mark in ("", marking.MARK)
+    )
+    assert {"bowl.stl", "bowl.3mf", "bowl.step", "bowl.pdf"} <= set(plain)
+    assert {"bowl_falls_short.stl", "bowl_falls_short.3mf", "bowl_falls_short.step", "bowl.pdf"} <= set(
+        marked
+    )
+    heads = [one["bowl" + end + ".stl"].make()[:80] for one, end in ((plain, ""), (marked, "_falls_short"))]
+    assert [marking.MARK.encode() in head for head in heads] == [False, True] and heads[1][:5] != b"solid"
+    size = len(PART.faces)
+    assert len(marked["bowl_falls_short.stl"].make()) == 84 + 50 * size == len(plain["bowl.stl"].make())
+    assert plain["bowl.step"].make() == STEP
+    text = marked["bowl_falls_short.step"].make().decode()
+    name = f"bowl - {marking.MARK}"
+    assert (
+        f"PRODUCT('{name}','{name}','',(#8))" in text and f"('Open CASCADE Model - {marking.MARK}')" in text
+    )
+    assert "PRODUCT_CONTEXT('',#2,'mechanical')" in text
+    for offers, end, bodies in ((plain, "", 0), (marked, "_falls_short", 2)):  # the title and the body
+        with zipfile.ZipFile(io.BytesIO(offers[f"bowl{end}.3mf"].make())) as archive:
+            assert archive.read("3D/3dmodel.model").decode().count(marking.MARK) == bodies
+
+
+def test_the_bowl_on_the_page_of_what_falls_short_bears_a_mark(monkeypatch):
+    monkeypatch.setattr(turnable, "scene", lambda *_: {})
+    way = SimpleNamespace(radius=0.15)
+    plan = SimpleNamespace(way=way, material=SimpleNamespace(name="steel"))
+    solid = SimpleNamespace(plan=plan, mass=3.0)
+    for mark in ("", marking.MARK):
+        page = as_html.html(
+            Page("box", "", (Chapter(tuple(turnable.blocks(solid, PART, mark=mark))),), kind="design")
+        )
+        assert (f'<p class="across"><span>{marking.MARK}' in page) is bool(mark)

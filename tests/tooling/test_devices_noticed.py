@@ -196,7 +196,7 @@ def test_what_no_width_carries_fails_on_every_ledge_by_as_far_as_its_foot_reache
 @pytest.mark.parametrize(
     ("sweep", "own", "fate"),
     [
-        (30.0, np.nan, "returned"), (58.0, np.nan, "returned"), (60.0, np.nan, "stopped"),
+        (30.0, None, "returned"), (58.0, None, "returned"), (60.0, None, "stopped"),
         (60.0, 0.5, "returned"), (64.0, 0.5, "stopped"), (90.0, 0.0, "stopped"),
     ],
 )  # fmt: skip

@@ -1,7 +1,8 @@
 """A design on one page to hand on: the answer first, then what it stands on."""
 
 from feederscrew.designing import record
-from feederscrew.output.designs import figures, risk_pictures, tables
+from feederscrew.output import marking
+from feederscrew.output.designs import design_file, figures, risk_pictures, tables
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import (
     Chapter,
@@ -61,7 +62,8 @@ def _sections(study, built):
     if study.queues:
         yield Chapter(tuple(_proof(study, d)), anchor="proof", title="The proof")
     if built is not None and study.delivers:
-        shown = tuple(turnable.blocks(built.drawn and built.drawn.solid, study.part, built.why))
+        mark = marking.of_trial(design_file.trial(study))
+        shown = tuple(turnable.blocks(built.drawn and built.drawn.solid, study.part, built.why, mark))
         yield Chapter(shown, anchor="bowl", title="The bowl")
     if not study.delivers:  # nothing to build from, nothing to accept
         return

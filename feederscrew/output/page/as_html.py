@@ -264,7 +264,7 @@ def _entry(entry):
 def _views(views):
     player = PLAYER if views.plays else ""
     figures = "\n".join(
-        _view(views.of, place, name, kind, bars, player)
+        _view(views.of, place, name, kind, bars, player, views.mark)
         for place, (name, kind, bars) in enumerate(views.captions)
     )
     scene = json.dumps(views.scene, separators=(",", ":")).replace("<", "\\u003c")
@@ -277,12 +277,13 @@ def _views(views):
     )
 
 
-def _view(of, place, name, kind, bars, player):
+def _view(of, place, name, kind, bars, player, mark):
     label = f"{of} {escape(name)} in three dimensions; arrow keys turn it"
     shares = "\n".join(_bar(bar) for bar in bars)
+    across = f'<p class="across"><span>{escape(mark)}</span></p>\n' if mark else ""
     return (
         f'<figure class="view">\n'
-        f'<canvas data-pose="{place}" tabindex="0" role="img" aria-label="{label}"></canvas>\n'
+        f'<canvas data-pose="{place}" tabindex="0" role="img" aria-label="{label}"></canvas>\n{across}'
         f'<figcaption><button type="button">from below</button><strong>{escape(name)}</strong> '
         f"<span>{escape(kind)}</span>\n{player}{shares}</figcaption>\n</figure>"
     )

@@ -76,6 +76,7 @@ class Views:
     plays: bool = False  # each has a path that the part moves along
     hint: str = ""  # what one can do with it, where it is not the part on a face
     printed: bool = False  # also on paper: no picture stands in for it
+    mark: str = ""  # written across each
 
 
 @dataclass(frozen=True)

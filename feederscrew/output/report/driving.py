@@ -1,7 +1,8 @@
 """The bowl that a part needs, or the machine of the bowl file."""
 
+from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
-from feederscrew.output import offers
+from feederscrew.output import marking, offers, proof
 from feederscrew.output import tables as plain
 from feederscrew.output.machine import offers as machine_files
 from feederscrew.output.machine import tables
@@ -21,11 +22,12 @@ def bowl(case):
     found = case.machine
     if found is None:
         return None
-    drawn = offers.by_name(machine_files(found))["bowl.png"]
+    mark = _mark(case)
+    drawn = offers.by_name(machine_files(found, mark=mark))["bowl.png"]
     sized = found.order is not None
     blocks = (
         Text(SIZED if sized else GIVEN),
-        *_turned(case),
+        *_turned(case, mark),
         *((Notes(found.remarks),) if found.remarks else ()),
         Picture(drawn.name, drawn.make(), drawn.alt),
         Table(tables.summary(found)),
@@ -36,10 +38,16 @@ def bowl(case):
     return Chapter(blocks, tiles=(_tile(found),), warnings=found.remarks)
 
 
-def _turned(case):
+def _mark(case):
+    """The mark of a bowl file whose trial falls short, as long as that trial holds."""
+    tried = bowls.verified(case.path)
+    return marking.of_trial(tried if proof.holds(tried, case.part, case.bowl, case.aspect) else None)
+
+
+def _turned(case, mark):
     """The bowl as a solid with parts on its track, to be turned, or why there is none."""
     try:
-        return turnable.blocks(case.solid, case.part)
+        return turnable.blocks(case.solid, case.part, mark=mark)
     except FeederError as fault:
         return [Notes(tuple(f"the bowl as a solid: {line}" for line in fault.lines))]
 

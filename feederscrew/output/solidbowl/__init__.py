@@ -14,7 +14,7 @@ def offers(study, tried=None, mark=None):
     tried : Verified, optional
         What a trial of the bowl has shown: it is in the title block, and across what falls short.
     mark : str, optional
-        Across every drawing; that of the trial without it.
+        On every drawing and solid; that of the trial without it.
 
     Returns
     -------
@@ -23,29 +23,36 @@ def offers(study, tried=None, mark=None):
     from feederscrew.output.solidbowl import bowl_picture, drawing_sheet, printing
 
     name, cut, mark = study.order.part.name, study.solid.segments, marking.of_trial(tried, mark)
-    title = " - ".join(filter(None, (f"bowl for {name}", mark)))
+    title = marking.named(f"bowl for {name}", mark)
     pieces = (
         ()
         if cut is None
         else (
             *(
-                offer.text(f"bowl_{one.name}.stl", printing.binary, one.vertices, one.faces)
+                _file(f"bowl_{one.name}.stl", mark, printing.binary, one.vertices, one.faces, mark)
                 for one in cut.pieces
             ),
-            offer.text("bowl_segments.3mf", printing.side_by_side, cut.pieces, f"{title}, in segments"),
+            _file(
+                "bowl_segments.3mf", mark, printing.side_by_side, cut.pieces, f"{title}, in segments", mark
+            ),
         )
     )
-    exact = () if study.solid.step is None else (offer.text("bowl.step", _step, study.solid),)
+    exact = () if study.solid.step is None else (_file("bowl.step", mark, _step, study.solid, mark),)
     picture = offer.picture("bowl_solid.png", "The bowl, parts on its track", bowl_picture.figure, study)
     return (
         *pieces,
         *exact,
-        offer.text("bowl.stl", printing.stl, study.solid),
-        offer.text("bowl.3mf", printing.threemf, study.solid, title),
+        _file("bowl.stl", mark, printing.stl, study.solid, mark),
+        _file("bowl.3mf", mark, printing.threemf, study.solid, title, mark),
         offer.text("bowl.pdf", drawing_sheet.pdf, study, tried, mark),
         *marking.pictures([picture], mark),
     )
 
 
-def _step(solid):
-    return solid.step.data
+def _file(name, mark, make, *arguments):
+    """A file of the solid, of which nobody sees a mark but in its name."""
+    return offer.text(marking.file_name(name, mark), make, *arguments)
+
+
+def _step(solid, mark):
+    return marking.step(solid.step.data, mark)

@@ -36,7 +36,8 @@ def pdf(study, tried=None, mark=None):
     -------
     bytes
     """
-    return sheet(study, tried, mark).pdf(f"{study.order.part.name}: bowl")
+    title = marking.named(f"{study.order.part.name}: bowl", marking.of_trial(tried, mark))
+    return sheet(study, tried, mark).pdf(title)
 
 
 def sheet(study, tried=None, mark=None):

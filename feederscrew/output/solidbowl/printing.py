@@ -6,10 +6,12 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from feederscrew.output import marking
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
-HEADER = b"feeder bowl: the bowl as a solid, in mm"
+HEADER = "feeder bowl: the bowl as a solid, in mm"
+HEADER_BYTES = 80  # of a binary STL
 BETWEEN = 10e-3  # [m] from segment to segment
 WHEN = (1980, 1, 1, 0, 0, 0)  # of each file in the archive: the same bytes twice
 TYPES = (
@@ -32,38 +34,43 @@ MODEL = (
 )
 
 
-def stl(solid):
+def stl(solid, mark=""):
     """Return the bowl as a binary STL in millimetres.
 
     Parameters
     ----------
     solid : BowlSolid
+    mark : str
+        In the file's head.
 
     Returns
     -------
     bytes
     """
-    return binary(solid.vertices, solid.faces)
+    return binary(solid.vertices, solid.faces, mark)
 
 
-def binary(vertices, faces):
-    """Return a surface (V, 3) [m], (F, 3) as the bytes of a binary STL in millimetres."""
+def binary(vertices, faces, mark=""):
+    """Return a surface (V, 3) [m], (F, 3) as the bytes of a binary STL in millimetres, a mark in its head."""
     corners = (vertices / MM).astype("<f4")[faces]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).astype(float)
     size = np.sqrt((normal**2).sum(axis=1, keepdims=True))
     normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0.0)
     record = np.zeros(len(corners), dtype=[("numbers", "<f4", (4, 3)), ("nothing", "<u2")])
     record["numbers"][:, 0], record["numbers"][:, 1:] = normal, corners
-    return HEADER.ljust(80) + np.uint32(len(corners)).tobytes() + record.tobytes()
+    head = marking.named(HEADER, mark).encode("ascii").ljust(HEADER_BYTES)[:HEADER_BYTES]
+    return head + np.uint32(len(corners)).tobytes() + record.tobytes()
 
 
-def threemf(solid, title):
+def threemf(solid, title, mark=""):
     """Return the bowl and each gate of its own as the bytes of a 3MF file, one object each.
 
     Parameters
     ----------
     solid : BowlSolid
     title : str
+    mark : str
+        In the name of each object, which a slicer shows.
 
     Returns
     -------
@@ -71,18 +78,19 @@ def threemf(solid, title):
         In millimetres.
     """
     objects = [("bowl", solid.vertices, solid.faces), *solid.gates]
-    return packed(objects, title)
+    return packed(objects, title, mark)
 
 
-def side_by_side(pieces, title):
+def side_by_side(pieces, title, mark=""):
     """Return segments of a bowl as the bytes of a 3MF file, one object each, beside each other."""
     across = np.cumsum([0.0, *(one.size[0] + BETWEEN for one in pieces)])
     moved = zip(across, pieces)
-    return packed([(one.name, one.vertices + [x, 0.0, 0.0], one.faces) for x, one in moved], title)
+    return packed([(one.name, one.vertices + [x, 0.0, 0.0], one.faces) for x, one in moved], title, mark)
 
 
-def packed(objects, title):
+def packed(objects, title, mark=""):
     """Return objects (name, vertices (V, 3) [m], faces (F, 3)) as the bytes of a 3MF file."""
+    objects = [(marking.named(name, mark), *surface) for name, *surface in objects]
     model = MODEL + f'<metadata name="Title">{quoteattr(title)[1:-1]}</metadata>\n<resources>\n'
     model += "".join(_object(k + 1, *one) for k, one in enumerate(objects))
     items = "".join(f'<item objectid="{k + 1}"/>' for k in range(len(objects)))

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from feederscrew.output import marking
 from feederscrew.output.page.blocks import Notes, Views
 from feederscrew.output.solid import meshes
 from feederscrew.output.solidbowl.bowl_picture import HIGH, SIDE, parts
@@ -17,7 +18,7 @@ CLOSE = 0.9  # of how far other views reach: from every side the whole bowl is s
 MOST = 60_000  # facets of all parts together
 
 
-def blocks(solid, part, why=""):
+def blocks(solid, part, why="", mark=""):
     """Return what a page shows of a bowl: the solid to be turned, or why there is none.
 
     Parameters
@@ -27,6 +28,8 @@ def blocks(solid, part, why=""):
         With a mesh.
     why : str
         There is none.
+    mark : str
+        Across it.
 
     Returns
     -------
@@ -35,7 +38,8 @@ def blocks(solid, part, why=""):
     if solid is None:
         return [Notes((f"the bowl as a solid: {why}",))] if why else []
     text = f"{2.0 * solid.plan.way.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
-    return [Views(scene(solid, part), (("bowl", text, ()),), "solid-bowl", "The", hint=TURN, printed=True)]
+    captions = ((marking.named("bowl", mark), text, ()),)
+    return [Views(scene(solid, part), captions, "solid-bowl", "The", hint=TURN, printed=True, mark=mark)]
 
 
 def scene(solid, part):

@@ -19,7 +19,7 @@ def offers(study, settings, step=False, mark=""):
     step : bool
         Offer the section of track as STEP as well, which needs OpenCASCADE.
     mark : str
-        Across every drawing and picture.
+        On every drawing, picture and solid.
 
     Returns
     -------
@@ -39,8 +39,8 @@ def offers(study, settings, step=False, mark=""):
         offer.text("tooling.yaml", bowl_file.bowl_file, study, settings),
         offer.text("tooling.dxf", _drawn, "dxf", study, mark),
         offer.text("tooling.svg", _drawn, "svg", study, mark),
-        offer.text("tooling.stl", _printed, study),
-        *([offer.text("tooling.step", _quoted, study)] if step else []),
+        offer.text(marking.file_name("tooling.stl", mark), _printed, study, mark),
+        *([offer.text(marking.file_name("tooling.step", mark), _quoted, study, mark)] if step else []),
         *_views(study),
     ]
     return marking.pictures(found, mark)
@@ -121,16 +121,16 @@ def _drawn(kind, study, mark):
     return getattr(drawing, kind)(made, [(outline, place) for place in (0.6 * one.length, *places)], mark)
 
 
-def _printed(study):
+def _printed(study, mark):
     from feederscrew.output.tooling import written_stl
 
-    return written_stl.stl(_strip(study))
+    return written_stl.stl(_strip(study), mark)
 
 
-def _quoted(study):
+def _quoted(study, mark):
     from feederscrew.output.tooling import written_step
 
-    return written_step.step(_strip(study))
+    return marking.step(written_step.step(_strip(study)), mark)
 
 
 def _strip(study):

@@ -2,29 +2,33 @@
 
 import numpy as np
 
+from feederscrew.output import marking
 from feederscrew.tooling.solid import triangles
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
-HEADER = b"feeder tooling: track section in mm"
+HEADER = "feeder tooling: track section in mm"
+HEADER_BYTES = 80  # of a binary STL
 
 
-def stl(strip):
+def stl(strip, mark=""):
     """Return the track section with its cuts, bent, as a binary STL in millimetres.
 
     Parameters
     ----------
     strip : TrackSection
+    mark : str
+        In the file's head.
 
     Returns
     -------
     bytes
         Closed; the wall is tangent to X at the origin, the track's surface lies in the plane Z = 0.
     """
-    return _binary(triangles(strip))
+    return _binary(triangles(strip), mark)
 
 
-def _binary(corners):
+def _binary(corners, mark):
     """The bytes of an STL file [mm]."""
     corners = (corners / MM).astype("<f4")
     sides = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
@@ -33,4 +37,5 @@ def _binary(corners):
     normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0.0)
     record = np.zeros(len(corners), dtype=[("numbers", "<f4", (4, 3)), ("nothing", "<u2")])
     record["numbers"][:, 0], record["numbers"][:, 1:] = normal, corners
-    return HEADER.ljust(80) + np.uint32(len(corners)).tobytes() + record.tobytes()
+    head = marking.named(HEADER, mark).encode("ascii").ljust(HEADER_BYTES)[:HEADER_BYTES]
+    return head + np.uint32(len(corners)).tobytes() + record.tobytes()

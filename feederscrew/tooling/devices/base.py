@@ -53,7 +53,7 @@ class Device:
     """
 
     where: str  # 'bowl.yaml:20:5'
-    limit: float = np.nan  # [m] clearance, width or length
+    limit: float = math.inf  # [m] clearance, width or length; infinite where its value is no such length
     shares: tuple[tuple[str, float], ...] = ()  # measured: share that passes, by aspect
     span: tuple[float, ...] = ()  # [m] from the wall
     corners: tuple[tuple[float, float], ...] = ()  # [m] of a hole unrolled, of an opening (y, z)
@@ -127,14 +127,14 @@ class Device:
 
     @property
     def face(self):
-        """Sweep [rad] and friction [1] of a blade's face that may clear itself; None of any other device."""
+        """Sweep [rad] and friction [1] or None of a blade's face that may clear itself; None of others."""
         return None
 
     @property
     def across(self):
         """How far from the wall it reaches by its own values [m], as far as they say; 0 where they do not."""
         ends = [*self.span[1:], *(y for _, y in self.corners)] if self.cuts else []
-        return max([*ends, 0.0 if math.isnan(self.limit) else self.limit])
+        return max([*ends, self.limit if math.isfinite(self.limit) else 0.0])
 
     @property
     def cuts(self):

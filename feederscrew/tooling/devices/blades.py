@@ -71,7 +71,7 @@ class Wiper(_Overhead):
     """A blade over the track, which clears itself where its face sweeps parts off the free edge."""
 
     sweep: float = SQUARE  # [rad] of the face to the direction of travel
-    friction: float = math.nan  # [1] of the face; NaN: that of the track
+    friction: float | None = None  # [1] of the face; None: that of the track
     contour: tuple[tuple[float, float], ...] = ()  # [m] distance from the wall and clearance there
 
     kind = "wiper"
@@ -101,13 +101,13 @@ class Wiper(_Overhead):
         return cls(where, limit=limit, sweep=PROPOSED)
 
     def value_text(self):
-        if not (self.face or self.contour or math.isfinite(self.friction)):
+        if not (self.face or self.contour or self.friction is not None):
             return super().value_text()
         return mapping_text(
             (
                 ("clearance", length_text(self.limit)),
                 ("sweep", angle_text(self.sweep) if self.face else ""),
-                ("friction", f"{self.friction:.9g}" if math.isfinite(self.friction) else ""),
+                ("friction", "" if self.friction is None else f"{self.friction:.9g}"),
                 ("contour", corners_text(self.contour) if self.contour else ""),
             )
         )
@@ -120,12 +120,12 @@ class Wiper(_Overhead):
 
     @property
     def face(self):
-        """Its sweep [rad] and friction [1], NaN that of the track; None of one straight across."""
+        """Its sweep [rad] and friction [1], None: that of the track; None of one straight across."""
         return (self.sweep, self.friction) if self.sweep < SQUARE else None
 
     def clear_of(self, grip):
         """Return whether its face sweeps parts off a track of some friction."""
-        friction = grip if math.isnan(self.friction) else self.friction
+        friction = grip if self.friction is None else self.friction
         return self.face is not None and self.sweep < SQUARE - math.atan(friction)
 
     def fate(self, met):
@@ -152,9 +152,8 @@ class Wiper(_Overhead):
         edge = np.array(self._edge(track.extent))
         tall = 2.0 * max(max(one.height for one in every), edge[:, 1].max()) + FRAME
         ring = [*((y / lean, z) for y, z in edge), (edge[-1, 0] / lean, tall), (0.0, tall)]
-        friction = None if math.isnan(self.friction) else self.friction
         long = track.extent / math.tan(self.sweep) if self.sweep < SQUARE else 0.0
-        blade = Blade(shapely.Polygon(ring), (0.5 * room, 0.0), self.sweep, friction=friction)
+        blade = Blade(shapely.Polygon(ring), (0.5 * room, 0.0), self.sweep, friction=self.friction)
         return Standing(0.5 * room + long, blades=(blade,))
 
     def goes_on(self, width):
@@ -168,7 +167,7 @@ class Wiper(_Overhead):
 
     def told(self):
         own = {"sweep_deg": math.degrees(self.sweep)}
-        own |= {} if math.isnan(self.friction) else {"friction": self.friction}
+        own |= {} if self.friction is None else {"friction": self.friction}
         return super().told() | (own if self.face else {})
 
     def _edge(self, width):

@@ -22,7 +22,7 @@ LINE = 2e-4  # [m] of a line in a drawing
 class Lean(Device):
     """A stretch of the track that leans otherwise by an angle."""
 
-    angle: float = math.nan  # [rad]
+    angle: float = 0.0  # [rad]
 
     @classmethod
     def holding(cls, one, wall_friction, where):

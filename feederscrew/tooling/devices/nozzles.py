@@ -52,7 +52,7 @@ class Nozzles:
 
     diameter: float  # [m] of each
     pressure: float  # [Pa] at the nozzles, above the ambient
-    height: float = math.nan  # [m] of the lowest over the track; NaN: as `heights` says
+    height: float | None = None  # [m] of the lowest over the track; None: as `heights` says
     count: int = 1
 
     @property
@@ -71,11 +71,11 @@ class Nozzles:
 
     def _placed(self, every):
         low, top = self.height, max(one.height for one in every)
-        if math.isnan(low) and self.count > 1:
+        if low is None and self.count > 1:
             met = _meeting([_solid_at_middle(one) for one in every], 0.5 * self.diameter)
             if len(met) <= self.count:
                 return _spread(self._at_slopes(met, every), top, self.count)
-        if math.isnan(low):
+        if low is None:
             low = max(min(one.posture.height for one in every), 0.5 * self.diameter)
         high = max(top - low, low)
         return np.linspace(low, high, self.count) if high > low else np.full(self.count, low)

@@ -50,10 +50,10 @@ class Sorter(Device):
 
     like: tuple[str, float, float] = ()  # type: ignore[assignment]  # a sorter is always like something
     sees: str = "outline"
-    resolution: float = math.nan  # [m] of the sensor; NaN: as common
+    resolution: float | None = None  # [m] of the sensor; None: as common
     nozzle: float = BORE  # [m]
     pressure: float = PRESSURE  # [Pa] at the nozzle, above the ambient
-    height: float = math.nan  # [m] of the lowest nozzle over the track; NaN: low enough for the thinnest
+    height: float | None = None  # [m] of the lowest nozzle over the track; None: low enough for the thinnest
     time: float = PULSE  # [s] of a pulse
     nozzles: float = NOZZLE_COUNT  # one above the other
 
@@ -89,7 +89,7 @@ class Sorter(Device):
     @property
     def blur(self):
         """By how much [m] what it sees is uncertain."""
-        return RESOLUTION[self.sees] if math.isnan(self.resolution) else self.resolution
+        return RESOLUTION[self.sees] if self.resolution is None else self.resolution
 
     @classmethod
     def around(cls, met, margin, where, unlike=lambda view: ()):
@@ -121,7 +121,7 @@ class Sorter(Device):
                 ("of", names[0] if len(names) == 1 else f"[{', '.join(names)}]"),
                 ("play", length_text(self.like[2])),
                 ("sees", self.sees),
-                ("resolution", "" if math.isnan(self.resolution) else length_text(self.resolution)),
+                ("resolution", "" if self.resolution is None else length_text(self.resolution)),
                 ("jet", self._jet_text()),
             )
         )
@@ -141,7 +141,7 @@ class Sorter(Device):
         nozzles = [
             ("nozzle", length_text(self.nozzle), self.nozzle != BORE),
             ("pressure", f"{self.pressure / BAR:.9g} bar", self.pressure != PRESSURE),
-            ("height", length_text(self.height) if math.isfinite(self.height) else "", True),
+            ("height", "" if self.height is None else length_text(self.height), True),
             ("time", f"{self.time / MS:.9g} ms", self.time != PULSE),
             ("nozzles", f"{self.nozzles:.9g}", self.nozzles != NOZZLE_COUNT),
         ]

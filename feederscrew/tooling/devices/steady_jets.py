@@ -1,6 +1,5 @@
 """Air that blows all the time: jet."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,7 +32,7 @@ class SteadyJet(Device):
 
     nozzle: float = BORE  # [m]
     pressure: float = PRESSURE  # [Pa] above the ambient
-    height: float = math.nan  # [m] of the nozzle over the track
+    height: float = 0.0  # [m] of the nozzle over the track
 
     kind = "jet"
     trade = "air jet"

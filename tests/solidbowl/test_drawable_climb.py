@@ -1,0 +1,91 @@
+"""The climb at which a bowl with a spacing section can be drawn: that of ``feeder bowl --solid``."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew import units
+from feederscrew.designing import calm_drive, exploring, proposals
+from feederscrew.designing.record import DesignRequest
+from feederscrew.designing.searching import Search
+from feederscrew.resting.aspects import find
+from feederscrew.solidbowl.materials import STEEL
+from feederscrew.solidbowl.plan import CHORD, TrackTooLow
+from feederscrew.studies import bowl as machines
+from feederscrew.studies import solidbowl
+from feederscrew.studies.rate import shares
+from feederscrew.tooling.isolating.chain import Cut
+
+PART = shapes.part(shapes.box(40, 12, 5))
+ASPECTS = find(PART)
+DEVICES = "devices:\n  - separation: {climb: -6 deg}\n  - sorter: {of: A@0, play: 0.5 mm, sees: outline}\n"
+
+
+@pytest.fixture
+def spaced(tmp_path):
+    """The bowl that a design begins with, and the devices of a chain with a spacing section."""
+    (tmp_path / "bowl.yaml").write_text(DEVICES)
+    bowl = bowls.read(tmp_path / "bowl.yaml")
+    made = calm_drive.section(PART, ASPECTS, replace(bowl, devices=()), ())
+    return made, bowl.devices
+
+
+def on_track(made, devices):
+    bowl = replace(made.bowl, devices=devices)
+    return bowl, proposals.known_through(PART, ASPECTS, bowl)
+
+
+def drawn(tmp_path, track, climb):
+    """The sheet of ``feeder bowl --solid`` for a file with that track."""
+    lines = [f"track.radius={1e3 * track.radius} mm", f"track.width={1e3 * track.width} mm"]
+    lines += [] if climb is None else [f"track.climb={np.degrees(climb)} deg"]
+    settings = bowls.settings(tmp_path / "bowl.yaml", lines)
+    wanted = solidbowl.asked(settings, solid=True, material=STEEL, chord=CHORD)
+    return machines.bowl(settings, PART, 0.05, known=ASPECTS, solid=wanted, rule="csa")
+
+
+def test_it_is_the_one_that_the_bowl_takes_by_itself_and_a_step_less_is_refused(tmp_path, spaced):
+    made, devices = spaced
+    bowl, ways = on_track(made, devices)
+    climb = solidbowl.drawable_climb(bowl, PART, ways)
+    assert np.degrees(bowl.track.climb) == pytest.approx(3.5) and np.degrees(climb) == pytest.approx(4.0)
+    assert drawn(tmp_path, bowl.track, None).bowl.track.climb == pytest.approx(climb, abs=1e-12)
+    with pytest.raises(TrackTooLow, match=r"give a track\.climb of at least 4 deg"):
+        drawn(tmp_path, bowl.track, climb - solidbowl.CLIMB_STEP_RAD)
+
+
+def test_a_bowl_that_can_be_drawn_keeps_its_climb(spaced):
+    made, devices = spaced
+    for chain in ((), devices[1:]):
+        bowl, ways = on_track(made, chain)
+        assert solidbowl.drawable_climb(bowl, PART, ways) == bowl.track.climb
+
+
+class Stop(Exception):
+    """Raised where a trial would begin."""
+
+
+@pytest.mark.parametrize(("given", "degrees"), [((), 4.0), (("track.climb",), 3.5)])
+def test_a_design_tries_its_chain_on_the_track_that_can_be_drawn(spaced, monkeypatch, given, degrees):
+    """Unless the user gave the climb: the trial of 3.5 deg was of a bowl that nobody can draw."""
+    made, devices = spaced
+    bowls_tried = []
+
+    def single(part, bowl, *_, **__):
+        bowls_tried.append(bowl)
+        raise Stop
+
+    monkeypatch.setattr(exploring.trying, "single", single)
+    search = Search(PART, DesignRequest(10.0 / units.MINUTE), made.bowl, frozenset(given), print)
+    search.known = shares(PART, made.bowl, rule="csa")
+    _, ways = on_track(made, devices)
+    weights = np.full(len(ways.lying), 1.0 / len(ways.lying))
+    cuts = tuple(Cut(one, np.nan, np.nan, one, one, ()) for one in devices)
+    with pytest.raises(Stop):
+        exploring.attempted(search, made, proposals.Proposal(0, cuts, (), "test"), weights)
+    (bowl,) = bowls_tried
+    assert np.degrees(bowl.track.climb) == pytest.approx(degrees)
+    assert bowl.devices == devices and bowl.drive.amplitude > 0.0
