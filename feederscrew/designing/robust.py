@@ -219,7 +219,7 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading)
     rng = np.random.default_rng(seed)
     other = drawn_part(part, tolerance, rng)
     driven = drawn_bowl(bowl, known.lying, rng)
-    chosen = _rows(known, shares, wanted, rng)
+    chosen = drawn_rows(known, shares, wanted, rng)
     try:
         aspects = find(other)
         bare = stream.orientations(other, aspects, bowl.track, (), bowl=driven)
@@ -239,8 +239,23 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading)
     return faults(tried), tried.velocity
 
 
-def _rows(known, shares, rows, rng):
-    """The wanted orientation, and parts as they come."""
+def drawn_rows(known, shares, rows, rng):
+    """Return the orientations that one draw tries: a wanted one, then OTHERS parts as they come.
+
+    Parameters
+    ----------
+    known : Orientations
+        M of them.
+    shares : (M,) float [1]
+    rows : sequence of int
+        The wanted orientation, and others that count as it.
+    rng : numpy Generator
+
+    Returns
+    -------
+    list of int
+        No orientation twice.
+    """
     wanted = trying.wanted_rows(known, trying.wanted_states(known, rows)[:1]) or [rows[0]]
     likely = np.where([k in wanted for k in range(len(shares))], shares + 1e-12, 0.0)
     first = int(rng.choice(len(shares), p=likely / likely.sum()))
