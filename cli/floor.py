@@ -30,7 +30,7 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out):
     from feederscrew.output import columns, offers
     from feederscrew.output.floor import files, tables
     from feederscrew.studies import floor as complete
-    from feederscrew.thesis.motion import as_published as by_print
+    from feederscrew.thesis import motion as by_print
 
     solid, given = out.part(part), out.settings(bowl)
     conditions = columns.conditions(solid) | texts(given)

@@ -16,16 +16,10 @@ def reproduce(out):
     to read from top to bottom, thesis.md and thesis.html.
     """
     from feederscrew.thesis import reproduction
-    from feederscrew.thesis.pages import files as thesis_files
 
     with out.step("tables and figures"):
-        items = reproduction.items()
+        items = reproduction.reproduced().items
     with out.folder("thesis", {}) as folder, out.step("files"):
-        files = thesis_files.write(folder, items) if folder else {}
-    out.warn(
-        *(
-            f"{item.kind} {item.id}: a cell differs without a reason"
-            for item in reproduction.unexplained(items)
-        )
-    )
-    out.show(thesis_files.overview(items), thesis_files.document(items, files))
+        files = reproduction.write(folder.write, items) if folder else {}
+    out.warn(*(f"{item.name}: a cell differs without a reason" for item in reproduction.unexplained(items)))
+    out.show(reproduction.overview(items), reproduction.document(items, files))

@@ -37,7 +37,7 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
     from feederscrew.output import columns, offers
     from feederscrew.output.track import files, map_tables, tables
     from feederscrew.studies import track as complete
-    from feederscrew.thesis.motion import as_published as by_print
+    from feederscrew.thesis import motion as by_print
 
     _fitting(spans)
     solid, given, varied = out.part(part), out.settings(bowl), ranges(spans)

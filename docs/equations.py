@@ -15,7 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "equations.md"
-ROOMS = ("screw", "resting", "mechanics", "thesis/motion")  # where equations are computed
+ROOMS = ("screw", "resting", "mechanics", "thesis")  # where equations are computed
 NUMBER = r"\[(?:\d\.\d+|section \d\.\d|Table \d-\d+)\]"
 MARK = re.compile(rf"\beqs?\. ({NUMBER}(?:(?:, | and | to ){NUMBER})*)", re.IGNORECASE)
 HEAD = """# From an equation of the thesis to its function and its test

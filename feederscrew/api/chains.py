@@ -18,7 +18,7 @@ from feederscrew.studies.report import ReportStudy
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.studies.trial import TrialOptions, TrialStudy
 from feederscrew.studies.wishes import ToolingOptions
-from feederscrew.thesis.reproduced import Reproduction, reproduced
+from feederscrew.thesis.reproduction import Reproduction, reproduced
 
 
 @with_settings

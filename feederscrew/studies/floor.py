@@ -34,7 +34,7 @@ class FloorStudy(Shown):
     cycle: balance.FloorMotion  # over one settled period
     course: Cycle
     why: str | None = None  # this aspect; None where it was asked for
-    printed: ClassVar[Any] = None  # the upper reversal by print, in `thesis.motion.as_published`
+    printed: ClassVar[Any] = None  # the upper reversal by print, in `thesis.motion`
 
     @property
     def stable_heading(self) -> float:

@@ -49,7 +49,7 @@ class TrackStudy(Shown):
     laid: float | None  # [rad] heading as laid down; None for the most frequent that stays on the track
     why: str | None = None  # this aspect; None where it was asked for
     stands: tipping.Stands | None = None  # what the rate reckons with; None of a part card
-    printed: ClassVar[Any] = None  # the upper reversal by print, in `thesis.motion.as_published`
+    printed: ClassVar[Any] = None  # the upper reversal by print, in `thesis.motion`
 
     def over(self, settings: Sequence[Setting], ranges: Sequence[KeyRange] = ()) -> grids.Grid:
         """Compute the upper reversal at every pair of two values of the bowl.

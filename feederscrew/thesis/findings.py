@@ -1,255 +1,397 @@
-"""What checking the thesis showed: its slips, its silences, and what explains its numbers."""
+"""What checking the thesis showed: its slips, its silences, and what explains its numbers.
 
-from feederscrew.thesis import chapter_4, evidence, motion_evidence
-from feederscrew.thesis.finding import Finding
+Each finding computes the numbers of its evidence from the printed tables, the solids and the equations.
+"""
 
-FINDINGS = (
-    Finding(
-        "t-shape-drawing",
-        "Figure 3-3",
-        "The drawing of the T shape is lost; its dimensions follow from Table 3-8: 25 mm wide and"
-        " high, head 13 mm high over the full width, stem 11 mm wide, centred, thickness = aspect"
-        " ratio x 25 mm.",
-        "Table 3-8's heights and moments follow within {heights:.4f} mm and {moments:.4f} g mm2.",
-        evidence.t_geometry,
-    ),
-    Finding(
-        "t-shape-density",
-        "Section 3.1",
-        "The text's density, 9.99E-4 grams per cubic meter, does not give Table 3-8; 1.000e-3 g/mm3 does.",
-        "With 1.000e-3 g/mm3 the largest gap is {right:.4f} g mm2, with 9.99e-4 g/mm3 {wrong:.2f} g mm2.",
-        evidence.t_density,
-    ),
-    Finding(
-        "t-shape-rounded",
-        "Table 3-9",
-        "The table was computed from moments and heights rounded to two decimals; with the same "
-        "rounding all 30 cells follow to the last digit.",
-        "Largest gap {rounded:.1e} percentage points with the rounding, {plain:.4f} without.",
-        evidence.t_rounding,
-    ),
-    Finding(
-        "pmi-class-once",
-        "Tables 3-8 and 3-9",
-        "The PMI rule counts each class of equal aspects once: B, D and E have two faces each.",
-        "Aspect E at ratio 0.6: {once:.4f} counted once, as printed ({printed}); {every:.4f} over all faces.",
-        evidence.t_classes,
-    ),
-    Finding(
-        "csa-ratio",
-        "Table 3-1",
-        "The columns labelled aspect ratio 0.6 belong to a thinner prism: our CSA agrees at 0.4, not at 0.6.",
-        "Printed {printed} percent; ours {thin} at 0.4 and {thick} at 0.6; closest of all from "
-        "0.30 to 0.70 is {closest:.2f}.",
-        evidence.t_csa,
-    ),
-    Finding(
-        "experiment-total",
-        "Table 3-1",
-        "The experiment's five percentages do not add up to the total printed under them.",
-        "They sum to {sum:.2f}; printed {printed}.",
-        evidence.t_experiment,
-    ),
-    Finding(
-        "pmi-equation",
-        "Section 3.1, the general equation",
-        "The denominator prints I4/h5; Table 3-8 uses I4/h4.",
-        "Aspect D of Table 3-8: {right:.4f} with h4, as printed; {wrong:.4f} with h5.",
-        evidence.t_equation,
-    ),
-    Finding(
-        "q-unit",
-        "Tables 3-2 and 3-5",
-        "The unit of Q is not stated and is not the steradian: the aspects of one part would "
-        "cover more than a sphere.",
-        "Q sums to {arc_chute:.2f} and {magnet:.2f}; a whole sphere is {sphere:.2f} sr.",
-        evidence.q_unit,
-    ),
-    Finding(
-        "q-total",
-        "Table 3-2",
-        "The total of Q leaves out aspect 1.",
-        "All five sum to {all:.4f}; the last four to {rest:.4f}; printed {printed}.",
-        evidence.q_total,
-    ),
-    Finding(
-        "arc-chute-heights",
-        "Tables 3-2, 3-3 and 3-10",
-        "The Arc Chute's heights in Tables 3-2 and 3-3 are not those of Table 3-10, and row 4 "
-        "repeats rows 2 and 3.",
-        "Ratio {lowest:.2f} to {highest:.2f}; row 4 prints {row_4} as row 2 does ({row_2}).",
-        evidence.arc_chute_heights,
-    ),
-    Finding(
-        "h-total",
-        "Table 3-2",
-        "The column H_total/h implies one H_total, which is printed nowhere.",
-        "H_total = {mean:.4f} mm, the same in every row within {spread:.0e} mm.",
-        evidence.h_total,
-    ),
-    Finding(
-        "rounded-inputs",
-        "Tables 3-3 and 3-6",
-        "Printed areas and heights are themselves rounded; a last digit of what follows from them"
-        " can be off by one.",
-        "A/h of the Magnet's aspect 1 is {value:.5f} from the printed terms, uncertain by "
-        "{spread:.5f}; printed {printed}.",
-        evidence.rounded_inputs,
-    ),
-    Finding(
-        "cut-ratios",
-        "Tables 3-8 and 3-10",
-        "I/h is cut off after two decimals, not rounded, and the total adds the cut numbers.",
-        "Table 3-8: {before:.2f} before, {after:.2f} after, as printed.",
-        evidence.cut_ratios,
-    ),
-    Finding(
-        "sum-of-rounded",
-        "Tables 3-8 and 3-10",
-        "The probabilities' total of 0.9999 adds the rounded entries; unrounded they sum to 1.",
-        "Printed entries sum to {t_shape:.4f} (T shape) and {arc_chute:.4f} (Arc Chute).",
-        evidence.rounded_totals,
-    ),
-    Finding(
-        "magnet-total",
-        "Table 3-11",
-        "The total of I/h is misprinted: a point stands where a 0 belongs.",
-        "{sum:.4f}; printed {printed}.",
-        evidence.magnet_total,
-    ),
-    Finding(
-        "magnet-probability-total",
-        "Table 3-11",
-        "The total of the probabilities is misprinted 0.9999, as in Tables 3-8 and 3-10 where it is right.",
-        "The printed entries sum to {magnet:.4f}.",
-        evidence.rounded_totals,
-    ),
-    Finding(
-        "cut-deviations",
-        "Tables 3-12 and 3-13",
-        "The 'standard deviation' is the root mean square difference over the aspects, cut off at"
-        " the printed digits; 78, 80 and 82 are the MDBT columns.",
-        "MDBT_80 - PMI: {population:.4f}, printed {printed}; divided by one aspect less it would be "
-        "{sample:.3f}.",
-        evidence.deviations,
-    ),
-    Finding(
-        "magnet-csa-mixed",
-        "Table 3-13 and section 3.1's conclusion on the Magnet",
-        "The four rows with CSA do not follow from Table 3-5; they follow from its Q over Table "
-        "3-11's heights. The good agreement of PMI and CSA for the Magnet rests on these mixed "
-        "heights.",
-        "Mixed profile {profile}; CSA - PMI is {mixed:.4f} with it (printed {printed}), "
-        "{plain:.3f} with Table 3-5 as printed.",
-        evidence.mixed_heights,
-    ),
-    Finding(
-        "magnet-heights",
-        "Tables 3-5, 3-6 and 3-11",
-        "The Magnet's heights in Tables 3-5 and 3-6 are not those of Table 3-11.",
-        "Ratios {ratios}.",
-        evidence.magnet_heights,
-    ),
-    Finding(
-        "dominant-aspect",
-        "Section 3.1 and Figure 3-10",
-        "The PMI rule does not find the Arc Chute's dominant aspect at 78 percent of full drive.",
-        "Most parts were found on aspect {measured}; PMI puts most on {pmi}.",
-        evidence.dominant,
-    ),
-    Finding(
-        "masses-swapped",
-        "Equations [4.3] and [4.38]",
-        "The Arc Chute's moments about the origin fit the mass printed for the Magnet, not its "
-        "own: the two masses are swapped.",
-        "The parallel-axis term of I_yy needs {mass:.3f} g; printed {own} g for the Arc Chute, "
-        "{other} g for the Magnet.",
-        evidence.parallel_axes,
-    ),
-    Finding(
-        "axes-swapped",
-        "Equation [4.1]",
-        "x and z are exchanged in the Arc Chute's printed inertia matrix.",
-        "From the moments about the origin I_xx = {I_xx:.2f} and I_zz = {I_zz:.2f} g mm2; printed"
-        " the other way round.",
-        evidence.parallel_axes,
-    ),
-    Finding(
-        "aspect-5-moment",
-        "Equations [4.17] and [4.23]",
-        "The Arc Chute's alignment divides by the matrix's exchanged I_xx; Table 3-10 gives the "
-        "aspect it stands on another.",
-        "Coefficient {printed:.4f} with I_xx = {I_xx} g mm2, {table:.4f} with Table 3-10's {I_5} g mm2.",
-        evidence.alignment,
-    ),
-    Finding(
-        "magnet-matrix",
-        "Equation [4.38]",
-        "The Magnet's printed inertia matrix is not symmetric.",
-        "I_xy = {upper:+}, I_yx = {lower:+} g mm2.",
-        evidence.magnet_matrix,
-    ),
-    Finding(
-        "magnet-axes",
-        "Section 4.3",
-        "The text calls the Magnet's principal axis four degrees off the figure's z; neither "
-        "reading of the printed product of inertia gives that.",
-        "As printed z is principal and the others are turned {about_z:.1f} deg; read as I_xz it "
-        "is {about_y:.2f} deg.",
-        evidence.principal_axes,
-    ),
-    Finding(
-        "magnet-height",
-        "Table 3-11 and equation [4.39]",
-        "The Magnet's lowest aspect has another height and another moment in Table 3-11 than in chapter 4.",
-        "h {h} and {x} mm; I {I} and {I_xx} g mm2.",
-        evidence.magnet_pose,
-    ),
-    Finding(
-        "bank-angle",
-        "Section 4.2, the remark on R3",
-        "The bank without radial friction is misprinted in the remark; the equations have another angle.",
-        "Remark {remark} deg, equation {equation} deg.",
-        evidence.bank_angle,
-    ),
-    Finding(
-        "wall-lever",
-        "Equations [4.31] to [4.36]",
-        "One lever of the Arc Chute's wall contacts is printed with two values.",
-        "{first} and {second} mm.",
-        evidence.wall_lever,
-    ),
-    Finding(
-        "hop",
-        "Figures 5-6 and 5-7",
-        "The formula is drawn where the part has left the floor; its maximum is the formula's, at"
-        " tan(beta) = mu, not a part's. Where it is negative the part sticks.",
-        "Figure 5-6 hops from beta = {beta_deg:.1f} deg, where A w^2 = {acceleration:.0f} m/s2; "
-        "Figure 5-7 over {share:.0f} percent of its area, and sticks over {held:.0f} percent.",
-        motion_evidence.hop,
-    ),
-    Finding(
-        "beta-sliding",
-        "Figure 5-1 and conclusion 6",
-        "A larger beta enlarges the sliding region only where G > sin(beta); below, it shrinks it.",
-        "At G = {low} the limiting friction falls from {low_10:.3f} (beta 10 deg) to {low_40:.3f}"
-        " (40 deg); at G = {high} it grows from {high_10:.3f} to {high_40:.3f}.",
-        motion_evidence.sliding,
-    ),
-    Finding(
-        "figure-references",
-        "Section 3.1",
-        "The text on Figure 3-6 once says 3-5, and the paragraph on Ngoi's measured curves says 3-7 for 3-8.",
-        "By their captions: 3-5 shows the Magnet's aspects, 3-7 the PMI rule alone.",
-    ),
-    Finding(
-        "drawings-lost",
-        "Figures 1-1, 1-2 and 3-8",
-        "The dimensions of Arc Chute and Magnet are lost, so their moments, areas and solid "
-        "angles are data here; of Figure 3-8's measured curves only the points of Table 3-1 "
-        "survive.",
-        "Such cells are marked 'given'.",
-    ),
-    *chapter_4.FINDINGS,
-)
-BY_ID = {finding.id: finding for finding in FINDINGS}
+import csv
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from importlib import resources
+
+import numpy as np
+
+from feederscrew import bowl
+from feederscrew.mechanics import limits
+from feederscrew.resting.counts.deviation import deviation
+from feederscrew.thesis import figures, parts
+from feederscrew.thesis.motion import TrackAsPublished, track
+from feederscrew.thesis.recompute import cells, rounded_shares
+from feederscrew.thesis.tables import TOTAL, chapter_4, table
+
+MILLI = 1e-3
+BANK_SHOWN = np.radians(10.0)  # delta and alpha the omitted terms are shown at
+TURN_SHOWN = np.radians(20.0)  # alpha = theta the projections are shown at
+SLIPS_ONE_WAY = ("drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A slip, a silence, or what explains a number."""
+
+    id: str
+    where: str  # in the thesis
+    what: str
+    evidence: Callable[[], str]  # how it shows, its numbers computed, never typed
+
+
+_evidence_of: dict[str, Callable[[], str]] = {}
+
+
+def _evidence(finding: str) -> Callable[[Callable[[], str]], Callable[[], str]]:
+    """Make the function that follows the evidence of a finding of ``data/findings.csv``."""
+
+    def registered(evidence: Callable[[], str]) -> Callable[[], str]:
+        _evidence_of[finding] = evidence
+        return evidence
+
+    return registered
+
+
+@_evidence("t-shape-drawing")
+def _t_shape_drawing() -> str:
+    ours, theirs = parts.t_aspects(0.6), table("3-8")
+    heights = np.abs(ours.heights / parts.MM - theirs.numbers("h")).max()
+    moments = np.abs(ours.moments / parts.G_MM2 - theirs.numbers("I")).max()
+    return f"Table 3-8's heights and moments follow within {heights:.4f} mm and {moments:.4f} g mm2."
+
+
+@_evidence("t-shape-density")
+def _t_shape_density() -> str:
+    ours, theirs = parts.t_aspects(0.6).moments / parts.G_MM2, table("3-8").numbers("I")
+    right = np.abs(ours - theirs).max()
+    wrong = np.abs(parts.T_DENSITY_IN_TEXT / parts.T_DENSITY * ours - theirs).max()
+    return f"With 1.000e-3 g/mm3 the largest gap is {right:.4f} g mm2, with 9.99e-4 g/mm3 {wrong:.2f} g mm2."
+
+
+@_evidence("t-shape-rounded")
+def _t_shape_rounded() -> str:
+    theirs = np.array([table("3-9").numbers(ratio) for ratio in parts.T_RATIOS])
+    plain = 100.0 * np.array([parts.t_aspects(float(ratio)).pmi for ratio in parts.T_RATIOS])
+    rounded = 100.0 * np.array([rounded_shares(float(ratio))[2] for ratio in parts.T_RATIOS])
+    with_rounding, without = (np.abs(ours - theirs).max() for ours in (rounded, plain))
+    return f"Largest gap {with_rounding:.1e} percentage points with the rounding, {without:.4f} without."
+
+
+@_evidence("pmi-class-once")
+def _pmi_class_once() -> str:
+    ours, printed = parts.t_aspects(0.6), float(table("3-8").text("E", "probability"))
+    weights = ours.faces * ours.moments / ours.heights
+    of_faces = (weights / weights.sum())[4]
+    return (
+        f"Aspect E at ratio 0.6: {ours.pmi[4]:.4f} counted once, as printed ({printed});"
+        f" {of_faces:.4f} over all faces."
+    )
+
+
+@_evidence("csa-ratio")
+def _csa_ratio() -> str:
+    thin, thick = (", ".join(f"{100 * p:.1f}" for p in parts.t_aspects(ratio).csa) for ratio in (0.4, 0.6))
+    theirs, ratios = table("3-1").numbers("csa") / 100.0, np.arange(30, 71, 2) / 100.0
+    closest = ratios[np.argmin([deviation(parts.t_aspects(ratio).csa, theirs) for ratio in ratios])]
+    printed = ", ".join(table("3-1").text(row, "csa") for row in table("3-1").names)
+    return (
+        f"Printed {printed} percent; ours {thin} at 0.4 and {thick} at 0.6; closest of all from 0.30 to 0.70"
+        f" is {closest:.2f}."
+    )
+
+
+@_evidence("experiment-total")
+def _experiment_total() -> str:
+    total, printed = table("3-1").numbers("experiment").sum(), table("3-1").text(TOTAL, "experiment")
+    return f"They sum to {total:.2f}; printed {printed}."
+
+
+@_evidence("pmi-equation")
+def _pmi_equation() -> str:
+    moments, heights = table("3-8").numbers("I"), table("3-8").numbers("h")
+    right, wrong = moments / heights, moments / heights[[0, 1, 2, 4, 4]]
+    right, wrong = (right / right.sum())[3], (wrong / wrong.sum())[3]
+    return f"Aspect D of Table 3-8: {right:.4f} with h4, as printed; {wrong:.4f} with h5."
+
+
+@_evidence("q-unit")
+def _q_unit() -> str:
+    arc_chute, magnet = (table(number).numbers("Q").sum() for number in ("3-2", "3-5"))
+    return f"Q sums to {arc_chute:.2f} and {magnet:.2f}; a whole sphere is {4.0 * np.pi:.2f} sr."
+
+
+@_evidence("q-total")
+def _q_total() -> str:
+    values, printed = table("3-2").numbers("Q"), table("3-2").text(TOTAL, "Q")
+    return f"All five sum to {values.sum():.4f}; the last four to {values[1:].sum():.4f}; printed {printed}."
+
+
+@_evidence("arc-chute-heights")
+def _arc_chute_heights() -> str:
+    heights = table("3-2").numbers("h")
+    ratios = heights / table("3-10").numbers("h")
+    return (
+        f"Ratio {ratios.min():.2f} to {ratios.max():.2f}; row 4 prints {heights[3]} as row 2 does"
+        f" ({heights[1]})."
+    )
+
+
+@_evidence("h-total")
+def _h_total() -> str:
+    implied = table("3-2").numbers("h") * table("3-2").numbers("h_total_over_h")
+    return f"H_total = {implied.mean():.4f} mm, the same in every row within {np.ptp(implied):.0e} mm."
+
+
+@_evidence("rounded-inputs")
+def _rounded_inputs() -> str:
+    cell = next(cell for cell in cells("3-6") if (cell.row, cell.column) == ("1", "A_over_h"))
+    return (
+        f"A/h of the Magnet's aspect 1 is {cell.recomputed:.5f} from the printed terms, uncertain by"
+        f" {cell.within:.5f}; printed {cell.published}."
+    )
+
+
+@_evidence("cut-ratios")
+def _cut_ratios() -> str:
+    printed = table("3-8")
+    before, after = (printed.numbers("I") / printed.numbers("h")).sum(), printed.numbers("I_over_h").sum()
+    return f"Table 3-8: {before:.2f} before, {after:.2f} after, as printed."
+
+
+@_evidence("sum-of-rounded")
+def _sum_of_rounded() -> str:
+    t_shape, arc_chute = (table(number).numbers("probability").sum() for number in ("3-8", "3-10"))
+    return f"Printed entries sum to {t_shape:.4f} (T shape) and {arc_chute:.4f} (Arc Chute)."
+
+
+@_evidence("magnet-total")
+def _magnet_total() -> str:
+    total = (table("3-11").numbers("I") / table("3-11").numbers("h")).sum()
+    return f"{total:.4f}; printed {table('3-11').text(TOTAL, 'I_over_h')}."
+
+
+@_evidence("magnet-probability-total")
+def _magnet_probability_total() -> str:
+    return f"The printed entries sum to {table('3-11').numbers('probability').sum():.4f}."
+
+
+@_evidence("cut-deviations")
+def _cut_deviations() -> str:
+    profiles, printed = parts.profiles("arc_chute"), table("3-12").text("MDBT_80 - PMI", "deviation")
+    value, count = deviation(profiles["MDBT_80"], profiles["PMI"]), len(profiles["PMI"])
+    sample = value * np.sqrt(count / (count - 1))
+    return (
+        f"MDBT_80 - PMI: {value:.4f}, printed {printed}; divided by one aspect less it would be {sample:.3f}."
+    )
+
+
+@_evidence("magnet-csa-mixed")
+def _magnet_csa_mixed() -> str:
+    mixed, profiles = parts.mixed_heights(), parts.profiles("magnet")
+    profile = ", ".join(f"{p:.4f}" for p in mixed)
+    with_mixed, plain = (deviation(csa, profiles["PMI"]) for csa in (mixed, profiles["CSA"]))
+    return (
+        f"Mixed profile {profile}; CSA - PMI is {with_mixed:.4f} with it (printed"
+        f" {table('3-13').text('CSA - PMI', 'deviation')}), {plain:.3f} with Table 3-5 as printed."
+    )
+
+
+@_evidence("magnet-heights")
+def _magnet_heights() -> str:
+    ratios = table("3-5").numbers("h") / table("3-11").numbers("h")
+    return f"Ratios {', '.join(f'{ratio:.2f}' for ratio in ratios)}."
+
+
+@_evidence("dominant-aspect")
+def _dominant_aspect() -> str:
+    profiles, names = parts.profiles("arc_chute"), table("3-4").names
+    measured, pmi = (names[profiles[name].argmax()] for name in ("MDBT_78", "PMI"))
+    return f"Most parts were found on aspect {measured}; PMI puts most on {pmi}."
+
+
+@_evidence("masses-swapped")
+def _masses_swapped() -> str:
+    about_origin, squares = _about_origin()
+    mass = (about_origin[1] - chapter_4("arc_chute")["I_yy"]) / squares[1]
+    own, other = (chapter_4(name)["mass"] for name in ("arc_chute", "magnet"))
+    return (
+        f"The parallel-axis term of I_yy needs {mass:.3f} g; printed {own} g for the Arc Chute,"
+        f" {other} g for the Magnet."
+    )
+
+
+@_evidence("axes-swapped")
+def _axes_swapped() -> str:
+    about_origin, squares = _about_origin()
+    x, _, z = about_origin - chapter_4("magnet")["mass"] * squares
+    return (
+        f"From the moments about the origin I_xx = {x:.2f} and I_zz = {z:.2f} g mm2; printed the other way"
+        " round."
+    )
+
+
+def _about_origin() -> tuple[np.ndarray, np.ndarray]:
+    """The Arc Chute's moments about the origin [g mm2], and the squares of its centre's levers [mm2]."""
+    value = chapter_4("arc_chute")
+    x, y, z = (value[axis] for axis in "xyz")
+    moments = np.array([value[f"origin_{a}{a}"] for a in "xyz"])
+    return moments, np.array([y * y + z * z, x * x + z * z, x * x + y * y])
+
+
+@_evidence("aspect-5-moment")
+def _aspect_5_moment() -> str:
+    value, moment = chapter_4("arc_chute"), float(table("3-10").text("5", "I"))
+    lever, matrix = value["drive_offset"], value["I_xx"]
+    return (
+        f"Coefficient {lever / matrix:.4f} with I_xx = {matrix} g mm2, {lever / moment:.4f} with Table 3-10's"
+        f" {moment} g mm2."
+    )
+
+
+@_evidence("magnet-matrix")
+def _magnet_matrix() -> str:
+    value = chapter_4("magnet")
+    return f"I_xy = {value['I_xy']:+}, I_yx = {value['I_yx']:+} g mm2."
+
+
+@_evidence("magnet-axes")
+def _magnet_axes() -> str:
+    value = chapter_4("magnet")
+    xx, yy, zz, product = (value[name] for name in ("I_xx", "I_yy", "I_zz", "I_xy"))
+    about_z, about_y = (
+        np.degrees(0.5 * np.arctan2(2.0 * abs(product), abs(xx - other))) for other in (yy, zz)
+    )
+    return (
+        f"As printed z is principal and the others are turned {about_z:.1f} deg; read as I_xz it is"
+        f" {about_y:.2f} deg."
+    )
+
+
+@_evidence("magnet-height")
+def _magnet_height() -> str:
+    value, row = chapter_4("magnet"), table("3-11").rows["3"]
+    return f"h {float(row['h'])} and {value['x']} mm; I {float(row['I'])} and {value['I_xx']} g mm2."
+
+
+@_evidence("bank-angle")
+def _bank_angle() -> str:
+    value = chapter_4("arc_chute")
+    return f"Remark {value['bank_without_radial_friction']} deg, equation {value['wall_lever_angle']} deg."
+
+
+@_evidence("wall-lever")
+def _wall_lever() -> str:
+    value = chapter_4("arc_chute")
+    return f"{value['wall_y']} and {value['wall_friction_y']} mm."
+
+
+@_evidence("hop")
+def _hop() -> str:
+    ratio, drawn = figures.ratio_of_5_6(), figures.figure_5_7()
+    beta, share = np.degrees(np.arcsin(1.0 / ratio)), 100.0 * np.mean(drawn.hops)
+    return (
+        f"Figure 5-6 hops from beta = {beta:.1f} deg, where A w^2 ="
+        f" {ratio * figures.GRAVITY_OF_CHAPTER_5:.0f} m/s2; Figure 5-7 over {share:.0f} percent of its area,"
+        f" and sticks over {100.0 * np.mean(drawn.values < 0.0):.0f} percent."
+    )
+
+
+@_evidence("beta-sliding")
+def _beta_sliding() -> str:
+    low, high = figures.DRIVE_RATIOS[5], figures.DRIVE_RATIOS[-1]
+    low_10, low_40, high_10, high_40 = (
+        float(limits.published_limit(ratio, np.radians(beta))) for ratio in (low, high) for beta in (10, 40)
+    )
+    return (
+        f"At G = {low:.1f} the limiting friction falls from {low_10:.3f} (beta 10 deg) to {low_40:.3f}"
+        f" (40 deg); at G = {high:.1f} it grows from {high_10:.3f} to {high_40:.3f}."
+    )
+
+
+@_evidence("figure-references")
+def _figure_references() -> str:
+    return "By their captions: 3-5 shows the Magnet's aspects, 3-7 the PMI rule alone."
+
+
+@_evidence("drawings-lost")
+def _drawings_lost() -> str:
+    return "Such cells are marked 'given'."
+
+
+@functools.cache
+def banked_arc_chute() -> TrackAsPublished:
+    """Return the Arc Chute on its fifth aspect on a banked track, driven a little across it.
+
+    It slips forward and never back: the omitted terms are weighed here.
+    """
+    plain = bowl.read(None, SLIPS_ONE_WAY)
+    drive, at_bank = replace(plain.drive, direction=BANK_SHOWN), replace(plain.track, bank=BANK_SHOWN)
+    return track(parts.card("arc_chute"), replace(plain, drive=drive, track=at_bank), "5")
+
+
+def _omitted(name: str) -> float:
+    """Size of an omitted term [mN or N mm]."""
+    term = next(term for term in banked_arc_chute().omitted if term.name == name)
+    return abs(term.value) / (MILLI if term.unit == "N" else 1.0)
+
+
+def _weight() -> float:
+    """Of the Arc Chute [mN]."""
+    return banked_arc_chute().seat.mass * bowl.read(None, SLIPS_ONE_WAY).gravity / MILLI
+
+
+@_evidence("fixed-axes")
+def _fixed_axes() -> str:
+    value = chapter_4("arc_chute")
+    e, h = value["drive_offset"], value["centroid_height"]
+    beta = bowl.read(None, SLIPS_ONE_WAY).drive.vibration_angle
+    lever = -np.sin(TURN_SHOWN) * (e * np.sin(beta) + h * np.cos(beta) * np.cos(TURN_SHOWN))
+    return (
+        f"Aligned at alpha = theta = {np.degrees(TURN_SHOWN):.0f} deg no moment about Z' is left; the print"
+        f" has a lever of {lever:.2f} mm."
+    )
+
+
+@_evidence("alpha-plus-theta")
+def _alpha_plus_theta() -> str:
+    printed = np.cos(2.0 * TURN_SHOWN)
+    return f"Aligned at {np.degrees(TURN_SHOWN):.0f} deg the factor is 1; the print gives {printed:.3f}."
+
+
+@_evidence("sign-of-r-y")
+def _sign_of_r_y() -> str:
+    return "A friction of -R_y at the foot, h below the centre of mass, has the moment +h R_y about Z'."
+
+
+@_evidence("radial-gravity")
+def _radial_gravity() -> str:
+    size = _omitted("radial gravity, -m g cos(phi) sin(delta)")
+    return f"{size:.2f} mN of a weight of {_weight():.1f} mN at 10 deg of bank."
+
+
+@_evidence("centripetal")
+def _centripetal() -> str:
+    size = _omitted("centripetal force at mid-stroke")
+    return f"At most {size:.4f} mN of a weight of {_weight():.1f} mN in the default bowl."
+
+
+@_evidence("wall-tangent")
+def _wall_tangent() -> str:
+    along_x, along_y = (_omitted(f"wall friction turned by sigma, along {axis}") for axis in "XY")
+    return f"{along_x:.2g} mN along X and {along_y:.2g} mN along Y."
+
+
+@_evidence("track-moments")
+def _track_moments() -> str:
+    drive, wall = _omitted("moment of the drive about X"), _omitted("moment of wall friction about Y")
+    return f"{drive:.2g} and {wall:.2g} N mm, where the weight has {_weight():.1f} mN."
+
+
+@_evidence("wall-pulls")
+def _wall_pulls() -> str:
+    printed, complete = banked_arc_chute().printed, banked_arc_chute().now
+    return (
+        f"At the upper reversal R1 + R2 is {printed.walls.sum() / MILLI:.2f} mN as printed; the complete"
+        f" equations give {complete.walls.sum() / MILLI:.2f} mN, and open a contact rather than let it pull."
+    )
+
+
+with (resources.files("feederscrew.thesis") / "data" / "findings.csv").open(encoding="utf-8") as _file:
+    FINDINGS = tuple(Finding(**row, evidence=_evidence_of[row["id"]]) for row in csv.DictReader(_file))
+FINDING_OF = {finding.id: finding for finding in FINDINGS}

@@ -1,28 +1,65 @@
-"""The thesis gone through: each table and figure with its cells, verdicts and findings."""
+"""Each table and figure of the thesis with its cells, verdicts and findings: as files and as one page."""
 
+import math
 from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
-from feederscrew.thesis.claims import Claim, claims
-from feederscrew.thesis.figure_data import FIGURES
-from feederscrew.thesis.printed_cells import DIFFERS, EXACT, EXPLAINED, GIVEN, Cell
-from feederscrew.thesis.printed_tables import NUMBERS, table
+from feederscrew.errors import ArgumentError
+from feederscrew.output import style
+from feederscrew.output.page.as_html import html
+from feederscrew.output.page.as_markdown import markdown
+from feederscrew.output.page.blocks import Chapter, Heading, Links, MarkedCell, Matrix, Page, Picture, Text
+from feederscrew.output.tables import Frame, data_frame, frame, text
+from feederscrew.records import Shown
+from feederscrew.thesis import drawing
+from feederscrew.thesis.figures import FIGURE_OF, FIGURES, Claim
+from feederscrew.thesis.findings import FINDING_OF, FINDINGS, Finding
 from feederscrew.thesis.recompute import cells
+from feederscrew.thesis.tables import DIFFERS, EXACT, EXPLAINED, GIVEN, TABLES, Cell, table
+from feederscrew.units import listed
+
+if TYPE_CHECKING:
+    from feederscrew.records import DataFrame
+    from feederscrew.records import Figure as DrawnFigure
 
 BEARS_ON = {  # findings that no single cell carries
-    ("table", "3-1"): ("drawings-lost",),
-    ("table", "3-2"): ("q-unit", "arc-chute-heights", "h-total", "drawings-lost"),
-    ("table", "3-3"): ("arc-chute-heights", "drawings-lost"),
-    ("table", "3-5"): ("q-unit", "magnet-heights", "drawings-lost"),
-    ("table", "3-6"): ("magnet-heights", "drawings-lost"),
-    ("table", "3-8"): ("t-shape-drawing", "t-shape-density", "pmi-class-once", "pmi-equation"),
-    ("table", "3-9"): ("pmi-class-once",),
-    ("table", "3-10"): ("arc-chute-heights", "drawings-lost"),
-    ("table", "3-11"): ("magnet-heights", "drawings-lost"),
-    ("figure", "3-6"): ("figure-references",),
-    ("figure", "3-7"): ("figure-references",),
-    ("figure", "3-8"): ("drawings-lost", "csa-ratio"),
+    "table 3-1": ("drawings-lost",),
+    "table 3-2": ("q-unit", "arc-chute-heights", "h-total", "drawings-lost"),
+    "table 3-3": ("arc-chute-heights", "drawings-lost"),
+    "table 3-5": ("q-unit", "magnet-heights", "drawings-lost"),
+    "table 3-6": ("magnet-heights", "drawings-lost"),
+    "table 3-8": ("t-shape-drawing", "t-shape-density", "pmi-class-once", "pmi-equation"),
+    "table 3-9": ("pmi-class-once",),
+    "table 3-10": ("arc-chute-heights", "drawings-lost"),
+    "table 3-11": ("magnet-heights", "drawings-lost"),
+    "figure 3-6": ("figure-references",),
+    "figure 3-7": ("figure-references",),
+    "figure 3-8": ("drawings-lost", "csa-ratio"),
 }
+MARK_OF = {EXACT: "exact", EXPLAINED: "explained", DIFFERS: "differs", GIVEN: "given"}
+COUNTS = ("cells", "exact", "explained", "differs", "given")
+CELL_COLUMNS = ("row", "column", "published", "recomputed", "deviation", "verdict", "explaining", "finding")
+CLAIM_COLUMNS = ("statement", "published", "recomputed", "verdict", "finding")
+ORDER_OF_THESIS = (
+    *[f"table 3-{n}" for n in range(1, 12)],
+    *[f"figure 3-{n}" for n in range(6, 14)],
+    *["table 3-12", "table 3-13"],
+    *[f"figure 5-{n}" for n in range(1, 8)],
+)
+PAGE_TITLE = "The thesis, number by number"
+PAGE_OPENING = (
+    "Every table and figure of chapters 3 and 5 of A Screw Theory Approach to Analyze the Dynamics of Parts "
+    "in a Vibratory Bowl Feeder, computed again: the T shape from its solid, the Arc Chute and the Magnet "
+    "from their own printed columns, chapter 5 from its equations. Where print and computation part, a "
+    "finding says why; the last section lists them all.",
+    "A cell in plain type is exact to print: our number gives the printed digits. A cell with an arrow is "
+    "explained: print → ours, and in brackets what a finding below the table makes of it. A cell in italics "
+    "is given: measured, or read off a drawing that is lost. A cell marked DIFFERS has no explanation.",
+)
+CHAPTER_4_TITLE = "Chapter 4: inertial data, levers and equations"
+CHAPTER_4_OPENING = "Chapter 4 has no tables, but its data feed chapter 5. What checking them showed:"
 
 
 @dataclass(frozen=True)
@@ -35,48 +72,290 @@ class Item:
     entries: tuple[Cell | Claim, ...]
 
     @property
-    def counts(self):
-        """Entries by verdict."""
-        return Counter(entry.verdict for entry in self.entries)
+    def name(self) -> str:
+        """Of kind and number: 'table 3-9'."""
+        return f"{self.kind} {self.id}"
 
     @property
-    def findings(self):
-        """Ids of the findings that bear on it, each once."""
-        carried = [entry.finding for entry in self.entries if entry.finding and _bears(entry)]
-        return tuple(dict.fromkeys((*carried, *BEARS_ON.get((self.kind, self.id), ()))))
-
-    @property
-    def stem(self):
+    def stem(self) -> str:
         """Of its files: 'table_3_09'."""
         chapter, number = self.id.split("-")
         return f"{self.kind}_{chapter}_{int(number):02d}"
 
+    @property
+    def verdicts(self) -> Counter[str]:
+        """Number of entries by verdict."""
+        return Counter(entry.verdict for entry in self.entries)
 
-def items():
-    """Return every table, then every figure.
+    @property
+    def counts(self) -> dict[str, int]:
+        """Cells that can be checked, by verdict, and those that are data."""
+        counts = self.verdicts
+        return {"cells": len(self.entries) - counts[GIVEN]} | {
+            mark: counts[verdict] for verdict, mark in MARK_OF.items()
+        }
+
+    @property
+    def findings(self) -> tuple[str, ...]:
+        """Ids of the findings that bear on it, each once."""
+        carried = [entry.finding for entry in self.entries if entry.finding and _bears(entry)]
+        return tuple(dict.fromkeys((*carried, *BEARS_ON.get(self.name, ()))))
+
+
+@dataclass(frozen=True, eq=False)
+class Reproduction(Shown):
+    """Every table of the thesis, then every figure."""
+
+    items: tuple[Item, ...]
+
+    def to_frame(self, name: str | None = None) -> "DataFrame":
+        """Return a table as ``Shown.to_frame``: each item's cells by verdict, or the cells of '3-9'."""
+        if name is None:
+            return data_frame(overview(self.items))
+        item_of = {item.id: item for item in self.items}
+        _require(name, item_of, "table or figure")
+        return data_frame(entries(item_of[name]))
+
+    def plot(self, name: str | None = None) -> "DrawnFigure":
+        """Return a figure of the thesis as ``Shown.plot``: the first, or '5-6'."""
+        name = FIGURES[0].number if name is None else name
+        _require(name, FIGURE_OF, "figure")
+        return drawing.draw(FIGURE_OF[name])
+
+
+def reproduced() -> Reproduction:
+    """Compute every table, then every figure again.
 
     Returns
     -------
-    tuple of Item
+    Reproduction
     """
-    tables = [Item(number, "table", table(number).caption, cells(number)) for number in NUMBERS]
-    drawn = [Item(figure.number, "figure", figure.caption, claims(figure.number)) for figure in FIGURES]
-    return (*tables, *drawn)
+    tables = [Item(number, "table", table(number).caption, cells(number)) for number in TABLES]
+    figures = [Item(figure.number, "figure", figure.caption, figure.claims) for figure in FIGURES]
+    return Reproduction((*tables, *figures))
 
 
-def summary(item):
-    """Return numbers of one item: cells that can be checked, by verdict, and those that are data."""
-    counts = item.counts
-    checked = {"exact": counts[EXACT], "explained": counts[EXPLAINED], "differs": counts[DIFFERS]}
-    return {"cells": sum(checked.values()), **checked, "given": counts[GIVEN]}
-
-
-def unexplained(items):
+def unexplained(items: Sequence[Item]) -> list[Item]:
     """Return the items with a cell that differs and no finding that says why."""
-    return [item for item in items if item.counts[DIFFERS]]
+    return [item for item in items if item.verdicts[DIFFERS]]
 
 
-def _bears(entry):
+def overview(items: Sequence[Item]) -> Frame:
+    """Return one row an item: its cells by verdict."""
+    columns: dict[str, list] = {"item": [item.name for item in items]}
+    columns |= {name: [item.counts[name] for item in items] for name in COUNTS}
+    return frame(columns | {"findings": ["; ".join(item.findings) for item in items]})
+
+
+def entries(item: Item) -> Frame:
+    """Return the cells of a table, or what print states on a figure, with ours, verdict and finding."""
+    columns = CELL_COLUMNS if item.kind == "table" else CLAIM_COLUMNS
+    return frame({name: [_entry(entry, name) for entry in item.entries] for name in columns})
+
+
+def _entry(entry: Cell | Claim, name: str) -> Any:
+    value = getattr(entry, name)
+    return digits(entry, value) if isinstance(entry, Cell) and name in ("recomputed", "explaining") else value
+
+
+def document(items: Sequence[Item], files: Mapping[str, Sequence[str]]) -> dict[str, Any]:
+    """Return the items as one JSON document.
+
+    Parameters
+    ----------
+    items : sequence of Item
+    files : dict of str to sequence of str
+        Files written, by the item's stem.
+
+    Returns
+    -------
+    dict
+    """
+    rows = [
+        {
+            "id": item.id,
+            "kind": item.kind,
+            "caption": item.caption,
+            **item.counts,
+            "findings": item.findings,
+            "files": files.get(item.stem, []),
+        }
+        for item in items
+    ]
+    return {"items": rows, "findings": [_finding_row(finding) for finding in FINDINGS]}
+
+
+def write(save: Callable[[str, str | bytes], object], items: Sequence[Item]) -> dict[str, list[str]]:
+    """Write tables, pictures and the page.
+
+    Parameters
+    ----------
+    save : callable
+        Takes a file's name and content.
+    items : sequence of Item
+
+    Returns
+    -------
+    dict of str to list of str
+        Files by the item's stem.
+    """
+    files, pictures = {}, {}
+    for item in items:
+        files[item.stem] = [f"{item.stem}.csv"]
+        if item.kind == "table":
+            save(f"{item.stem}.csv", text(entries(item), "csv"))
+            continue
+        figure = FIGURE_OF[item.id]
+        pictures[f"{item.stem}.png"] = style.png(drawing.draw(figure))
+        files[item.stem] += [f"{item.stem}.png", f"{item.stem}_statements.csv"]
+        save(f"{item.stem}.csv", text(drawing.numbers(figure), "csv"))
+        save(f"{item.stem}_statements.csv", text(entries(item), "csv"))
+    for name, content in pictures.items():
+        save(name, content)
+    whole = page(items, pictures)
+    save("thesis.md", markdown(whole))
+    save("thesis.html", html(whole))
+    save("summary.csv", text(overview(items), "csv"))
+    rows = [_finding_row(finding) for finding in FINDINGS]
+    save("findings.csv", text(frame({name: [row[name] for row in rows] for name in rows[0]}), "csv"))
+    return files
+
+
+def page(items: Sequence[Item], pictures: Mapping[str, bytes]) -> Page:
+    """Build the page of the whole thesis.
+
+    Parameters
+    ----------
+    items : sequence of Item
+    pictures : dict of str to bytes
+        PNG of each figure, by file name.
+
+    Returns
+    -------
+    Page
+    """
+    item_of = {item.name: item for item in items}
+    third, fifth = (
+        tuple(
+            block for name in ORDER_OF_THESIS if f" {n}-" in name for block in _item(item_of[name], pictures)
+        )
+        for n in "35"
+    )
+    return Page(
+        PAGE_TITLE,
+        "",
+        (
+            Chapter(tuple(Text(paragraph) for paragraph in PAGE_OPENING)),
+            Chapter((Text(_totals(items)), _summary(items)), anchor="summary", title="Summary"),
+            Chapter(third, anchor="chapter-3", title="Chapter 3: natural resting aspects"),
+            Chapter(_chapter_4(items), anchor="chapter-4", title=CHAPTER_4_TITLE),
+            Chapter(fifth, anchor="chapter-5", title="Chapter 5: simulation results"),
+            Chapter(tuple(_errata(items)), anchor="findings", title="Findings and errata"),
+        ),
+    )
+
+
+def print_and_ours(entry: Cell) -> str:
+    """Return print and ours in one cell, as the page's opening describes."""
+    if entry.verdict in (EXACT, GIVEN):
+        return entry.published
+    ours, result = digits(entry, entry.recomputed), digits(entry, entry.explaining)
+    if entry.verdict == DIFFERS:
+        return f"{entry.published} → {ours} DIFFERS"
+    return f"{entry.published} → {ours}" + ("" if result in ("", ours) else f" ({result})")
+
+
+def digits(entry: Cell, value: float) -> str:
+    """Return a number with one digit more than the cell has in print; '' for NaN."""
+    decimals = len(entry.published.rpartition(".")[2]) if "." in entry.published else 0
+    return "" if math.isnan(value) else f"{value:.{decimals + 1}f}"
+
+
+def _summary(items: Sequence[Item]) -> Matrix:
+    rows = [
+        (
+            MarkedCell(item.name.capitalize()),
+            MarkedCell(item.caption),
+            *[MarkedCell(str(item.counts[name]), "number") for name in COUNTS],
+        )
+        for item in items
+    ]
+    return Matrix(("item", "caption", *COUNTS), tuple(rows))
+
+
+def _totals(items: Sequence[Item]) -> str:
+    counts: Counter[str] = sum((item.verdicts for item in items), Counter())
+    return (
+        f"{counts[EXACT]} cells are exact to print, {counts[EXPLAINED]} are explained, "
+        f"{counts[DIFFERS]} differ; {counts[GIVEN]} are given."
+    )
+
+
+def _item(item: Item, pictures: Mapping[str, bytes]) -> list:
+    blocks: list = [Heading(f"{item.name.capitalize()}. {item.caption}", item.stem)]
+    if item.kind == "figure":
+        file = f"{item.stem}.png"
+        blocks += [Picture(file, pictures[file], item.caption), statement_matrix(item)]
+    else:
+        printed = table(item.id)
+        blocks += [Text(f"Source: {printed.source}. Units: {printed.units}."), cell_matrix(item)]
+    if item.findings:
+        blocks.append(Links(tuple((id, id, FINDING_OF[id].what) for id in item.findings)))
+    return blocks
+
+
+def cell_matrix(item: Item) -> Matrix:
+    """Return a table as it is laid out in print, its cells marked by their verdicts."""
+    columns = table(item.id).columns
+    cell_at = {(entry.row, entry.column): entry for entry in item.entries if isinstance(entry, Cell)}
+    rows = []
+    for name in dict.fromkeys(row for row, _ in cell_at):
+        entries = [cell_at.get((name, column)) for column in columns]
+        marked = [
+            MarkedCell(print_and_ours(entry), MARK_OF[entry.verdict]) if entry else MarkedCell("")
+            for entry in entries
+        ]
+        rows.append((MarkedCell(name), *marked))
+    return Matrix(("", *columns), tuple(rows))
+
+
+def statement_matrix(item: Item) -> Matrix:
+    """Return what print says of a figure, and whether it holds."""
+    rows = [
+        (
+            MarkedCell(claim.statement),
+            MarkedCell(claim.published),
+            MarkedCell(f"{claim.recomputed:.4g}"),
+            MarkedCell(claim.verdict, MARK_OF[claim.verdict]),
+        )
+        for claim in item.entries
+        if isinstance(claim, Claim) and not math.isnan(claim.recomputed)
+    ]
+    return Matrix(("what print states", "in print", "ours", "verdict"), tuple(rows))
+
+
+def _chapter_4(items: Sequence[Item]) -> tuple:
+    """The findings that no table or figure carries."""
+    carried = {id for item in items for id in item.findings}
+    rest = [finding for finding in FINDINGS if finding.id not in carried or "4." in finding.where]
+    links = [(each.id, each.id, f"{each.where}. {each.what} {each.evidence()}") for each in rest]
+    return Text(CHAPTER_4_OPENING), Links(tuple(links))
+
+
+def _errata(items: Sequence[Item]) -> Iterator[Heading | Text]:
+    """Each finding, with its evidence and the items it bears on."""
+    for finding in FINDINGS:
+        names = [item.name for item in items if finding.id in item.findings]
+        yield Heading(f"{finding.id}: {finding.where}", finding.id)
+        bears = f" Bears on {', '.join(names)}." if names else ""
+        yield Text(f"{finding.what} {finding.evidence()}{bears}")
+
+
+def _finding_row(finding: Finding) -> dict[str, str]:
+    return {"id": finding.id, "where": finding.where, "what": finding.what, "shown": finding.evidence()}
+
+
+def _bears(entry: Cell | Claim) -> bool:
     """A finding matters where it explains, and where an exact cell needed its reading of the table."""
     return (
         entry.verdict == EXPLAINED
@@ -84,3 +363,8 @@ def _bears(entry):
         or entry.cut
         or entry.finding.startswith("t-")
     )
+
+
+def _require(name: str, choices: Collection[str], noun: str) -> None:
+    if name not in choices:
+        raise ArgumentError("name", f"there is no {noun} {name!r}", f"give one of {listed(list(choices))}")

@@ -65,9 +65,9 @@ def test_a_table_is_the_file_of_its_command(run, tmp_path):
 
 
 def test_the_thesis_is_a_record_too(monkeypatch):
-    from feederscrew.thesis import reproduced
+    from feederscrew.thesis import reproduction
 
-    monkeypatch.setattr(reproduced, "items", lambda: ())
+    monkeypatch.setattr(reproduction, "TABLES", ())
     record = fs.reproduce()
     assert record.plot("5-1").get_axes()
     with pytest.raises(fs.FeederError, match=r"^name: there is no figure '9-9' - give one of 3-6"):

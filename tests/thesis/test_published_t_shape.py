@@ -5,12 +5,10 @@ import pytest
 
 from feederscrew.part import mass
 from feederscrew.resting.aspects import find
-from feederscrew.thesis import parts, t_shape
-from feederscrew.thesis.digits import prints_as
-from feederscrew.thesis.printed_tables import table
-from feederscrew.thesis.recompute import rounded_shares
+from feederscrew.thesis import parts
+from feederscrew.thesis.tables import table
 
-RATIOS = [float(ratio) for ratio in t_shape.RATIOS]
+RATIOS = [float(ratio) for ratio in parts.T_RATIOS]
 
 
 def by_hand(ratio):
@@ -27,72 +25,42 @@ def by_hand(ratio):
     return np.array([i_y, i_x, i_y, leaning, i_z]), np.array(heights)
 
 
-@pytest.mark.parametrize("ratio", RATIOS)
-def test_the_surface_gives_what_two_blocks_give(ratio):
-    moments, heights = by_hand(ratio)
-    found = parts.t_aspects(ratio)
-    np.testing.assert_allclose(found.moments / parts.G_MM2, moments, rtol=1e-9, atol=0)
-    np.testing.assert_allclose(found.heights / parts.MM, heights, rtol=1e-9, atol=0)
+def test_the_surface_gives_what_two_blocks_give():
+    for ratio in RATIOS:
+        moments, heights = by_hand(ratio)
+        ours = parts.t_aspects(ratio)
+        np.testing.assert_allclose(ours.moments / parts.G_MM2, moments, rtol=1e-9, atol=0)
+        np.testing.assert_allclose(ours.heights / parts.MM, heights, rtol=1e-9, atol=0)
+        plain = moments / heights  # the density cancels
+        np.testing.assert_allclose(ours.pmi, plain / plain.sum(), rtol=1e-9, atol=0)
 
 
 def test_the_surface_is_closed_and_of_the_right_volume():
-    vertices, faces = t_shape.solid(0.6)
+    vertices, faces = parts.t_solid(0.6)
     assert mass.solid(vertices[faces]).volume == pytest.approx((25 * 13 + 11 * 12) * 15e-9, rel=1e-12)
     edges = {tuple(edge) for face in faces for edge in zip(face, np.roll(face, -1))}
     assert len(edges) == 3 * len(faces)
     assert edges == {edge[::-1] for edge in edges}
-
-
-@pytest.mark.parametrize("ratio", RATIOS)
-def test_five_classes_of_one_or_two_faces(ratio):
-    found = find(parts.t_part(ratio))
-    assert sorted(found.faces) == [1, 1, 2, 2, 2]
-    assert list(parts.t_aspects(ratio).faces) == [1, 2, 1, 2, 2]
-
-
-def test_an_impossible_ratio_is_a_wrong_call():
     with pytest.raises(ValueError, match="ratio is -1"):
-        t_shape.solid(-1)
+        parts.t_solid(-1)
 
 
-@pytest.mark.parametrize("column", t_shape.RATIOS)
-def test_table_3_9_within_0_005_points_without_any_rounding(column):
-    ours = 100.0 * parts.t_aspects(float(column)).pmi
-    np.testing.assert_allclose(ours, table("3-9").numbers(column), rtol=0, atol=0.005)
+def test_five_classes_of_one_or_two_faces():
+    for ratio in RATIOS:
+        assert sorted(find(parts.t_part(ratio)).faces) == [1, 1, 2, 2, 2]
+        assert list(parts.t_aspects(ratio).faces) == [1, 2, 1, 2, 2]
 
 
-@pytest.mark.parametrize("column", t_shape.RATIOS)
-def test_table_3_9_to_the_last_digit_with_the_thesis_roundings(column):
-    shares = 100.0 * rounded_shares(float(column))[2]
-    printed = [table("3-9").text(row, column) for row in table("3-9").names]
-    assert all(prints_as(share, text) for share, text in zip(shares, printed))
-
-
-def test_density_cancels_but_for_the_rounding():
-    moments, heights = by_hand(0.6)
-    plain = moments / heights
-    np.testing.assert_allclose(parts.t_aspects(0.6).pmi, plain / plain.sum(), rtol=1e-9, atol=0)
-
-
-def test_table_3_8_needs_the_density_the_text_does_not_state():
-    printed = table("3-8").numbers("I")
-    ours = parts.t_aspects(0.6).moments / parts.G_MM2
-    wrong = ours * t_shape.DENSITY_IN_TEXT / t_shape.DENSITY
-    assert np.abs(ours - printed).max() < 0.005
-    assert np.abs(wrong - printed).max() > 0.5
+def test_table_3_9_within_0_005_points_without_any_rounding():
+    for ratio in parts.T_RATIOS:
+        ours = 100.0 * parts.t_aspects(float(ratio)).pmi
+        np.testing.assert_allclose(ours, table("3-9").numbers(ratio), rtol=0, atol=0.005)
 
 
 def test_pmi_counts_a_class_once():
     counted = find(parts.t_part(0.6)).probabilities["pmi"]
     assert counted.max() == pytest.approx(0.4294, abs=5e-5)
     assert parts.t_aspects(0.6).pmi[4] == pytest.approx(0.3628, abs=5e-5)
-
-
-@pytest.mark.parametrize(
-    ("ratio", "expected"), [(0.4, [1.5, 5.1, 7.0, 5.8, 80.6]), (0.6, [3.1, 10.4, 13.9, 11.8, 60.9])]
-)
-def test_csa_of_the_t_shape(ratio, expected):
-    np.testing.assert_allclose(100.0 * parts.t_aspects(ratio).csa, expected, rtol=0, atol=0.05)
 
 
 def test_table_3_1_is_a_thinner_prism():

@@ -2,50 +2,75 @@
 
 import numpy as np
 import pytest
-from published_cells import MISPRINTS, cases
 
-from feederscrew.thesis import digits
-from feederscrew.thesis.printed_cells import DIFFERS, EXACT, EXPLAINED, GIVEN, Cell
-from feederscrew.thesis.printed_tables import NUMBERS, table
 from feederscrew.thesis.recompute import cells
+from feederscrew.thesis.tables import (
+    DIFFERS,
+    EXACT,
+    EXPLAINED,
+    GIVEN,
+    TABLES,
+    Cell,
+    is_slip,
+    prints_as,
+    table,
+)
 
 SHAPES = {  # rows without the total, columns
     "3-1": (5, 2), "3-2": (5, 5), "3-3": (5, 4), "3-4": (5, 6), "3-5": (3, 4), "3-6": (3, 4), "3-7": (3, 6),
     "3-8": (5, 4), "3-9": (5, 6), "3-10": (5, 4), "3-11": (3, 4), "3-12": (11, 1), "3-13": (11, 1),
 }  # fmt: skip
+MISPRINTS = {
+    ("3-1", "A", "csa"): "belongs to a thinner prism",
+    ("3-1", "B", "csa"): "belongs to a thinner prism",
+    ("3-1", "C", "csa"): "belongs to a thinner prism",
+    ("3-1", "D", "csa"): "belongs to a thinner prism",
+    ("3-1", "E", "csa"): "belongs to a thinner prism",
+    ("3-1", "total", "experiment"): "prints 100.00; the entries sum to 99.88",
+    ("3-2", "total", "Q"): "prints 133.313, the sum of aspects 2 to 5; all five give 151.3884",
+    ("3-3", "total", "A"): "prints 462.027; the rounded entries sum to 462.0264",
+    ("3-6", "1", "A_over_h"): "prints 42.6914; the rounded terms give 42.69151",
+    ("3-8", "total", "I_over_h"): "prints 215.45, the sum of cut entries; uncut 215.4747",
+    ("3-8", "total", "probability"): "prints 0.9999, the sum of rounded entries; unrounded 1",
+    ("3-10", "5", "I"): "prints 114.75; chapter 4 has it under I_zz, with x and z exchanged",
+    ("3-10", "total", "I_over_h"): "prints 123.47, the sum of cut entries; uncut 123.5094",
+    ("3-10", "total", "probability"): "prints 0.9999, the sum of rounded entries; unrounded 1",
+    ("3-11", "3", "h"): "prints 2.17; chapter 4 has 2.16",
+    ("3-11", "total", "I_over_h"): "prints 804.1.73; the quotients sum to 804.1073",
+    ("3-11", "total", "probability"): "prints 0.9999; the printed entries sum to 1.0000",
+    ("3-13", "MDBT_78 - CSA", "deviation"): "prints 0.17; Table 3-5 gives 0.0618",
+    ("3-13", "MDBT_80 - CSA", "deviation"): "prints 0.18; Table 3-5 gives 0.0617",
+    ("3-13", "CSA - STABILITY", "deviation"): "prints 0.12; Table 3-5 gives 0.0272",
+    ("3-13", "CSA - PMI", "deviation"): "prints 0.089; Table 3-5 gives 0.2292",
+}
 
 
-@pytest.mark.parametrize("number", NUMBERS)
-def test_a_table_says_where_it_is_from_and_is_whole(number):
+@pytest.mark.parametrize("number", TABLES)
+def test_a_table_is_whole_and_its_cells_print_but_for_the_misprints(number):
     printed = table(number)
-    assert printed.number == number
-    assert "chapter 3" in printed.source
-    assert printed.units
     assert (len(printed.names), len(printed.columns)) == SHAPES[number]
     assert all(printed.text(row, column) for row in printed.names for column in printed.columns)
+    verdicts = {(number, cell.row, cell.column): cell.verdict for cell in cells(number)}
+    assert {key for key, verdict in verdicts.items() if verdict == EXPLAINED} == {
+        key for key in MISPRINTS if key[0] == number
+    }
+    assert DIFFERS not in verdicts.values()
 
 
-@pytest.mark.parametrize("cell", list(cases(*NUMBERS)))
-def test_a_printed_number_follows(cell):
-    assert digits.prints_as(cell.recomputed, cell.published, cell.cut)
-
-
-@pytest.mark.parametrize("number", NUMBERS)
-def test_every_misprint_is_explained_by_a_finding(number):
-    explained = {(number, c.row, c.column) for c in cells(number) if c.verdict == EXPLAINED}
-    assert explained == {key for key in MISPRINTS if key[0] == number}
-
-
-@pytest.mark.parametrize("number", NUMBERS)
-def test_no_cell_differs_without_a_reason(number):
-    assert not [cell for cell in cells(number) if cell.verdict == DIFFERS]
+@pytest.mark.parametrize(
+    "place",
+    [pytest.param(key, marks=pytest.mark.xfail(reason=why)) for key, why in MISPRINTS.items()],
+    ids=str,
+)
+def test_a_misprint_does_not_follow(place):
+    number, *at = place
+    cell = next(cell for cell in cells(number) if [cell.row, cell.column] == at)
+    assert prints_as(cell.recomputed, cell.published, cell.cut)
 
 
 def test_most_cells_are_exact_to_print():
-    verdicts = [cell.verdict for number in NUMBERS for cell in cells(number)]
-    assert verdicts.count(EXACT) == 153
-    assert verdicts.count(EXPLAINED) == len(MISPRINTS)
-    assert verdicts.count(GIVEN) == 94
+    verdicts = [cell.verdict for number in TABLES for cell in cells(number)]
+    assert [verdicts.count(verdict) for verdict in (EXACT, EXPLAINED, GIVEN)] == [153, len(MISPRINTS), 94]
 
 
 @pytest.mark.parametrize("number", ["3-4", "3-7"])
@@ -55,44 +80,50 @@ def test_measured_fractions_sum_to_one(number):
     np.testing.assert_allclose(sums, 1.0, rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("value", "text", "cut", "fits"),
-    [
+@pytest.mark.parametrize("number", ["3-8", "3-10"])
+def test_quotients_are_cut_not_rounded(number):
+    printed = table(number)
+    quotients = printed.numbers("I") / printed.numbers("h")
+    cut = np.floor(100 * quotients) / 100
+    np.testing.assert_allclose(cut, printed.numbers("I_over_h"), rtol=0, atol=1e-9)
+    assert (np.round(quotients, 2) != printed.numbers("I_over_h")).any()
+
+
+def test_deviations_are_cut_not_rounded():
+    rows = cells("3-12")
+    assert all(row.cut for row in rows)
+    assert sum(round(row.recomputed, 3) != row.printed for row in rows) > 3
+
+
+def test_digits_in_print():
+    """Rounded, or cut off, after the last printed digit."""
+    for value, text, cut, fits in (
         (0.8054, "0.805", False, True),
         (0.8055001, "0.805", False, False),
         (0.8059, "0.805", True, True),
         (0.806, "0.805", True, False),
         (0.8049, "0.805", True, False),
-        (12.5, "12.5", True, True),
         (0.3, "0.3", True, True),
         (99.9, "100", False, True),
         (-1.26, "-1.3", False, True),
         (-1.26, "-1.2", True, True),
-    ],
-)
-def test_digits_in_print(value, text, cut, fits):
-    assert digits.prints_as(value, text, cut) is fits
+    ):
+        assert prints_as(value, text, cut) is fits, (value, text)
+    slips = {text: is_slip(804.10731, text) for text in ("804.1.73", "804.1.74", "84.1.73")}
+    assert slips == {"804.1.73": True, "804.1.74": False, "84.1.73": False}
 
 
-@pytest.mark.parametrize(("text", "slip"), [("804.1.73", True), ("804.1.74", False), ("84.1.73", False)])
-def test_a_slip_is_one_character(text, slip):
-    assert digits.slip(804.10731, text) is slip
-
-
-@pytest.mark.parametrize(
-    ("cell", "verdict"),
-    [
+def test_an_explanation_must_fit_the_print():
+    for cell, verdict in (
         (Cell("a", "b", "0.12", 0.121), EXACT),
         (Cell("a", "b", "0.12", 0.129), DIFFERS),
         (Cell("a", "b", "0.12", 0.129, cut=True), EXACT),
-        (Cell("a", "b", "0.12", 0.3, finding="x", explaining=0.119), EXPLAINED),
+        (Cell("a", "b", "0.12", 0.3, finding="x", explaining=0.12), EXPLAINED),
         (Cell("a", "b", "0.12", 0.3, finding="x", explaining=0.13), DIFFERS),
         (Cell("a", "b", "0.12", 0.3, finding="x", explaining=0.13, within=0.02), EXPLAINED),
         (Cell("a", "b", "0.12", 0.3, explaining=0.12), DIFFERS),
         (Cell("a", "b", "1.2.3", 1.203, finding="x"), EXPLAINED),
         (Cell("a", "b", "1.2.3", 1.204, finding="x"), DIFFERS),
-        (Cell("a", "b", "0.12", float("nan")), GIVEN),
-    ],
-)
-def test_an_explanation_must_fit_the_print(cell, verdict):
-    assert cell.verdict == verdict
+        (Cell("a", "b", "0.12"), GIVEN),
+    ):
+        assert cell.verdict == verdict, cell

@@ -7,7 +7,7 @@ import re
 import pytest
 from click.testing import CliRunner
 
-from feederscrew.thesis.digits import is_number
+from feederscrew.thesis.tables import is_number
 from feederscrew_cli.main import feeder
 
 KEYS = ["id", "kind", "caption", "cells", "exact", "explained", "differs", "given", "findings", "files"]

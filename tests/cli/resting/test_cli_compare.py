@@ -10,7 +10,7 @@ import pytest
 from feederscrew.output import style
 from feederscrew.output.compare import figures
 from feederscrew.resting.rules import registry
-from feederscrew.thesis import printed_tables
+from feederscrew.thesis.tables import table
 
 CSV = ["first", "second", "deviation", "total_variation", "chi_square", "degrees_of_freedom", "p_value"]
 
@@ -23,7 +23,7 @@ def card(request):
 @pytest.fixture
 def measured(tmp_path):
     """Table 3-4 as a user would type it."""
-    printed = printed_tables.table("3-4")
+    printed = table("3-4")
     lines = [",".join([name, *printed.rows[name].values()]) for name in printed.rows]
     path = tmp_path / "measured.csv"
     path.write_text("\n".join(["# Table 3-4", f"aspect,{','.join(printed.columns)}", *lines]) + "\n")
@@ -46,10 +46,10 @@ def test_table_3_12_comes_out(run, card, measured):
     assert result.exit_code == 0, result.output
     found = rows(result)
     assert len(found) == 9 * 8 // 2
-    for name in printed_tables.table("3-12").rows:
+    for name in table("3-12").rows:
         first, second = name.split(" - ")
         row = found.get((first, second)) or found[(second, first)]
-        text = printed_tables.table("3-12").text(name, "deviation")
+        text = table("3-12").text(name, "deviation")
         assert row["deviation"].startswith(text.rstrip("0"))
     assert result.stderr == (f"{measured}: fractions: MDBT_78, MDBT_80, MDBT_82, MDFT_78, MDFT_80, MDFT_82\n")
 

@@ -1,0 +1,362 @@
+"""The thesis's equations of motion on floor and track as printed, and the terms that they leave out."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew.bowl.record import Bowl
+from feederscrew.geometry import vectors
+from feederscrew.mechanics.floor.balance import HOP, SLIDE, STICK, UPPER_REVERSAL
+from feederscrew.mechanics.limits import acceleration_ratio, published_limit
+from feederscrew.mechanics.track.balance import TrackMotion
+from feederscrew.mechanics.track.frame import Seat, TrackAxes, frame
+from feederscrew.part.record import Part
+from feederscrew.resting.posture import Posture
+from feederscrew.studies import floor as floor_study
+from feederscrew.studies import track as track_study
+
+Array = NDArray[Any]
+Quantity = float | Array
+FLOOR_TERMS = {  # quantity: what parts the printed from the complete value
+    "normal_force_N": "none",
+    "alignment_acceleration_rad_s2": "static friction, which holds a part at rest against turning",
+    "limiting_friction": "the factor cos(alpha - theta): it needs a wall to take the force across",
+    "acceleration_z_m_s2": "friction as a vector against the sliding: R_z = mu N cos(alpha - theta)",
+    "acceleration_y_m_s2": "friction as a vector against the sliding: R_y",
+    "normal_line_offset_mm": "inertia acts at the centre of mass, not in the contact plane at e [4.18]",
+}
+WALL_TERM = "radial gravity [4.33]; moment of the drive about X [4.35]; centripetal m V^2/r"
+TRACK_TERMS = {
+    "normal_force_N": "none of its own: it follows R1 + R2",
+    "wall_1_N": WALL_TERM,
+    "wall_2_N": WALL_TERM,
+    "radial_friction_N": "d_y, offset of the normal force across the track, takes the moment about X",
+    "traction_N": "friction as a vector where the part leaves the wall; else follows N",
+    "normal_line_offset_mm": "inertia at the centre of mass; moment of wall friction about Y [4.36]",
+    "acceleration_x_m_s2": "wall friction along the wall's tangent, turned by sigma",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class PrintedFloor:
+    """Solution of the printed floor equations at one or many instants."""
+
+    state: Array  # (...) int, places in floor.STATES; the print knows no tipping
+    normal_force: Array  # (...) [N] F_N, negative where it says so
+    turning: Array  # (...) [rad/s2] theta''
+    acceleration: Array  # (..., 2) [m/s2] V'_z, V'_y
+    offset: Array  # (...) [m] d along Z'
+    limiting_friction: Array  # (...) [1]
+
+
+@dataclass(frozen=True, eq=False)
+class PrintedTrack:
+    """Solution of the printed track equations; negative reactions are left as they come out."""
+
+    normal_force: Array  # (...) [N] F_N
+    walls: Array  # (..., 2) [N] R1, R2
+    radial_friction: Array  # (...) [N] R3
+    traction: Array  # (...) [N] R4
+    offset: Array  # (...) [m] d
+    acceleration: Array  # (...) [m/s2] V'_X
+    slides: Array  # (...) bool
+
+
+@dataclass(frozen=True)
+class Levers:
+    """What the printed track equations use of a part."""
+
+    mass: float  # [kg]
+    height: float  # [m] h, of the centre of mass
+    offset: float  # [m] e, of the drive ahead of the centre of mass
+    wall: float  # [m] from the centre of mass to the wall contact, in the Y-Z plane
+    wall_angle: float  # [rad] of that lever above the level
+    behind: float  # [m] of the contact of R1 behind the centre of mass
+    ahead: float  # [m] of the contact of R2 ahead of it
+    side: float  # [m] of both contacts to the side
+    friction_side: float  # [m] the same, as printed where it goes with wall friction
+    axes: str = "tilted"  # as the Arc Chute's equations, or "level", as the Magnet's
+
+
+@dataclass(frozen=True)
+class Term:
+    """A term that the printed track equations leave out."""
+
+    name: str
+    equation: str  # of the thesis
+    value: float
+    unit: str  # 'N' or 'N mm'
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FloorAsPublished(floor_study.FloorStudy):
+    """A FloorStudy whose upper reversal, and each cell of its maps, is solved by print as well."""
+
+    printed: PrintedFloor  # type: ignore[misc]
+    terms = FLOOR_TERMS
+
+    def cells(self, bowl: Bowl, heading: Quantity) -> dict[str, Array]:
+        """Return what ``FloorStudy.cells`` does, and what print says of it as ``published_*``."""
+        printed = solve_floor(self.posture, bowl, heading)
+        return super().cells(bowl, heading) | {
+            "published_z_m_s2": printed.acceleration[..., 0],  # goes on where the part has lost contact
+            "published_alignment_rad_s2": printed.turning,
+        }
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class TrackAsPublished(track_study.TrackStudy):
+    """A TrackStudy whose upper reversal is solved by print as well."""
+
+    printed: PrintedTrack  # type: ignore[misc]
+    omitted: tuple[Term, ...]  # what these leave out
+    terms = TRACK_TERMS
+
+
+def floor(part: Part, bowl: Bowl, aspect: str | None = None, heading: float = 0.0) -> FloorAsPublished:
+    """Study a part on the bowl floor as ``studies.floor.floor``, which names the errors, by print as well."""
+    study = floor_study.floor(part, bowl, aspect, heading)
+    return FloorAsPublished(**vars(study), printed=solve_floor(study.posture, bowl, heading))
+
+
+def track(
+    part: Part, bowl: Bowl, aspect: str | None = None, heading: float | None = None
+) -> TrackAsPublished:
+    """Study a part against the wall as ``studies.track.track``, which names the errors, by print as well."""
+    study = track_study.track(part, bowl, aspect, heading)
+    posture, seat = study.posture, study.seat
+    card = {} if posture.corners is not None else (posture.printed or {})["track"]
+    levers = levers_of(seat, float(posture.offset * np.cos(seat.heading)), card.get("axes", "tilted"))
+    side = card.get("wall_y", levers.side)  # where a card prints other sides than its polar lever's
+    levers = replace(levers, side=side, friction_side=card.get("wall_friction_y", side))
+    return TrackAsPublished(
+        **vars(study),
+        printed=solve_track(levers, bowl, seat.heading),
+        omitted=omitted_terms(seat, bowl, study.now, levers.offset),
+    )
+
+
+def solve_floor(
+    posture: Posture, bowl: Bowl, heading: Quantity, phase: Quantity = UPPER_REVERSAL
+) -> PrintedFloor:
+    """Solve the printed equations for a part at rest on the floor, with any part's h, e and I.
+
+    Parameters
+    ----------
+    posture : Posture
+    bowl : Bowl
+        Fields may be arrays.
+    heading : array_like [rad]
+        theta.
+    phase : array_like [rad]
+        w t.
+
+    Returns
+    -------
+    PrintedFloor
+        R_z = mu F_N once it slides; R_y, which the print leaves open, is zero. The moment of [4.18] is
+        projected on fixed axes, as printed.
+
+    References
+    ----------
+    The thesis: the parts of the wrench of eq. [4.13], solved as eqs. [4.20] to [4.23], and with the levers
+    and the inertia of the Magnet the same, eqs. [4.43] to [4.53].
+    """
+    m, h, e = posture.mass, posture.height, posture.offset
+    beta, alpha = bowl.drive.vibration_angle, bowl.drive.direction
+    ratio = acceleration_ratio(bowl.drive.amplitude, bowl.drive.frequency, bowl.gravity) * np.sin(phase)
+    push = m * bowl.gravity * ratio  # m A w^2
+    normal = m * bowl.gravity - push * np.sin(beta)  # eq. [4.14]
+    limit = published_limit(ratio, beta, alpha - heading)  # eq. [4.27]
+    ahead = push * np.cos(beta) * np.cos(alpha - heading)
+    slides = ~(np.abs(limit) <= bowl.friction.static) | (normal <= 0.0)  # eq. [4.25]
+    friction = np.where(slides, np.sign(ahead) * bowl.friction.kinetic * normal, ahead)  # eq. [4.26]
+    across = push * np.cos(beta) * np.sin(alpha - heading)
+    turning = e * across / posture.turning_inertia  # eq. [4.17]
+    moment = np.cos(heading) * (e * push * np.sin(beta) + h * push * np.cos(beta) * np.cos(alpha))
+    acceleration = np.broadcast_arrays((ahead - friction) / m, across / m)  # eqs. [4.15], [4.16]
+    return PrintedFloor(
+        state=np.where(normal > 0.0, np.where(slides, SLIDE, STICK), HOP),
+        normal_force=normal,
+        turning=turning,
+        acceleration=np.stack(acceleration, axis=-1),
+        offset=(h * friction - moment) / normal,  # eq. [4.18]
+        limiting_friction=limit,
+    )
+
+
+def levers_of(seat: Seat, offset: float, axes: str = "tilted") -> Levers:
+    """Return the printed equations' levers of any part against the wall.
+
+    Parameters
+    ----------
+    seat : Seat
+        The two contacts' heights and sides are averaged, as the thesis has one of each.
+    offset : float [m]
+        e.
+    axes : str
+        'tilted' or 'level'.
+
+    Returns
+    -------
+    Levers
+    """
+    side, level = float(-seat.walls[:, 1].mean()), float(seat.walls[:, 2].mean())
+    return Levers(
+        mass=seat.mass,
+        height=seat.height,
+        offset=offset,
+        wall=float(np.hypot(side, level)),
+        wall_angle=float(np.arctan2(level, side)),
+        behind=float(-seat.walls[0, 0]),
+        ahead=float(seat.walls[1, 0]),
+        side=side,
+        friction_side=side,
+        axes=axes,
+    )
+
+
+def solve_track(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity = 0.5 * np.pi) -> PrintedTrack:
+    """Solve the printed equations of a part against the wall.
+
+    Parameters
+    ----------
+    part : Levers
+    bowl : Bowl
+        Fields may be arrays; ``track.radius`` sets sigma.
+    heading : array_like [rad]
+        theta.
+    phase : array_like [rad]
+        w t.
+
+    Returns
+    -------
+    PrintedTrack
+        With R4 = mu F_N while V'_X > 0, else with V'_X = 0 and R4 as much as that needs.
+
+    References
+    ----------
+    The thesis, eqs. [4.32] to [4.37] (axes tilted by the bank) and eqs. [4.57] to [4.62] (level axes): the
+    parts of the wrenches of eqs. [4.29], [4.54]. In [4.36] the drive's moment is taken from [4.29], of which
+    it is a copy with a term lost.
+    """
+    constants = _constants(part, bowl, _drive(part, bowl, heading, phase))
+    shape = constants.shape[:-1]
+    x = vectors.solve(_matrix(part, bowl, shape, sliding=True), -constants)
+    slides = x[..., 0] > 0.0
+    rest = vectors.solve(_matrix(part, bowl, shape, sliding=False), -constants)
+    friction = bowl.friction.kinetic * x[..., 1]
+    x, traction = np.where(slides[..., None], x, rest), np.where(slides, friction, rest[..., 0])
+    return PrintedTrack(
+        normal_force=x[..., 1],
+        walls=x[..., 2:4],
+        radial_friction=x[..., 4],
+        traction=traction,
+        offset=np.divide(x[..., 5], x[..., 1], out=np.full(slides.shape, np.nan), where=x[..., 1] != 0.0),
+        acceleration=np.where(slides, x[..., 0], 0.0),
+        slides=slides,
+    )
+
+
+def half_angle(part: Levers, radius: Quantity) -> Array:
+    """Return sigma [rad] of two contacts on a wall of that radius; the thesis leaves it open."""
+    return np.arcsin(0.5 * (part.behind + part.ahead) / np.asarray(radius))
+
+
+def omitted_terms(seat: Seat, bowl: Bowl, complete: TrackMotion, offset: float) -> tuple[Term, ...]:
+    """Return the size of every omitted term on the track, at the upper reversal.
+
+    Parameters
+    ----------
+    seat : Seat
+    bowl : Bowl
+        Single values.
+    complete : TrackMotion
+        The complete solution at the upper reversal.
+    offset : float [m]
+        e, the lever at which the print applies the drive.
+
+    Returns
+    -------
+    tuple of Term
+        The centripetal force is that of the bowl's own greatest speed, at mid-stroke.
+    """
+    axes: TrackAxes = frame(bowl, seat.walls)
+    drive = bowl.drive
+    speed = drive.amplitude * 2.0 * np.pi * drive.frequency * float(axes.drive[0])
+    push = seat.mass * drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2 * axes.drive
+    sine = -seat.walls[:, 0] / bowl.track.radius
+    dragged = complete.wall_friction
+    height = float(vectors.dot(axes.up, seat.walls.mean(axis=0)))
+    weight = seat.mass * bowl.gravity
+    less = 1.0 - np.sqrt(1.0 - sine**2)  # of a force turned by sigma
+    drive_lever = seat.height * push[0] + offset * push[2]
+    radial = -weight * np.cos(bowl.track.climb) * np.sin(bowl.track.bank)
+    about_x = -1e3 * seat.height * float(vectors.dot(push, axes.radial))
+    centripetal = seat.mass * speed**2 / bowl.track.radius
+    return (
+        Term("radial gravity, -m g cos(phi) sin(delta)", "4.33", float(radial), "N"),
+        Term("centripetal force at mid-stroke", "4.33, 4.58", centripetal, "N"),
+        Term("wall friction turned by sigma, along X", "4.32, 4.57", float(vectors.dot(dragged, less)), "N"),
+        Term("wall friction turned by sigma, along Y", "4.33, 4.58", float(vectors.dot(dragged, sine)), "N"),
+        Term("moment of wall friction about Y", "4.36, 4.61", 1e3 * height * float(dragged.sum()), "N mm"),
+        Term("moment of the drive about X", "4.35, 4.60", about_x, "N mm"),
+        Term("drive at the contact plane, about Y", "4.36, 4.61", 1e3 * float(drive_lever), "N mm"),
+    )
+
+
+def _drive(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity) -> Array:
+    """m A w^2 along X, level across, up, (..., 3)."""
+    size = part.mass * bowl.drive.amplitude * (2.0 * np.pi * bowl.drive.frequency) ** 2 * np.sin(phase)
+    beta, turn = bowl.drive.vibration_angle, bowl.drive.direction - heading
+    along = (size * np.cos(beta) * np.cos(turn), size * np.cos(beta) * np.sin(turn), size * np.sin(beta))
+    shape = (bowl.track.bank, bowl.track.climb, bowl.track.radius, bowl.gravity, bowl.friction.kinetic)
+    return np.stack(np.broadcast_arrays(*along, *map(np.asarray, shape))[:3], axis=-1)
+
+
+def _constants(part: Levers, bowl: Bowl, drive: Array) -> Array:
+    """Return the terms without unknowns: three forces [N], three moments [N m], (..., 6)."""
+    delta, phi, weight = bowl.track.bank, bowl.track.climb, part.mass * bowl.gravity
+    x, y, z = np.moveaxis(drive, -1, 0)
+    c, s = np.cos(delta), np.sin(delta)
+    forces = {
+        "tilted": (y * c + z * s, z * c - y * s - weight * np.cos(phi) * c),  # eqs. [4.33], [4.34]
+        "level": (y, z - weight * np.cos(phi)),  # eqs. [4.58], [4.59]
+    }[part.axes]
+    h, e = part.height, part.offset
+    about_y = e * z * c + h * x * c - e * y * s  # eqs. [4.29], [4.36], [4.61]
+    about_z = -(e * z * s + h * x * s + e * y * c)  # eqs. [4.37], [4.62]
+    along = x - weight * np.sin(phi)  # eqs. [4.32], [4.57]
+    return np.stack(np.broadcast_arrays(along, *forces, 0.0, about_y, about_z), axis=-1)
+
+
+def _matrix(part: Levers, bowl: Bowl, shape: tuple[int, ...], sliding: bool) -> Array:
+    """Columns of V'_X (or R4), F_N, R1, R2, R3 and d F_N; (..., 6, 6)."""
+    delta, sigma = np.asarray(bowl.track.bank), half_angle(part, bowl.track.radius)
+    mu, wall = (bowl.friction.kinetic, bowl.friction.wall) if sliding else (0.0, 0.0)
+    c, s, h = np.cos(delta), np.sin(delta), part.height
+    first = (-part.mass, 0, 0, 0, 0, 0) if sliding else (-1.0, 0, 0, 0, -h, 0)
+    normal = (-mu, 0, 1, 0, -h * mu, 0) if part.axes == "tilted" else (-mu, -s, c, 0, -h * mu, 0)
+    radial = (0, 1, 0, -h, 0, 0) if part.axes == "tilted" else (0, c, s, -h, 0, 0)
+    walls = [
+        _wall(part, side, lever, delta, sigma, wall)
+        for side, lever in ((1.0, part.behind), (-1.0, -part.ahead))
+    ]
+    columns = [first, normal, *walls, radial, (0, 0, 0, 0, 1, 0)]
+    stacked = [np.stack([np.broadcast_to(entry, shape) for entry in column], axis=-1) for column in columns]
+    return np.stack(stacked, axis=-1)
+
+
+def _wall(
+    part: Levers, side: float, lever: float, delta: Array, sigma: Array, wall: Quantity
+) -> tuple[Array, ...]:
+    """Column of one wall reaction: ``side`` +1 for R1, -1 for R2."""
+    c, s, raised = np.cos(delta), np.sin(delta), part.wall * np.sin(part.wall_angle - delta)
+    cosine, sine = np.cos(sigma), side * np.sin(sigma)
+    across = (cosine * c, -cosine * s) if part.axes == "tilted" else (cosine, 0.0)
+    turning = lever * cosine + part.friction_side * wall - part.side * sine
+    # eqs. [4.35], [4.60]; eqs. [4.36], [4.61]; eqs. [4.37], [4.62]
+    about = (raised * cosine, -raised * sine * c + turning * s, raised * sine * s + turning * c)
+    return (sine - wall, *across, *about)

@@ -1,1 +1,0 @@
-"""The thesis's equations of motion as printed, beside the complete ones."""
