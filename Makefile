@@ -131,7 +131,7 @@ docs/bowl_solid.png: parts/$(BOLT).stl docs/bowl_solid.yaml | $(READY)
 	$(FEEDER) bowl $< --target 60/min --config docs/bowl_solid.yaml --solid -o results --quiet > /dev/null
 	cp results/$(BOLT)/bowl_solid.png $@
 
-mutants: $(READY_TO_TEST) ## small changes to the physics that no test notices, a quarter of an hour
+mutants: $(READY_TO_TEST) ## small changes to the physics that no test notices, half an hour
 	$(BIN)/python benchmarks/mutants.py
 
 docs/tooling.png: docs/design.png
