@@ -52,7 +52,8 @@ def shares(pattern):
         measured, ours = one.profile.fractions, one.recommended
         csa = one.answers["CSA"].fractions
         counted = int(one.profile.values.sum()) if one.profile.kind == "counts" else ""
-        for k, name in enumerate(one.measured.names if hasattr(one.measured, "names") else one.aspects.names):
+        names = one.measured.names if hasattr(one.measured, "names") else one.aspects.names
+        for k, name in enumerate(names[:1] if len(names) == 2 else names):  # of two the other has the rest
             ends = f"{percent(max(ours.low[k], 0.0))} to {percent(min(ours.high[k], 1.0))}"
             held = "" if ours.low[k] <= measured[k] <= ours.high[k] else " (outside)"
             rows.append([
