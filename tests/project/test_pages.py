@@ -31,11 +31,11 @@ def test_the_readme_is_short():
 
 
 def test_the_index_leads_to_every_page():
-    """The pages of docs/method/ are reached from the page whose evidence they hold."""
+    """The pages of docs/method/ are reached from a page whose evidence they hold."""
     index = (DOCS / "README.md").read_text()
     assert [page.name for page in DOCS.glob("*.md") if f"]({page.name})" not in index] == ["README.md"]
-    for page in (DOCS / "method").glob("*.md"):
-        assert f"](method/{page.name})" in (DOCS / page.name).read_text()
+    pages = "".join(page.read_text() for page in DOCS.glob("*.md"))
+    assert [page.name for page in DOCS.glob("method/*.md") if f"](method/{page.name}" not in pages] == []
 
 
 def anchors(page):
