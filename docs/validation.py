@@ -1,6 +1,6 @@
-"""Bring docs/validation.md up to date: every measured set, what was measured first, ours beside it.
+"""Bring docs/validation.md and its page in docs/method up to date: every measured set, ours beside it.
 
-Example: python docs/validation.py          (writes docs/validation.md: half a minute)
+Example: python docs/validation.py          (writes both pages: half a minute)
          python docs/validation.py --check  (status 1 if a table of QUICK is out of date)
 """
 
@@ -20,6 +20,7 @@ from feederscrew.studies.compare import compare_sets
 from feederscrew.studies.simulated.tosses import SURE, follow
 
 PAGE = Path(__file__).resolve().parent / "validation.md"
+METHOD = PAGE.parent / "method/validation.md"
 MEASURED = PAGE.parent / "measured"
 SETS = {"cuboids": "cuboid_*", "cubes": "short_cube", "coin": "coin*", "t shape": "t_shape"}
 CARDS = {"magnet": "magnet", "arc chute": "arc_chute"}
@@ -191,13 +192,18 @@ def filled(text, names):
 
 def main():
     """Write or check; the exit status."""
-    old = PAGE.read_text(encoding="utf-8")
-    if "--check" in sys.argv:
-        new = filled(old, QUICK)
-        sys.stdout.writelines(difflib.unified_diff(old.splitlines(True), new.splitlines(True), "page", "now"))
-        return int(old != new)
-    PAGE.write_text(filled(old, (*SETS, "held out", *CARDS, "tosses", "air jet")), encoding="utf-8")
-    return 0
+    check, status = "--check" in sys.argv, 0
+    whole = {PAGE: (*SETS, "held out", *CARDS, "tosses"), METHOD: ("air jet",)}
+    for page, names in whole.items():
+        old = page.read_text(encoding="utf-8")
+        new = filled(old, [name for name in names if not check or name in QUICK])
+        if check:
+            lines = difflib.unified_diff(old.splitlines(True), new.splitlines(True), page.name, "now")
+            sys.stdout.writelines(lines)
+            status = max(status, int(old != new))
+        else:
+            page.write_text(new, encoding="utf-8")
+    return status
 
 
 if __name__ == "__main__":
