@@ -102,7 +102,7 @@ bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minut
 	for name in $(BENCHES); do $(BIN)/python benchmarks/$$name.py || exit 1; done
 	$(BIN)/python benchmarks/aspects.py --repeats 1
 
-PICTURES := aspects regimes drop bowl bowl_solid design tooling trial report conveying_map
+PICTURES := aspects regimes drop bowl bowl_solid design tooling trial report conveying_map glossary
 
 docs: $(PICTURES:%=docs/%.png) $(READY) ## pictures, outputs and tables of the pages
 	$(BIN)/python docs/readme.py
@@ -131,7 +131,7 @@ docs/bowl_solid.png: parts/$(BOLT).stl docs/bowl_solid.yaml | $(READY)
 	$(FEEDER) bowl $< --target 60/min --config docs/bowl_solid.yaml --solid -o results --quiet > /dev/null
 	cp results/$(BOLT)/bowl_solid.png $@
 
-mutants: $(READY_TO_TEST) ## small changes to the physics that no test notices, a quarter of an hour
+mutants: $(READY_TO_TEST) ## small changes to the physics that no test notices, half an hour
 	$(BIN)/python benchmarks/mutants.py
 
 docs/tooling.png: docs/design.png
@@ -151,6 +151,9 @@ docs/report.png: parts/$(DEMO).stl docs/screenshot.py | $(READY)
 
 docs/conveying_map.png: docs/conveying_map.py | $(READY)
 	$(BIN)/python docs/conveying_map.py
+
+docs/glossary.png: docs/glossary.py | $(READY)
+	$(BIN)/python docs/glossary.py
 
 release: ## what a release is, step by step; checks version and changelog
 	@$(PYTHON) docs/release.py

@@ -9,7 +9,7 @@ of every rule and of the drop tests of every launch by series, where `recommende
 launch that was used: the root of the mean square of the total variation, which for parts with two classes is
 the error of the share. Measured sets get MORE drops. Then total variation from the drop tests of every
 launch, on real parts, on boxes, hulls and prisms made at random, and on round bodies made at random; the
-widths of the intervals (``intervals.py``); and PMI with its products of inertia on the two published cards.
+widths of the intervals (``intervals.py``).
 """
 
 import argparse
@@ -17,16 +17,14 @@ from pathlib import Path
 
 import intervals
 import numpy as np
-from bodies import MADE, ROOT, ROUND, Body, made, rounds, rows, shapes
+from bodies import MADE, ROOT, ROUND, Body, made, rounds, shapes
 
 from feederscrew.part import load
-from feederscrew.resting.counts.deviation import deviation, total_variation
+from feederscrew.resting.counts.deviation import total_variation
 from feederscrew.resting.rules.recommended import LAUNCHES
 from feederscrew.studies.compare import compare_sets
 
-DATA = ROOT / "feederscrew/thesis/data"
 MORE = 10  # times the drops, on measured sets
-CARDS = {"arc_chute": "table_3_04", "magnet": "table_3_07"}  # and the tables of their measured fractions
 
 
 class Measured:
@@ -109,30 +107,6 @@ def against_drops(groups):
             print(f"{rule:28}" + "".join(f"{mean:8.3f}" for mean in away))
 
 
-def cards():
-    """Print PMI with and without products of inertia on the published cards.
-
-    A normal n lies along the principal axis that has no product, or across it; across, n J^-1 n = (trace - n
-    J n) / determinant of the other two axes' 2 x 2 matrix (Cayley and Hamilton): the printed moment n J n of
-    an aspect fixes its free moment, whatever its normal.
-    """
-    print("\nPMI on the published cards, deviation as in Tables 3-12 and 3-13")
-    for name, table in CARDS.items():
-        part = load(str(ROOT / f"parts/{name}.yaml"))
-        alone = next(k for k in range(3) if not np.delete(part.inertia[k], k).any())
-        block = np.delete(np.delete(part.inertia, alone, 0), alone, 1)
-        moments = np.array([aspect.polar_inertia for aspect in part.aspects])
-        heights = np.array([aspect.height for aspect in part.aspects])
-        free = np.linalg.det(block) / (np.trace(block) - moments)
-        free = np.where(np.isclose(moments, part.inertia[alone, alone]), moments, free)
-        columns = [key for key in rows(DATA / f"{table}.csv")[0] if key != "aspect"]
-        print(f"{name:28}" + "".join(f"{column:>9}" for column in columns))
-        for rule, moment in (("PMI", moments), ("PMI, other rotations free", free)):
-            p = moment / heights / (moment / heights).sum()
-            against = [np.array([float(row[c]) for row in rows(DATA / f"{table}.csv")]) for c in columns]
-            print(f"  {rule:26}" + "".join(f"{deviation(p, q):9.4f}" for q in against))
-
-
 def main(chosen):
     """Everything, in the order of the module's text."""
     known = {"drops": chosen.drops, "keep": chosen.keep, "jobs": chosen.jobs}
@@ -162,7 +136,6 @@ def main(chosen):
     intervals.weights_of_hops(bodies, series)
     intervals.closed_forms(bodies + real)
     intervals.measured(series)
-    cards()
 
 
 if __name__ == "__main__":

@@ -1,9 +1,8 @@
-"""Speed of the resting aspects against a bare floor and a peer, on meshes of 10^3 to 10^6 facets.
+"""Speed of the resting aspects against a bare floor, on meshes of 10^3 to 10^6 facets.
 
 Example: python benchmarks/aspects.py --largest 1e6 --repeats 5
 
 Floor: trimesh.load_mesh + is_watertight + mass_properties + SciPy ConvexHull, what any tool must pay.
-Peer: trimesh.poses.compute_stable_poses on hulls of about 10^4 facets.
 Each figure is the median ratio over alternating processes, the second of two runs in each: what a library
 imports or loads once is not counted in the time, but is in the memory.
 """
@@ -80,17 +79,7 @@ def ours(path):
     return len(find(feederscrew.part.load(path)).names)
 
 
-def peer(path):
-    """Stable poses as trimesh computes them."""
-    return len(trimesh.poses.compute_stable_poses(trimesh.load_mesh(path).convex_hull, threshold=0.0)[0])
-
-
-def poses(path):
-    """Our aspects on the same hull, for the peer's comparison."""
-    return ours(path)
-
-
-JOBS = {"floor": floor, "ours": ours, "peer": peer, "poses": poses}
+JOBS = {"floor": floor, "ours": ours}
 
 
 def measured(job, path):
@@ -160,11 +149,6 @@ def main(largest, repeats):
                     f", memory {MEMORY} {waits.verdict(memory <= MEMORY)}",
                     flush=True,
                 )
-        for mesh in (trimesh.creation.icosphere(subdivisions=4).apply_scale([3, 4, 5]), sphere(1e4)):
-            path = Path(folder) / "hull.stl"
-            mesh.export(path)
-            ratio, _, a, b = compare("peer", "poses", path, 1)
-            print(f"hull of {len(mesh.faces):,} facets: {a:.2f} s, ours {b:.3f} s, {ratio:.0f} times faster")
     part = Path(__file__).parent.parent / "parts" / "lbracket_30x20x15.stl"
     ratio = cold(part, repeats)
     told = waits.verdict(ratio <= COLD)

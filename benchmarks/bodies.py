@@ -1,6 +1,5 @@
 """Bodies for ``accuracy.py``: those that were measured, real parts, and those made at random."""
 
-import csv
 import json
 import sys
 from functools import cached_property
@@ -9,7 +8,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import trimesh
-from closed_forms import TRIED
 
 from feederscrew.dropping import conditions, drop_test
 from feederscrew.resting.aspects import find
@@ -25,11 +23,6 @@ import shapes  # noqa: E402 - the parts with closed forms
 MADE, ROUND = 2013, 1909  # seeds
 SIDES = 64  # sections of a round body
 EXPONENTS = (0.0, 0.5, 1.0, 1.5, 2.0)  # of the surface-weighted rule
-
-
-def rows(path):
-    """Rows of a CSV with # lines."""
-    return list(csv.DictReader(line for line in path.read_text().splitlines() if line[0] != "#"))
 
 
 class Body:
@@ -65,7 +58,7 @@ class Body:
     def rules(self):
         """Every rule's shares by class."""
         found = {rule: p for rule, p in self.aspects.probabilities.items() if rule != "surface"}
-        return found | self.surfaces() | {name: self.by_class(weigh(self)) for name, weigh in TRIED.items()}
+        return found | self.surfaces()
 
     def tally(self, launch):
         """Counts of a drop test."""

@@ -8,14 +8,11 @@ its edge (flip), of a square nut's second face and of a T shape's flat side (fee
 alone, coarser and finer than what the kernel uses; and the coin against the sections of its file. A row's
 difference from the row above, over its standard error of sampling, says whether the setting still matters.
 Last all settings at once, with ten times the drops: how far the kernel's own are from the finest is the
-numerical error that the intervals carry (``ensemble.NUMERICAL``), said for a share of a half. And the speed
-beside MuJoCo's, where it is installed: both at their own step and at half of it, the contact's time alike.
+numerical error that the intervals carry (``ensemble.NUMERICAL``), said for a share of a half.
 """
 
 import argparse
-import importlib.util
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -183,30 +180,6 @@ def together(looked_at, drops):
     print(f"  explains {np.sqrt((errors**2).mean()):.4f}; the greatest {np.abs(differences).max():.4f}")
 
 
-def beside_mujoco(drops):
-    """Print drops a second and core of the kernel and of MuJoCo, each at its own step and at half of it."""
-    if importlib.util.find_spec("mujoco") is None:
-        print("\nMuJoCo is not installed: no comparison (pip install mujoco)")
-        return
-    import speed
-
-    name, shape, rows = next(speed.bodies())
-    count = rows.max() + 1
-    for setting in (one for one in speed.SETTINGS if one.alike):
-        print(f"\n{name}, {setting.launch.name}: shares and drops a second and core, at two steps each")
-        for factor in (1.0, 0.5):
-            rate, faces = speed.rates(shape, 20 * drops, setting.launch, finer(factor))
-            print(f"  kernel x {factor:3g} {_profile(faces, rows, count)} {rate:9.1f}", flush=True)
-        for factor in (1.0, 0.5):
-            fine = replace(setting, step=factor * setting.step, length=int(setting.length / factor))
-            rate, faces = speed.mujoco_faces(shape, fine, drops, seed=2)
-            print(f"  MuJoCo x {factor:3g} {_profile(faces, rows, count)} {rate:9.1f}", flush=True)
-
-
-def _profile(faces, rows, count):
-    return np.round(ensemble.shares(ensemble.counted(faces, rows, count)), 3)
-
-
 def finer(factor):
     """All of the kernel's steps and tolerances so many times as large."""
     usual, fields = Steps(), [field for names in SETTINGS.values() for field in names]
@@ -221,7 +194,6 @@ def main(chosen):
     for case in looked_at:
         shares(case, chosen.drops)
     together(looked_at, 10 * chosen.drops)
-    beside_mujoco(chosen.mujoco)
 
 
 if __name__ == "__main__":
@@ -229,5 +201,4 @@ if __name__ == "__main__":
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--drops", type=int, default=4000)
-    parser.add_argument("--mujoco", type=int, default=1000, help="drops in MuJoCo, if it is installed")
     main(parser.parse_args())

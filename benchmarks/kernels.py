@@ -3,7 +3,7 @@
 Run: python benchmarks/kernels.py            (prints the table)
      python benchmarks/kernels.py --write    (puts it into docs/speed.md as well)
 
-Each script of its own tells more: speed.py (tumbling, drops beside MuJoCo), conveying.py (beside plain Python
+Each script of its own tells more: speed.py (tumbling, drops), conveying.py (beside plain Python
 and SciPy's solver), aspects.py (meshes up to a million facets) and tooling.py (beside a scan with shapely).
 """
 
@@ -25,7 +25,7 @@ PAIRS = 3
 
 def drops():
     """Drops a second and core."""
-    for name, shape, _ in speed.bodies():
+    for name, shape in speed.bodies():
         if name in speed.TARGETS:
             rate, _ = speed.rates(shape, 4000)
             yield waits.Row(f"drops of a {name}", speed.TARGETS[name], rate, "a CPU second", more=True)

@@ -1,10 +1,13 @@
 """Small changes to the physics, one at a time, and whether the tests notice: `make mutants`.
 
-Example: python benchmarks/mutants.py --each 12 --seed 1
+Examples: python benchmarks/mutants.py --each 12 --seed 1
+          python benchmarks/mutants.py rates.rocking.goes_over machine.sizing
+          python benchmarks/mutants.py tooling.holding.may_wedge --tests tests/tooling/test_holding.py
 
-Numbers, signs, operators, comparisons, and minima are changed in thirteen files of a copy of the repository;
-of each file so many changes are drawn, and its own tests are run on them until one fails. What survives is
-printed with its line: either a test is missing, or the change has no consequence.
+A name is that of a module, function, method or constant below `feederscrew`. The operators change numbers,
+signs, sums, products, comparisons, conditions, minima and sines of what has that name, in a copy of the
+repository. Of each name so many changes are drawn, and its tests are run on each until one fails. A change
+that survives is printed with its line: either a test is missing, or the change has no consequence.
 """
 
 import argparse
@@ -18,49 +21,59 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from named_mutants import EQUIVALENT, NAMED
 
 ROOT = Path(__file__).parent.parent
-FILES = {
-    "machine/sizing.py": ("tests/machine/test_sizing_rules.py", "tests/cli/moving/test_cli_bowl.py"),
-    "machine/throughput.py": ("tests/machine/test_sizing_rules.py", "tests/cli/moving/test_cli_bowl.py"),
-    "rates/rocking.py": ("tests/rates/test_rocking.py", "tests/rates/test_rocking_noticed.py"),
-    "rates/steadiness.py": (
-        "tests/rates/test_rate_noticed.py",
-        "tests/rates/test_rocking_noticed.py",
-        "tests/rates/test_steadiness.py",
-    ),
-    "rates/tipping.py": (
-        "tests/rates/test_rate_noticed.py",
-        "tests/rates/test_rocking_noticed.py",
-        "tests/rates/test_tipping.py",
-    ),
-    "rates/well_oriented.py": (
-        "tests/rates/test_rate.py",
-        "tests/rates/test_rate_noticed.py",
-        "tests/rates/test_passing.py",
-    ),
-    "tooling/devices/blades.py": (
-        "tests/tooling/test_devices_noticed.py",
-        "tests/tooling/test_verdicts.py",
-        "tests/tooling/test_clearing.py",
-    ),
-    "tooling/devices/ledges.py": (
-        "tests/tooling/test_devices_noticed.py",
-        "tests/tooling/test_verdicts.py",
-        "tests/tooling/test_holding.py",
-        "tests/rates/test_steadiness.py",
-    ),
-    "tooling/devices/openings.py": (
-        "tests/tooling/test_devices_noticed.py",
-        "tests/tooling/test_verdicts.py",
-        "tests/tooling/test_holding.py",
-        "tests/rates/test_steadiness.py",
-    ),
-    "tooling/holding.py": ("tests/tooling/test_holding.py", "tests/tooling/test_holding_noticed.py"),
-    "tooling/turning.py": ("tests/tooling/test_turning.py", "tests/tooling/test_holding_noticed.py"),
-    "trial/course.py": ("tests/studies/test_trial_numbers.py", "tests/trial/test_trial_course.py"),
-    "trial/result.py": ("tests/studies/test_trial_numbers.py", "tests/cli/moving/test_cli_trial.py"),
+SIZING = "tests/machine/test_sizing_rules.py"
+ROCKING = "tests/rates/test_rocking_noticed.py"
+HOLDING = "tests/tooling/test_holding_noticed.py"
+DEVICES = "tests/tooling/test_devices_noticed.py"
+VERDICTS = f"{DEVICES} tests/tooling/test_verdicts.py"
+LEDGES = f"{VERDICTS} tests/tooling/test_holding.py tests/rates/test_steadiness.py"
+RATES = "tests/rates/test_rate_noticed.py"
+CONDITION = "tests/machine/test_condition.py"
+JUDGED = "tests/resting/test_judged_by_measurement.py"
+SIGNS = "tests/trial/test_trial_signs.py"
+TESTS = {  # by name; more than one file, or `-k`, as on a command line
+    "machine.sizing": f"{SIZING} tests/cli/moving/test_cli_bowl.py",
+    "machine.throughput": f"{SIZING} tests/cli/moving/test_cli_bowl.py",
+    "machine.condition._of_stroke": CONDITION,
+    "machine.condition._why": CONDITION,
+    "rates.rocking": f"tests/rates/test_rocking.py {ROCKING}",
+    "rates.rocking.goes_over": ROCKING,
+    "rates.steadiness": f"{RATES} {ROCKING} tests/rates/test_steadiness.py",
+    "rates.tipping": f"{RATES} {ROCKING} tests/rates/test_tipping.py",
+    "rates.well_oriented": f"tests/rates/test_rate.py {RATES} tests/rates/test_passing.py",
+    "rates.stream.Orientations.sure": "tests/rates/test_steadiness.py -k round",
+    "resting.rules.recommended.SHARES": JUDGED,
+    "resting.rules.recommended.LAUNCHED": JUDGED,
+    "resting.rules.recommended.FLOOR": JUDGED,
+    "tooling.verdicts.WORN": HOLDING,
+    "tooling.strip._width": DEVICES,
+    "tooling.holding": f"tests/tooling/test_holding.py {HOLDING}",
+    "tooling.turning": f"tests/tooling/test_turning.py {HOLDING}",
+    "tooling.devices.blades": f"{VERDICTS} tests/tooling/test_clearing.py",
+    "tooling.devices.ledges": LEDGES,
+    "tooling.devices.ledge_edges.Tip.judged": HOLDING,
+    "tooling.devices.openings": LEDGES,
+    "tooling.devices.steady_jets.SteadyJet": DEVICES,
+    "trial.course": "tests/studies/test_trial_numbers.py tests/trial/test_trial_course.py",
+    "trial.result": "tests/studies/test_trial_numbers.py tests/cli/moving/test_cli_trial.py",
+    "trial.queue._Queue.enter": "tests/trial/test_trial_queue.py -k 'enter or wait'",
+    "trial.kernel.pushes.wanted": f"{SIGNS} -k 'slides and 0.2'",
+    "trial.kernel.pushes.reversal": f"{SIGNS} -k stand",
+    "trial.kernel.pushes.give": f"{SIGNS} -k air",
+    "trial.kernel.track_leans.wall_friction": f"{SIGNS} -k 'brake and 0.7'",
+    "trial.kernel.motion.lift": "tests/trial/test_trial_queue.py -k pushed_apart",
+    "dropping.kernel.falling.resist": "tests/dropping/test_drop_resistance.py",
+}
+EXCUSED = {  # constants whose value within reason has no consequence, and why
+    "machine.sizing.SETTLED": "a bound below every length that is printed",
+    "machine.sizing.ROUNDS": "the search ends by itself long before",
+    "machine.throughput.STEPS": "strokes so near each other find the same one",
+    "rates.rocking.QUIET": "a part that comes down so slowly is at rest within the same instant",
+    "rates.tipping.INSTANTS": "any number of instants that shows a stroke",
+    "rates.tipping.BESIDE": "any width beyond every force's place: it tips over the ends alone",
+    "tooling.holding.FAR": "any length beyond every foot",
 }
 COPIED = (
     "feederscrew",
@@ -80,144 +93,163 @@ SWAPPED = {
 }  # fmt: skip
 NAMES = {"min": "max", "max": "min", "sin": "cos", "cos": "sin", "argmin": "argmax", "argmax": "argmin"}
 NAMES |= {"any": "all", "all": "any"}
-GROWN = 1.25  # times a number that is changed; a whole one becomes the next
+FACTORS = (1.25, 0.8)  # of a number that is changed; a whole one becomes the next
+
+
+def changes(node):
+    """Return what the operators make of a node: a list of new nodes, empty where none applies."""
+    match node:
+        case ast.Constant(value=int() | float()) if not isinstance(node.value, bool) and node.value:
+            whole = isinstance(node.value, int)
+            return [
+                ast.Constant(v) for v in ([node.value + 1] if whole else [node.value * f for f in FACTORS])
+            ]
+        case ast.UnaryOp(op=ast.USub() | ast.Not()):
+            return [node.operand]
+        case ast.BinOp() if type(node.op) in SWAPPED:
+            return [ast.BinOp(node.left, SWAPPED[type(node.op)](), node.right)]
+        case ast.BoolOp():
+            return [ast.BoolOp(SWAPPED[type(node.op)](), node.values)]
+        case ast.Compare(ops=[op]) if type(op) in SWAPPED:
+            return [ast.Compare(node.left, [SWAPPED[type(op)]()], node.comparators)]
+        case ast.IfExp():
+            return [ast.IfExp(node.test, node.orelse, node.body)]
+        case ast.Assign(value=ast.Name()):
+            return [ast.Assign(node.targets, ast.UnaryOp(ast.USub(), node.value))]
+        case ast.Attribute() if node.attr in NAMES:
+            return [ast.Attribute(node.value, NAMES[node.attr], node.ctx)]
+        case ast.Name() if node.id in NAMES:
+            return [ast.Name(NAMES[node.id], node.ctx)]
+    return []
 
 
 class Changer(ast.NodeTransformer):
-    """Changes the node of a number, in the order they are met; without one it only counts them."""
+    """Makes one change, by its number in the order of the nodes; without a number it only counts them."""
 
     def __init__(self, chosen=None):
-        self.chosen, self.met, self.line = chosen, -1, 0
+        self.chosen, self.count, self.line = chosen, 0, 0
 
     def visit(self, node):
-        """Change a node where it is the one, and look on inside."""
-        new = changed(node)
-        if new is not None:
-            self.met += 1
-            if self.met == self.chosen:
-                self.line = node.lineno if hasattr(node, "lineno") else 0
+        """Change the node if its number is the chosen one, else its children."""
+        for new in changes(node):
+            self.count += 1
+            if self.count - 1 == self.chosen:
+                self.line = node.lineno
                 return ast.copy_location(new, node)
-        return super().generic_visit(node)
+        return self.generic_visit(node)
 
 
-def changed(node):
-    """A node's small change, or None of one that has none."""
-    if isinstance(node, ast.Constant) and type(node.value) in (int, float) and node.value not in (0, 0.0):
-        return ast.Constant(node.value * GROWN if isinstance(node.value, float) else node.value + 1)
-    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.Not):
-        return node.operand
-    if isinstance(node, ast.BinOp) and type(node.op) in SWAPPED:
-        return ast.BinOp(node.left, SWAPPED[type(node.op)](), node.right)
-    if isinstance(node, ast.BoolOp):
-        return ast.BoolOp(SWAPPED[type(node.op)](), node.values)
-    if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in SWAPPED:
-        return ast.Compare(node.left, [SWAPPED[type(node.ops[0])]()], node.comparators)
-    if isinstance(node, ast.Attribute) and node.attr in NAMES:
-        return ast.Attribute(node.value, NAMES[node.attr], node.ctx)
-    return ast.Name(NAMES[node.id], node.ctx) if isinstance(node, ast.Name) and node.id in NAMES else None
+def located(name, root=ROOT):
+    """Return the file of a dotted name, and the names inside of it."""
+    parts = name.split(".")
+    for count in range(len(parts), 0, -1):
+        path = (root / "feederscrew").joinpath(*parts[:count]).with_suffix(".py")
+        if path.is_file():
+            return path, parts[count:]
+    raise SystemExit(f"{name}: there is no such module below feederscrew")
 
 
-def mutants(text, each, rng):
-    """Texts with one change, and the lines they are in."""
+def named(tree, names):
+    """Return the node of nested names in a module: a class, a function or what assigns a constant."""
+    for name in names:
+        below = [node for node in tree.body if name in _names(node)]
+        if not below:
+            raise SystemExit(f"{'.'.join(names)}: there is no {name}")
+        tree = below[0]
+    return tree
+
+
+def _names(node):
+    """The names that a statement gives."""
+    targets = getattr(node, "targets", [getattr(node, "target", None)])
+    assigned = [
+        one.id for target in targets if target for one in ast.walk(target) if isinstance(one, ast.Name)
+    ]
+    return [getattr(node, "name", None), *assigned]
+
+
+def mutants(text, names, each, rng):
+    """Yield (text, line): a module with one change in what has these names; all of it without any."""
     counter = Changer()
-    counter.visit(ast.parse(text))
-    for chosen in sorted(rng.permutation(counter.met + 1)[:each]):
-        changer = Changer(chosen)
-        tree = changer.visit(ast.parse(text))
+    counter.generic_visit(named(ast.parse(text), names))
+    for chosen in sorted(rng.permutation(counter.count)[:each]):
+        tree, changer = ast.parse(text), Changer(chosen)
+        changer.generic_visit(named(tree, names))
         yield ast.unparse(ast.fix_missing_locations(tree)), changer.line
 
 
 def difference(text, other):
-    """The line of a module that a change is in, before and after, as ``unparse`` writes it."""
+    """Return the line of a module that a change is in, before and after, as ``unparse`` writes it."""
     before, after = ast.unparse(ast.parse(text)).splitlines(), other.splitlines()
     pairs = [(a.strip(), b.strip()) for a, b in zip(before, after) if a != b]
     return "   ->   ".join(pairs[0]) if pairs else "no change"
 
 
+def excused(name, text, line):
+    """Return why a change in a line has no consequence; empty where it should have one."""
+    module = ".".join(name.split(".")[: len(name.split(".")) - len(located(name)[1])])
+    for node in ast.parse(text).body:
+        if isinstance(node, ast.Assign) and node.lineno <= line <= node.end_lineno:
+            return next((EXCUSED[f"{module}.{n}"] for n in _names(node) if f"{module}.{n}" in EXCUSED), "")
+    return ""
+
+
 def notices(folder, tests, seconds, **others):
-    """Whether one of the tests fails on what is in the folder; one that never ends fails."""
-    shown = others | {"PYTHONPATH": f"{folder}:{folder / 'tests'}", "PYTHONDONTWRITEBYTECODE": "1"}
-    line = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *tests]
+    """Return whether one of the tests fails on what is in the folder; one that never ends fails."""
+    environment = os.environ | {"PYTHONPATH": f"{folder}:{folder / 'tests'}", "PYTHONDONTWRITEBYTECODE": "1"}
+    line = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *shlex.split(tests)]
     try:
-        done = subprocess.run(line, cwd=folder, env=os.environ | shown, capture_output=True, timeout=seconds)
+        done = subprocess.run(
+            line, cwd=folder, env=environment | others, capture_output=True, timeout=seconds
+        )
     except subprocess.TimeoutExpired:
         return True
     return done.returncode != 0
 
 
-def named(folder, seconds, rows=NAMED):
-    """Try the changes that once stayed unnoticed; what of them does not apply any more is printed too."""
-    noticed = 0
-    for name, old, new, test in rows:
-        path = folder / "feederscrew" / name
-        text = path.read_text() if path.exists() else ""
-        if text.count(old) != 1:
-            print(f"{name}: {old!r} is in it {text.count(old)} times, not once", flush=True)
-            continue
-        path.write_text(text.replace(old, new))
-        plain = {"NUMBA_DISABLE_JIT": "1"} if name.startswith("trial/kernel") else {}
-        found = notices(folder, shlex.split(test), seconds, **plain)  # sooner done than compiled anew
-        noticed += found
-        print(f"{name}: {old!r} as {new!r} {'noticed' if found else 'NOT NOTICED'}", flush=True)
-        path.write_text(text)
-    print(f"{noticed} of {len(rows)} named changes are noticed", flush=True)
-
-
-def excused(name, line):
-    """Say why a change to a line has no consequence; empty where it should have one."""
-    told = (why for (file, part), why in EQUIVALENT.items() if file == name and part in line)
-    return next(told, "")
-
-
-def copied(folder):
-    """Copy what the tests need to a folder."""
-    for name in COPIED:
-        copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy
-        copy(ROOT / name, folder / name)
-    (folder / "feederscrew_cli").symlink_to(folder / "cli")
+def tried(folder, name, tests, chosen):
+    """Try changes of one name; how many are noticed, and how many there were."""
+    path, inside = located(name, folder)
+    text, noticed, count = path.read_text(), 0, 0
+    plain = {"NUMBA_DISABLE_JIT": "1"} if ".kernel." in name else {}  # sooner done than compiled anew
+    if notices(folder, tests, chosen.seconds, **plain):
+        raise SystemExit(f"{name}: its tests fail before anything is changed")
+    rng = np.random.default_rng([chosen.seed, *name.encode()])  # the same changes alone and with others
+    for other, line in mutants(text, inside, chosen.each, rng):
+        path.write_text(other)
+        found = notices(folder, tests, chosen.seconds, **plain)
+        noticed, count = noticed + found, count + 1
+        if not found:
+            reason = excused(name, text, line)
+            print(f"{name}:{line}: {difference(text, other)}   {reason}".rstrip(), flush=True)
+    path.write_text(text)
+    print(f"{name}: {noticed} of {count} noticed", flush=True)
+    return np.array([noticed, count])
 
 
 def main(chosen):
-    """Try every file, and print what survives."""
-    killed, tried = 0, 0
+    """Try every name, and print the changes that survive."""
     with tempfile.TemporaryDirectory() as made:
-        folder = Path(made)
-        copied(folder)
-        if not chosen.files:
-            named(folder, chosen.seconds)
-        for name in () if chosen.named else chosen.files or FILES:
-            rng = np.random.default_rng(
-                [chosen.seed, *name.encode()]
-            )  # the same changes alone and with others
-            path = folder / "feederscrew" / name
-            text = path.read_text()
-            if notices(folder, FILES[name], chosen.seconds):
-                raise SystemExit(f"{name}: its tests fail before anything is changed")
-            for other, line in mutants(text, chosen.each, rng):
-                path.write_text(other)
-                noticed = notices(folder, FILES[name], chosen.seconds)
-                killed, tried = killed + noticed, tried + 1
-                if not noticed:
-                    told = difference(text, other)
-                    print(f"{name}:{line}: {told}   {excused(name, told)}".rstrip(), flush=True)
-            path.write_text(text)
-            print(f"{name}: done, {killed} of {tried} noticed so far", flush=True)
-    if tried:
-        print(f"{killed} of {tried} small changes are noticed")
+        folder, whole = Path(made), np.zeros(2, int)
+        for name in COPIED:
+            copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy
+            copy(ROOT / name, folder / name)
+        (folder / "feederscrew_cli").symlink_to(folder / "cli")
+        for name in chosen.names or TESTS:
+            tests = chosen.tests or TESTS.get(name)
+            if not tests:
+                raise SystemExit(f"{name}: say which tests should notice, --tests 'tests/...'")
+            whole += tried(folder, name, tests, chosen)
+    print(f"{whole[0]} of {whole[1]} small changes are noticed")
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument(
-        "files",
-        nargs="*",
-        choices=[[], *FILES],
-        help="of feederscrew/; without any, all thirteen and those once unnoticed",
-    )
-    parser.add_argument("--named", action="store_true", help="only those that once stayed unnoticed")
-    parser.add_argument("--each", type=int, default=12, help="changes of each file")
+    parser.add_argument("names", nargs="*", help="below feederscrew; without any, all of the table TESTS")
+    parser.add_argument("--tests", help="those that should notice, of a name that is not in the table")
+    parser.add_argument("--each", type=int, default=12, help="changes of each name")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=300.0, help="after which a test counts as failed")
     main(parser.parse_args())

@@ -8,8 +8,6 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from batch import family
-
 MIB = 1024.0  # KiB
 LOOK = 0.2  # [s] between looks at memory
 ADOPTS = 36  # prctl(2): what a process started and left behind becomes this one's, which waits for it
@@ -64,6 +62,25 @@ def adopt():
     """Let what outlives its parent be waited for here; Linux only, elsewhere it is not counted."""
     with contextlib.suppress(AttributeError, OSError, TypeError):
         ctypes.CDLL(None).prctl(ADOPTS, 1, 0, 0, 0)
+
+
+def family(leader):
+    """Memory of each process of a session [MB], its leader's first; pages shared are counted once each."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*"):
+        try:
+            if os.getsid(int(entry.name)) == leader:
+                lines = (entry / "smaps_rollup").read_text().splitlines()
+                kilobytes = next(int(line.split()[1]) for line in lines if line.startswith("Pss:"))
+                found.append((entry.name != str(leader), kilobytes / 1024))
+        except OSError:
+            continue
+    return [megabytes for _, megabytes in sorted(found)] or [0.0]
+
+
+def finished(out):
+    """How many parts of a batch have their folder."""
+    return sum(1 for _ in (out / "parts").glob("*")) if out.exists() else 0
 
 
 def together(command, late):

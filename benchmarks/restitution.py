@@ -1,4 +1,4 @@
-"""What the spread of restitution does to the answers of the commands: a table of docs/validation.md.
+"""What the spread of restitution does to the answers of the commands: a table of docs/method/validation.md.
 
 Example: python benchmarks/restitution.py --write    (ten minutes of one core)
 
@@ -14,7 +14,7 @@ from pathlib import Path
 from feederscrew.conveying.sensitivity import even_range
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs/validation.md"
+PAGE = ROOT / "docs/method/validation.md"
 HERE = 0.2
 BRACKET, BOLT = "parts/lbracket_30x20x15.stl", "parts/hexbolt_m8x25.stl"
 THROWN = "--set drive.amplitude=0.3mm --set drive.frequency=60Hz"

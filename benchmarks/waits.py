@@ -19,8 +19,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from batch import finished
-from processes import adopt, at_once, spent, together
+from processes import adopt, at_once, finished, spent, together
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/speed.md"

@@ -6,6 +6,7 @@ Example: python docs/commands.py          (writes docs/commands.md)
 
 import difflib
 import sys
+from collections import Counter
 from pathlib import Path
 
 import click
@@ -14,26 +15,32 @@ from feederscrew_cli.main import feeder
 
 PAGE = Path(__file__).resolve().parent / "commands.md"
 HEAD = "# Commands\n\nWritten by `docs/commands.py` from the commands themselves.\n"
+COMMON = "\n## Options of several commands\n\nThe section of each command names those that it takes.\n\n"
+MANY = 4  # commands that share an option, by its names and its text: the page says it once
+COLUMNS = "| Option | Meaning |\n|---|---|\n"
 
 
 def reference():
     """The whole page."""
     root = click.Context(feeder, info_name="feeder")
-    return HEAD + "".join(
-        _section(command, click.Context(command, info_name=name, parent=root))
-        for name, command in feeder.commands.items()
-    )
+    commands = {
+        command: click.Context(command, info_name=n, parent=root) for n, command in feeder.commands.items()
+    }
+    counts = Counter(row for command, context in commands.items() for row in _rows(command, context))
+    shared = [row for row, count in counts.items() if count >= MANY]
+    common = COMMON + COLUMNS + "".join(_line(*row) for row in shared)
+    return HEAD + common + "".join(_section(*one, shared) for one in commands.items())
 
 
-def _section(command, context, level="##"):
+def _section(command, context, shared, level="##"):
     """Usage, help and options of a command, then of the commands below it."""
     usage = " ".join(command.collect_usage_pieces(context))
     example, _, prose = command.help.partition("\n")
     text = f"\n{level} `{context.command_path}`\n\n{command.short_help}\n\n"
     text += f"```sh\n{context.command_path} {usage}\n{example.removeprefix('Example:').strip()}\n```\n\n"
-    text += _prose(prose) + _options(command, context)
+    text += _prose(prose) + _options(_rows(command, context), shared)
     for name, below in getattr(command, "commands", {}).items():
-        text += _section(below, click.Context(below, info_name=name, parent=context), f"{level}#")
+        text += _section(below, click.Context(below, info_name=name, parent=context), shared, f"{level}#")
     return text
 
 
@@ -42,10 +49,24 @@ def _prose(text):
     return "".join(f"{escaped(block)}\n\n" for block in paragraphs if block)
 
 
-def _options(command, context):
+def _rows(command, context):
+    """Names and text of each option that has a text."""
     records = [option.get_help_record(context) for option in command.get_params(context)]
-    rows = [f"| `{_piped(names)}` | {escaped(text)} |\n" for names, text in filter(None, records) if text]
-    return "| Option | Meaning |\n|---|---|\n" + "".join(rows)
+    return [(names, text) for names, text in filter(None, records) if text]
+
+
+def _options(rows, shared):
+    """The options of one command as a table, and the names of those that the page says once."""
+    own, others = [row for row in rows if row not in shared], [row for row in rows if row in shared]
+    text = COLUMNS + "".join(_line(*row) for row in own) if own else ""
+    names = ", ".join(f"`{names.split(', ')[-1].split()[0]}`" for names, _ in others)
+    also = f"Also: {names}.\n" if others else ""
+    return "\n".join(filter(None, (text, also)))
+
+
+def _line(names, text):
+    """A row of a table of options."""
+    return f"| `{_piped(names)}` | {escaped(text)} |\n"
 
 
 def _piped(names):

@@ -1,6 +1,6 @@
-"""Bring the computed parts of docs/conveying.md up to date: its tables, and the map beside it.
+"""Bring the computed parts of docs/conveying.md and docs/method/conveying.md up to date: tables and the map.
 
-Example: python docs/conveying_map.py          (writes conveying.md, conveying_map.csv and conveying_map.png)
+Example: python docs/conveying_map.py          (writes both pages, conveying_map.csv and conveying_map.png)
          python docs/conveying_map.py --check  (status 1 if a table or the map's numbers are out of date)
 """
 
@@ -15,6 +15,7 @@ from feederscrew.conveying.steady import VELOCITY
 from feederscrew.conveying.sweep import sweep
 
 DOCS = Path(__file__).resolve().parent
+METHOD = DOCS / "method/conveying.md"
 DEG = np.pi / 180.0
 THROWS = np.arange(1.5, 7.8, 0.01)
 PEAKS = {"first": (1.5, 4.6), "second": (4.6, 7.8)}
@@ -124,24 +125,24 @@ def picture(rows):
     return style.png(figure)
 
 
-def filled(text):
-    """The page with its tables as they are now."""
-    for name, table in (("throw numbers", throws()), ("phases", phases())):
-        begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
-        before, _, rest = text.partition(begin)
-        text = before + begin + table + end + rest.partition(end)[2]
-    return text
+def filled(text, name, table):
+    """A page with one table as it is now."""
+    begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
+    before, _, rest = text.partition(begin)
+    return before + begin + table + end + rest.partition(end)[2]
 
 
 def main():
     """Write or check; the exit status."""
-    page, table = DOCS / "conveying.md", DOCS / "conveying_map.csv"
-    text, rows = filled(page.read_text()), cells()
+    pages = {DOCS / "conveying.md": ("phases", phases()), METHOD: ("throw numbers", throws())}
+    texts = {page: filled(page.read_text(), *table) for page, table in pages.items()}
+    table, rows = DOCS / "conveying_map.csv", cells()
     if "--check" in sys.argv:
         shown = np.loadtxt(table, delimiter=",", skiprows=1)
-        fresh = text == page.read_text() and np.allclose(shown, rows, rtol=1e-3, atol=1e-3, equal_nan=True)
-        return 0 if fresh else 1
-    page.write_text(text)
+        fresh = all(text == page.read_text() for page, text in texts.items())
+        return 0 if fresh and np.allclose(shown, rows, rtol=1e-3, atol=1e-3, equal_nan=True) else 1
+    for page, text in texts.items():
+        page.write_text(text)
     table.write_text(csv(rows))
     (DOCS / "conveying_map.png").write_bytes(picture(rows))
     return 0

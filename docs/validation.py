@@ -1,6 +1,6 @@
-"""Bring docs/validation.md up to date: every measured set, what was measured first, ours beside it.
+"""Bring docs/validation.md and its page in docs/method up to date: every measured set, ours beside it.
 
-Example: python docs/validation.py          (writes docs/validation.md: half a minute)
+Example: python docs/validation.py          (writes both pages: half a minute)
          python docs/validation.py --check  (status 1 if a table of QUICK is out of date)
 """
 
@@ -20,6 +20,7 @@ from feederscrew.studies.compare import compare_sets
 from feederscrew.studies.simulated.tosses import SURE, follow
 
 PAGE = Path(__file__).resolve().parent / "validation.md"
+METHOD = PAGE.parent / "method/validation.md"
 MEASURED = PAGE.parent / "measured"
 SETS = {"cuboids": "cuboid_*", "cubes": "short_cube", "coin": "coin*", "t shape": "t_shape"}
 CARDS = {"magnet": "magnet", "arc chute": "arc_chute"}
@@ -52,7 +53,8 @@ def shares(pattern):
         measured, ours = one.profile.fractions, one.recommended
         csa = one.answers["CSA"].fractions
         counted = int(one.profile.values.sum()) if one.profile.kind == "counts" else ""
-        for k, name in enumerate(one.measured.names if hasattr(one.measured, "names") else one.aspects.names):
+        names = one.measured.names if hasattr(one.measured, "names") else one.aspects.names
+        for k, name in enumerate(names[:1] if len(names) == 2 else names):  # of two the other has the rest
             ends = f"{percent(max(ours.low[k], 0.0))} to {percent(min(ours.high[k], 1.0))}"
             held = "" if ours.low[k] <= measured[k] <= ours.high[k] else " (outside)"
             rows.append([
@@ -190,13 +192,18 @@ def filled(text, names):
 
 def main():
     """Write or check; the exit status."""
-    old = PAGE.read_text(encoding="utf-8")
-    if "--check" in sys.argv:
-        new = filled(old, QUICK)
-        sys.stdout.writelines(difflib.unified_diff(old.splitlines(True), new.splitlines(True), "page", "now"))
-        return int(old != new)
-    PAGE.write_text(filled(old, (*SETS, "held out", *CARDS, "tosses", "air jet")), encoding="utf-8")
-    return 0
+    check, status = "--check" in sys.argv, 0
+    whole = {PAGE: (*SETS, "held out", *CARDS, "tosses"), METHOD: ("air jet",)}
+    for page, names in whole.items():
+        old = page.read_text(encoding="utf-8")
+        new = filled(old, [name for name in names if not check or name in QUICK])
+        if check:
+            lines = difflib.unified_diff(old.splitlines(True), new.splitlines(True), page.name, "now")
+            sys.stdout.writelines(lines)
+            status = max(status, int(old != new))
+        else:
+            page.write_text(new, encoding="utf-8")
+    return status
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ reciprocal    reciprocal screws, contact reactions and tipping axes
 euler         momentum screw, dual Euler equation, spatial triangle
 notation      one screw in the four notations of the literature
 
-Source: the thesis by the numbers of its equations; docs/screws.md and docs/equations.md.
+Source: the thesis by the numbers of its equations; docs/method/screws.md and docs/equations.md.
 """
 
 from feederscrew.screw.angle_between import dual_angle

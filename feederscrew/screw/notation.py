@@ -12,7 +12,7 @@ PRINTED_FROM = 1e-12  # of the largest number in a line: what is smaller is roun
 def pluecker(screw):
     """Return Pluecker coordinates: of a twist (v; omega), of every other screw ray coordinates (s; s0).
 
-    Source: docs/screws.md, "Four notations".
+    Source: docs/method/screws.md, "Four notations".
 
     Parameters
     ----------

@@ -94,7 +94,7 @@ def reactions(wrenches, external):
 
     Each equals -(external o t_i) / (w_i o t_i) with t_i of ``tipping_twists``.
 
-    Source: reciprocal screws, Ball 1900; docs/screws.md, "Contacts: reciprocal screws".
+    Source: reciprocal screws, Ball 1900; docs/method/screws.md, "Contacts: reciprocal screws".
 
     Parameters
     ----------

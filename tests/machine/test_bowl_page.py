@@ -20,7 +20,8 @@ def test_the_page_is_true(run, monkeypatch):
     monkeypatch.chdir(ROOT)
     for line, shown in examples:
         printed = run(*shlex.split(line)).stdout
-        for was, now in zip(shown.splitlines(), printed.splitlines(), strict=True):
+        whole = not shown.endswith("...\n")  # one that is cut keeps its first lines
+        for was, now in zip(shown.removesuffix("...\n").splitlines(), printed.splitlines(), strict=whole):
             assert " ".join(NUMBER.sub("#", was).split()) == " ".join(NUMBER.sub("#", now).split())
             if "left alone" not in was:
                 before, after = (np.array(NUMBER.findall(one), dtype=float) for one in (was, now))

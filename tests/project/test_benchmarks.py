@@ -17,8 +17,8 @@ def root(request, monkeypatch):
 
 
 @pytest.mark.usefixtures("root")
-def test_every_closed_form_that_was_tried_weighs_a_box():
-    """One named a function that was gone, so that no table of accuracy could be made again."""
+def test_every_rule_weighs_a_box():
+    """A rule named a function that was gone once, so that no table of accuracy could be made again."""
     from bodies import Body
 
     body = Body("box", shapes.part(shapes.box(8.0, 12.0, 20.0)), drops=1)
@@ -27,35 +27,47 @@ def test_every_closed_form_that_was_tried_weighs_a_box():
         assert p[0] > p[2], name
 
 
-def test_every_named_change_is_made_in_one_place_and_leaves_a_module_that_can_be_read(root):
-    from named_mutants import NAMED
+def test_every_name_that_is_changed_is_there_with_something_to_change_and_with_tests(root, rng):
+    import mutants
 
-    for name, old, new, test in NAMED:
-        text = (root / "feederscrew" / name).read_text()
-        assert text.count(old) == 1, f"{name}: {old!r} is in it {text.count(old)} times"
-        assert ast.dump(ast.parse(text)) != ast.dump(ast.parse(text.replace(old, new))), f"{name}: {old!r}"
-        assert (root / shlex.split(test)[0]).is_file(), test
-
-
-def test_every_file_that_is_changed_has_tests_and_every_excuse_a_file(root):
-    from mutants import EQUIVALENT, FILES
-
-    for name, tests in FILES.items():
-        assert (root / "feederscrew" / name).is_file(), name
-        assert tests and all((root / test).is_file() for test in tests), name
-    assert {name for name, _ in EQUIVALENT} <= set(FILES)
+    for name, tests in mutants.TESTS.items():
+        path, inside = mutants.located(name)
+        text = path.read_text()
+        (other, line), *_ = mutants.mutants(text, inside, 1, rng)
+        assert ast.dump(ast.parse(text)) != ast.dump(ast.parse(other)) and line, name
+        files = [word for word in shlex.split(tests) if word.endswith(".py")]
+        assert files and all((root / file).is_file() for file in files), name
+    for name in mutants.EXCUSED:
+        path, inside = mutants.located(name)
+        assert mutants.named(ast.parse(path.read_text()), inside), name
 
 
-def test_the_change_that_is_asked_for_is_made_and_no_other(root, rng):
-    """A minus, a comparison, a minimum and two numbers, each by itself."""
+@pytest.mark.usefixtures("root")
+def test_the_operators_change_the_function_that_is_named_and_no_other(rng):
+    """A number, a minus, a comparison, a minimum, a condition and a sign, each by itself."""
     from mutants import difference, mutants
 
-    text = "def least(a, b):\n    return min(a, -b) if a < 2 else 3.0\n"
-    made = {difference(text, other).partition("->")[2].strip() for other, _ in mutants(text, 9, rng)}
-    assert made == {
-        "return max(a, -b) if a < 2 else 3.0",
-        "return min(a, b) if a < 2 else 3.0",
-        "return min(a, -b) if a >= 2 else 3.0",
-        "return min(a, -b) if a < 3 else 3.0",
-        "return min(a, -b) if a < 2 else 3.75",
+    text = "SIDE = 3.0\n\ndef least(a, b):\n    c = a\n    return min(c, -b) if a < 2 else b\n"
+    lines = {
+        difference(text, other).partition("->")[2].strip() for other, _ in mutants(text, ["least"], 9, rng)
     }
+    assert lines == {
+        "c = -a",
+        "return max(c, -b) if a < 2 else b",
+        "return min(c, b) if a < 2 else b",
+        "return min(c, -b) if a >= 2 else b",
+        "return min(c, -b) if a < 3 else b",
+        "return b if a < 2 else min(c, -b)",
+    }
+    constants = {difference(text, other) for other, _ in mutants(text, ["SIDE"], 9, rng)}
+    assert constants == {"SIDE = 3.0   ->   SIDE = 3.75", "SIDE = 3.0   ->   SIDE = 2.4000000000000004"}
+
+
+@pytest.mark.usefixtures("root")
+def test_a_name_that_is_not_there_is_said():
+    from mutants import located, named
+
+    with pytest.raises(SystemExit, match=r"there is no such module"):
+        located("tooling_of_old.length")
+    with pytest.raises(SystemExit, match=r"there is no gone"):
+        named(ast.parse("here = 1"), ["gone"])

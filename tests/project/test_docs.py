@@ -35,7 +35,7 @@ def test_a_generated_page_is_as_the_program_is(name):
 
 
 def test_the_modules_that_the_pages_name_are_there():
-    pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
     named = {path for page in pages for path in re.findall(r"`([\w/]+/\w+\.py)`", page.read_text())}
     assert len(named) > 10
     rooms = (ROOT, ROOT / "feederscrew")

@@ -26,7 +26,7 @@ ENTRY = re.compile(
 )  # a line of Parameters or Returns
 MARK = re.compile(r"# eqs?\. (\[[^]]+\])")  # a step that follows a numbered equation
 SOURCE = re.compile(r"^References$|^Source\b|\beqs?\. [\[(]", re.MULTILINE)
-PAGE = re.compile(r'(docs/\w+\.md)(?:,\s"([^"]+)")?')
+PAGE = re.compile(r'(docs/(?:method/)?\w+\.md)(?:,\s"([^"]+)")?')
 NOT_QUANTITIES = (
     "np.any",
     "np.all",

@@ -1,4 +1,4 @@
-"""Every example of docs/screws.md runs and prints what the page says."""
+"""Every example of docs/method/screws.md runs and prints what the page says."""
 
 import doctest
 import re
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-PAGE = Path(__file__).parents[2] / "docs" / "screws.md"
+PAGE = Path(__file__).parents[2] / "docs" / "method" / "screws.md"
 BLOCKS = re.findall(r"^```python\n(.*?)^```$", PAGE.read_text(), re.MULTILINE | re.DOTALL)
 
 

@@ -73,7 +73,7 @@ def test_the_screw_is_fed_between_rails_and_its_trial_agrees(devices):
 
 
 def test_a_trial_says_where_a_head_at_the_wall_may_wedge(devices, tmp_path):
-    """In MuJoCo it stands there: benchmarks/wedging.py."""
+    """In MuJoCo, with a drive and soft contacts, it stands there."""
     profile = [(0, 0), (2.5, 0), (2.5, 13.2), (5.0, 15.7), (5.0, 16), (0, 16)]
     trimesh.creation.revolve(profile, sections=24).export(tmp_path / "screw.stl")
     part, told = load(tmp_path / "screw.stl"), []

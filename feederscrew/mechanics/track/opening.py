@@ -31,7 +31,7 @@ class Opening:
 def contact_wrenches(seat, axes, points, *, floor=0.0, wall=(0.0, 0.0), traction=(0.0, 0.0, 0.0)):
     """Return unit wrenches of six contacts about the centre of mass: three floor points, two walls, traction.
 
-    Source: screws of unit forces; docs/screws.md, "Contacts: reciprocal screws".
+    Source: screws of unit forces; docs/method/screws.md, "Contacts: reciprocal screws".
 
     Parameters
     ----------
