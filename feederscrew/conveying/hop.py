@@ -14,6 +14,7 @@ from feederscrew.conveying.setting import FLIGHT, TURN, OperatingPoint
 from feederscrew.conveying.settling import settle
 
 FOLLOWED = 32  # periods of a motion that does not repeat
+MARGIN_M = 2.5e-4  # that a static verdict has where it counts as sure
 HALVINGS = 60  # of the span in which a part is highest
 
 
@@ -24,6 +25,11 @@ class Hop:
     height: float  # [m] greatest gap between part and track, along the normal of the track
     flight: float  # [m] longest way along the track, relative to the track, in one flight
     duration: float  # [periods] of the longest flight
+
+    @property
+    def text(self) -> str:
+        """Height and length in words."""
+        return f"{1e3 * self.height:.2g} mm high and {1e3 * self.flight:.2g} mm far"
 
 
 STAYS = Hop(0.0, 0.0, 0.0)  # on the track
@@ -60,6 +66,27 @@ def hop(bowl: Bowl) -> Hop:
     height, flight, duration = _hop(setting._replace(restitution=0.0))
     amplitude = float(bowl.drive.amplitude)
     return Hop(height * amplitude, flight * amplitude, duration)
+
+
+def remark(bowl: Bowl) -> tuple[str, ...]:
+    """Say that the drive of a bowl throws parts higher than the margin of a static verdict.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    tuple of str
+        A sentence, or none where the hop is lower than ``MARGIN_M``.
+    """
+    own = hop(bowl)
+    if own.height <= MARGIN_M:
+        return ()
+    return (
+        f"parts hop {own.text}: an edge, rail or blade that a part passes by less, and a hole that is "
+        "shorter, do not hold for sure",
+    )
 
 
 @functools.lru_cache(maxsize=4096)

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from feederscrew.bowl.reading import settings
 from feederscrew.bowl.settings import record
-from feederscrew.conveying.hop import Hop, hop
+from feederscrew.conveying.hop import MARGIN_M, Hop, hop, remark
 
 BOWL = record(settings(overrides=["track.climb=3 deg", "friction.static=0.6", "restitution=0.3"]))
 
@@ -90,3 +90,10 @@ def test_a_flight_over_several_periods_is_one_flight():
     own = hop(bowl_at(6.0))
     assert 1.0 < own.duration < 2.0
     assert own.height > 3.0 * hop(bowl_at(3.0)).height
+
+
+def test_a_hop_is_told_where_it_is_higher_than_a_margin():
+    """0.38 mm at 50 Hz and throw number 2.3, a quarter of that at 100 Hz."""
+    (said,) = remark(bowl_at(2.3))
+    assert hop(bowl_at(2.3)).height > MARGIN_M and "0.38 mm high and 3.5 mm far" in said
+    assert remark(bowl_at(2.3, 100.0)) == remark(bowl_at(0.9)) == ()
