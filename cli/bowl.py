@@ -109,6 +109,7 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
         _found(bowl, measured, out)
         return
     settings, path = bowls.settings(**bowl), bowl["path"]
+    out.warn(*bowls.assumed(settings))
     solid = out.part(part) if part["source"] else None
     identity = solid.inputs if solid else {}
     effective = (columns.conditions(solid) if solid else {}) | bowls.texts(settings)
