@@ -1,6 +1,7 @@
 """``feeder bowl``."""
 
 import click
+from click.core import ParameterSource
 
 from feederscrew_cli import grouped, options, orientation, quantity, waiting
 from feederscrew_cli.quantity import Quantity
@@ -109,6 +110,7 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
         _found(bowl, measured, out)
         return
     settings, path = bowls.settings(**bowl), bowl["path"]
+    out.warn(*bowls.assumed(settings))
     solid = out.part(part) if part["source"] else None
     identity = solid.inputs if solid else {}
     effective = (columns.conditions(solid) if solid else {}) | bowls.texts(settings)
@@ -135,6 +137,13 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
         out.show(tables.summary(found, holding), document)
 
 
+def _typed(*names):
+    """The options, as '--bed', of those parameters that the user typed."""
+    context = click.get_current_context()
+    typed = [name for name in names if context.get_parameter_source(name) is ParameterSource.COMMANDLINE]
+    yield from (one.opts[0] for one in context.command.params if one.name in typed)
+
+
 def _found(bowl, measured, out):
     """The machine of a bowl file as it was found."""
     from feederscrew import bowl as bowls
@@ -153,9 +162,12 @@ def _fitting(part, target, made, measured):
         raise click.UsageError("--measured is given with PART - leave PART out: the bowl file says it all")
     if made["solid"] and not part["source"]:
         raise click.UsageError("--solid is given without PART - name the part's file")
-    for option in ("bed", "step"):
-        if made[option] and not made["solid"]:
-            raise click.UsageError(f"--{option} is given without --solid - add --solid")
+    if not made["solid"]:
+        for option in _typed("material", "bed", "step", "chord"):
+            raise click.UsageError(f"{option} is given without --solid - add --solid")
+    if not part["source"]:
+        for option in _typed(*options.READING, *orientation.WANTED):
+            raise click.UsageError(f"{option} is given without PART - name the part's file")
     if made["join"] and not made["bed"]:
         raise click.UsageError("--join is given without --bed - give the printer's bed: --bed 220x220x250mm")
     if part["source"] and target is None:

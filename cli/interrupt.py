@@ -5,6 +5,8 @@ import os
 import signal
 import threading
 
+from feederscrew_cli import end_while_loading
+
 INTERRUPTED = 128 + signal.SIGINT
 _heard = threading.Event()  # whether this run of the program was told to stop
 
@@ -29,24 +31,38 @@ def heeding(tell):
 
 
 @contextlib.contextmanager
-def listening():
-    """Note every Ctrl-C of the block beside letting it through: a library may drop it, a run end early."""
+def listening(*, ends=False):
+    """Note every Ctrl-C of the block beside letting it through: a library may drop it, a run end early.
+
+    Parameters
+    ----------
+    ends : bool
+        Whether the program ends after the block: then Ctrl-C does nothing more, as Python takes its own
+        handler away while it ends, and the signal would kill a program that has given its answer.
+
+    Yields
+    ------
+    callable
+        From its call on Ctrl-C is noted alone.
+    """
     _heard.clear()
     ours = threading.current_thread() is threading.main_thread()
     before = signal.getsignal(signal.SIGINT)
-    if not ours or before is not signal.default_int_handler:
-        yield
+    if not ours or before not in (signal.default_int_handler, end_while_loading):
+        yield lambda: None
         return
+    done = threading.Event()
 
     def catch(*_):
         _heard.set()
-        raise KeyboardInterrupt
+        if not done.is_set():
+            raise KeyboardInterrupt
 
     signal.signal(signal.SIGINT, catch)
     try:
-        yield
+        yield done.set
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.signal(signal.SIGINT, signal.SIG_IGN if ends else signal.default_int_handler)
 
 
 @contextlib.contextmanager

@@ -6,7 +6,6 @@ import gc
 import importlib
 import os
 import re
-import signal
 import sys
 from collections.abc import Mapping
 
@@ -15,7 +14,7 @@ import click
 from feederscrew import __version__
 from feederscrew.errors import ArgumentError, Faults, FeederError, MissingPackage
 from feederscrew.units import printable
-from feederscrew_cli import argument_names, end_while_loading
+from feederscrew_cli import argument_names
 from feederscrew_cli.interrupt import INTERRUPTED, listening, was_heard
 
 GROUPS = {  # heading: commands, in the order of a job
@@ -60,13 +59,15 @@ class Fence(click.Group):
 
     def main(self, args=None, **extra):  # type: ignore[override]  # it returns in no mode
         """Run one command line and leave the interpreter."""
-        if signal.getsignal(signal.SIGINT) is end_while_loading:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
         arguments = list(sys.argv[1:] if args is None else args)
         _take_any_name()
         gc.set_threshold(SELDOM)
-        with listening():
-            status = self._status(arguments, extra)
+        with listening(ends=args is None) as finish:
+            try:
+                status = self._status(arguments, extra)
+                finish()
+            except KeyboardInterrupt:  # after the last line of the command
+                status = INTERRUPTED
             status = status if isinstance(status, int) else 0
             if was_heard() and status in (0, 1):  # what is there was given; make must not take it as done
                 status = INTERRUPTED

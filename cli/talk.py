@@ -92,7 +92,7 @@ class Output:
         from feederscrew import bowl as bowls
 
         found = bowls.settings(**bowl)
-        self.warn(*bowls.by_machine(found))
+        self.warn(*bowls.remarks(found))
         return found
 
     @contextlib.contextmanager

@@ -20,7 +20,7 @@ MILLIMETRES = {  # by $INSUNITS: DXF Reference of Autodesk, "HEADER Section"; 0 
     10: 914.4, 11: 1e-7, 12: 1e-6, 13: 1e-3, 14: 100.0, 15: 1e4, 16: 1e5, 21: 1200e3 / 3937.0,
     22: 100e3 / 3937.0, 23: 3600e3 / 3937.0,
 }  # fmt: skip
-IN_MILLIMETRES = 4  # of $INSUNITS
+UNITLESS, IN_MILLIMETRES = 0, 4  # of $INSUNITS
 FARTHEST = 1e3  # [m] from the origin of a drawing to a corner of a hole
 LETTERS = 3.0  # [mm] height of texts
 CHORD_ERROR_M = 1e-6  # at most between a curve and the chord read for it; the corners lie on the curve
@@ -65,7 +65,20 @@ class Layer:
     )
 
 
+@dataclass(frozen=True)
+class Outlines:
+    """The closed outlines of one layer of a drawing."""
+
+    rings: list[list[tuple[float, float]]]  # [m] corners of each
+    has_unit: bool  # whether the drawing names its unit; else it was read in millimetres
+
+
 def closed_polylines(path: Path, layer: str, where: str) -> list[list[tuple[float, float]]]:
+    """Return the corners [m] of the closed outlines that ``outlines`` reads."""
+    return outlines(path, layer, where).rings
+
+
+def outlines(path: Path, layer: str, where: str) -> Outlines:
     """Read the closed outlines of one layer, curves as chords.
 
     Closed polylines, circles, ellipses and splines are outlines by themselves. Lines, arcs and open curves
@@ -82,7 +95,7 @@ def closed_polylines(path: Path, layer: str, where: str) -> list[list[tuple[floa
 
     Returns
     -------
-    list of list of (float, float) [m]
+    Outlines
         Corners on the outline; between them it is at most CHORD_ERROR_M away.
 
     Raises
@@ -106,7 +119,8 @@ def closed_polylines(path: Path, layer: str, where: str) -> list[list[tuple[floa
         with path.open("rb") as file:
             if file.read(len(documents.POINTER_HEAD)) == documents.POINTER_HEAD:
                 raise ConfigError(where, f"{name} {documents.POINTER}", documents.PULL)
-        found = _outlines(_drawing(path), layer)
+        drawing = _drawing(path)
+        found = _outlines(drawing, layer)
     except FileNotFoundError:
         raise ConfigError(where, f"{name}: no such file", "check the path") from None
     except _Unread as fault:
@@ -119,7 +133,7 @@ def closed_polylines(path: Path, layer: str, where: str) -> list[list[tuple[floa
     if not found:
         what = f"{units.printable(path.name)} has no closed outline on layer {units.shown(layer)}"
         raise ConfigError(where, what, "draw the hole as one closed polyline (LWPOLYLINE)")
-    return found
+    return Outlines(found, _unit_code(drawing) != UNITLESS)
 
 
 def _drawing(path: Path) -> Any:
@@ -134,7 +148,7 @@ def _drawing(path: Path) -> Any:
 
 def _outlines(drawing: Any, layer: str) -> list[list[tuple[float, float]]]:
     """Corners (x, y) [m] of each closed outline on a layer."""
-    code = int(drawing.header.get("$INSUNITS", 0))
+    code = _unit_code(drawing)
     if code not in MILLIMETRES:
         raise _Unread(f"is drawn in unit {code} of $INSUNITS", "save the drawing in millimetres")
     size = MILLIMETRES[code] * 1e-3
@@ -146,6 +160,11 @@ def _outlines(drawing: Any, layer: str) -> list[list[tuple[float, float]]]:
         ends_meet = len(flat) > 2 and math.dist(flat[0], flat[-1]) <= JOIN_M
         (rings if closed or ends_meet else chains).append(flat)
     return [_simplified(ring) for ring in (*rings, *_joined(chains))]
+
+
+def _unit_code(drawing: Any) -> int:
+    """The $INSUNITS of a drawing."""
+    return int(drawing.header.get("$INSUNITS", UNITLESS))
 
 
 def _on_layer(space: Iterable[Any], layer: str) -> Iterator[tuple[str, Any]]:

@@ -146,7 +146,7 @@ def _conditions(path, overrides, faults, line):
         settings = bowls.settings(path, overrides)
         bowl = answer.conveying(bowls.record(settings))
         texts = tuple(bowls.texts(settings).items())
-        made = bowls.by_machine(settings)
+        made = bowls.remarks(settings)
         return Conditions(
             bowls.name(path), bowl, texts, given=path is not None, warnings=made, tried=bowls.verified(path)
         )

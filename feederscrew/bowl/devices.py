@@ -152,7 +152,9 @@ def check_written(chain: Iterable[Device], name: str) -> None:
             raise FeederError(name, what, "this is a fault of feeder: report it with the command you gave")
 
 
-def differences(one: object, other: object, unlike: Container[str] = ("where", "text")) -> list[str]:
+def differences(
+    one: object, other: object, unlike: Container[str] = ("where", "text", "assumed")
+) -> list[str]:
     """Return in what two records of one kind differ by more than a file's digits, an attribute a sentence.
 
     Parameters

@@ -33,6 +33,8 @@ MAX_SEED = 2**64
 MAX_TEXT = 200  # letters
 HASH = re.compile(r"[0-9a-f]{16,64}", re.ASCII)
 VERSION = re.compile(r"\d+(\.[0-9A-Za-z]+){1,5}([+-][0-9A-Za-z.]+)?", re.ASCII)
+AHEAD = datetime.timedelta(days=1)  # by which the clock of another machine may be wrong
+LYING, HANGING = "lying", "hanging"  # how parts leave
 AMONG = " or "  # between the names of what counts as one
 
 
@@ -67,6 +69,7 @@ class Verified:
     bowl: str  # of ``fingerprint``
     up: str = ""  # aspects that counted as the wanted one, whatever their heading: 'A, B'
     body: str = ""  # of ``body_fingerprint``; '' where the file does not say
+    outcome: str = ""  # LYING or HANGING; '' where the file does not say
 
     def void(self, part: Part | None, bowl: Bowl, version: str, wanted: str | None = None) -> Iterator[str]:
         """Say what is other than was tried, a sentence each; nothing where the block holds.
@@ -90,6 +93,9 @@ class Verified:
         if wanted is not None and not self.counts(wanted):
             tried, other = units.one_line(self.wanted), units.one_line(wanted)
             yield f"{tried} was tried, and {other} is another orientation"
+        leaving = HANGING if any(one.hangs for one in bowl.devices) else LYING
+        if self.outcome not in ("", leaving):
+            yield f"its outcome is {self.outcome}, and parts leave these devices {leaving}"
         if fingerprint(bowl) != self.bowl:
             yield "the bowl has been changed since it was tried"
         if self.version != version:
@@ -218,11 +224,11 @@ def _number(dimension: str, low: float, high: float) -> Callable[[str], float]:
     return read
 
 
-def _whole(high: int) -> Callable[[str], int]:
-    """A reader of whole numbers from 0."""
+def _whole(high: int, low: int = 0) -> Callable[[str], int]:
+    """A reader of whole numbers from low to high."""
 
     def read(text: str) -> int:
-        if not re.fullmatch(r"\d{1,20}", text, re.ASCII) or int(text) > high:
+        if not re.fullmatch(r"\d{1,20}", text, re.ASCII) or not low <= int(text) <= high:
             raise ValueError
         return int(text)
 
@@ -264,7 +270,10 @@ def _purity(text: str) -> float | None:
 def _date(text: str) -> datetime.date:
     if not text.isascii():
         raise ValueError
-    return datetime.date.fromisoformat(text)
+    date = datetime.date.fromisoformat(text)
+    if date > datetime.datetime.now(datetime.UTC).date() + AHEAD:
+        raise ValueError
+    return date
 
 
 _RATE = _number("rate", 0.0, MAX_RATE)
@@ -286,10 +295,10 @@ READERS: dict[str, tuple[Callable[[str], Any], str]] = {  # by key: how it is re
 }
 OPTIONAL: dict[str, tuple[Callable[[str], Any], str]] = {
     "up": (_text, "names of aspects"),
-    "outcome": (_word("lying", "hanging"), "lying or hanging"),
-    "trial_parts": (_whole(MAX_COUNT), "a whole number up to 1000000"),
+    "outcome": (_word(LYING, HANGING), f"{LYING} or {HANGING}"),
+    "trial_parts": (_whole(MAX_COUNT, low=1), "a whole number from 1 to 1000000"),
     "seed": (_whole(MAX_SEED), "a whole number"),
-    "tried": (_date, "a date"),
+    "tried": (_date, "a date up to today"),
     "body": (_pattern(HASH), "the 16 digits of a part"),
 }
 
@@ -314,7 +323,7 @@ def _block(text: Mapping[str, str]) -> Verified:
         value["status"], value["wanted"], value["target"], value["delivered"], value["delivered_low"],
         value["delivered_high"], value["purity"], value["jams"], value["queue_seconds"], value["draws"],
         value["draws_held"], value["version"], value["part"], value["bowl"], text.get("up", ""),
-        text.get("body", ""),
+        text.get("body", ""), text.get("outcome", ""),
     )  # fmt: skip
 
 

@@ -6,12 +6,10 @@ Source: averaged Coulomb friction on a vibrating surface; docs/tooling.md.
 import functools
 import math
 
-from feederscrew.units import GRAVITY
-
 HALVINGS = 60
 
 
-def speed(push, friction, swing, gravity=GRAVITY):
+def speed(push, friction, swing, gravity):
     """Return the velocity [m/s] at which a steady sideways push moves what slips on a vibrating track.
 
     Source: v = a pi V / (2 mu g ln(4 V / v)); docs/tooling.md, "1. The method".

@@ -10,6 +10,7 @@ import pytest
 import shapely
 import shapely.affinity
 
+from feederscrew import bowl as bowls
 from feederscrew import dxf
 from feederscrew.errors import ConfigError
 
@@ -340,3 +341,25 @@ def test_only_a_file_of_some_size_is_read(tmp_path):
     for name, word in (("big", "MB"), ("pipe", "regular"), ("zero", "regular")):
         with pytest.raises(ConfigError, match=word):
             dxf.closed_polylines(tmp_path / f"{name}.dxf", "HOLE", "bowl.yaml:3")
+
+
+@pytest.mark.parametrize(("code", "warned"), [(0, True), (4, False), (1, False)])
+def test_a_drawing_that_names_no_unit_is_read_in_millimetres_and_that_is_said(run, tmp_path, code, warned):
+    """A drawing in inches without $INSUNITS was a hole of 9 mm, and nothing was said."""
+    path = tmp_path / "hole.dxf"
+    lines = dxf.written([dxf.Layer("CUT", 1, rings=(np.array(RING),))]).decode().split("\n")
+    lines[lines.index("$INSUNITS") + 2] = str(code)
+    path.write_text("\n".join(lines))
+    (tmp_path / "bowl.yaml").write_text(
+        "track: {width: 400 mm, radius: 500 mm}\ndevices:\n  - cut_out: {dxf: hole.dxf, layer: CUT}\n"
+    )
+    settings = bowls.settings(tmp_path / "bowl.yaml")
+    said = (
+        f"{tmp_path}/bowl.yaml:3:20: hole.dxf names no unit ($INSUNITS), read in mm - save it in millimetres"
+    )
+    assert bowls.remarks(settings) == bowls.assumed(settings) == ((said,) if warned else ())
+    done = run("slide", "--config", tmp_path / "bowl.yaml", "--format", "json")
+    assert done.exit_code == 0 and ("names no unit" in done.stderr) is warned
+    size = {0: 1e-3, 4: 1e-3, 1: 25.4e-3}[code] / 1e-3
+    (device,) = bowls.record(settings).devices
+    assert np.ptp(np.array(device.corners), axis=0) == pytest.approx(size * np.ptp(np.array(RING), axis=0))

@@ -75,7 +75,7 @@ OPTIONAL = {
     "outcome": "lying",
     "trial_parts": "6",
     "seed": "1",
-    "tried": '"2026-11-25"',
+    "tried": '"2020-02-29"',
     "body": f'"{body_fingerprint(PART)}"',
 }
 
@@ -124,10 +124,10 @@ WRONG = {
     "version": ("2", "x", '"0.2.0 or so"'),
     "part": ("abc", '"zcb9e5277f2576a5"', '"0"', f'"{"0" * 65}"'),
     "bowl": ("abc", '"0"', '"0000000000000000"'),
-    "outcome": ("standing",),
-    "trial_parts": ("1.5", "10" * 15),
+    "outcome": ("standing", "hanging"),  # the bowl has no rails
+    "trial_parts": ("0", "1.5", "10" * 15),
     "seed": ("1.5",),
-    "tried": ("2026-13-01", "yesterday"),
+    "tried": ("2026-13-01", "yesterday", "2999-12-31", "2021-02-29"),
     "body": ("abc", '"0"'),
 }
 # A text may be any name, and a name may look like a number.
@@ -165,6 +165,18 @@ def test_a_trial_counts_for_what_was_wanted_and_for_nothing_else(tmp_path):
     (several,) = [block(tmp_path, up=None, wanted='"A@0 or B"')]
     assert several.counts("B@7") and several.counts("A@0") and not several.counts("A@90")
     assert void(tmp_path, asked="C")
+
+
+def test_parts_leave_rails_hanging_and_other_devices_lying(tmp_path):
+    rails = KINDS["rails"]("b.yaml", span=(1e-3, 5e-3))
+    for devices, outcome in (((), "lying"), ((rails,), "hanging")):
+        bowl = replace(BOWL, devices=devices)
+        for said in ("lying", "hanging"):
+            found = block(tmp_path, outcome=said, bowl=f'"{fingerprint(bowl)}"')
+            why = list(found.void(None, bowl, VERSION))
+            assert why == (
+                [] if said == outcome else [f"its outcome is {said}, and parts leave these devices {outcome}"]
+            )
 
 
 def test_another_density_or_name_is_another_part(tmp_path):

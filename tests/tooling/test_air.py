@@ -26,6 +26,7 @@ from feederscrew.tooling.devices.nozzles import Nozzles
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.orientations import orientations, speed, travelling
 from feederscrew.tooling.verdicts import Meeting, verdict
+from feederscrew.units import GRAVITY
 
 PARTS = Path(__file__).resolve().parents[2] / "parts"
 BOWL = bowls.read(None, ["track.width=30 mm"])
@@ -38,12 +39,12 @@ TALL = next(one for one in EVERY if one.length > 0.0119 and one.height > 0.0199)
 @pytest.mark.parametrize(("push", "found"), [(0.5, 1.60), (1.0, 3.88), (2.0, 10.1)])
 def test_the_drift_is_that_of_coulomb_friction_over_a_sine(push, found):
     """Solved by hand from v = a pi V / (2 mu g ln(4 V / v)), mu 0.6, V 60 mm/s."""
-    assert 1e3 * drift.speed(push, 0.6, 0.06) == pytest.approx(found, rel=0.005)
+    assert 1e3 * drift.speed(push, 0.6, 0.06, GRAVITY) == pytest.approx(found, rel=0.005)
 
 
 def test_what_friction_cannot_hold_does_not_drift_but_slides():
-    assert drift.speed(0.6 * 9.81, 0.6, 0.06) == math.inf
-    assert drift.speed(1.0, 0.6, 0.0) == 0.0 and drift.speed(-1.0, 0.6, 0.06) == 0.0
+    assert drift.speed(0.6 * 9.81, 0.6, 0.06, GRAVITY) == math.inf
+    assert drift.speed(1.0, 0.6, 0.0, GRAVITY) == 0.0 and drift.speed(-1.0, 0.6, 0.06, GRAVITY) == 0.0
 
 
 def test_a_jet_over_what_lies_flat_blows_off_what_stands():

@@ -127,7 +127,7 @@ def trial(study):
     return Verified(
         study.status, study.wanted, study.request.target, value, low, high, purity, study.jams,
         study.queue_seconds, study.robust.draws, study.robust.held, __version__, study.part.sha256[:16],
-        fingerprint(study.bowl), ", ".join(study.request.up), body_fingerprint(study.part),
+        fingerprint(study.bowl), ", ".join(study.request.up), body_fingerprint(study.part), study.outcome,
     )  # fmt: skip
 
 
@@ -146,7 +146,8 @@ def _verified(study, bowl):
     yield "purity", f"{purity:.4g}" if purity == purity else NOTHING_LEFT
     yield "jams", study.jams
     yield "queue_seconds", f"{study.queue_seconds:.6g} s"
-    yield "trial_parts", study.trial_parts
+    if study.trial_parts:
+        yield "trial_parts", study.trial_parts
     yield "draws", study.robust.draws
     yield "draws_held", study.robust.held
     yield "seed", study.request.seed

@@ -64,7 +64,7 @@ def convey(case):
     return Chapter(
         tuple(blocks),
         tiles=(_velocity_tile(document),),
-        warnings=(*bowls.by_machine(case.settings), *convey_tables.remarks(document), *study.warnings),
+        warnings=(*bowls.remarks(case.settings), *convey_tables.remarks(document), *study.warnings),
     )
 
 

@@ -8,13 +8,14 @@ import zlib
 from collections.abc import Iterator
 from pathlib import PurePosixPath
 
-from feederscrew.part.reading.soup import LARGEST
+from feederscrew.part.reading.soup import LARGEST, DamageError
 
 DAMAGED = (zipfile.BadZipFile, zlib.error, lzma.LZMAError)  # what damaged archives raise
 MOST_MEMBERS = 20_000
 MOST_TIMES = 200  # a member unpacks to so many times its size: coordinates pack to a tenth or a thirtieth
 SMALL = 1 << 24  # [bytes] below it any packing is harmless
 PIECE = 1 << 20  # [bytes]
+ENCRYPTED = 1  # of the flags of a member: APPNOTE.TXT of PKWARE, 4.4.4
 ENTRY = b"PK\x01\x02"
 STEP_NAME = re.compile(r"(?i)\.ste?p$")
 
@@ -37,8 +38,8 @@ def opened(data: bytes) -> zipfile.ZipFile:
         raise BombError(f"is an archive of more than {MOST_MEMBERS} files")
     try:
         return zipfile.ZipFile(io.BytesIO(data))
-    except (NotImplementedError, OSError) as error:  # zipfile's, of a version or an offset of no archive
-        raise ValueError(str(error)) from None
+    except (NotImplementedError, OSError):  # zipfile's, of a version or an offset of no archive
+        raise DamageError("its archive is of a kind that is not read") from None
 
 
 def pieces(archive: zipfile.ZipFile, name: str, most: int = LARGEST) -> Iterator[bytes]:
@@ -66,8 +67,10 @@ def pieces(archive: zipfile.ZipFile, name: str, most: int = LARGEST) -> Iterator
     _refuse_size(entry.file_size, entry.compress_size, most)  # as announced, which may be a lie
     try:
         member = archive.open(name)
-    except (OSError, RuntimeError) as error:  # zipfile's, of a password or of a packing that it does not know
-        raise ValueError(str(error)) from None
+    except (OSError, RuntimeError):  # zipfile's, of a password or of a packing that it does not know
+        locked = bool(entry.flag_bits & ENCRYPTED)
+        how = "locked by a password" if locked else "packed in a way that is not read"
+        raise DamageError(f"its archive is {how}") from None
     with member:
         while piece := _next(member):
             size += len(piece)
@@ -78,8 +81,8 @@ def pieces(archive: zipfile.ZipFile, name: str, most: int = LARGEST) -> Iterator
 def _next(member):
     try:
         return member.read(PIECE)
-    except OSError as error:  # bz2's
-        raise ValueError(str(error)) from None
+    except OSError:  # bz2's
+        raise DamageError("its archive is damaged") from None
 
 
 def _refuse_size(size, packed, most):
@@ -105,5 +108,5 @@ def step(data: bytes) -> bytes:
     with opened(data) as archive:
         names = [name for name in archive.namelist() if STEP_NAME.search(PurePosixPath(name).name)]
         if len(names) != 1:
-            raise ValueError(f"an archive of {len(names)} STEP files")
+            raise DamageError(f"an archive of {len(names)} STEP files")
         return content(archive, names[0])

@@ -5,6 +5,8 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
+from feederscrew.part.reading.soup import DamageError
+
 COMMA_NUMBERS = re.compile(rb"(?:[-+]?(?:\d+(?:,\d*)?|,\d+)(?:[eE][-+]?\d+)?\s*)*")
 GROUPS = re.compile(rb"[-+]?\d{1,3}(?:,\d{3})+")  # thousands, or three decimals
 READ_COMMAS = "its numbers have decimal commas: read as decimal points"
@@ -33,7 +35,7 @@ class Decimals:
         """
         text = b" ".join(words)
         if b"_" in text:
-            raise ValueError("an underscore in a number")
+            raise DamageError("an underscore in a number")
         self.points = self.points or b"." in text
         if b"," in text:
             self.commas = True

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew.geometry import vectors
+from feederscrew.part.reading.soup import DamageError
 from feederscrew.units import counted
 
 TINY = 1e-300  # [unit of the file] a facet smaller than that is a point
@@ -37,9 +38,9 @@ def triangles(
         If a facet names a corner that is not there, has too many corners, or its outline crosses itself.
     """
     if len(corners) and (corners.min() < 0 or corners.max() >= len(vertices)):
-        raise ValueError("a facet names a corner that is not there")
+        raise DamageError("a facet names a corner that is not there")
     if len(sizes) and sizes.max() > MOST_CORNERS_OF_ONE:
-        raise ValueError(f"a facet of more than {MOST_CORNERS_OF_ONE} corners")
+        raise DamageError(f"a facet of more than {MOST_CORNERS_OF_ONE} corners")
     start = np.cumsum(sizes) - sizes
     faces, facet = [np.empty((0, 3), dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     for size in np.unique(sizes[sizes >= 3]).tolist():
@@ -94,5 +95,5 @@ def _ears(points, normal):
     flat = flat / np.abs(flat).max()  # of a facet with an area
     ears = np.asarray(triangulate([flat]), dtype=np.int64).reshape(-1, 3)
     if len(ears) != len(points) - 2:
-        raise ValueError(f"the outline of a facet of {len(points)} corners crosses itself")
+        raise DamageError(f"the outline of a facet of {len(points)} corners crosses itself")
     return ears

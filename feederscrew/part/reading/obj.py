@@ -5,7 +5,7 @@ import numpy as np
 from feederscrew.part.reading import facets
 from feederscrew.part.reading.decimals import Decimals
 from feederscrew.part.reading.formats import plain
-from feederscrew.part.reading.soup import MOST_CORNERS, MOST_FACETS, Soup, refuse_crowds
+from feederscrew.part.reading.soup import MOST_CORNERS, MOST_FACETS, DamageError, Soup, refuse_crowds
 
 FROM_ZERO = "its facets count corners from 0, OBJ counts them from 1: read as counted from 0"
 
@@ -31,7 +31,7 @@ def soup(data: bytes) -> Soup:
             continue
         if parts[0] == b"v":
             if len(parts) < 4:
-                raise ValueError("a corner of fewer than three numbers")
+                raise DamageError("a corner of fewer than three numbers")
             words += parts[1:4]
             if len(words) > 3 * MOST_CORNERS:
                 refuse_crowds(len(words) // 3, 0)
@@ -53,7 +53,7 @@ def soup(data: bytes) -> Soup:
     whole, begins, warnings = np.array(corners, dtype=np.int64), 1, decimals.warnings
     if len(whole) and whole.min() == 0:
         if relative or whole.max() >= len(vertices):
-            raise ValueError("a facet names corner 0; OBJ counts from 1")
+            raise DamageError("a facet names corner 0; OBJ counts from 1")
         begins, warnings = 0, (*warnings, FROM_ZERO)
     faces, facet = facets.triangles(vertices, np.array(sizes, dtype=np.int64), whole - begins)
     shown = tuple(name.decode(errors="replace") for name in names)

@@ -9,7 +9,7 @@ import numpy as np
 from feederscrew.part.reading import facets
 from feederscrew.part.reading.decimals import Decimals
 from feederscrew.part.reading.formats import plain
-from feederscrew.part.reading.soup import LARGEST_TEXT, Soup, TooManyFacetsError, refuse_crowds
+from feederscrew.part.reading.soup import LARGEST_TEXT, DamageError, Soup, TooManyFacetsError, refuse_crowds
 
 TYPES = {  # names of the specification, and of later writers
     **{"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"},
@@ -50,7 +50,7 @@ def soup(data: bytes) -> Soup:
     """
     end = HEAD_END.search(data)
     if end is None:
-        raise ValueError("its header does not end")
+        raise DamageError("its header does not end")
     order, elements = _header(data[: end.start()].decode("ascii", "replace"))
     decimals = Decimals()
     if order == "":
@@ -60,7 +60,7 @@ def soup(data: bytes) -> Soup:
     else:
         columns = _from_bytes(data, end.end(), elements, order)
     if "vertex.x" not in columns:
-        raise ValueError("it has no corners")
+        raise DamageError("it has no corners")
     vertices = np.stack([np.asarray(columns[f"vertex.{axis}"], dtype=float) for axis in "xyz"], axis=1)
     empty = np.empty(0, dtype=np.int64)
     sizes, corners = next(
@@ -80,17 +80,17 @@ def _header(text):
                 order = ORDERS[name]
             case ["element", name, rows]:
                 if not rows.isascii() or not rows.isdigit():
-                    raise ValueError(f"element {name}: no number of rows")
+                    raise DamageError(f"element {name}: no number of rows")
                 elements.append(PlyElement(name, int(rows)))
             case ["property", "list", count, type, name]:
                 elements[-1].properties.append(PlyProperty(name, TYPES[type], TYPES[count]))
             case ["property", type, name]:
                 elements[-1].properties.append(PlyProperty(name, TYPES[type]))
     if order is None:
-        raise ValueError("its header names no format")
+        raise DamageError("its header names no format")
     for element in elements:
         if element.name in ("tristrips", "tristrip") and element.rows:
-            raise ValueError("triangle strips are not read")
+            raise DamageError("triangle strips are not read")
     return order, elements
 
 
@@ -102,7 +102,7 @@ def _from_bytes(data, at, elements, order):
             continue
         least = sum(np.dtype(one.count or one.type).itemsize for one in element.properties)
         if element.rows * least > len(data) - at:
-            raise ValueError(ANNOUNCES)
+            raise DamageError(ANNOUNCES)
         refuse_crowds(element.rows, 0 if element.name == "vertex" else element.rows)
         read = _rows_alike(data, at, element, order) or _row_by_row(data, at, element, order)
         columns |= {f"{element.name}.{name}": column for name, column in read[0].items()}
@@ -119,10 +119,10 @@ def _rows_alike(data, at, element, order):
         if one.count:
             width = np.dtype(one.count).itemsize
             if end + width > len(data):
-                raise ValueError(ANNOUNCES)
+                raise DamageError(ANNOUNCES)
             length = int(np.frombuffer(data, order + one.count, 1, end)[0])
             if not 0 <= length * np.dtype(one.type).itemsize <= len(data) - end:
-                raise ValueError(ANNOUNCES)
+                raise DamageError(ANNOUNCES)
             fields.append((f"n{k}", order + one.count))
             end += width
         fields.append((f"v{k}", order + one.type, (length,)) if one.count else (f"v{k}", order + one.type))
@@ -131,7 +131,7 @@ def _rows_alike(data, at, element, order):
     if at + dtype.itemsize * element.rows > len(data):
         if any(one.count for one in element.properties):
             return None
-        raise ValueError(ANNOUNCES)
+        raise DamageError(ANNOUNCES)
     rows = np.frombuffer(data, dtype, element.rows, at)
     columns = {}
     for k, one in enumerate(element.properties):
@@ -161,7 +161,7 @@ def _row_by_row(data, at, element, order):
                 at += counted
             end = at + length * width
             if end > len(data):
-                raise ValueError(ANNOUNCES)
+                raise DamageError(ANNOUNCES)
             if wanted:
                 sizes.append(length)
                 pieces.append(data[at:end])
@@ -178,7 +178,7 @@ def _from_text(words, elements, decimals):
     at = 0
     for element in elements:
         if element.rows * len(element.properties) > len(words) - at:
-            raise ValueError(ANNOUNCES)
+            raise DamageError(ANNOUNCES)
         refuse_crowds(element.rows, 0 if element.name == "vertex" else element.rows)
         if not any(one.count for one in element.properties):
             width = len(element.properties)
@@ -195,7 +195,7 @@ def _from_text(words, elements, decimals):
                 if one.count:
                     length, at = int(words[at]), at + 1
                 if not 0 <= length <= len(words) - at:
-                    raise ValueError(ANNOUNCES)
+                    raise DamageError(ANNOUNCES)
                 if one.name in lists:
                     lists[one.name][0].append(length)
                     lists[one.name][1].extend(words[at : at + length])

@@ -13,7 +13,7 @@ from feederscrew import units
 from feederscrew.errors import DAMAGE, MeshError
 from feederscrew.part.reading import archives, step
 from feederscrew.part.reading.formats import FORMATS
-from feederscrew.part.reading.soup import Soup, refuse_crowds
+from feederscrew.part.reading.soup import DamageError, Soup, refuse_crowds
 
 AGAIN = "export the part again"
 LARGEST_SCENE = 1 << 24  # [bytes] of the JSON of a GLB: it names nodes and buffers, the numbers are elsewhere
@@ -68,8 +68,8 @@ def soup(data, kind, where):
             pieces = _pieces(data)
         except MemoryError:
             raise
-        except DAMAGE as error:  # trimesh's, of any class
-            raise ValueError(str(error) or type(error).__name__) from None
+        except DAMAGE:  # trimesh's, of any class
+            raise DamageError("its scene does not fit what it holds") from None
         found = _joined(pieces, kind, unit)
     return found
 
@@ -95,7 +95,7 @@ def _joined(pieces, kind, unit):
     names, points, faces, sizes, count = [], [np.empty((0, 3))], [np.empty((0, 3), dtype=int)], [], 0
     for name, vertices, own in pieces:
         if own.min() < 0 or own.max() >= len(vertices):
-            raise ValueError("a facet names a corner that is not there")
+            raise DamageError("a facet names a corner that is not there")
         names.append(name)
         points.append(vertices)
         faces.append(own + count)
@@ -114,8 +114,11 @@ def _refuse_claims(data, where):
     if max(length, 20 + chunk) > len(data):
         raise MeshError(where, "is a damaged GLB: it announces more than it holds", AGAIN)
     if chunk > LARGEST_SCENE:
-        raise ValueError(f"a scene of more than {LARGEST_SCENE >> 20} MB")
-    scene = _of(dict, json.loads(data[20 : 20 + chunk]))
+        raise DamageError(f"a scene of more than {LARGEST_SCENE >> 20} MB")
+    try:
+        scene = _of(dict, json.loads(data[20 : 20 + chunk]))
+    except (json.JSONDecodeError, UnicodeDecodeError):
+        raise DamageError("its scene is no JSON") from None
     needed = [name for name in _listed(scene, "extensionsRequired") if name in PACKED]
     if needed:
         raise MeshError(where, f"is a GLB packed by {needed[0]}, which is not read", "export it unpacked")
@@ -139,7 +142,7 @@ def _refuse_claims(data, where):
 def _of(kind, value):
     """A value of the scene, which must be of a kind."""
     if not isinstance(value, kind):
-        raise ValueError(f"its scene has {value!r:.30} out of place")
+        raise DamageError(f"its scene has {json.dumps(value):.30} out of place")
     return value
 
 
@@ -150,19 +153,19 @@ def _listed(holder, name):
 def _refuse_nests(nodes):
     """Refuse nodes that are no trees, or deep ones."""
     if len(nodes) > MOST_NODES:
-        raise ValueError(f"more than {MOST_NODES} nodes")
+        raise DamageError(f"more than {MOST_NODES} nodes")
     pairs = [
         (_of(int, child), parent) for parent, node in enumerate(nodes) for child in _listed(node, "children")
     ]
     parents = dict(pairs)
     if len(parents) != len(pairs):
-        raise ValueError("a node within two others")
+        raise DamageError("a node within two others")
     for node in parents:
         depth = 0
         while node in parents:
             node, depth = parents[node], depth + 1
             if depth > DEEPEST:
-                raise ValueError(f"nodes within nodes more than {DEEPEST} deep")
+                raise DamageError(f"nodes within nodes more than {DEEPEST} deep")
 
 
 def _announced(accessor, scene, size, where):

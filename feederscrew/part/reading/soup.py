@@ -23,6 +23,10 @@ class Soup:
     objects: np.ndarray | None = None  # (F,) int, which of ``names`` each facet belongs to
 
 
+class DamageError(ValueError):
+    """What is wrong with damaged bytes, in words for the user."""
+
+
 class TooManyFacetsError(ValueError):
     """A mesh of more corners or facets than are read."""
 

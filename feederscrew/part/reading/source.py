@@ -14,7 +14,7 @@ from feederscrew.errors import MeshError, printable
 from feederscrew.part.reading import archives, formats, obj, off, ply, scenes, stl, threemf
 from feederscrew.part.reading.decimals import CommaError
 from feederscrew.part.reading.formats import CARD, FORMATS
-from feederscrew.part.reading.soup import LARGEST, LARGEST_TEXT, TooManyFacetsError
+from feederscrew.part.reading.soup import LARGEST, LARGEST_TEXT, DamageError, TooManyFacetsError
 
 AGAIN = "export the part again"
 FEWER = "export it with fewer facets"
@@ -29,6 +29,15 @@ REFUSED: tuple[type[Exception], ...] = (  # what our readers raise on damaged by
     struct.error,
     *archives.DAMAGED,
     DeprecationWarning,
+)
+REASONS = (  # the first that fits, of faults whose own words are for programmers
+    (archives.DAMAGED, "its archive is damaged"),
+    (UnicodeError, "its text cannot be read"),
+    ((EOFError, struct.error), "it is cut short"),
+    (RecursionError, "it is nested too deep"),
+    (ArithmeticError, "a number is out of range"),
+    (LookupError, "something in it is missing"),
+    ((ValueError, DeprecationWarning), "a value in it cannot be read"),
 )
 MENDS = {
     formats.UTF16: "save it as ASCII or UTF-8 text",
@@ -133,7 +142,10 @@ def _read(file, kind):
 
 
 def _reason(error):
-    words = " ".join(str(error).split()) or type(error).__name__
+    """What is wrong with damaged bytes: our own words, or what the class of another's fault stands for."""
+    if not isinstance(error, DamageError):
+        return next(text for kinds, text in REASONS if isinstance(error, kinds))
+    words = " ".join(str(error).split())
     return words if len(words) <= 60 else words[:57] + "..."
 
 

@@ -6,6 +6,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from feederscrew.part.reading.soup import DamageError
+
 FLATNESS, TURN = 0.01, 0.1  # [mm, rad] between a curved face and its facets, and from facet to facet
 PATIENCE = 60  # [s]
 MOST_MEMORY = 3 << 30  # [bytes]
@@ -52,9 +54,9 @@ def glb(data):
         try:
             done = subprocess.run(call, capture_output=True, timeout=PATIENCE, check=False)
         except subprocess.TimeoutExpired:
-            raise ValueError(f"not converted within {PATIENCE} s") from None
+            raise DamageError(f"not converted within {PATIENCE} s") from None
         if done.returncode != 0 or not target.exists():
-            raise ValueError("OpenCASCADE cannot convert it")
+            raise DamageError("OpenCASCADE cannot convert it")
         return target.read_bytes()
 
 

@@ -9,7 +9,7 @@ from feederscrew.errors import MeshError
 from feederscrew.part.reading import facets
 from feederscrew.part.reading.decimals import CommaError, Decimals
 from feederscrew.part.reading.formats import ASCII, BINARY, FACET, HEADER, claimed_facets, plain
-from feederscrew.part.reading.soup import LARGEST_TEXT, Soup, TooManyFacetsError, refuse_crowds
+from feederscrew.part.reading.soup import LARGEST_TEXT, DamageError, Soup, TooManyFacetsError, refuse_crowds
 from feederscrew.units import shown
 
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -159,7 +159,7 @@ class StlText:
                     self.whole = False
                     return
                 if b"vertex" in words[at + 1 : at + 4] or b"endloop" in words[at + 1 : at + 4]:
-                    raise ValueError("a corner of fewer than three numbers")
+                    raise DamageError("a corner of fewer than three numbers")
                 self.words += words[at + 1 : at + 4]
                 size, at = size + 1, at + 4
             self.sizes.append(size)

@@ -16,7 +16,7 @@ import numpy as np
 
 from feederscrew.errors import MeshError
 from feederscrew.part.reading import archives
-from feederscrew.part.reading.soup import LARGEST, MOST_FACETS, Soup, refuse_crowds
+from feederscrew.part.reading.soup import LARGEST, MOST_FACETS, DamageError, Soup, refuse_crowds
 from feederscrew.part.repair import weld
 from feederscrew.units import counted, listed, shown
 
@@ -172,9 +172,9 @@ class Package3MF:
         """Add the meshes of one object, and of its components."""
         self.instances += 1
         if self.instances > MOST:
-            raise ValueError(f"its components stand for more than {MOST} bodies")
+            raise DamageError(f"its components stand for more than {MOST} bodies")
         if len(parents) > DEEPEST:
-            raise ValueError(f"components within components more than {DEEPEST} deep")
+            raise DamageError(f"components within components more than {DEEPEST} deep")
         here = self._model(path).objects[name]
         role = here.role if role == PART else role
         title = here.name or self.notes.names.get((name, ""), title)
@@ -197,7 +197,7 @@ class Package3MF:
         vertices = _moved(np.frombuffer(here.corners, dtype=float).reshape(-1, 3), transform)
         faces = np.frombuffer(here.facets, dtype=np.int64).reshape(-1, 3)
         if faces.min() < 0 or faces.max() >= len(vertices):
-            raise ValueError("a facet names a corner that is not there")
+            raise DamageError("a facet names a corner that is not there")
         if _mirrors(transform):
             faces = faces[:, ::-1]
         ranges = self.notes.ranges.get(name, []) if not inner else []
@@ -230,12 +230,12 @@ class Package3MF:
         for target in [*targets, *guesses]:
             if target.lower() in self.files:
                 return target
-        raise ValueError("it holds no model")
+        raise DamageError("it holds no model")
 
     def _model(self, path):
         if path not in self.models:
             if path.lower() not in self.files:
-                raise ValueError("a component is in a file that is not there")
+                raise DamageError("a component is in a file that is not there")
             self.models[path] = model = Model3MF()
             reader = ModelReader(model, self.size, self.where)
             self._parse(self.files[path.lower()], reader.begin, reader=reader)
@@ -261,7 +261,7 @@ class Package3MF:
                 parser.Parse(piece, False)
             parser.Parse(b"", True)
         except expat.ExpatError as error:
-            raise ValueError(f"its XML: {error}") from None
+            raise DamageError(f"its XML: {error}") from None
 
 
 class ModelReader:
@@ -290,7 +290,7 @@ class ModelReader:
         if local is None:
             local = self.locals[name] = name.rpartition("}")[2]
             if len(self.locals) > MOST_NAMES:
-                raise ValueError(f"its XML has more than {MOST_NAMES} kinds of elements")
+                raise DamageError(f"its XML has more than {MOST_NAMES} kinds of elements")
             extension = FOREIGN.search(name)
             if extension:
                 what = f"is a 3MF in the extension {extension[0].lower()}, which is not read"
@@ -378,7 +378,7 @@ def _role(text):
 
 
 def _refuse_doctype(*_):
-    raise ValueError("its XML declares a document type")
+    raise DamageError("its XML declares a document type")
 
 
 def _by_role(pieces, left_out, where):
@@ -432,7 +432,10 @@ def _transform(attributes):
     text = attributes.get("transform")
     if text is None:
         return np.vstack([np.eye(3), np.zeros(3)])
-    return np.array([float(word) for word in text.split()]).reshape(4, 3)
+    numbers = [float(word) for word in text.split()]
+    if len(numbers) != 12:
+        raise DamageError(f"a transform of {len(numbers)} numbers, not of 12")
+    return np.array(numbers).reshape(4, 3)
 
 
 def _moved(points, transform):

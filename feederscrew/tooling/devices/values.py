@@ -110,10 +110,10 @@ def shares(entry):
 
 
 def polygon(entry):
-    """Read a polygon of lengths or the file that holds it, as {'corners': ((m, m), ...)}."""
+    """Read a polygon of lengths or the file that holds it, as {'corners': ((m, m), ...), 'assumed': ''}."""
     written_here = entry.value.kind != "mapping"
-    corners = _corners(entry.value, entry.key) if written_here else _drawn(entry)
-    return {"corners": simple(corners, entry.value.where, entry.key)}
+    corners, assumed = (_corners(entry.value, entry.key), "") if written_here else _drawn(entry)
+    return {"corners": simple(corners, entry.value.where, entry.key), "assumed": assumed}
 
 
 def opening(entry):
@@ -222,7 +222,7 @@ def _corners(node, kind):
 
 
 def _drawn(entry):
-    """The one closed polyline of a layer of a DXF file in millimetres."""
+    """The one closed polyline of a layer of a DXF file, and what was taken for granted of its unit."""
     given = mapping(entry, ("dxf", "layer"), "write {dxf: tooling.dxf, layer: CUT}")
     node, layer = given["dxf"].value, given["layer"].value.text
     path = Path(node.text)
@@ -230,11 +230,13 @@ def _drawn(entry):
         path = Path(node.where.rsplit(":", 2)[0]).parent / path
     from feederscrew import dxf
 
-    found = dxf.closed_polylines(path, layer, node.where)
+    read = dxf.outlines(path, layer, node.where)
+    found = read.rings
     if len(found) != 1:
         what = f"layer {units.shown(layer)} of {path.name} holds {len(found)} closed polylines"
         raise ConfigError(given["layer"].value.where, what, "give each cut_out a layer of its own")
-    return found[0]
+    what = f"{node.where}: {units.printable(path.name)} names no unit ($INSUNITS), read in mm"
+    return found[0], "" if read.has_unit else f"{what} - save it in millimetres"
 
 
 def _share(entry):

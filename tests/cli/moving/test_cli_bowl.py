@@ -384,3 +384,24 @@ def test_measured_values_that_are_none_are_refused(run):
     assert refused.stderr == "Error: --measured stroke: '3 kg' is a mass, not a length - give it in mm\n"
     only = run("bowl", "--measured", "fill=50 %")
     assert "says nothing but the fill - add stroke=0.3 mm, or an acceleration" in only.stderr
+
+
+@pytest.mark.parametrize(
+    "option",
+    [
+        ("--body", "7"), ("--units", "cm"), ("--density", "brass"), ("--centre-of-mass", "0,0,1"),
+        ("--allow-open",), ("--aspect", "A"), ("--heading", "90deg"), ("--rule", "csa"), ("--gap", "1 mm"),
+        ("--fill", "0.5"),
+    ],
+)  # fmt: skip
+def test_what_is_said_of_a_part_without_one_is_a_wrong_call(run, option):
+    """`feeder bowl --body 7` gave the machine of the defaults as if nothing had been asked of a part."""
+    done = run("bowl", *option)
+    assert done.exit_code == 2 and done.stdout == ""
+    assert f"{option[0]} is given without PART - name the part's file" in done.stderr
+
+
+@pytest.mark.parametrize("option", [("--print", "pla"), ("--chord", "1 mm"), ("--step",)])
+def test_what_is_said_of_the_solid_without_one_is_a_wrong_call(run, option):
+    done = run("bowl", PART, "--target", "60/min", *option)
+    assert done.exit_code == 2 and f"{option[0]} is given without --solid - add --solid" in done.stderr

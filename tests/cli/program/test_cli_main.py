@@ -282,6 +282,27 @@ Fence("feeder", commands=[click.Command("nap", callback=nap)])(["nap"])
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_ctrl_c_does_not_kill_a_program_that_has_given_its_answer():
+    """`feeder bowl` that had written all ended by the signal, -2: Python had taken its handler away."""
+    code = """
+import click, sys, time
+from feederscrew_cli.main import Fence
+class Late:
+    def __del__(self, nap=time.sleep, out=sys.stdout):  # while Python ends
+        out.write("late\\n")
+        out.flush()
+        nap(0.5)
+late = Late()
+sys.argv = ["feeder", "work"]
+Fence("feeder", commands=[click.Command("work", callback=lambda: print("done", flush=True))])()
+"""
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, cwd=ROOT) as child:
+        assert [child.stdout.readline() for _ in range(2)] == ["done\n", "late\n"]
+        child.send_signal(signal.SIGINT)
+        assert child.wait(timeout=10) == 0
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 def test_work_that_goes_on_after_a_dropped_interrupt_ends_at_its_next_step():
     """`feeder tooling` went on for minutes where a library had dropped it."""
     steps = []
