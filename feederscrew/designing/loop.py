@@ -8,6 +8,7 @@ import numpy as np
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import beside, calm_drive, exploring, nearest, proposals, queues, trying
 from feederscrew.designing.hazards import risks
+from feederscrew.designing.long_rides import LongRide, long_ride
 from feederscrew.designing.record import (
     DRAWS_HELD,
     HOLDS,
@@ -229,8 +230,9 @@ def proved(
         All draws of that candidate, where they were made: they would come out the same.
     """
     known, candidate = exploring.at_its_drive(search, candidate)
+    ride, candidate = _at_the_tooling(search, candidate)
     bowl, ways, row = candidate.bowl, candidate.ways, candidate.proposal.row
-    study = _unproved(search, candidate, known)
+    study = replace(_unproved(search, candidate, known), long_ride=ride)
     tested = drawn or _drawn(search, candidate)
     study = replace(study, robust=tested, partial=tested.partial)
     if tested.partial or not (whole or tested.share >= DRAWS_HELD):
@@ -242,6 +244,15 @@ def proved(
     every = [ways.lying[k] for k in trying.often(candidate.weights)]
     found = risks.risks(ways.lying[row], bowl, study.queues, every=every, seed=search.request.seed)
     return replace(study, risks=found)
+
+
+def _at_the_tooling(search: Search, candidate: Candidate) -> tuple[LongRide, Candidate]:
+    """A ride along the track to the tooling, and the candidate with the mix that arrives there."""
+    search.told(f"ride along the track: {candidate.attempt.wanted}")
+    ways, weights = candidate.ways, candidate.weights
+    wanted = trying.wanted_rows(ways, candidate.tried.states)
+    ride = long_ride(search.part, candidate.bowl, ways.lying, weights, wanted, search.request.run)
+    return ride, replace(candidate, weights=ride.arriving)
 
 
 def _drawn(search: Search, candidate: Candidate) -> RobustRun:

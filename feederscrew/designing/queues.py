@@ -56,6 +56,18 @@ class FollowedRow:
         offered, plan = (self.known.lying, self.shares), QueuePlan(PARTS, SECONDS, gaps)
         return PartsQueue(self.part, self.bowl, self.aspects, offered, poses, plan, seed)
 
+    def followed(self, fill: str, gaps: float, seed: int) -> FilledQueue:
+        """Return what a queue did in SECONDS."""
+        self.say(fill, SECONDS)
+        queue = self.queue(gaps, seed)
+        try:
+            queue.follow(SECONDS, self.progressed(0))
+        except KeyboardInterrupt:
+            if not queue.periods:
+                raise
+            return self.count(fill, gaps, queue.seen(partial=True))
+        return self.count(fill, gaps, queue.seen())
+
     def say(self, fill: str, seconds: float) -> None:
         """Tell which fill is followed, and until when [s]."""
         if self.told:
@@ -211,7 +223,7 @@ def longer(row: FollowedRow, study: DesignStudy) -> tuple[FilledQueue, ...]:
     place = found.index(study.slowest) if count else 0
     for k in range(1, count + 1):
         least = found[place]
-        joined = _joined(least, _followed(row, least, row.seed + k))
+        joined = _joined(least, row.followed(least.fill, least.gaps, row.seed + k))
         found = (*found[:place], joined, *found[place + 1 :])
         if joined.partial:
             break
@@ -231,26 +243,13 @@ def minutes(study: DesignStudy) -> int:
     own, rate = study.slowest, study.delivered[0]
     if not right or own is None:
         return 0
-    kept = [1.0 + k * SECONDS / study.queue_seconds for k in range(MORE + 1)]  # times as many parts
+    kept = [1.0 + k * own.seconds / study.queue_seconds for k in range(MORE + 1)]  # times as many parts
     lows = [float(wilson([right * more], (left + back) * more)[0][0]) for more in kept]
     share = right / (left + back)
     enough = [k for k, low in enumerate(lows) if rate * low / share >= need]
     if not enough or float(wilson([right], left)[1][0]) < PURE:
         return 0
     return enough[0] if right >= PURE * left else MORE
-
-
-def _followed(row: FollowedRow, fill: FilledQueue, seed: int) -> FilledQueue:
-    """The queue of one fill with another seed, SECONDS of it."""
-    row.say(f"{fill.fill} fill again, the slowest", SECONDS)
-    queue = row.queue(fill.gaps, seed)
-    try:
-        queue.follow(SECONDS, row.progressed(0))
-    except KeyboardInterrupt:
-        if not queue.periods:
-            raise
-        return row.count(fill.fill, fill.gaps, queue.seen(partial=True))
-    return row.count(fill.fill, fill.gaps, queue.seen())
 
 
 def _joined(first: FilledQueue, second: FilledQueue) -> FilledQueue:
