@@ -81,6 +81,8 @@ def published_changes(
 ) -> dict[str, NDArray[np.float64]]:
     """Return the probabilities by the published rules with every facet on which the body stands.
 
+    Source: the rules of the thesis, chapter 3, over more faces.
+
     Parameters
     ----------
     shallow : ShallowFacets
