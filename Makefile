@@ -58,7 +58,7 @@ test-newest: ## the shorter tests with the newest Python and libraries there are
 	.venv-newest/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
 	NUMBA_CACHE_DIR=$(CURDIR)/.venv-newest/numba .venv-newest/bin/python -m pytest $(SHORT) $(TESTS)
 
-WITHOUT := lxml networkx cascadio distributed jsonschema OCP pinocchio spatialmath chromium prusa-slicer
+WITHOUT := lxml networkx cascadio distributed jsonschema OCP pinocchio chromium prusa-slicer
 
 test-without: $(READY_TO_TEST) ## the shorter tests with each extra missing in turn: WITHOUT="lxml OCP" names fewer
 	for name in $(WITHOUT); do echo "without $$name"; PYTHONPATH=$(CURDIR)/tests/without FEEDER_WITHOUT=$$name \

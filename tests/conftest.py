@@ -65,7 +65,6 @@ def _early(item):
 EXTRAS = {
     "OCP": "pip install 'feederscrew[cad]'",
     "pinocchio": "pip install 'feederscrew[oracle]'",
-    "spatialmath": "pip install 'feederscrew[oracle]'",
     "chromium": "install Debian's package chromium",
     "prusa-slicer": "install Debian's package prusa-slicer",
 }

@@ -3,8 +3,9 @@
 import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
-from feederscrew.screw import Momentum, Point, Screw, Twist, Wrench, displacement
+from feederscrew.screw import Point, Screw
 
 RELATIVE = 1e-12
 few = settings(max_examples=60, deadline=None)
@@ -14,8 +15,7 @@ vectors = st.tuples(grid, grid, grid).map(np.array)
 directions = vectors.filter(lambda v: np.abs(v).max() > 0.0)
 sizes = st.integers(-9, 9).map(lambda k: 10.0**k)
 points = st.builds(Point, st.just("P"), st.builds(lambda v: v / 3.0, vectors))
-kinds = st.sampled_from([Screw, Twist, Wrench, Momentum])
-displacements = st.builds(lambda w, v: displacement(Twist(w / 2.7, v)), vectors, vectors)
+displacements = st.tuples(vectors.map(lambda v: Rotation.from_rotvec(v / 2.7)), vectors)
 
 
 def screws(kind=Screw):
@@ -26,6 +26,13 @@ def screws(kind=Screw):
 def lines(kind=Screw):
     """A screw that has an axis."""
     return st.builds(lambda k, s, s0, p: k * kind(s, s0 / 3.0, p), sizes, directions, vectors, points)
+
+
+def moved(screw, displacement):
+    """The screw turned and shifted, its reference point with it."""
+    turn, shift = displacement[0].as_matrix().T, displacement[1]
+    point = Point("P'", screw.reference.coordinates @ turn + shift)
+    return type(screw)(screw.resultant @ turn, screw.moment @ turn, point)
 
 
 def random_screws(rng, kind, *shape):

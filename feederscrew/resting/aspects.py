@@ -1,27 +1,47 @@
-"""The resting aspects of a part, equal ones joined into classes, named and ranked."""
+"""The resting aspects of a part: equal ones joined into classes, named and ranked.
 
+Equal faces are those that a rotation symmetry of the part carries into each other. Names are letters by
+rank, or those a user has given, matched by direction. Facets on which the part stands, but which are merged
+with a deeper neighbour, change the published rules alone.
+"""
+
+import itertools
 from dataclasses import dataclass, field, replace
+from string import ascii_uppercase
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.errors import ConfigError
 from feederscrew.geometry import compiled, vectors
-from feederscrew.part.hull import convex_hull
+from feederscrew.geometry.graphs import component_of
+from feederscrew.part.hull import Hull, convex_hull
 from feederscrew.part.moments import Moments
 from feederscrew.records import Shown
-from feederscrew.resting import naming
-from feederscrew.resting.basins.landscape import landscape
-from feederscrew.resting.classes import body_frame, classes
-from feederscrew.resting.faces import stable_faces, unstable_faces
+from feederscrew.resting.basins.landscape import SMOOTH, Landscape, angle, landscape
+from feederscrew.resting.faces import Face, stable_faces, unstable_faces
+from feederscrew.resting.flats import ONE_PLANE
 from feederscrew.resting.forms import FLAT, LEVEL, forms, said
 from feederscrew.resting.rules import published, recommended, registry, surface
 from feederscrew.resting.rules.quantities import ClassQuantities
 from feederscrew.resting.rules.recommended import Recommended
-from feederscrew.resting.shallow import published_changes, remark, shallow_facets
 from feederscrew.resting.tumbling import by_class, walk
+from feederscrew.units import factor
 
 CONVEX = 1e-6  # [1] of the hull's volume: a smaller difference breaks no symmetry
 TIE = 1e-4  # probabilities that differ by less of themselves are equal but for rounding
+NAMING_REACH = {"flat": np.radians(3.0), "rolling": np.radians(15.0)}  # off the direction of a name
+NAMING_TOLERANCE = np.radians(0.05)  # a direction closer than this to an aspect means that one
+SYMMETRY_ANGLE = np.radians(3.0)  # a turned face lies on another when their normals agree this well
+SYMMETRY_HEIGHT_SHARE = 0.007  # ... and their heights
+MAX_ROTATIONS = 400  # rotations tried at most: more equal faces than that are a curve
+MIN_INSIDE_SHARE = 1e-2  # [1] of the radius: a foot nearer to a facet's border is one of the file's noise
+MAX_SHALLOW = 500  # facets with the foot inside, the furthest from a border first: with more it is a curve
+MIN_CHANGE = 5e-4  # [1] of a probability: less does not show in a table
+ALIKE_DIGITS = 4  # of height and area, in which equal facets agree
+PUBLISHED_RULES = ("pmi", "csa", "stability")
+MM = factor("mm", "length")
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,12 +137,12 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
     stable = stable_faces(hull, basins)
     faces = stable + (unstable_faces(hull, stable) if unstable else [])
     moments = _moments(part, hull)
-    label = classes(faces, part, moments)
+    label = join_classes(faces, part, moments)
     groups = [[face for face, at in zip(faces, label) if at == k] for k in range(label.max() + 1)]
     table = _geometry(groups, part) | {"forms": forms(groups, hull)}
     chances = _probabilities(table, as_published)
     order = _ranked(table, chances["csa"], part, moments)
-    names, result = naming.named([groups[k] for k in order], table["normals"][order], hull, part.names)
+    names, result = name_classes([groups[k] for k in order], table["normals"][order], hull, part.names)
     shallow = shallow_facets(hull, basins, stable)
     weights = registry.weights(_quantities(table, as_published))
     complete = published_changes(shallow, weights, table["stable"], part.inertia, as_published)
@@ -132,7 +152,7 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
         complete={rule: check.frozen(chance[order]) for rule, chance in complete.items()},
         warnings=(
             *named.warnings,
-            *remark(shallow, names, *(_in_order(of, order) for of in (chances, complete))),
+            *shallow_remark(shallow, names, *(_in_order(of, order) for of in (chances, complete))),
         ),
     )
     ground = by_class.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
@@ -321,3 +341,412 @@ def _column(rows, quantity):
 def _over(own, heights):
     """Heights that a rule's own table gives, else those of the aspects."""
     return check.frozen(np.where(np.isnan(own), heights, own))
+
+
+def name_classes(groups, normals, hull, given):
+    """Name the classes of aspects.
+
+    Source: own; docs/resting.md, "Names that stay".
+
+    Parameters
+    ----------
+    groups : sequence of lists of Face
+        The faces of each class, classes in the order of the rows.
+    normals : (A, 3) float [1]
+        What is down when the part rests on each.
+    hull : Hull
+    given : AspectNames or None
+        Names with the direction that is down on each; what has none takes the first letter that is free.
+
+    Returns
+    -------
+    names : tuple of str
+        One a class.
+    said : tuple of str
+        Names that fit no aspect, and aspects that got none of the names; a sentence each.
+
+    Raises
+    ------
+    ConfigError
+        If a name fits two aspects and is of neither.
+    """
+    if given is None:
+        return tuple(letters_of(k) for k in range(len(groups))), ()
+    apart = np.column_stack([_angles_to_names(faces, hull, given) for faces in groups])
+    place = _match_names(apart)
+    _refuse_doubtful(given, apart, place)
+    names = {row: given.names[k] for k, row in place.items()}
+    taken = {name.casefold() for name in given.names}
+    free = (name for name in map(letters_of, itertools.count()) if name.casefold() not in taken)
+    every = tuple(names[row] if row in names else next(free) for row in range(len(groups)))
+    fresh = [row for row, faces in enumerate(groups) if row not in names and faces[0].stable]
+    said = [_unmatched(given, apart, place, k) for k in range(len(given.names)) if k not in place]
+    said += [
+        f"{given.source} has no name for the aspect with {_direction_text(normals[row])} down: it is called "
+        f"{every[row]}"
+        for row in fresh
+    ]
+    return every, tuple(said)
+
+
+def letters_of(k):
+    """Return A, B ... Z, AA, AB ... for 0, 1 ..."""
+    name = ""
+    while k >= 0:
+        name = ascii_uppercase[k % 26] + name
+        k = k // 26 - 1
+    return name
+
+
+def _angles_to_names(faces, hull, given):
+    """(names,) [rad] from each direction given to the nearest of a class; infinite out of reach."""
+    down = np.array([direction for _, direction in given.directions])
+    own = [hull.normals[face.triangles] if face.kind == "rolling" else face.normal[None] for face in faces]
+    nearest = angle(down[:, None], np.concatenate(own)[None]).min(axis=1)
+    within = faces[0].stable & (nearest <= NAMING_REACH[faces[0].kind])
+    return np.where(within, nearest, np.inf)
+
+
+def _match_names(apart):
+    """Class by name: the nearest two first, each once."""
+    place: dict[int, int] = {}
+    for k, row in zip(*np.unravel_index(np.argsort(apart, axis=None, kind="stable"), apart.shape)):
+        if np.isfinite(apart[k, row]) and k not in place and row not in place.values():
+            place[int(k)] = int(row)
+    return place
+
+
+def _unmatched(given, apart, place, k):
+    """What to say of a name that fits no aspect of its own."""
+    name, down = given.directions[k]
+    row = int(np.argmin(apart[k]))
+    if not np.isfinite(apart[k, row]):
+        return f"{given.source}: the part rests on no aspect {name!r} ({_direction_text(down)} down)"
+    other = next(given.names[m] for m, at in place.items() if at == row)
+    return f"{given.source}: {name!r} is one aspect with {other!r} and goes by that name"
+
+
+def _refuse_doubtful(given, apart, place):
+    """Refuse a name that is off its own aspect while another is within reach: either may be meant."""
+    for k, row in place.items():
+        rest = np.delete(apart[k], row)
+        if apart[k, row] >= NAMING_TOLERANCE and np.isfinite(rest).any():
+            off = " and ".join(f"{np.degrees(one):.2g}" for one in (apart[k, row], rest.min()))
+            what = f"the direction of {given.names[k]!r} is {off} deg off two aspects of the part"
+            raise ConfigError(given.source, what, "write the direction of the one that is meant")
+
+
+def _direction_text(direction):
+    return ", ".join(f"{x + 0.0:.3g}" for x in vectors.unit(np.asarray(direction)).round(4))
+
+
+def join_classes(faces, part, moments):
+    """Return labels of equal faces.
+
+    Only rotations count: a feeder cannot reflect a part, so mirror images stay apart. The rotation must be
+    a symmetry of the solid, not just of its hull.
+
+    Source: own; docs/resting.md, "Exact tumbling".
+
+    Parameters
+    ----------
+    faces : list of Face
+    part : Part
+        With a mesh.
+    moments : Moments
+        Of the part.
+
+    Returns
+    -------
+    (N,) int [1]
+        Class of each face, numbered in order of first appearance.
+    """
+    middles, alike = np.array([face.middle for face in faces]), _are_equal(faces)
+    axes = np.array([face.axis for face in faces])
+    if alike.sum() == len(faces):
+        return np.arange(len(faces))
+    carried = np.zeros_like(alike)
+    for rotation in symmetries(faces, part, moments):
+        there = _are_parallel(vectors.product(axes, rotation.T), axes)
+        carried |= there & _lie_on(vectors.product(middles, rotation.T), middles)
+    return component_of(np.argwhere(carried & alike), len(faces))
+
+
+def _lie_on(turned, middles):
+    """(N, N) bool: whether the mean normals of turned faces are those of others.
+
+    Of a round side the lowest strip says nothing: it lies wherever the tessellation begins.
+    """
+    apart = turned[:, None] - middles
+    return vectors.norm(apart) < 2.0 * np.sin(0.5 * SYMMETRY_ANGLE)
+
+
+def _are_parallel(turned, axes):
+    """(N, N) bool: whether turned axes are parallel to others; true where one has none."""
+    return ~(np.abs(vectors.product(turned, axes.T)) < np.cos(SYMMETRY_ANGLE))
+
+
+def symmetries(faces, part, moments):
+    """Return rotations that leave the solid as it is, the identity left out.
+
+    Source: own; docs/resting.md, "Exact tumbling".
+
+    Parameters
+    ----------
+    faces : list of Face
+        Landmarks: a symmetry must carry them onto each other.
+    part : Part
+    moments : Moments
+        Of the part.
+
+    Returns
+    -------
+    (N, 3, 3) float [1]
+        Enough of them to carry every face onto all its equals.
+    """
+    tolerance = moments.error + 2.0 * max(face.roughness for face in faces) / moments.size
+    found = _by_landmarks(faces)
+    if found is None:
+        flats = [face for face in faces if face.kind == "flat"]
+        found = _half_turns((flats or faces)[0].normal, moments)
+    found = np.concatenate([found, _principal(part)])
+    return found[moments.mismatch(found) < tolerance]
+
+
+def body_frame(part, moments):
+    """Return axes fixed in the part: principal axes of inertia, pointed by the solid's third moments.
+
+    Source: the eigenvectors of the inertia matrix; own: their signs.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    moments : Moments
+        Of the part.
+
+    Returns
+    -------
+    (3, 3) float [1]
+        Axes as columns. Where the part is symmetric its own axes are not told apart, and the file's decide.
+    """
+    _, axes = vectors.eigen(part.inertia)
+    skew = moments.directional(axes.T)[:, 2]
+    clear = np.abs(skew) > moments.error
+    largest = axes[np.argmax(np.abs(axes), axis=0), np.arange(3)]
+    axes = axes * np.where(clear, np.sign(skew), np.sign(largest))
+    if clear.sum() == 2:  # the third follows: a mirror plane leaves no skew across it, but a hand
+        axes[:, ~clear] *= vectors.determinant(axes)
+    return axes
+
+
+def _are_equal(faces):
+    """(N, N) bool: of one kind and of one height, as far as the file's noise lets us tell."""
+    heights = np.array([face.height for face in faces])
+    kinds = np.array([face.kind for face in faces])
+    noise = 2.0 * max(face.roughness for face in faces)
+    apart = np.abs(heights[:, None] - heights)
+    near = apart < SYMMETRY_HEIGHT_SHARE * np.minimum(heights[:, None], heights) + noise
+    return near & (kinds[:, None] == kinds)
+
+
+def _by_landmarks(faces):
+    """Rotations that carry one pair of unlike directions onto another; None where all are parallel."""
+    normals = np.array([face.normal for face in faces])
+    heights = np.array([face.height for face in faces])
+    like = _are_equal(faces)
+    flat = np.array([face.kind == "flat" for face in faces])
+    rarest = np.lexsort((-heights, like.sum(axis=1), ~flat))
+    rarest = rarest[flat[rarest]]
+    for a, b in ((a, b) for a in rarest[:1] for b in rarest[1:]):
+        if vectors.length(vectors.cross(normals[a], normals[b])) > np.sin(SYMMETRY_ANGLE):
+            return _carrying(normals, a, b, np.flatnonzero(like[a] & flat), np.flatnonzero(like[b] & flat))
+    return None
+
+
+def _carrying(normals, a, b, a_images, b_images):
+    """(N, 3, 3) rotations taking normals a, b to every pair of images that keeps their angle."""
+    c, d = (images.ravel() for images in np.meshgrid(a_images, b_images, indexing="ij"))
+    between = angle(normals[a], normals[b])
+    kept = np.abs(angle(normals[c], normals[d]) - between) < SYMMETRY_ANGLE
+    kept = np.flatnonzero(kept & ((c != a) | (d != b)))[:MAX_ROTATIONS]
+    ends = _frames(normals[c[kept]], normals[d[kept]])
+    return vectors.product(ends, _frames(normals[a], normals[b]).T)
+
+
+def _half_turns(axis, moments):
+    """Half turns about axes across ``axis``: the likeliest, where the solid changes least."""
+    u = vectors.unit(vectors.cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
+    v = vectors.cross(axis, u)
+
+    def turns(phases):
+        across = np.cos(phases)[:, None] * u + np.sin(phases)[:, None] * v
+        return 2.0 * across[:, :, None] * across[:, None, :] - np.eye(3)
+
+    best, width = 0.0, np.pi / 2
+    for _ in range(4):  # the mismatch is a Fourier sum of the phase up to order six: a coarse grid finds it
+        phases = best + width * np.linspace(-1.0, 1.0, 61)
+        best, width = phases[np.argmin(moments.mismatch(turns(phases)))], width / 20
+    across = turns(np.array([best]))
+    along = 2.0 * np.outer(axis, axis) - np.eye(3)
+    return np.concatenate([across, along[None], vectors.product(across, along)])
+
+
+def _principal(part):
+    """Half turns about the principal axes: all there are where the principal moments differ."""
+    axes = vectors.eigen(part.inertia)[1].T
+    return 2.0 * axes[:, :, None] * axes[:, None, :] - np.eye(3)
+
+
+def _frames(first, second):
+    """(..., 3, 3) right-handed axes as columns: along first (..., 3), and in the plane of both."""
+    z = first
+    y = vectors.unit(vectors.cross(first, second))
+    return np.stack([vectors.cross(y, z), y, z], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class ShallowFacets:
+    """K facets with the foot of the centre of mass within them that were merged with a deeper neighbour."""
+
+    normals: NDArray[np.float64]  # (K, 3) outward
+    heights: NDArray[np.float64]  # (K,) [m] of the centre of mass
+    areas: NDArray[np.float64]  # (K,) [m2]
+    solid_angles: NDArray[np.float64]  # (K,) [sr]
+    inside: NDArray[np.float64]  # (K,) [m] of the foot from the nearest border
+
+
+def shallow_facets(hull: Hull, basins: Landscape, faces: list[Face]) -> ShallowFacets:
+    """Find the facets on which a body stands and that are no stable face.
+
+    Parameters
+    ----------
+    hull : Hull
+    basins : Landscape
+    faces : list of Face
+        The stable faces of that hull.
+
+    Returns
+    -------
+    ShallowFacets
+        None of a curved side that rolls: its facets are those of the tessellation.
+    """
+    bends = angle(*(hull.normals[basins.pairs[:, k]] for k in (0, 1)))
+    side = component_of(basins.pairs[bends < SMOOTH], len(hull.triangles))
+    free = np.ones(len(hull.triangles), dtype=bool)
+    for face in faces:
+        free[face.triangles] = False
+        if face.kind == "rolling":
+            free[np.isin(side, side[face.triangles])] = False
+            free[np.isin(basins.basins, basins.basins[face.triangles])] = False
+    plane = component_of(basins.pairs[bends < ONE_PLANE], len(free))
+    taken = np.unique(plane[~free])
+    candidates = np.unique(plane[basins.lows])
+    candidates = candidates[~np.isin(candidates, taken)]
+    order = np.argsort(plane, kind="stable")
+    bounds = np.searchsorted(plane[order], [candidates, candidates + 1])
+    facets = [order[start:end] for start, end in bounds.T]
+    rows = [_described(hull, facet) for facet in facets]
+    kept = [row for row in rows if row[4] > MIN_INSIDE_SHARE * hull.radius]
+    kept = sorted(kept, key=lambda row: -row[4])[:MAX_SHALLOW]
+    normals, *columns = zip(*kept) if kept else (np.empty((0, 3)), *[np.empty(0)] * 4)
+    return ShallowFacets(np.array(normals), *(np.array(column) for column in columns))
+
+
+def published_changes(
+    shallow: ShallowFacets,
+    weights: dict[str, NDArray[np.float64]],
+    stable: NDArray[np.bool_],
+    inertia: NDArray[np.float64],
+    as_published: bool,
+) -> dict[str, NDArray[np.float64]]:
+    """Return the probabilities by the published rules with every facet on which the body stands.
+
+    Source: the rules of the thesis, chapter 3, over more faces.
+
+    Parameters
+    ----------
+    shallow : ShallowFacets
+    weights : dict of str to (A,) float [any one unit]
+        By rule, of the aspects.
+    stable : (A,) bool
+    inertia : (3, 3) float [kg m2]
+        About the centre of mass.
+    as_published : bool
+        Equal facets count once in the PMI rule.
+
+    Returns
+    -------
+    dict of str to (A,) float [1]
+        Of the aspects; what is missing to 1 is that of the facets.
+    """
+    ones = np.ones(len(shallow.heights), dtype=int)
+    moments = vectors.dot(vectors.product(shallow.normals, inertia), shallow.normals)
+    once = ones
+    if as_published and len(ones):
+        columns = np.column_stack(
+            [shallow.heights / shallow.heights.max(), shallow.areas / shallow.areas.max()]
+        )
+        _, first = np.unique(columns.round(ALIKE_DIGITS), axis=0, return_index=True)
+        once = np.zeros_like(ones)
+        once[first] = 1
+    more = {
+        "pmi": published.pmi(once, moments, shallow.heights),
+        "csa": published.csa(ones, shallow.solid_angles, shallow.heights),
+        "stability": published.stability(ones, shallow.areas, shallow.heights),
+    }
+    changed = {}
+    for rule in PUBLISHED_RULES:
+        own = np.where(stable, weights[rule], 0.0)
+        changed[rule] = own / (own.sum() + more[rule].sum())
+    return changed
+
+
+def shallow_remark(
+    shallow: ShallowFacets,
+    names: tuple[str, ...],
+    chances: dict[str, NDArray[np.float64]],
+    complete: dict[str, NDArray[np.float64]],
+) -> tuple[str, ...]:
+    """Say what the published rules give with every facet, where it differs.
+
+    Parameters
+    ----------
+    shallow : ShallowFacets
+    names : tuple of str
+        Of the A aspects.
+    chances, complete : dict of str to (A,) float [1]
+        By rule, of the aspects alone and with every facet.
+
+    Returns
+    -------
+    tuple of str
+        One sentence, or none.
+    """
+    changes = {rule: chances[rule] - complete[rule] for rule in PUBLISHED_RULES}
+    if not len(shallow.inside) or max(np.abs(change).max() for change in changes.values()) < MIN_CHANGE:
+        return ()
+    pieces = []
+    for rule in PUBLISHED_RULES:
+        row = int(np.argmax(np.abs(changes[rule])))
+        pieces.append(f"p_{rule} of {names[row]} {complete[rule][row]:.3f} for {chances[rule][row]:.3f}")
+    count = len(shallow.inside)
+    facets = "1 facet is no aspect" if count == 1 else f"{count} facets are no aspects"
+    return (
+        f"{facets} here, although the part stands on {'it' if count == 1 else 'them'} (foot of the centre of "
+        f"mass up to {shallow.inside.max() / MM:.2g} mm inside), because next to nothing tips it to a "
+        f"neighbour; the rules as published count {'it' if count == 1 else 'them'}: {', '.join(pieces)}",
+    )
+
+
+def _described(hull, facet):
+    """Normal, height, area, solid angle of the triangles of one plane; how far the foot is inside it."""
+    areas, corners = hull.areas[facet], hull.triangles[facet]
+    normal = vectors.unit(np.einsum("t,tx->x", areas, hull.normals[facet]))
+    height = float(np.einsum("t,t->", areas, hull.heights[facet]) / areas.sum())
+    starts, ends = corners.ravel(), corners[:, [1, 2, 0]].ravel()
+    border = ~np.isin(starts * len(hull.vertices) + ends, ends * len(hull.vertices) + starts)
+    p, q = hull.vertices[starts[border]], hull.vertices[ends[border]]
+    inwards = vectors.unit(vectors.cross(normal, q - p))
+    inside = float(np.einsum("ex,ex->e", height * normal - p, inwards).min())
+    return normal, height, float(areas.sum()), float(hull.solid_angles[facet].sum()), inside

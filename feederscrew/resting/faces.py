@@ -6,9 +6,8 @@ import numpy as np
 
 from feederscrew.geometry import groups, vectors
 from feederscrew.geometry.graphs import component_of, components
-from feederscrew.resting import contacts, flats, rounds
-from feederscrew.resting.basins.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges, gentle
-from feederscrew.resting.planes import FLATNESS, planes
+from feederscrew.resting import flats
+from feederscrew.resting.basins.landscape import GENTLE, RIPPLE_OF_RADIUS, SMOOTH, angle, edges, gentle
 
 COARSE = 1.0 / np.cos(0.5 * SMOOTH) - 1.0  # the ripple a smooth edge leaves at most, as a share of the height
 CURVED = np.sinc(np.radians(15.0) / np.pi)  # mean resultant of normals over an arc of 30 deg; below: no plane
@@ -22,9 +21,14 @@ ALIKE = np.radians(1.0)  # strips that lean by less apart are of one cone
 SLIVERS = 1e-2  # of their area: what a file's noise leaves between them
 BEND = 2.5  # strips, by their effective number: two planes that meet are a bend and no curve
 FEWEST = 6  # strips that show a curve whose middle is not the centre of mass
-TINY = np.finfo(float).tiny
+SMALLEST_NORMAL = np.finfo(float).tiny
 MOST_PAIRED = 1000  # directions of which every pair is looked at
 ARC = np.radians(60.0)  # coarse strips that turn less may be meant as flats
+FLATNESS = 1e-2  # of the radius: how deep a corner may lie under the plane of its face
+TIGHTEST_FIRST = np.array([1e-6, 1e-5, 1e-4, 1e-3, FLATNESS])
+ON_A_LINE = 1e-6  # of the contact's size: a corner off the line between its neighbours by less is none
+CIRCLE_TOLERANCE = 1e-3  # of the height: how far the axis may pass the centre of mass
+LINE_END_TOLERANCE = 1e-6  # of the line of contact: how near its end a corner belongs to it
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,21 +213,21 @@ def _described(hull, triangles, lowest, stable):
         feet[k] = foot
     standing = groups.joined(feet)
     normals, heights, roughness = _seats(hull, *standing, count)
-    polygons = contacts.outlines(hull.vertices, *_corners(hull, *standing), normals)
+    polygons = contact_outlines(hull.vertices, *_corners(hull, *standing), normals)
     every, owners = groups.joined(triangles)
     middles = groups.sums(hull.areas[every] * np.ascontiguousarray(hull.normals.T)[:, every], owners, count)
     areas, angles = (groups.sums(of[every], owners, count) for of in (hull.areas, hull.solid_angles))
     axes = np.full((count, 3), np.nan)
     for k in some:
         axes[k] = _axis(hull.normals[triangles[k]], hull.areas[triangles[k]], normals[k])
-        heights[k] = rounds.height(polygons[k], axes[k], heights[k])
+        heights[k] = rolling_height(polygons[k], axes[k], heights[k])
     return [
         Face(
             kind="rolling" if curved[k] else "flat",
             stable=stable,
             normal=normals[k],
             axis=axes[k],
-            middle=middles[k] / max(float(areas[k]), TINY) if curved[k] else normals[k],
+            middle=middles[k] / max(float(areas[k]), SMALLEST_NORMAL) if curved[k] else normals[k],
             height=float(heights[k]),
             area=float(areas[k]),
             solid_angle=float(angles[k]),
@@ -237,7 +241,7 @@ def _described(hull, triangles, lowest, stable):
 
 def _seats(hull, triangles, owners, count):
     """(F, 3) normals, (F,) [m] heights and roughness of the triangles that F faces stand on."""
-    weights = np.maximum(hull.areas[triangles], TINY)
+    weights = np.maximum(hull.areas[triangles], SMALLEST_NORMAL)
     whole = groups.sums(weights, owners, count)
     normals = vectors.unit(groups.sums(weights * hull.normals[triangles].T, owners, count))
     above = vectors.dot(hull.vertices[hull.triangles[triangles]], normals[owners][:, None])
@@ -293,3 +297,192 @@ def _spread(normals):
         return angle(normals, end).max()
     one, other = np.divmod(np.argmin(vectors.product(normals, normals.T)), len(normals))
     return angle(normals[one], normals[other])
+
+
+def planes(hull, sinks, members, of_curves=False):
+    """Return the members in the plane about each sink, and with them what lies in the sink's own.
+
+    Parameters
+    ----------
+    hull : Hull
+    sinks : (F,) int
+        Triangles.
+    members : sequence of F int arrays
+        Triangles about each sink, itself among them.
+    of_curves : bool
+        They are of curved sides.
+
+    Returns
+    -------
+    list of F int arrays
+        Ascending.
+
+    Notes
+    -----
+    The tightest plane that holds most of what noise allows, and that a looser one would hardly add to:
+    in a clean file the face itself without the shallow bevels beside it, in a noisy one all of it. Of a
+    curve one strip is wanted, though the halves of the strips beside it may lie as shallow.
+    """
+    if not len(sinks):
+        return []
+    fewest = [1 if of_curves and _is_fan(hull, each) else 2 for each in members]  # triangles of a strip
+    every, owners = groups.joined([np.sort(each) for each in members])
+    depth = _plane_depth(hull, sinks, every, owners)
+    lean = vectors.dot(hull.normals[every], hull.normals[sinks][owners])
+    near = (depth < FLATNESS * hull.radius) & (lean > GENTLE)
+    every, owners, tight = every[near], owners[near], depth[near] < TIGHTEST_FIRST[0] * hull.radius
+    if not tight.all():
+        kept = tight | _in_the_tightest(hull, every, owners, tight, np.array(fewest), of_curves)
+        every, owners = every[kept], owners[kept]
+    return groups.split(every, owners, len(sinks))
+
+
+def _in_the_tightest(hull, members, owners, tight, fewest, of_curves):
+    """(N,) which members lie in the tightest plane that holds enough, about the largest triangle of each."""
+    first, areas = groups.starts(owners, len(fewest)), hull.areas[members]
+    own = np.where(tight, areas, -1.0) if of_curves else areas
+    largest = members[np.lexsort((-own, owners))[first]]
+    inside = _plane_depth(hull, largest, members, owners) <= hull.radius * TIGHTEST_FIRST[:, None]
+    held = np.add.reduceat(inside * areas, first, axis=1)
+    count = np.add.reduceat(inside, first, axis=1, dtype=int)
+    shared = held / np.add.reduceat(areas, first) - 0.1 * (count < 2)  # one triangle is a plane by itself
+    enough = shared >= 0.5
+    if of_curves:
+        enough |= count >= fewest
+    good = enough[:-1] & (held[1:] <= 1.02 * held[:-1])
+    chosen = np.where(good.any(axis=0), good.argmax(axis=0), len(TIGHTEST_FIRST))
+    every = np.ones((1, len(members)), dtype=bool)
+    return np.concatenate([inside, every])[chosen[owners], np.arange(len(members))]
+
+
+def _is_fan(hull, members):
+    """Whether most triangles meet at one corner, as the strips of a cone do at its tip."""
+    return np.bincount(hull.triangles[members].ravel()).max() > 0.5 * len(members)
+
+
+def _plane_depth(hull, planes, members, owners):
+    """(N,) [m] how far the corners of each member lie off the plane of its owner's triangle, of (F,)."""
+    corners = hull.triangles[members].T
+    if len(planes) == 1 and corners.size > len(hull.vertices):  # sooner of every corner of the hull once
+        above = vectors.product(hull.vertices, hull.normals[planes[0]])[corners]
+    else:
+        above = vectors.dot(hull.vertices[corners], hull.normals[planes][owners])
+    a, b, c = np.abs(above - hull.heights[planes][owners])
+    return np.maximum(np.maximum(a, b), c)
+
+
+def contact_outlines(vertices, corners, owners, normals):
+    """Return the convex outlines of points about planes.
+
+    Source: own; docs/resting.md, "Barriers and the tipping graph".
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [m]
+    corners, owners : (N,) int
+        The points of the outlines, and to which of them each belongs, ascending.
+    normals : (F, 3) float [1]
+        Of the planes, outward.
+
+    Returns
+    -------
+    list of (K, 3) float [m]
+        Counter-clockwise seen against the normal, no corner on a line between its neighbours; the points as
+        they are where they lie on one line.
+    """
+    points, count = vertices[corners], len(normals)
+    x, y = (vectors.dot(points, axes[owners]) for axes in _plane_axes(normals))
+    u, v = (seen - (groups.sums(seen, owners, count) / np.bincount(owners))[owners] for seen in (x, y))
+    around = np.lexsort((np.arctan2(v, u), owners))
+    convex = _turn_at_every_corner(x[around], y[around], owners, count)
+    turned, as_given = (groups.split(of, owners, count) for of in (points[around], points))
+    return [
+        polygon if sound else _of_extreme_points(own, normal)
+        for polygon, sound, own, normal in zip(turned, convex, as_given, normals)
+    ]
+
+
+def _of_extreme_points(points, normal):
+    """The same where some of the points lie within the outline or straight between others."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    plane = vectors.product(points, np.column_stack(_plane_axes(normal)))
+    try:
+        corners = points[ConvexHull(plane).vertices]
+    except QhullError:  # a contact line: a sliver of the hull
+        return points
+    return _without_straight_corners(corners)
+
+
+def _plane_axes(normals):
+    """Unit vectors (..., 3) and (..., 3) in planes of normals (..., 3), the three right-handed."""
+    first = np.eye(3)[np.abs(normals).argmin(axis=-1)]
+    u = vectors.unit(vectors.cross(normals, first))
+    return u, vectors.cross(normals, u)
+
+
+def _turn_at_every_corner(x, y, owners, count):
+    """(F,) whether polygons of corners (N,) and (N,) turn left at every one, none of them on a line."""
+    first = groups.starts(owners, count)
+    before = np.arange(len(x)) - 1
+    before[first] = np.append(first[1:], len(x)) - 1
+    u, v = x - x[before], y - y[before]
+    p, q = u[before], v[before]
+    off = (p * v - q * u) / np.maximum(np.hypot(p + u, q + v), SMALLEST_NORMAL)
+    width, depth = (np.maximum.reduceat(at, first) - np.minimum.reduceat(at, first) for at in (x, y))
+    return np.logical_and.reduceat(off > ON_A_LINE * np.hypot(width, depth)[owners], first)
+
+
+def _without_straight_corners(corners):
+    """Corners (K, 3) of a polygon without those on a line between their neighbours.
+
+    A finer triangulation of the same face brings such corners, and rules that average over the edges of a
+    contact would count its edges twice.
+    """
+    size = vectors.length(np.ptp(corners, axis=0))
+    while len(corners) > 3:
+        before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
+        twice = vectors.length(vectors.cross(corners - before, after - corners))
+        off = twice / np.maximum(vectors.length(after - before), SMALLEST_NORMAL)
+        straight = int(np.argmin(off))
+        if off[straight] > ON_A_LINE * size:
+            break
+        corners = np.delete(corners, straight, axis=0)
+    return corners
+
+
+def rolling_height(polygon, axis, flat):
+    """Return the height of the centre of mass over the line on which a round side rolls.
+
+    Source: docs/resting.md, "Exact tumbling".
+
+    Parameters
+    ----------
+    polygon : (K, 3) float [m]
+        Corners of the lowest strip, from the centre of mass.
+    axis : (3,) float [1]
+        Unit axis of the side; NaN for a ball.
+    flat : float [m]
+        Height over the strip.
+
+    Returns
+    -------
+    float [m]
+        The corners lie on circles about the axis, and the line of contact touches the two at the strip's
+        ends; ``flat`` where the axis passes the centre of mass by, or there is none.
+    """
+    if np.isnan(axis).any() or not len(polygon):
+        return flat
+    along = vectors.product(polygon, axis)
+    radii = np.sqrt(((polygon - along[:, None] * axis) ** 2).sum(axis=1))
+    low, high, near = along.min(), along.max(), LINE_END_TOLERANCE * max(np.ptp(along), np.finfo(float).tiny)
+    ends = [radii[along <= low + near], radii[along >= high - near]]
+    if high - low <= near or not all(_on_one_circle(end, CIRCLE_TOLERANCE * flat) for end in ends):
+        return flat
+    first, last = (end.max() for end in ends)
+    return float((first * high - last * low) / np.hypot(high - low, last - first))
+
+
+def _on_one_circle(radii, near):
+    """Whether corners at (K,) radii show a circle: two and more of one radius, or a point on the axis."""
+    return np.ptp(radii) <= near and (len(radii) > 1 or radii[0] <= near)

@@ -1,11 +1,126 @@
 """Screws with a named reference point, and the three kinds mechanics needs: Twist, Wrench, Momentum."""
 
 from dataclasses import dataclass
+from typing import Any, Self
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from feederscrew.screw.dual import Dual
-from feederscrew.screw.point import ORIGIN, Point, dot, length, vectors
+from feederscrew import check
+
+Array = NDArray[np.float64]
+
+
+def vectors(name: str, value: ArrayLike) -> Array:
+    """Return a finite float copy of an array of 3-vectors, closed to writing.
+
+    Parameters
+    ----------
+    name : str
+        The argument, as the caller knows it.
+    value : (..., 3) array_like [any]
+        Any leading axes.
+
+    Returns
+    -------
+    (..., 3) float [the same]
+
+    Raises
+    ------
+    ValueError
+        If the last axis is not of length 3 or an entry is not finite.
+    """
+    array = np.array(value, dtype=float)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise ValueError(f"{name} has shape {array.shape}, not (..., 3)")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} has an entry that is not finite")
+    return check.frozen(array)
+
+
+def dot(u: Array, v: Array) -> Array:
+    """Return the scalar product (...,) over the last axis of (..., 3) and (..., 3) [any units].
+
+    Source: its definition.
+    """
+    return np.einsum("...i,...i->...", u, v)
+
+
+def length(u: Array) -> Array:
+    """Return the length (...,) of vectors (..., 3), in their unit [any]; no square overflows or vanishes.
+
+    Source: own: scaled by the largest component.
+    """
+    return np.hypot(np.hypot(u[..., 0], u[..., 1]), u[..., 2])
+
+
+@dataclass(frozen=True, eq=False)
+class Dual:
+    """A dual number, or an array of them; NaN marks a number that does not exist.
+
+    Parameters
+    ----------
+    real : (...,) float
+        The part without eps: of a dual angle the angle, of a product of screws the scalar product.
+    dual : (...,) float
+        The part with eps: of a dual angle the distance, of a product of screws the reciprocal product.
+
+    References
+    ----------
+    W. K. Clifford, "Preliminary sketch of biquaternions", Proc. London Math. Soc. 4, 381-395, 1873.
+    """
+
+    real: Array
+    dual: Array
+
+    def __add__(self, other: "Dual") -> "Dual":
+        """(a + c) + eps (b + d)."""
+        return Dual(self.real + other.real, self.dual + other.dual)
+
+    def __sub__(self, other: "Dual") -> "Dual":
+        """(a - c) + eps (b - d)."""
+        return Dual(self.real - other.real, self.dual - other.dual)
+
+    def __mul__(self, other: "Dual") -> "Dual":
+        """Product a c + eps (a d + b c); a screw is multiplied by its own rule."""
+        if not isinstance(other, Dual):
+            return NotImplemented
+        return Dual(self.real * other.real, self.real * other.dual + self.dual * other.real)
+
+    def __truediv__(self, other: "Dual") -> "Dual":
+        """Quotient a / c + eps (b c - a d) / c^2; not finite where c = 0, which has no inverse."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            quotient = np.divide(self.real, other.real)
+            return Dual(quotient, np.divide(self.dual - quotient * other.dual, other.real))
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A point with a name for people and coordinates for the arithmetic.
+
+    The coordinates decide; the name only says in print what a moment or a velocity is taken about, so that
+    ``v_C`` cannot be read as ``v_O``. A moving point is one point with a leading axis.
+
+    Parameters
+    ----------
+    name : str
+        As in the drawing: 'C' for a centre of mass, 'O' for the origin.
+    coordinates : (..., 3) float [m]
+        In the axes of the vectors it goes with.
+    """
+
+    name: str
+    coordinates: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "coordinates", vectors(f"point {self.name}", self.coordinates))
+
+    def __sub__(self, other: "Point") -> Array:
+        """The vector from the other point to this one, (..., 3) [m]."""
+        return self.coordinates - other.coordinates
+
+
+ORIGIN = Point("O", np.zeros(3))
 
 
 @dataclass(frozen=True, eq=False)
@@ -14,8 +129,8 @@ class Axis:
     line; ``direction`` (..., 3) [1] its unit vector.
     """
 
-    foot: np.ndarray
-    direction: np.ndarray
+    foot: Array
+    direction: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,20 +162,27 @@ class Screw:
     J. K. Davidson, K. H. Hunt, "Robots and Screw Theory", Oxford University Press, 2004.
     """
 
-    resultant: np.ndarray
-    moment: np.ndarray
+    resultant: Array
+    moment: Array
     reference: Point = ORIGIN
 
     __array_ufunc__ = None  # numpy leaves `array * screw` to us
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         parts = self.resultant, self.moment
         shape = np.broadcast_shapes(*map(np.shape, parts), self.reference.coordinates.shape)
         for name, part in zip(("resultant", "moment"), parts, strict=True):
             object.__setattr__(self, name, vectors(name, np.broadcast_to(part, shape)))
 
     @classmethod
-    def on_axis(cls, foot, direction, magnitude=1.0, pitch=0.0, reference=ORIGIN):
+    def on_axis(
+        cls,
+        foot: ArrayLike,
+        direction: ArrayLike,
+        magnitude: ArrayLike = 1.0,
+        pitch: ArrayLike = 0.0,
+        reference: Point = ORIGIN,
+    ) -> Self:
         """Return the screw of a given line, magnitude and pitch; infinite pitch makes it a free vector.
 
         Parameters
@@ -91,11 +213,11 @@ class Screw:
         return cls(np.where(free, 0.0, along), parallel, line).at(reference)
 
     @property
-    def shape(self):
+    def shape(self) -> tuple[int, ...]:
         """The leading axes: () for one screw."""
         return self.resultant.shape[:-1]
 
-    def __getitem__(self, index):
+    def __getitem__(self, index: Any) -> Self:
         """Part of a batch, indexed as an array over the leading axes is."""
         index = (*index, slice(None)) if isinstance(index, tuple) else index
         place = np.broadcast_to(self.reference.coordinates, self.resultant.shape)
@@ -103,32 +225,32 @@ class Screw:
         point = Point(self.reference.name, place[index]) if moving else self.reference
         return type(self)(self.resultant[index], self.moment[index], point)
 
-    def at(self, point):
+    def at(self, point: Point) -> Self:
         """Return the same screw with its moment about another point: s0(P) = s0(O) + s x OP."""
         moment = self.moment + np.cross(self.resultant, point - self.reference)
         return type(self)(self.resultant, moment, point)
 
-    def sum(self):
+    def sum(self) -> Self:
         """Sum over the last leading axis; where the reference point differs along it, at the origin."""
         common = self if self.reference.coordinates.ndim == 1 else self.at(ORIGIN)
         return type(self)(common.resultant.sum(axis=-2), common.moment.sum(axis=-2), common.reference)
 
-    def __add__(self, other):
+    def __add__(self, other: Self) -> Self:
         """Sum by parts, at the first screw's reference point."""
         self._same_kind(other, "add")
         other = other.at(self.reference)
         return type(self)(self.resultant + other.resultant, self.moment + other.moment, self.reference)
 
-    def __sub__(self, other):
+    def __sub__(self, other: Self) -> Self:
         """Difference by parts, at the first screw's reference point."""
         self._same_kind(other, "subtract")
         return self + -other
 
-    def __neg__(self):
+    def __neg__(self) -> Self:
         """The opposite screw."""
         return self * -1.0
 
-    def __mul__(self, factor):
+    def __mul__(self, factor: Any) -> Self:
         """Times an ordinary number or a dual one; arrays (...,) scale screw by screw."""
         if isinstance(factor, Dual):
             real, dual = np.asarray(factor.real)[..., None], np.asarray(factor.dual)[..., None]
@@ -141,23 +263,23 @@ class Screw:
 
     __rmul__ = __mul__
 
-    def __truediv__(self, divisor):
+    def __truediv__(self, divisor: ArrayLike) -> Self:
         """Over an ordinary number; arrays (...,) screw by screw."""
         divisor = np.asarray(divisor, dtype=float)[..., None]
         with np.errstate(divide="ignore", invalid="ignore"):  # a zero is refused below, as not finite
             return type(self)(self.resultant / divisor, self.moment / divisor, self.reference)
 
-    def dot(self, other):
+    def dot(self, other: "Screw") -> Dual:
         """Return the scalar product s1.s2 + eps (s1.s02 + s01.s2), a ``Dual``; any two kinds."""
         other = other.at(self.reference)
         dual = dot(self.resultant, other.moment) + dot(self.moment, other.resultant)
         return Dual(dot(self.resultant, other.resultant), dual)
 
-    def reciprocal(self, other):
+    def reciprocal(self, other: "Screw") -> Array:
         """Return the reciprocal product s1.s02 + s01.s2, (...,); of a twist and a wrench the power [W]."""
         return self.dot(other).dual
 
-    def cross(self, other):
+    def cross(self, other: "Screw") -> "Screw":
         """Return the dual cross product (s1 x s2) + eps (s1 x s02 + s01 x s2), at the first screw's point.
 
         A twist crossed with a momentum screw is a ``Wrench``: the rate at which a momentum carried along by
@@ -170,54 +292,38 @@ class Screw:
         return kind(resultant, moment, self.reference)
 
     @property
-    def direction(self):
+    def direction(self) -> Array:
         """Unit vector of the axis, (..., 3); the moment's where s = 0; NaN for the zero screw."""
         carrier = np.where(_has_line(self)[..., None], self.resultant, self.moment)
         size = length(carrier)[..., None]
         return np.divide(carrier, size, out=np.full(carrier.shape, np.nan), where=size > 0.0)
 
     @property
-    def magnitude(self):
+    def magnitude(self) -> Array:
         """|s|, or |s0| of a screw of infinite pitch, (...,): how much there is of the unit screw."""
         return np.where(_has_line(self), length(self.resultant), length(self.moment))[()]
 
     @property
-    def pitch(self):
+    def pitch(self) -> Array:
         """h = s.s0 / s.s, (...,) [m]; infinite for a couple or a translation, NaN for the zero screw."""
         along, size = dot(self.direction, self.moment), length(self.resultant)
         nowhere = np.where(length(self.moment) > 0.0, np.inf, np.nan)
         return np.divide(along, size, out=nowhere, where=size > 0.0)[()]
 
     @property
-    def axis(self):
+    def axis(self) -> Axis:
         """The line, foot r = s x s0 / s.s from the reference; the foot is NaN where s = 0: no line."""
         lever = np.cross(self.direction, self.moment)
         size = length(self.resultant)[..., None]
         lever = np.divide(lever, size, out=np.full(lever.shape, np.nan), where=size > 0.0)
         return Axis(self.reference.coordinates + lever, self.direction)
 
-    @property
-    def norm(self):
-        """Dual magnitude |s| + eps h |s|; eps |s0| for a couple or a translation."""
-        along = np.where(self.magnitude > 0.0, dot(self.direction, self.moment), 0.0)
-        return Dual(length(self.resultant), along)
-
-    def unit(self):
+    def unit(self) -> Self:
         """Return the screw of magnitude 1 with the same axis and pitch; the zero screw as it is."""
         size = self.magnitude
         return self / np.where(size > 0.0, size, 1.0)
 
-    def reduced(self):
-        """Return the same screw at the foot of its axis, where the moment is parallel to the resultant.
-
-        A couple or a translation is the same about every point and stays where it is.
-        """
-        line = _has_line(self)[..., None]
-        central = self.norm.dual[..., None] * self.direction
-        point = Point("foot", np.where(line, self.axis.foot, self.reference.coordinates))
-        return type(self)(self.resultant, np.where(line, central, self.moment), point)
-
-    def _same_kind(self, other, verb):
+    def _same_kind(self, other: "Screw", verb: str) -> None:
         if type(self) is not type(other):
             raise ValueError(f"a {type(self).__name__} and a {type(other).__name__} do not {verb}")
 
@@ -226,12 +332,12 @@ class Twist(Screw):
     """Angular velocity [rad/s] and the velocity [m/s] of the body's point at ``reference``, eq. [2.1]."""
 
     @property
-    def angular_velocity(self):
+    def angular_velocity(self) -> Array:
         """omega, (..., 3) [rad/s]."""
         return self.resultant
 
     @property
-    def velocity(self):
+    def velocity(self) -> Array:
         """v of the reference point, (..., 3) [m/s]."""
         return self.moment
 
@@ -240,7 +346,7 @@ class Wrench(Screw):
     """Force [N] and its moment [N m] about ``reference``, eq. [4.5]."""
 
     @property
-    def force(self):
+    def force(self) -> Array:
         """f, (..., 3) [N]."""
         return self.resultant
 
@@ -249,16 +355,16 @@ class Momentum(Screw):
     """Linear momentum [kg m/s] and angular momentum [kg m2/s] about ``reference``, eq. [2.4]."""
 
     @property
-    def linear(self):
+    def linear(self) -> Array:
         """q, (..., 3) [kg m/s]."""
         return self.resultant
 
     @property
-    def angular(self):
+    def angular(self) -> Array:
         """H about the reference point, (..., 3) [kg m2/s]."""
         return self.moment
 
 
-def _has_line(screw):
+def _has_line(screw: Screw) -> NDArray[np.bool_]:
     """Where s is not zero, so that there is an axis."""
     return np.any(screw.resultant != 0.0, axis=-1)

@@ -7,7 +7,7 @@ from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.counts import count_rows, passed, profiles
-from feederscrew.resting.counts.calibration_file import Fit, fit_of_passes, fits
+from feederscrew.resting.counts.calibration import Fit, fit_counts, fit_passes
 from feederscrew.studies import passages
 
 
@@ -45,7 +45,7 @@ def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
     table, found = count_rows.parse(text, str(counts)), find(part)
     if not passed.by_device(table):
         measured = profiles.measured(table, str(counts), sha256, found.names)
-        return CalibrateStudy(part, found, measured, tuple(fits(part, found, measured)))
+        return CalibrateStudy(part, found, measured, tuple(fit_counts(part, found, measured)))
     tested = passed.understood(table, str(counts), sha256)
     flow, _ = passages.counted_ways(part, found, passages.bowl_of(tested)[1], tested)
-    return CalibrateStudy(part, found, tested, (fit_of_passes(part, found, tested, flow),))
+    return CalibrateStudy(part, found, tested, (fit_passes(part, found, tested, flow),))

@@ -67,11 +67,9 @@ def test_the_mean_does_not_depend_on_the_samples():
 
 def test_it_follows_the_accelerations_of_the_balance():
     """The rows of three numbers give what the wrench equations give, at any phase, speed and sense."""
-    from feederscrew.mechanics.track import sliding
-
     for seed in range(4):
         part, settings = random_seat(np.random.default_rng(seed)), random_bowl(np.random.default_rng(seed))
-        slips = sliding.acceleration(part, settings, frame(settings, part.walls), -track.PULL * 9.81)
+        slips = track.sliding_acceleration(part, settings, frame(settings, part.walls), -track.PULL * 9.81)
         for phase, speed, sense in (
             (0.3, 0.02, 1.0),
             (1.6, 0.01, 1.0),

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from feederscrew.mechanics import cycle
 from feederscrew.mechanics.floor import balance
 from feederscrew.mechanics.floor import cells as floor_cells
-from feederscrew.mechanics.floor.rolling import rolling
+from feederscrew.mechanics.floor.balance import solve_rolling
 from feederscrew.screw import Wrench
 
 G = 9.81
@@ -156,7 +156,7 @@ def test_slip_of_a_rolling_part_opposes_its_friction():
     posture, settings = rolling_posture(), bowl(direction=35 * DEG, static=0.2, kinetic=0.15)
     force = balance.drive_force(posture, settings, 0.0)
     normal = np.array(posture.mass * 9.81 - force[2])
-    found = rolling(posture, settings.friction, force[:2], normal)
+    found = solve_rolling(posture, settings.friction, force[:2], normal)
     spin = found.rolling_acceleration
     contact = found.acceleration + spin * posture.height * np.array([0.0, 1.0])
     assert np.hypot(*found.friction) == pytest.approx(0.15 * float(normal))

@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from feederscrew.part.hull import convex_hull
 from feederscrew.resting.aspects import find
-from feederscrew.resting.basins.adoption import UNNAMED, adopted
-from feederscrew.resting.basins.barriers import named
+from feederscrew.resting.basins.barriers import UNNAMED, adopted_shares, named
 from feederscrew.resting.tumbling.by_class import transitions
 from feederscrew.resting.tumbling.exact import tumble
 
@@ -86,18 +85,20 @@ def test_mirror_twins_are_equally_likely_by_every_rule(seed):
 
 def test_equal_saddles_share_and_a_lower_one_takes_all():
     tumbling, sides = box_sides((1.0, 2.0, 3.0))
-    parts = adopted(tumbling, without(sides, 5), 5).toarray()
+    parts = adopted_shares(tumbling, without(sides, 5), 5).toarray()
     assert parts[sides == 5][0] == pytest.approx([0.5, 0.5, 0, 0, 0])
     assert parts[sides != 5] == pytest.approx(np.eye(5)[sides[sides != 5]])
     tumbling, sides = box_sides((1.0, 2.0, 3.0), (0.01, 0.0, 0.0))
-    assert adopted(tumbling, without(sides, 5), 5).toarray()[sides == 5][0] == pytest.approx([0, 1, 0, 0, 0])
+    assert adopted_shares(tumbling, without(sides, 5), 5).toarray()[sides == 5][0] == pytest.approx(
+        [0, 1, 0, 0, 0]
+    )
 
 
 def test_a_cube_side_is_shared_by_its_four_neighbours():
     tumbling, sides = box_sides((1.0, 1.0, 1.0))
-    parts = adopted(tumbling, without(sides, 5), 5).toarray()
+    parts = adopted_shares(tumbling, without(sides, 5), 5).toarray()
     assert parts[sides == 5][0] == pytest.approx([0.25, 0.25, 0.25, 0.25, 0])
-    parts = adopted(tumbling, without(sides, 3, 4, 5), 3).toarray()
+    parts = adopted_shares(tumbling, without(sides, 3, 4, 5), 3).toarray()
     assert parts[sides == 3].sum() == pytest.approx(1.0)
     assert tumbling.shares @ parts == pytest.approx([1 / 3, 1 / 3, 1 / 3])
 
@@ -105,7 +106,7 @@ def test_a_cube_side_is_shared_by_its_four_neighbours():
 @pytest.mark.parametrize("gone", [(2, 3, 4, 5), (2, 4, 5), (2, 3, 4), (4, 5)])
 def test_what_a_shared_sink_takes_in_is_shared_as_well(gone):
     tumbling, sides = box_sides((2.0, 2.0, 3.0))
-    parts = adopted(tumbling, without(sides, *gone), 6)
+    parts = adopted_shares(tumbling, without(sides, *gone), 6)
     shares = tumbling.shares @ parts
     assert shares[0] == pytest.approx(shares[1], rel=1e-12) and shares.sum() == pytest.approx(1.0)
 
@@ -123,13 +124,13 @@ def test_the_same_plain_and_compiled(monkeypatch):
     points = rng.normal(size=(60, 3))
     tumbling = tumble(convex_hull(np.vstack([points, points * (-1, 1, 1)]), np.zeros(3)))
     labels = np.where(rng.random(len(tumbling.sinks)) < 0.5, UNNAMED, np.arange(len(tumbling.sinks)))
-    plain = adopted(tumbling, labels, len(labels)).toarray()
+    plain = adopted_shares(tumbling, labels, len(labels)).toarray()
     assert plain.sum(axis=1) == pytest.approx(1.0) and (plain[labels == UNNAMED] < 0.9).any()
     monkeypatch.setattr(compiled, "SMALL", 0)
-    np.testing.assert_array_equal(adopted(tumbling, labels, len(labels)).toarray(), plain)
+    np.testing.assert_array_equal(adopted_shares(tumbling, labels, len(labels)).toarray(), plain)
 
 
 def test_no_label_at_all_is_a_wrong_call():
     tumbling, _ = box_sides((1.0, 2.0, 3.0))
     with pytest.raises(ValueError, match="no sink"):
-        adopted(tumbling, np.full(6, UNNAMED), 6)
+        adopted_shares(tumbling, np.full(6, UNNAMED), 6)

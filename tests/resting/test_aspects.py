@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from feederscrew.geometry import vectors
-from feederscrew.resting import contacts
 from feederscrew.resting.aspects import find
+from feederscrew.resting.faces import contact_outlines
 
 SIDES = st.integers(1, 40)  # sides that differ by less than 1e-4 count as equal
 
@@ -231,7 +231,7 @@ def test_an_outline_is_that_seen_along_its_normal(rng):
         turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
         turn *= np.sign(np.linalg.det(turn))
         turned = vectors.product(points, turn.T)
-        (found,) = contacts.outlines(
+        (found,) = contact_outlines(
             turned, np.arange(5), np.zeros(5, int), vectors.product(turn, normal)[None]
         )
         assert len(found) == (5 if side[1] > 2.0 else 4)

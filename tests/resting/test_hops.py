@@ -8,7 +8,7 @@ import shapes
 
 from feederscrew.resting.aspects import find
 from feederscrew.resting.basins.barriers import Tipping
-from feederscrew.resting.rules.hops import KEPT, hop_shares
+from feederscrew.resting.rules.tumbled import KEPT_ENERGY_EXPONENT, hop_shares
 
 SHARES = np.array([0.5, 0.3, 0.2])
 HEIGHTS = np.array([0.3, 0.45, 0.6])
@@ -44,7 +44,9 @@ def walked(tips, count, rng):
             ]
             weights = np.array([weight for _, weight in ways])
             face = ways[rng.choice(len(ways), p=weights / weights.sum())][0]
-            energy = tips.heights[face] + (energy - tips.heights[face]) * rng.random() ** (1.0 / KEPT)
+            energy = tips.heights[face] + (energy - tips.heights[face]) * rng.random() ** (
+                1.0 / KEPT_ENERGY_EXPONENT
+            )
             if all(top >= energy for _, top in neighbours[face]):
                 break
         ended[face] += 1
@@ -95,7 +97,7 @@ def test_faces_as_high_as_the_part_reaches_keep_their_basins():
 def test_a_finer_ladder_changes_little(monkeypatch):
     body = find(shapes.part(shapes.box(4.0, 7.0, 11.0))).ground
     coarse = hop_shares(body.tips, body.hull.radius)
-    monkeypatch.setattr("feederscrew.resting.rules.hops.LEVELS", 3000)
+    monkeypatch.setattr("feederscrew.resting.rules.tumbled.ENERGY_LEVELS", 3000)
     assert hop_shares(body.tips, body.hull.radius) == pytest.approx(coarse, abs=1e-3)
 
 

@@ -10,7 +10,7 @@ from feederscrew import batch, load, write_names
 from feederscrew.batch import task, work
 from feederscrew.errors import FeederError
 from feederscrew.part.aspect_names import read
-from feederscrew.resting import naming
+from feederscrew.resting import aspects
 from feederscrew.resting.aspects import find
 from feederscrew_cli.main import feeder
 
@@ -89,7 +89,9 @@ def test_a_rolling_class_is_found_again_with_other_facets(tmp_path):
 
 
 def test_a_direction_between_two_aspects_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setitem(naming.REACH, "flat", np.radians(15.0))  # within the usual one flats are one aspect
+    monkeypatch.setitem(
+        aspects.NAMING_REACH, "flat", np.radians(15.0)
+    )  # within the usual one flats are one aspect
     mesh = shapes.prism([(0, 0), (30, 0), (30, 20), (14, 23), (0, 20)], 8.0)
     mesh.export(tmp_path / "roof.stl")
     (tmp_path / "n.yaml").write_text("aspects:\n  top: [0, 1, 0]\n")

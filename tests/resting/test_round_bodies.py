@@ -18,9 +18,8 @@ from feederscrew.part import load, mass
 from feederscrew.part.hull import convex_hull
 from feederscrew.resting import aspects
 from feederscrew.resting.posture import posture
-from feederscrew.resting.tumbling.borders import borders
 from feederscrew.resting.tumbling.exact import tumble
-from feederscrew.resting.tumbling.half_edges import half_edges
+from feederscrew.resting.tumbling.half_edges import facet_borders, half_edges
 
 # Seeds of bodies that had a doubt, or some of whose walks arrived nowhere.
 WENT_WRONG = (11, 80, 83, 161, 174, 209, 299, 100430, 101374, 101382, 102273)
@@ -89,7 +88,7 @@ def test_a_needle_on_an_edge_becomes_part_of_its_neighbour():
     origins, targets = triangles[:, [1, 2, 0]].ravel(), triangles[:, [2, 0, 1]].ravel()
     lines = {(a, b): h for h, (a, b) in enumerate(zip(origins, targets))}
     twins = np.array([lines[b, a] for a, b in zip(origins, targets)])
-    found = borders(hull, origins, targets, twins, np.repeat([0, 0, 4, 1, 2, 3], 3))
+    found = facet_borders(hull, origins, targets, twins, np.repeat([0, 0, 4, 1, 2, 3], 3))
     assert found.facets.max() == 3 and found.part.sum() == 12
     assert 4 not in origins[found.part] and 4 not in found.targets[found.part]
     assert (found.twins[found.twins[found.part]] == np.flatnonzero(found.part)).all()
@@ -109,7 +108,7 @@ def test_a_facet_that_would_not_be_convex_is_left_in_triangles():
     origins, targets = hull.triangles[:, [1, 2, 0]].ravel(), hull.triangles[:, [2, 0, 1]].ravel()
     lines = {(a, b): h for h, (a, b) in enumerate(zip(origins, targets))}
     twins = np.array([lines[b, a] for a, b in zip(origins, targets)])
-    found = borders(hull, origins, targets, twins, np.repeat(facets, 3))
+    found = facet_borders(hull, origins, targets, twins, np.repeat(facets, 3))
     assert len(np.unique(found.facets[::3][top])) == 4
 
 

@@ -5,6 +5,7 @@ polygon. Sliding along X, Coulomb friction opposes the sliding, so R3 = 0 and d_
 that the thesis gives to R3. At rest friction is not determined; see ``system.held`` for our choice.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,11 +13,14 @@ import numpy as np
 from feederscrew.geometry.polygons import inset
 from feederscrew.mechanics import cycle
 from feederscrew.mechanics.floor.balance import HOP, ON_THE_LINE, SLIDE, STICK, TIP, UPPER_REVERSAL
-from feederscrew.mechanics.track import sliding, system
+from feederscrew.mechanics.track import system
 from feederscrew.mechanics.track.frame import frame, loads
 
 PULL = 1e-9  # of the weight: a reaction more negative than this would be a pull
 NOISE = 1e-12  # of the weight: less than this is rounding
+PHASE_TOLERANCE = 1e-13  # [rad] width of the bracket in which a part breaks loose
+BRACKETING_STEPS = 60
+UNBOUNDED_FRICTION = 1e9  # [1] friction in place of one that is not finite
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,8 +126,8 @@ def over_cycle(seat, bowl, samples=cycle.SAMPLES):
         Flights are not followed: past the hop the state says ``hop`` and the velocity is that of a part that
         keeps to the track.
     """
-    slips = sliding.acceleration(seat, bowl, frame(bowl, seat.walls), -PULL * bowl.gravity)
-    loose = sliding.windows(
+    slips = sliding_acceleration(seat, bowl, frame(bowl, seat.walls), -PULL * bowl.gravity)
+    loose = loose_windows(
         lambda phase: motion(seat, bowl, phase),
         lambda phase: needed_at_rest(seat, bowl, phase)[..., 0],
         bowl.friction.static,
@@ -224,3 +228,137 @@ def _where(condition, first, second):
     """np.where with the condition widened over trailing axes."""
     wide = condition.reshape(condition.shape + (1,) * (np.ndim(first) - condition.ndim))
     return np.where(wide, first, second)
+
+
+def sliding_acceleration(seat, bowl, axes, least):
+    """Return the acceleration of a sliding part as a function of phase, speed and sense.
+
+    Source: ``system.sliding``, which is linear in the load.
+
+    Parameters
+    ----------
+    seat : Seat
+    bowl : Bowl
+        Single values.
+    axes : TrackAxes
+    least : float [m/s2]
+        A reaction per unit of mass more negative than this would be a pull.
+
+    Returns
+    -------
+    callable
+        From phase [rad], speed [m/s] along the track and sense, +1 or -1, to an acceleration [m/s2]; of a
+        part that has lost contact, what the load gives it.
+    """
+    rows = {sense: _sliding_rows(seat, bowl, axes, sense) for sense in (1.0, -1.0)}
+    omega = 2.0 * np.pi * bowl.drive.frequency
+    stroke, radius = float(bowl.drive.amplitude * omega), float(bowl.track.radius)
+    drive, up, radial = (vector.tolist() for vector in (axes.drive, axes.up, axes.radial))
+    weight = [bowl.gravity * component for component in up]
+
+    def at(phase, speed, sense):
+        push = stroke * omega * math.sin(phase)
+        outward = (drive[0] * stroke * math.cos(phase) + speed) ** 2 / radius
+        x = push * drive[0] - weight[0] - outward * radial[0]
+        y = push * drive[1] - weight[1] - outward * radial[1]
+        z = push * drive[2] - weight[2] - outward * radial[2]
+        chosen = rows[sense][0]
+        for row in rows[sense]:
+            (a, b, c), (d, e, f) = row[2], row[3]
+            if a * x + b * y + c * z >= least and d * x + e * y + f * z >= least:
+                chosen = row
+                break
+        (a, b, c), (d, e, f) = chosen[:2]
+        return a * x + b * y + c * z if d * x + e * y + f * z > 0.0 else x
+
+    return at
+
+
+def loose_windows(rest, needed, static, samples=cycle.SAMPLES):
+    """Return the phases at which a part at rest breaks loose.
+
+    Source: Coulomb's law on the reactions of ``system.held``; docs/mechanics.md, "The track".
+
+    Parameters
+    ----------
+    rest : callable
+        From phases, (N,) float [rad], to the TrackMotion of a part at rest.
+    needed : callable
+        From the same to the friction that holds it, (N,) float [1]; NaN or infinite where none does.
+    static : float [1]
+    samples : int
+        At which it is looked for; a multiple of four, so that both reversals are among them.
+
+    Returns
+    -------
+    list of (float [rad], float [rad], float [1])
+        As ``cycle.settle`` takes them.
+    """
+    phase = cycle.phases(samples)
+    sense = _loose_sense(rest(phase), static)
+    change = np.flatnonzero(sense != np.roll(sense, 1))
+    if len(change) == 0:
+        return [(0.0, cycle.TURN, float(sense[0]))] if sense[0] else []
+    before, step = sense[change - 1], cycle.TURN / samples
+    low, high = phase[change] - step, phase[change].copy()
+    edges = _loose_edges(lambda at: needed(at) - static, low, high, (before != 0.0) & (sense[change] == 0.0))
+    return _cut_windows(edges, sense[change])
+
+
+def _loose_edges(beyond, low, high, falls):
+    """Phases at which a margin passes zero, each within a bracket; where it is not finite, it is positive.
+
+    Brackets whose ends are both loose, one way and the other, close in on their lower end.
+    """
+    sign = np.where(falls, -1.0, 1.0)
+
+    def margin(at):
+        return sign * np.nan_to_num(beyond(at), nan=UNBOUNDED_FRICTION, posinf=UNBOUNDED_FRICTION)
+
+    left, right = margin(low), margin(high)
+    for count in range(BRACKETING_STEPS):
+        if (high - low).max() <= PHASE_TOLERANCE:
+            break
+        share = np.where((left < 0.0) & (right > 0.0) & (count % 3 < 2), left / (left - right), 0.5)
+        middle = low + (high - low) * share
+        now = margin(middle)
+        below, met = now <= 0.0, np.abs(now) <= PHASE_TOLERANCE
+        low, left = np.where(below, middle, low), np.where(below, now, left)
+        high, right = np.where(below, high, middle), np.where(below, right, now)
+        low, high = np.where(met, middle, low), np.where(met, middle, high)
+    return high
+
+
+def _cut_windows(starts, senses):
+    """Windows within one period from where each begins; a state lasts to the next one's begin."""
+    found = []
+    for start, end, sense in zip(starts, np.append(starts[1:], starts[0] + cycle.TURN), senses):
+        if sense and end > cycle.TURN:
+            found += [(0.0, float(end - cycle.TURN), float(sense)), (float(start), cycle.TURN, float(sense))]
+        elif sense:
+            found.append((float(start), float(end), float(sense)))
+    return sorted(found)
+
+
+def _loose_sense(rest, static):
+    """Way in which a part at rest breaks loose: +1, -1, or 0 where it is held."""
+    loose = (rest.state == HOP) | ~(rest.needed[:, 0] <= static)
+    return np.where(loose, np.where(rest.acceleration[:, 0] > 0.0, 1.0, -1.0), 0.0)
+
+
+def _sliding_rows(seat, bowl, axes, sense):
+    """For each set of closed contacts the rows of acceleration, normal force and two margins.
+
+    Each row is a list of three numbers: the value for a unit of load per mass along X, Y and Z.
+    """
+    unit = seat.mass * np.eye(3)
+    course = np.tile(sense * system.AHEAD, (3, 1))
+    wall, found = sense * bowl.friction.wall, []
+    for closed in system.SETS:
+        use = np.full(3, wall if any(closed) else 0.0)
+        one = system.sliding(seat, axes, unit, closed, np.full(3, bowl.friction.kinetic), use, course)
+        conditions = [one.walls[:, k] if shut else one.parting[:, k] for k, shut in enumerate(closed)]
+        rows = (one.acceleration[:, 0], one.normal, *conditions)
+        along, normal, *conditions = (row.tolist() for row in rows)
+        found.append((along, normal, *conditions))
+    return found

@@ -8,7 +8,8 @@ from feederscrew.geometry.polygons import cross, sides
 from feederscrew.mechanics.floor.balance import HOP
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import frame, loads
-from feederscrew.screw import Point, Wrench, reactions, tipping_twists
+from feederscrew.screw.rigid_body import reactions, tipping_twists
+from feederscrew.screw.screws import Point, Wrench
 
 REVERSALS = {"upper": 0.5 * np.pi, "lower": 1.5 * np.pi}
 WALLS = ("wall_1", "wall_2")

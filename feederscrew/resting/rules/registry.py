@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
 from feederscrew.resting.basins import barriers
-from feederscrew.resting.rules import hops, published, surface, tumbled
+from feederscrew.resting.rules import published, surface, tumbled
 from feederscrew.resting.rules.quantities import ClassQuantities, FaceQuantities
 from feederscrew.units import shown
 
@@ -97,7 +97,7 @@ RULES = (
     ),
     Rule(
         "hops", "hops", "#5b3a8e",
-        FaceQuantities, ("tips", "radius"), hops.hop_shares,
+        FaceQuantities, ("tips", "radius"), tumbled.hop_shares,
         "a cascade of hops over the barriers", "beside `p_surface`; parts with shallow faces",
         "own: see below",
     ),
