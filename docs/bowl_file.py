@@ -1,8 +1,8 @@
-"""Bring docs/bowl_file.md up to date, and the keywords of the library that are keys of a bowl file.
+"""Bring up to date what is made from the keys of a bowl file: page, keywords of the library, configs/.
 
 The page has tables of keys and devices, from the JSON Schema; the keywords are those of `DriveSettings`.
 
-Example: python docs/bowl_file.py          (writes docs/bowl_file.md and feederscrew/api/bowl_settings.py)
+Example: python docs/bowl_file.py          (writes docs/bowl_file.md, api/bowl_settings.py and configs/)
          python docs/bowl_file.py --check  (status 1, and the differences, if one is out of date)
 """
 
@@ -11,12 +11,13 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from feederscrew.bowl import json_schema
+from feederscrew.bowl import documentation, json_schema
 from feederscrew.bowl.schema import KEYS
 from feederscrew.dropping import conditions
 
 PAGE = Path(__file__).resolve().parent / "bowl_file.md"
 KEYWORDS = PAGE.parent.parent / "feederscrew" / "api" / "bowl_settings.py"
+CONFIGS = PAGE.parent.parent / "configs"
 BEGIN, END = "    # keys, written by docs/bowl_file.py\n", "    # end of keys\n"
 HEAD = "| Key | Default | From | To | Units | Meaning |\n|---|---|---|---|---|---|\n"
 
@@ -66,7 +67,13 @@ def with_keywords(text):
 def main():
     """Write or check; the exit status."""
     status = 0
-    for path, make in ((PAGE, filled), (KEYWORDS, with_keywords)):
+    written = {
+        PAGE: filled,
+        KEYWORDS: with_keywords,
+        CONFIGS / "bowl.yaml": lambda _: documentation.template(),
+        CONFIGS / "feeder.schema.json": lambda _: json_schema.text(),
+    }
+    for path, make in written.items():
         old = path.read_text(encoding="utf-8")
         new = make(old)
         if "--check" in sys.argv:

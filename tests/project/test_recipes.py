@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/contributing.md").read_text()
-BLOCK = re.compile(r"<!-- (new|in|shows) (.*?) -->\n```(?:python|sh|)\n(.*?)```", re.DOTALL)
+BLOCK = re.compile(r"<!-- (new|in|runs|shows) ?(.*?) ?-->\n```(?:python|sh|)\n(.*?)```", re.DOTALL)
 CHANGE = re.compile(r"(\S+) (after|instead of) (.*)", re.DOTALL)
 RECIPES = {
     chapter.splitlines()[0]: blocks
@@ -20,42 +20,79 @@ RECIPES = {
     if (blocks := BLOCK.findall(chapter))
 }
 RUN = "from feederscrew_cli.main import feeder; feeder()"
+COPIED = ("feederscrew", "cli", "docs", "configs", "parts")
+CONCERNED = ("commands", "rules", "bowl_file")  # pages that are made from the program
 
 
 @pytest.fixture
 def copy(tmp_path):
-    """A copy of the sources; the commands under their installed name."""
-    ignore = shutil.ignore_patterns("__pycache__", "*.nbi", "*.nbc")
-    shutil.copytree(ROOT / "feederscrew", tmp_path / "feederscrew", ignore=ignore)
-    shutil.copytree(ROOT / "cli", tmp_path / "feederscrew_cli", ignore=ignore)
-    (tmp_path / "parts").symlink_to(ROOT / "parts")
+    """A copy of the sources and pages; the commands under their installed name."""
+    ignore = shutil.ignore_patterns("__pycache__", "*.nbi", "*.nbc", "*.png")
+    for name in COPIED:
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=ignore)
+    (tmp_path / "feederscrew_cli").symlink_to("cli")
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
     return tmp_path
 
 
-def apply(root, kind, where, text):
-    if kind == "new":
-        (root / where).write_text(text)
-        return
+def apply(root, where, text):
     name, how, line = CHANGE.fullmatch(where).groups()
     old = (root / name).read_text()
     assert old.count(f"{line}\n") == 1, f"{name} has not one line: {line}"
     (root / name).write_text(old.replace(f"{line}\n", (f"{line}\n" if how == "after" else "") + text))
 
 
+def run(root, *call):
+    """Run one process in the copy; its output."""
+    environment = os.environ | {"PYTHONPATH": str(root)}
+    done = subprocess.run(call, cwd=root, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+def follow(root, name):
+    """Do what a recipe says, step by step."""
+    for kind, where, text in RECIPES[name]:
+        if kind == "new":
+            (root / where).write_text(text)
+        elif kind == "in":
+            apply(root, where, text)
+        elif kind == "runs":
+            for line in text.strip().split(" && "):
+                run(root, sys.executable, *shlex.split(line)[1:])
+        else:
+            assert where in run(root, sys.executable, "-c", RUN, *shlex.split(text)[1:])
+
+
 def test_every_recipe_is_here():
     assert list(RECIPES) == [
         "A new device", "A new probability rule", "A new picture", "A new key of the bowl file",
+        "A new column of a table", "A new file format",
     ]  # fmt: skip
+    assert all(blocks[-1][0] == "shows" for blocks in RECIPES.values())
 
 
 @pytest.mark.parametrize("name", list(RECIPES))
-def test_a_recipe_does_what_it_says(copy, name):
-    *changes, (kind, shown, command) = RECIPES[name]
-    assert kind == "shows"
-    for change in changes:
-        apply(copy, *change)
-    call = [sys.executable, "-c", RUN, *shlex.split(command)[1:]]
-    environment = os.environ | {"PYTHONPATH": str(copy)}
-    done = subprocess.run(call, cwd=copy, env=environment, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    assert shown in done.stdout + done.stderr
+def test_a_recipe_does_what_it_says_and_leaves_lint_and_pages_as_they_should_be(copy, name):
+    """Import order, units of docstrings and files that are made from a key were forgotten once."""
+    follow(copy, name)
+    for check in (["check"], ["format", "--check"]):
+        run(copy, sys.executable, "-m", "ruff", *check, "--no-cache", "feederscrew", "cli", "docs")
+    for page in CONCERNED:
+        run(copy, sys.executable, f"docs/{page}.py", "--check")
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("name", list(RECIPES))
+def test_after_a_recipe_types_and_docstrings_hold(copy, name):
+    """The tests that read every module are run on the copy."""
+    shutil.copytree(ROOT / "tests", copy / "tests", ignore=shutil.ignore_patterns("__pycache__"))
+    follow(copy, name)
+    tests = [
+        "tests/project/test_docstrings.py",
+        "tests/test_layers.py",
+        "tests/bowl",
+        "tests/test_api_settings.py",
+    ]
+    run(copy, sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *tests)
+    run(copy, sys.executable, "-m", "mypy", "--cache-dir", str(copy / ".mypy_cache"))
