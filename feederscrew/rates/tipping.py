@@ -8,7 +8,7 @@ A part that hops is not followed. In flight nothing holds it; each landing strik
 drags it along the track, and the wall drags it back. ``landing`` says when neither can turn it.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -27,9 +27,15 @@ from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import Seat, seat
 from feederscrew.rates.rocking import goes_over, rocker
 from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, speed, travelling
-from feederscrew.units import listed
+from feederscrew.units import factor, listed
 
 INSTANTS = 12  # of one period
+MM = factor("mm", "length")
+HOPS = (
+    "at this drive parts hop {:.2g} mm high and fly {:.2g} mm along the track: margins at edges across the "
+    "track are less that way, all others less that height"
+)
+TURNS = "{}: a landing may tip it over, or the wall turn it, so no verdict on it is sure - see feeder trial"
 FLAT = "flat"  # a part that rolls lies on a line: it rolls where others tip, and tips over the line's ends
 ROUND = 0.98  # of the farthest place of an outline, the nearest: it is round, and no heading of it is another
 BESIDE = 10.0  # heights of the centre of mass: no force of a bowl acts so far beside it
@@ -114,10 +120,15 @@ def marked(lying: Sequence[Orientation], bowl: Bowl) -> tuple[tuple[Orientation,
     return travelling(known, bowl), found
 
 
-def remark(lying: Iterable[Orientation]) -> tuple[str, ...]:
-    """Say which orientations the drive turns over: one sentence, or none."""
+def remark(lying: Sequence[Orientation]) -> tuple[str, ...]:
+    """Say what a drive turns over, how parts hop, and which of them may turn as they do: a sentence each."""
     over = [one.name for one in lying if one.turns_over]
-    return (f"{listed(over)} can tip over on the track at this drive and count as returned",) if over else ()
+    said = [f"{listed(over)} can tip over on the track at this drive and count as returned"] if over else []
+    hop, flight = max(((one.hop, one.flight) for one in lying), default=(0.0, 0.0))
+    if hop > 0.0:
+        said.append(HOPS.format(hop / MM, flight / MM))
+    turning = [one.name for one in lying if one.may_turn]
+    return (*said, TURNS.format(listed(turning))) if turning else tuple(said)
 
 
 def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
