@@ -85,7 +85,7 @@ def remark(bowl: Bowl) -> tuple[str, ...]:
         return ()
     return (
         f"parts hop {own.text}: an edge, rail or blade that a part passes by less, and a hole that is "
-        "shorter, do not hold for sure",
+        "shorter, are not sure to hold - feeder trial tries them",
     )
 
 
