@@ -22,21 +22,40 @@ def config(ctx):
 @config.command(short_help="Write a commented bowl file of all defaults.")
 @click.argument("file", type=options.FILE, default="-")
 @click.option("--force", "replace", is_flag=True, help="Replace the file if it exists.")
+@click.option(
+    "--machine", metavar="NAME", help="A usual drive unit instead of all defaults; 'list' shows them."
+)
 @options.QUIET
-def init(file, replace, quiet):
+def init(file, replace, machine, quiet):
     """Example: feeder config init bowl.yaml
 
     Write a bowl file of all defaults, each key with its meaning, to FILE or to standard output. Its first
     line names the JSON Schema that editors complete and check it by; with FILE that is written beside it.
+
+    With --machine NAME: the bowl file of a usual drive unit, with its diameter, frequency, springs, masses
+    and greatest stroke. feeder design keeps that machine and looks for the stroke. --machine list prints a
+    line for each drive unit and writes no file.
     """
     from feederscrew.bowl import documentation, json_schema
 
+    if machine is not None and machine.strip().casefold() == "list":
+        from feederscrew.machine import drive_units
+
+        click.echo("\n".join(drive_units.lines()))
+        return
+    text = _of_machine(machine) if machine is not None else documentation.template()
     if file == "-":
-        click.echo(documentation.template(), nl=False)
+        click.echo(text, nl=False)
     else:
-        documentation.write_template(file, replace=replace)
+        documentation.write_new(file, text, replace=replace)
         out = talk.Output.of(format="table", quiet=quiet)
         out.say(f"Wrote {file}", f"Wrote {json_schema.write_beside(file)}, which editors read")
+
+
+def _of_machine(name):
+    from feederscrew.machine import drive_units
+
+    return drive_units.bowl_file(drive_units.unit(name))
 
 
 @config.command(short_help="Print the JSON Schema of a bowl file, for editors.")

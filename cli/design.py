@@ -48,6 +48,13 @@ REQUEST = (  # what shall leave, and what may be used
         "--without", metavar="KINDS", default="", help="Kinds of devices that are not used: 'profile,wiper'."
     ),
     click.option(
+        "--drive",
+        type=click.Choice(["leaf-spring", "two-axis", "any"]),
+        default="leaf-spring",
+        show_default=True,
+        help="Kind of drive: one magnet on leaf springs, or two magnets with a two-channel controller.",
+    ),
+    click.option(
         "--diameter",
         type=Span(),
         metavar="LOW:HIGH",
@@ -83,8 +90,8 @@ REQUEST = (  # what shall leave, and what may be used
     click.option("--jobs", type=options.Whole(1, 256), metavar="N", help="Cores to use.  [default: all]"),
 )
 REQUESTED = (
-    "target", "aspect", "heading", "up", "outcome", "without", "diameter", "tolerance", "budget", "draws",
-    "seed", "jobs",
+    "target", "aspect", "heading", "up", "outcome", "without", "drive", "diameter", "tolerance", "budget",
+    "draws", "seed", "jobs",
 )  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 """The keys of a bowl file as keywords: ``convey(bowl, amplitude="0.3 mm")``.
 
-A key has its name in its section. Two sections have a ``leaves``, a ``spring_radius`` and a ``base_mass``:
-these are no keywords, ``overrides={"machine.leaves": 4}`` sets one.
+A key has its name in its section. Two sections have a ``leaves``, a ``spring_radius``, a ``base_mass`` and a
+``controller``: these are no keywords, ``overrides={"machine.leaves": 4}`` sets one.
 """
 
 import difflib
@@ -71,6 +71,7 @@ class DriveSettings(TypedDict, total=False):
     bolts: Setting
     bolt_hole: Setting
     bolt_circle: Setting
+    mains: Setting
     least_diameter: Setting
     diameter_per_length: Setting
     diameter_per_width: Setting
@@ -87,7 +88,6 @@ class DriveSettings(TypedDict, total=False):
     carried: Setting
     fill_density: Setting
     hopper_interval: Setting
-    controller: Setting
     retune: Setting
     least_detuning: Setting
     greatest_detuning: Setting

@@ -31,6 +31,7 @@ class DesignOptions(BowlSettings, total=False):
     diameter: Quantity | tuple[Quantity, Quantity] | None
     tolerance: Quantity
     rule: str
+    drive: str
     budget: int
     draws: int
     seed: int
@@ -67,6 +68,7 @@ def design(
     diameter: Quantity | tuple[Quantity, Quantity] | None = None,
     tolerance: Quantity = DesignRequest.tolerance,
     rule: str = DesignRequest.rule,
+    drive: str = DesignRequest.drive,
     budget: int = DesignRequest.budget,
     draws: int = DesignRequest.draws,
     seed: int = DesignRequest.seed,
@@ -104,6 +106,8 @@ def design(
         Of the part's size, to either side.
     rule : str
         Whose probabilities are taken.
+    drive : str
+        Kind of drive: 'leaf-spring' (one magnet), 'two-axis' (two magnets) or 'any', leaf springs first.
     budget : int
         Short trials of the search, at most.
     draws : int
@@ -135,6 +139,7 @@ def design(
         without=names_of(without),
         diameter=None if diameter is None else asked.pair("diameter", diameter, "length"),
         rule=rule,
+        drive=drive,
         tolerance=asked.amount("tolerance", tolerance, "length", 0.0),
         budget=asked.whole("budget", budget),
         draws=asked.whole("draws", draws),

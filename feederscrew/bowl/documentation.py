@@ -40,11 +40,6 @@ def template() -> str:
     return "\n".join(lines) + "\n"
 
 
-def write_template(path: str | Path, *, replace: bool = False) -> None:
-    """Write ``template`` to a file; FeederError if it exists, unless ``replace``, or cannot be made."""
-    write_new(path, template(), replace=replace)
-
-
 def write_new(path: str | Path, text: str, *, replace: bool = False) -> None:
     """Write a text to a file; FeederError if it exists, unless ``replace``, or cannot be made."""
     if Path(path).is_dir():

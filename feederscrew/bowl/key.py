@@ -43,8 +43,9 @@ class Key:
         """Return a value as typed: in SI units, or the word; QuantityError where it is neither."""
         if not self.choices:
             return units.quantity(text, self.dimension, suggest=self.unit)
-        word = text.strip().casefold()
-        if word not in self.choices:
+        words = {_plainly(choice): choice for choice in self.choices}
+        word = words.get(_plainly(text))
+        if word is None:
             raise units.QuantityError(f"{units.shown(text)} is not known", f"write {self.bounds}")
         return word
 
@@ -52,3 +53,8 @@ class Key:
     def column(self) -> str:
         """Name of a table's column of its values: 'amplitude_mm'."""
         return f"{self.word}_{self.unit}".replace("/", "_").rstrip("_")
+
+
+def _plainly(text: str) -> str:
+    """A word without its spaces and in small letters: '60 Hz' is '60hz'."""
+    return "".join(text.split()).casefold()

@@ -139,6 +139,13 @@ class Sizing:
     outlet_angle: float = 0.0  # [rad] where the outlet leaves the wall
     drains: float = 0.0  # holes in the floor
     drain_hole: float = 4e-3  # [m] diameter
+    mains: str = "50 Hz"  # where the bowl is to run
+    control: str = "mains"  # or 'frequency': the controller makes any
+
+    @property
+    def mains_frequency(self) -> float:
+        """Frequency of the mains [Hz]."""
+        return float(self.mains.partition(" ")[0])
 
 
 @dataclass(frozen=True)

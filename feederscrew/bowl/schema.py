@@ -2,7 +2,7 @@
 
 from feederscrew.bowl.key import Key
 from feederscrew.bowl.machine_keys import MACHINE, SIZING
-from feederscrew.bowl.solid_keys import DRIVE, HAND, SOLID
+from feederscrew.bowl.solid_keys import DRIVE, HAND, SOLID, SUPPLY
 from feederscrew.bowl.unbalance import KEYS as UNBALANCE
 
 KEYS = (
@@ -86,6 +86,7 @@ KEYS = (
     *MACHINE,
     *UNBALANCE,
     *DRIVE,
+    *SUPPLY,
     *SIZING,
     *SOLID,
 )  # fmt: skip

@@ -182,6 +182,9 @@ def _effective(key: Key, given: Mapping[str, Setting]) -> Setting:
         return _converted(key, _effective(other, given))
     if key.name in OF_THE_MACHINE and has_machine(given):
         return _of_the_machine(key, given)
+    if key.name == "machine.supply" and "machine.mains" in given:
+        text = f"{given['machine.mains'].text} full wave"
+        return Setting(key, text, key.value(text), "from machine.mains", given=False)
     if key.default in BY_NAME:
         source = _effective(BY_NAME[key.default], given)
         return Setting(key, source.text, source.value, f"as {key.default}", given=False)

@@ -31,6 +31,18 @@ DRIVE = (
         "diameter of the circle that they stand on; left out, a solid has them at sizing.bolt_share",
     ),
 )  # fmt: skip
+SUPPLY = (
+    _choice(
+        "machine.mains", ("50 Hz", "60 Hz"),
+        "of the place where the bowl is to run: a drive makes the mains frequency (half wave) or twice it "
+        "(full wave)",
+    ),
+    Key(
+        "machine.controller", "sizing.control", "choice", "mains", "frequency", "mains",
+        "what drives the magnets: 'mains', or a 'frequency' controller, which makes any frequency from 30 to "
+        "140 Hz", choices=("mains", "frequency"),
+    ),
+)  # fmt: skip
 SOLID = (
     Key(
         "sizing.bolt_share", "sizing.bolt_share", "number", "0.05", "0.9", "0.4",

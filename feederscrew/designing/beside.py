@@ -18,6 +18,7 @@ from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import HOLDS, DesignRequest, DesignStudy
 from feederscrew.errors import FeederError
 from feederscrew.machine import checks, drive_sought
+from feederscrew.machine.feasibility import is_two_axis
 from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
@@ -97,6 +98,7 @@ class Built:
     drawn: MachineSheet | None = None  # the same with its order and its solid; None where there is no solid
     why: str = ""  # there is none
     remarks: tuple[str, ...] = ()  # of `feeder bowl` of that file with the part and the rate
+    lacks: str = ""  # what keeps the leaves and magnets that were sized from making the drive
 
 
 def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
@@ -125,7 +127,8 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
         made = bowls.settings(None, (*kept, *own))
         sized, why = _sized((*made, *devices), study)
         driven = replace(sized.bowl, drive=study.bowl.drive)  # at the stroke that was tried
-        machine = drive_sought.on_leaves(driven, drive_sought.given(listed, "machine"))
+        words = drive_sought.given(listed, "machine")
+        machine = driven.machine if "leaves" in words else drive_sought.on_leaves(driven, words)
         under = [f"machine.{name}={text}" for name, text in _machine(machine)]
         stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
         lines = _last((*kept, *own, stroke, *under, *_fill(study.part, sized)))
@@ -134,8 +137,10 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     except FeederError as fault:
         return Built(why=str(fault))
     sheet = replace(sheet, turns=sized.turns)
+    owned = "leaves" in words or is_two_axis(sheet.bowl.drive)
+    lacks = "" if owned else drive_sought.leaves_lack(sheet.bowl)
     said = {*study.warnings, *checks.remarks(sheet)}
-    return Built(sheet, _drawn(sheet, sized), why, tuple(_ordered(own_settings, study, said)))
+    return Built(sheet, _drawn(sheet, sized), why, tuple(_ordered(own_settings, study, said)), lacks)
 
 
 def _ordered(settings: Sequence[Setting], study: DesignStudy, said: Collection[str]) -> Iterator[str]:
@@ -212,11 +217,12 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
     warnings += [] if built.drawn is None else checks.of_the_solid(built.drawn)
     warnings += built.remarks
     other = sheet.mismatch
-    lacking = (
+    lacking: tuple[str, ...] = (
         (f"the vibration angle {other.text}",)
         if other is not None and other.other_angle and not other.two_axis
         else ()
     )
+    lacking += (f"the machine that is drawn does not make its drive: {built.lacks}",) if built.lacks else ()
     made = replace(
         study,
         bowl=replace(study.bowl, machine=sheet.bowl.machine),
@@ -283,6 +289,7 @@ def _machine(machine: Machine) -> Iterator[tuple[str, str]]:
     yield "base_inertia", f"{machine.base_inertia:.6g} kg m2"
     yield "spring_radius", f"{1e3 * machine.spring_radius:.6g} mm"
     yield "spring_angle", f"{np.degrees(machine.spring_angle):.6g} deg"
+    yield "leaf_width", f"{1e3 * machine.leaf_width:.6g} mm"
     yield "leaf_thickness", f"{1e3 * machine.leaf_thickness:.6g} mm"
     yield "leaf_length", f"{1e3 * machine.leaf_length:.6g} mm"
     yield "leaves", f"{machine.leaves:.0f}"

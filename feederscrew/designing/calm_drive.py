@@ -1,37 +1,67 @@
-"""The bowl and the track for a part, and drives that do not make it hop."""
+"""The bowl and the track for a part, and the calmest drive that is fast enough for it."""
 
 import functools
+import itertools
 import math
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feederscrew.bowl.direction import vibration_angle
 from feederscrew.bowl.record import Bowl, Track
+from feederscrew.bowl.settings import has_machine
 from feederscrew.conveying import answer
+from feederscrew.conveying.hop import hop
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.errors import ConfigError
-from feederscrew.machine import sizing
+from feederscrew.machine import building, drive_sought, sizing
+from feederscrew.machine.feasibility import is_two_axis
+from feederscrew.machine.springs import springs
 from feederscrew.machine.stroke import greatest_amplitude
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 
+LEAF_SPRING, TWO_AXIS, ANY = DRIVES = ("leaf-spring", "two-axis", "any")  # kinds that may be asked for
 CALM = 0.9  # throw number below which no part hops, with a reserve for the drive's own scatter
-HOPPING = (1.2, 1.5, 1.8)  # throw numbers where no tooling has to be met lying
-LIVELY = (1.2, 1.5)  # of the drives out of phase there: nearly twice as fast as below 1
+THROW_NUMBERS = (
+    CALM,
+    1.3,
+    1.5,
+    1.8,
+    2.0,
+    2.3,
+    2.6,
+    3.0,
+)  # of leaf-spring drives; above 3.3 flights last longer
+TRACK_ANGLES = tuple(math.radians(angle) for angle in (15.0, 20.0, 25.0, 30.0))  # at the track, usual ones
+CONTROLLED_HZ = (
+    30.0,
+    40.0,
+    50.0,
+    60.0,
+    80.0,
+    100.0,
+    120.0,
+    140.0,
+)  # that a frequency controller may be set to
+WAVES = (1.0, 2.0)  # half wave and full wave of the mains
 BANKS = tuple(np.radians((3.0, 0.0)))  # bring back to the wall what leaves it
 STEEP_BANKS = tuple(np.radians((8.0, 3.0)))  # hold there what rolls
 WORST = (0.6, 1.4)  # [1] of the nominal friction
 STEADY = 0.6  # of the velocity asked for that is left at the worst friction
 LEAST = 0.05  # [m/s] through tooling: what creeps rolls off the wall, or stands at a slot and falls in late
 STROKES = {"drive.amplitude", "drive.peak_to_peak"}  # keys that give it
-CALMER = 0.45  # of the velocity of a drive that turns or loses what is wanted: two such steps reach ``LEAST``
+CALMER = (
+    0.45  # of the velocity, of a calm drive that turns or loses what is wanted: two steps reach ``LEAST``
+)
+CALMER_HOP = 0.5  # of the hop, of a drive that throws the part: half the energy of a landing
 CALMER_STEP = 0.01  # [1] of the throw number: so much above ``CALM`` counts as that
 CALMER_SHARE = 0.9  # of the velocity: what is faster is no calmer drive
 HALVINGS = 12  # of the amplitude
 STROKE_STEP = 1e-6  # [m] to which an amplitude is rounded
-# frequency [Hz], vibration angle and lead of the normal motion [rad]: the simplest drive first
-STRAIGHT = tuple((f, math.radians(25.0), 0.0) for f in (50.0,))
+LIVELY = (1.2, 1.5)  # throw numbers of two-axis drives without tooling: nearly twice as fast as below 1
+# frequency [Hz], vibration angle and lead of the normal motion [rad] of two-axis drives
 ELLIPTIC = tuple(
     (f, math.radians(angle), math.radians(-60.0))
     for f, angle in ((50.0, 16.0), (50.0, 10.0), (40.0, 10.0), (33.0, 10.0), (30.0, 10.0))
@@ -45,6 +75,12 @@ class PlainBowl:
     bowl: Bowl
     given: frozenset[str]
     size: sizing.Size | None  # None once the bowl has changed
+    drive: str = LEAF_SPRING  # kind of drive that is asked for, of DRIVES
+
+    @property
+    def has_stroke(self) -> bool:
+        """Whether the user gave the stroke."""
+        return bool(STROKES & self.given)
 
 
 def section(
@@ -55,6 +91,7 @@ def section(
     *,
     diameter: tuple[float, float] | None = None,
     bank: float = BANKS[0],
+    drive: str = LEAF_SPRING,
 ) -> PlainBowl:
     """Return a bowl that is large enough for every way a part lies.
 
@@ -70,6 +107,8 @@ def section(
         Least and greatest.
     bank : float [rad]
         Of the track, where the user gave none.
+    drive : str
+        Kind of drive that is asked for, of DRIVES.
 
     Returns
     -------
@@ -88,7 +127,7 @@ def section(
         radius=0.5 * size.diameter,
         width=size.track_width if "width" in own else _tenths(size.track_width, 1e-4),
     )
-    return PlainBowl(replace(plain, track=track, devices=()), frozenset(given), size)
+    return PlainBowl(replace(plain, track=track, devices=()), frozenset(given), size, drive)
 
 
 def _tenths(value: float, step: float) -> float:
@@ -96,45 +135,51 @@ def _tenths(value: float, step: float) -> float:
 
 
 def driven(made: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
-    """Return a bowl whose drive carries a point mass at a velocity, or as near to it as it does calmly.
+    """Return a bowl with the calmest drive that carries a point mass at a velocity, or with the fastest.
 
     Parameters
     ----------
     made : PlainBowl
     velocity : float [m/s]
+        Infinite for the fastest.
     hops : bool
-        Whether parts may hop: there is no tooling.
+        Whether there is no tooling, so that a part may creep.
 
     Returns
     -------
     Bowl
-        With the simplest drive that is fast enough, also at the worst friction, at the least stroke that
-        is; else the fastest. Through tooling no slower than ``LEAST``.
+        Of the drives that the machine can make, the one of the lowest hop, and of these the one of the least
+        stroke, that is as fast as asked for, and at the worst friction ``STEADY`` times that; else the
+        fastest. Through tooling no slower than ``LEAST``. What the user gave of the drive is kept.
 
     Notes
     -----
-    A straight drive below the throw number of 1 carries slowly, and hardly at all where friction is low. Out
-    of phase, the surface rises while it moves forward and falls while it moves back: friction itself carries
-    the part, several times as fast, and its coefficient hardly matters.
+    A leaf-spring drive below the throw number of 1 carries slowly, and hardly at all where friction is low.
+    From 2.2 to 3 it is three to six times as fast, and friction hardly matters. The part then hops. The hop
+    is the lower the higher the frequency, by its square (``conveying.hop``): twice the mains frequency comes
+    first where it is fast enough. A two-axis drive carries by friction without a hop, and needs two magnets.
 
     References
     ----------
     A. H. Redford, G. Boothroyd, "Vibratory feeding", Proc. Inst. Mech. Eng. 182, 135-152, 1967.
     """
-    if STROKES & made.given:
-        return made.bowl
-    tried: list[tuple[float, int, Bowl]] = []
-    velocity = velocity if hops else max(velocity, LEAST)
-    for bowl in _drives(made, hops):
-        fastest = _fast(bowl)
-        if fastest >= velocity:
-            return _slowed(bowl, velocity)
-        tried.append((fastest, -len(tried), bowl))
-    return max(tried)[2]
+    velocity, kinds = velocity if hops else max(velocity, LEAST), list(_kinds(made, hops))
+    order = sorted(itertools.chain(*itertools.chain(*kinds)), key=_fast, reverse=True)  # calm ones first
+    if math.isfinite(velocity) and _fast(order[0]) >= velocity:
+        levels = [[one for one in level if _fast(one) >= velocity] for level in itertools.chain(*kinds)]
+        for can_build in (_can_build, _always):  # where no machine makes any, as if one did
+            for level in levels:
+                enough = [bowl for bowl in level if can_build(made, bowl)]
+                if enough:
+                    least = enough if made.has_stroke else [_slowed(bowl, velocity) for bowl in enough]
+                    return min(least, key=_calmness)
+            if any(_can_build(made, bowl) for bowl in order):
+                break
+    return next((bowl for bowl in order if _can_build(made, bowl)), order[0])
 
 
 def calmer(made: PlainBowl, bowl: Bowl) -> Bowl | None:
-    """Return a bowl with a calmer drive than another one's, ``CALMER`` times as fast and without hops.
+    """Return a bowl with a calmer drive than another one's.
 
     Parameters
     ----------
@@ -146,33 +191,114 @@ def calmer(made: PlainBowl, bowl: Bowl) -> Bowl | None:
     Returns
     -------
     Bowl or None
-        Without devices. None where the user gave the stroke, or none is calmer.
+        Without devices. Where the part hops: the fastest drive with at most ``CALMER_HOP`` of that hop. Where
+        it does not: a drive that is ``CALMER`` times as fast and throws nothing. None where the user gave the
+        stroke, or none is calmer.
     """
-    if STROKES & made.given:
+    if made.has_stroke:
         return None
-    found = driven(made, CALMER * speed(bowl))
-    gentler = throw_number(bowl) > CALM + CALMER_STEP or speed(found) <= CALMER_SHARE * speed(bowl)
-    return found if gentler and 0.0 < throw_number(found) <= CALM + CALMER_STEP else None
+    height = hop(bowl).height
+    if height > 0.0 and not is_two_axis(bowl.drive):
+        levels = itertools.chain(*_kinds(made, True))
+        rows = [one for one in itertools.chain(*levels) if _is_calmer(one, height)]
+        order = sorted(rows, key=_fast, reverse=True)
+        return next((one for one in order if _fast(one) > 0.0 and _can_build(made, one)), None)
+    other = driven(made, CALMER * speed(bowl))
+    gentler = throw_number(bowl) > CALM + CALMER_STEP or speed(other) <= CALMER_SHARE * speed(bowl)
+    return other if gentler and 0.0 < throw_number(other) <= CALM + CALMER_STEP else None
 
 
-def _drives(made: PlainBowl, hops: bool) -> Iterator[Bowl]:
-    """Bowls whose drive is as strong as it may be, the simplest first."""
-    plain, given = made.bowl, made.given
-    kinds = [(CALM, *row) for row in STRAIGHT]
-    kinds += [(throw, *STRAIGHT[0]) for throw in HOPPING] if hops else []
-    kinds += [(CALM, *row) for row in ELLIPTIC]
-    kinds += [(throw, *row) for throw in LIVELY for row in ELLIPTIC] if hops else []
-    seen = set()
-    for throw, frequency, angle, phase in kinds:
-        own = {"frequency": frequency, "vibration_angle": angle, "phase": phase}
-        kept = {name: getattr(plain.drive, name) for name in own if f"drive.{name}" in given}
-        drive = replace(plain.drive, **own | kept)
-        if (throw, drive) in seen:
+def _is_calmer(bowl: Bowl, height: float) -> bool:
+    """Whether parts hop much less high than a height [m]."""
+    return hop(bowl).height <= CALMER_HOP * height
+
+
+def _kinds(made: PlainBowl, hops: bool) -> Iterator[list[list[Bowl]]]:
+    """Drives of each kind that is asked for, in groups of about the same hop, the calmest first."""
+    drive = made.drive
+    if "drive.phase" in made.given:
+        drive = TWO_AXIS if is_two_axis(made.bowl.drive) else LEAF_SPRING
+    if drive in (LEAF_SPRING, ANY):
+        order = sorted(set(_leaf_spring_drives(made)), key=_calmness)
+        yield [list(group) for _, group in itertools.groupby(order, key=lambda bowl: _calmness(bowl)[0])]
+    if drive in (TWO_AXIS, ANY):
+        yield [[bowl] for bowl in dict.fromkeys(_two_axis_drives(made, hops))]
+
+
+def _calmness(bowl: Bowl) -> tuple[float, float]:
+    """Height of the hop [m] to two digits, then amplitude [m]: the calmest drive has the least."""
+    return float(f"{hop(bowl).height:.2g}"), bowl.drive.amplitude
+
+
+def _leaf_spring_drives(made: PlainBowl) -> Iterator[Bowl]:
+    """Every leaf-spring drive that the supply and the springs make."""
+    frequencies, angles = _frequencies(made), _angles(made)
+    for frequency, angle in itertools.product(frequencies, angles):
+        own = {"frequency": frequency, "vibration_angle": angle, "phase": 0.0}
+        kept = {"phase": made.bowl.drive.phase} if "drive.phase" in made.given else {}
+        bowl = replace(made.bowl, drive=replace(made.bowl.drive, **own | kept))
+        if made.has_stroke:
+            yield bowl
             continue
-        seen.add((throw, drive))
-        bowl = replace(plain, drive=drive)
-        amplitude = min(drive.amplitude * throw / throw_number(bowl), greatest_amplitude(bowl))
-        yield with_amplitude(bowl, amplitude)
+        for throw in THROW_NUMBERS:
+            yield _thrown(bowl, throw)
+
+
+def _frequencies(made: PlainBowl) -> tuple[float, ...]:
+    """Frequencies [Hz] that the supply makes, or the one that the user gave."""
+    if "drive.frequency" in made.given:
+        return (made.bowl.drive.frequency,)
+    rules = made.bowl.sizing
+    if rules.control == "frequency":
+        return (_controlled(made),) if "machine.leaves" in made.given else CONTROLLED_HZ
+    if has_machine(made.given):
+        return (made.bowl.machine.supply,)
+    return tuple(wave * rules.mains_frequency for wave in WAVES)
+
+
+def _controlled(made: PlainBowl) -> float:
+    """The frequency [Hz] at which a controller runs a machine that has its leaves, below its natural one."""
+    rules, machine = made.bowl.sizing, building.machine_on(made.bowl, made.given)
+    detuning = 0.5 * (rules.least_detuning + rules.greatest_detuning)
+    return round(float(springs(machine).natural_frequency) / (1.0 + detuning), 1)
+
+
+def _angles(made: PlainBowl) -> tuple[float, ...]:
+    """Vibration angles at the track [rad], or the one that the user's drive or springs make."""
+    bowl = made.bowl
+    if "drive.vibration_angle" in made.given:
+        return (bowl.drive.vibration_angle,)
+    if "machine.spring_angle" in made.given:
+        machine = building.machine_on(bowl, made.given)
+        return (float(vibration_angle(machine, bowl.track.radius, bowl.track.climb)),)
+    return TRACK_ANGLES
+
+
+def _two_axis_drives(made: PlainBowl, hops: bool) -> Iterator[Bowl]:
+    """Every drive with two magnets, the simplest first."""
+    plain, given = made.bowl, made.given
+    for throw, row in itertools.product((CALM, *LIVELY) if hops else (CALM,), ELLIPTIC):
+        own = dict(zip(("frequency", "vibration_angle", "phase"), row))
+        kept = {name: getattr(plain.drive, name) for name in own if f"drive.{name}" in given}
+        bowl = replace(plain, drive=replace(plain.drive, **own | kept))
+        yield bowl if made.has_stroke else _thrown(bowl, throw)
+
+
+def _thrown(bowl: Bowl, throw: float) -> Bowl:
+    """The bowl at the amplitude of a throw number, or at the greatest that drives are built for."""
+    amplitude = bowl.drive.amplitude * throw / throw_number(bowl)
+    return with_amplitude(bowl, min(amplitude, greatest_amplitude(bowl)))
+
+
+def _can_build(made: PlainBowl, bowl: Bowl) -> bool:
+    """Whether a machine of usual springs and magnets makes the drive; what the user owns counts as built."""
+    if is_two_axis(bowl.drive) or made.has_stroke or "machine.leaves" in made.given:
+        return True
+    return not drive_sought.lacks(bowl, frozenset(made.given))
+
+
+def _always(made: PlainBowl, bowl: Bowl) -> bool:
+    return True
 
 
 def with_amplitude(bowl: Bowl, amplitude: float) -> Bowl:
@@ -182,9 +308,11 @@ def with_amplitude(bowl: Bowl, amplitude: float) -> Bowl:
 
 
 def _slowed(bowl: Bowl, velocity: float) -> Bowl:
-    """The bowl at the least amplitude that is as fast as that, and no stronger than it was."""
-    low, high = 0.0, bowl.drive.amplitude
-    for _ in range(HALVINGS):
+    """The bowl at the least amplitude that is as fast as that, down to the next lower throw number."""
+    throw, high = float(throw_number(bowl)), bowl.drive.amplitude
+    lower = [one for one in THROW_NUMBERS if one < throw - CALMER_STEP]
+    low = high * max(lower) / throw if lower and not is_two_axis(bowl.drive) else 0.0
+    for _ in range(HALVINGS if low == 0.0 else HALVINGS // 2):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if _fast(with_amplitude(bowl, middle)) >= velocity else (middle, high)
     return with_amplitude(bowl, min(high + STROKE_STEP, bowl.drive.amplitude))

@@ -136,8 +136,9 @@ def _tracks(search):
         banks = _banks(search, aspects)
         for place, bank in enumerate(banks):
             made = calm_drive.section(
-                search.part, aspects, search.plain, search.given, diameter=search.request.diameter, bank=bank
-            )
+                search.part, aspects, search.plain, search.given, diameter=search.request.diameter, bank=bank,
+                drive=search.request.drive,
+            )  # fmt: skip
             start = replace(calm_drive.driven(made, 0.0), devices=search.plain.devices)
             if search.known is None:
                 search.known = arriving(search, start)
@@ -263,7 +264,7 @@ def _proposed(search, track, row, way):
 
 def _at(search, track, row, way, gain):
     """The chain for a drive that a share [1] asks for."""
-    bowl = calm_drive.driven(track.made, asked(search, track.ways, track.weights, gain), hops=True)
+    bowl = calm_drive.driven(track.made, asked(search, track.ways, track.weights, gain))
     bowl = replace(bowl, devices=search.plain.devices)
     return proposals.proposed(search.part, bowl, search.known.aspects, row, track.ways, search.request, way)
 
@@ -481,7 +482,7 @@ def _at_velocity(search, made, proposal, ways, weights, gain):
     apart = 0.0
     for _ in range(2):
         velocity = max(asked(search, ways, weights, gain, apart), search.least)
-        bowl = calm_drive.driven(made, velocity, hops=True)
+        bowl = calm_drive.driven(made, velocity, hops=not proposal.devices)
         apart = spacing.needed(proposal.devices, ways.lying, bowl)
         if not apart > 0.0:
             break

@@ -219,7 +219,7 @@ def again(study, cuts, request, given, *, told, before):
     same = proposals.alike(ways.lying, study.turn, request.up)
     free = proposals.free_headings(ways.lying, study.turn, request)
     proposal = proposals.Proposal(study.turn, tuple(cuts), study.before, "the values of all", same, free)
-    made = calm_drive.PlainBowl(bare, frozenset(given), None)
+    made = calm_drive.PlainBowl(bare, frozenset(given), None, request.drive)
     candidate = exploring.attempted(search, made, proposal, weights)
     if not candidate.attempt.clean:
         return None

@@ -202,7 +202,7 @@ def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
         search.least = FASTER * calm_drive.speed(candidate.bowl)
     else:
         return
-    made = calm_drive.PlainBowl(replace(candidate.bowl, devices=()), search.given, None)
+    made = calm_drive.PlainBowl(replace(candidate.bowl, devices=()), search.given, None, search.request.drive)
     other = exploring.attempted(search, made, candidate.proposal, candidate.weights)
     search.least = 0.0
     if other.bowl.drive != candidate.bowl.drive and other.attempt.clean:

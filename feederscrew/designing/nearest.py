@@ -285,7 +285,7 @@ def _tried_at(search: Search, candidate: Candidate, bowl: Bowl) -> bool:
 
 
 def _made(search: Search, candidate: Candidate) -> calm_drive.PlainBowl:
-    return calm_drive.PlainBowl(replace(candidate.bowl, devices=()), search.given, None)
+    return calm_drive.PlainBowl(replace(candidate.bowl, devices=()), search.given, None, search.request.drive)
 
 
 def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:

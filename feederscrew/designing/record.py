@@ -9,9 +9,11 @@ import numpy as np
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import DRAWS_HELD, FALLS_SHORT, HOLDS, PURE, RATE_KEPT
+from feederscrew.designing.calm_drive import DRIVES, LEAF_SPRING
 from feederscrew.designing.hazards.risks import Risk
 from feederscrew.dropping.ensemble import wilson
-from feederscrew.machine.feasibility import DriveMismatch
+from feederscrew.errors import ArgumentError
+from feederscrew.machine.feasibility import DriveMismatch, is_two_axis
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.records import Shown
@@ -43,6 +45,7 @@ class DesignRequest:
     without: tuple[str, ...] = ()  # kinds of device that shall not be used
     diameter: tuple[float, float] | None = None  # [m] least and greatest
     rule: str = "recommended"
+    drive: str = LEAF_SPRING  # kind of drive, of DRIVES
     tolerance: float = 1e-4  # [m] of the part's size, to either side
     budget: int = 16  # short trials
     draws: int = 20
@@ -58,6 +61,8 @@ class DesignRequest:
     def __post_init__(self) -> None:
         check.of_an_aspect(self.aspect, self.heading)
         require_rule(self.rule)
+        if self.drive not in DRIVES:
+            raise ArgumentError("drive", f"is {self.drive!r}", f"give {' or '.join(DRIVES)}")
         for name in ("up", "without"):  # names may come as a text
             object.__setattr__(self, name, listed(getattr(self, name)))
 
@@ -227,7 +232,18 @@ class DesignStudy(Shown):
         allowances = {"margin": MARGIN, "tolerance": self.request.tolerance}
         width = None if self.bowl is None else self.bowl.track.width
         remarks = small_part_remarks(self.part, allowances, width)
-        return (*self.part.warnings, *remarks, *self.machine_warnings)
+        return (*self.part.warnings, *remarks, *self._other_drive, *self.machine_warnings)
+
+    @property
+    def _other_drive(self) -> tuple[str, ...]:
+        """That the user's drive is kept, though another kind was asked for."""
+        if self.bowl is None or self.request.drive != LEAF_SPRING or not is_two_axis(self.bowl.drive):
+            return ()
+        phase = np.degrees(self.bowl.drive.phase)
+        return (
+            f"drive.phase: {phase:.4g} deg is kept as given, which needs two magnets - set it to 0 deg for a "
+            "leaf-spring drive",
+        )
 
     @property
     def slowest(self) -> FilledQueue | None:

@@ -1,5 +1,6 @@
 """A drive unit for a bowl of a given size, where the user has none: masses from sheet, springs by rule."""
 
+from collections.abc import Collection
 from dataclasses import replace
 from typing import Any
 
@@ -50,6 +51,39 @@ def machine_for(bowl: Bowl, size: Size, given: Any, *, exact: bool = False) -> M
     if "spring_angle" in given:
         return made
     return replace(made, spring_angle=_spring_angle(upright, radius, made, rules))
+
+
+def machine_on(bowl: Bowl, given: Collection[str], *, exact: bool = False) -> Machine:
+    """Return the machine under a bowl of which only the track is known.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its depth is that of ``sizing``, over the bowl's diameter.
+    given : collection of str
+        Names of the keys that the user gave, 'machine.bowl_mass'.
+    exact : bool
+        As for ``machine_for``.
+
+    Returns
+    -------
+    Machine
+    """
+    track, depth = bowl.track, 2.0 * bowl.sizing.depth * bowl.track.radius
+    pitch = 2.0 * np.pi * track.radius * np.tan(track.climb)
+    size = Size(
+        diameter=2.0 * track.radius,
+        least={},
+        track_width=track.width,
+        clearance=0.0,
+        bend=0.0,
+        climb=track.climb,
+        depth=depth,
+        turns=depth / pitch if pitch > 0.0 else np.nan,
+        pitch=pitch,
+    )
+    words = {name.partition(".")[2] for name in given if name.startswith("machine.")}
+    return machine_for(bowl, size, words, exact=exact)
 
 
 def _bowl(radius: float, size: Size, rules: Sizing) -> Any:

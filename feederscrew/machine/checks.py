@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import units
+from feederscrew.conveying import hop
 from feederscrew.errors import FeederError
 from feederscrew.machine import speeds
 from feederscrew.machine.stroke import greatest_amplitude
@@ -98,13 +99,12 @@ def _banks(sheet: Any) -> Iterator[FeederError]:
 
 
 def _throw(sheet: Any) -> Iterator[FeederError]:
-    """Tooling that cuts the track tells parts apart by how they lie: not those that fly over it."""
+    """Devices that a part meets on the track, where it hops higher than their margin."""
     over = [one.name for one in sheet.bowl.devices if one.placed and not one.overhead]
-    throw = sheet.answer.throw_number
-    if over and throw > 1.0:
+    for said in hop.remark(sheet.bowl) if over else ():
         names = units.listed(list(dict.fromkeys(over)))
-        what = f"the throw number {throw:.3g} is above 1, so parts hop over the {names}"
-        mend = "take a smaller stroke or a flatter angle: that tooling sorts parts by how they lie"
+        what = f"at the throw number {sheet.answer.throw_number:.3g} {said}"
+        mend = f"try the {names} with feeder trial, or take twice the frequency"
         yield FeederError("drive.amplitude", what, mend)
 
 

@@ -1,7 +1,8 @@
 """The drive and the leaves of a bowl that bring a rate from the full bowl to the empty one."""
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -9,10 +10,14 @@ from feederscrew.bowl.direction import vibration_angle
 from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import BY_NAME
 from feederscrew.bowl.settings import Setting, default
-from feederscrew.machine import building, filling, sizing, throughput, tuning
+from feederscrew.machine import building, feasibility, filling, sizing, throughput, tuning
+from feederscrew.machine.springs import gain, leaf_stress, springs, upright_pull
 from feederscrew.machine.stroke import stroke
 
 FULL_WAVE = 2.0
+MPA = 1e6  # [Pa]
+# amplitude of the pull of all magnets: B^2 / (4 mu_0) at 1 T on six poles of 40 x 40 mm (assumption)
+GREATEST_PULL_N = 1900.0
 EVEN = 1e-9  # [1] flows closer than this are equal
 ROUNDS = 4  # of strokes and leaves that follow from each other
 ALONE, CONTROLLED = "strokes", "controlled"  # fields of an Emptying
@@ -131,32 +136,114 @@ def on_leaves(bowl: Bowl, given: Collection[str]) -> Machine:
     Returns
     -------
     Machine
-        With leaves of its own length, or else of the nearest length of which some set lasts. Where none
+        With the leaves that last and that a maker would take first: at most ``tuning.USUAL_A_BANK`` in a
+        bank, tuned to the upper half of the range, because parts in the bowl lower the natural frequency.
+        Of these, the ones of the width in use, of about the length in use, and of a usual number. Where none
         lasts, with those of least stress; as it is where no set tunes it.
     """
-    rules, machine, least = bowl.sizing, bowl.machine, None
-    at_springs = stroke(bowl).springs
-    near = sorted(tuning.LENGTHS, key=lambda one: abs(np.log(one / machine.leaf_length)))
-    for length in (machine.leaf_length,) if "leaf_length" in given else (machine.leaf_length, *near):
-        long = replace(machine, leaf_length=length)
-        sets = tuning.sets(long, bowl.drive.frequency, at_springs, rules)
-        if "leaf_thickness" in given:
-            sets = tuple(one for one in sets if one.thickness == machine.leaf_thickness)
-        lasting = tuning.chosen(sets, rules)
-        if lasting is not None:
-            return replace(long, leaves=float(lasting.leaves), leaf_thickness=lasting.thickness)
-        for one in sets:
-            if least is None or one.stress < least[1].stress:
-                least = long, one
-    if least is None:
+    machine, rules = bowl.machine, bowl.sizing
+    rows: list[tuple[Machine, tuning.LeafSet]] = []
+    for width in (machine.leaf_width,) if "leaf_width" in given else (machine.leaf_width, *tuning.WIDTHS):
+        rows += _leaf_sets(bowl, width, given)
+        lasting = [row for row in rows if row[1].stress <= rules.fatigue_stress]
+        best = min(lasting, key=partial(_unusual, bowl), default=None)
+        if best is not None and not any(_unusual(bowl, best)[:2]):
+            break
+    if not rows:
         return machine
-    return replace(least[0], leaves=float(least[1].leaves), leaf_thickness=least[1].thickness)
+    long, leaves = best or min(rows, key=_stress)
+    return replace(long, leaves=float(leaves.leaves), leaf_thickness=leaves.thickness)
+
+
+def _leaf_sets(bowl: Bowl, width: float, given: Collection[str]) -> Iterator[tuple[Machine, tuning.LeafSet]]:
+    """Every set of leaves of a width [m] that tunes a bowl, each with the machine that has its length."""
+    machine, at_springs = replace(bowl.machine, leaf_width=width), stroke(bowl).springs
+    for length in (
+        (machine.leaf_length,) if "leaf_length" in given else (machine.leaf_length, *tuning.LENGTHS)
+    ):
+        long = replace(machine, leaf_length=length)
+        for one in tuning.sets(long, bowl.drive.frequency, at_springs, bowl.sizing):
+            if _fits(one, machine, given):
+                yield long, one
+
+
+def _fits(leaves: tuning.LeafSet, machine: Machine, given: Collection[str]) -> bool:
+    """Whether a set has the thickness that the user gave, where it was given."""
+    return "leaf_thickness" not in given or leaves.thickness == machine.leaf_thickness
+
+
+def _stress(row: tuple[Machine, tuning.LeafSet]) -> float:
+    return row[1].stress
+
+
+def _unusual(bowl: Bowl, row: tuple[Machine, tuning.LeafSet]) -> tuple[bool, bool, bool, float, float]:
+    """How unusual leaves are: many in a bank, tuned low, of another width, length, number."""
+    rules, (long, leaves) = bowl.sizing, row
+    middle = 0.5 * (rules.least_detuning + rules.greatest_detuning)
+    return (
+        leaves.leaves > tuning.USUAL_A_BANK * rules.banks,
+        leaves.detuning < middle,
+        long.leaf_width != bowl.machine.leaf_width,
+        round(abs(float(np.log(long.leaf_length / bowl.machine.leaf_length))), 6),
+        abs(leaves.leaves - rules.leaves),
+    )
+
+
+@lru_cache(maxsize=4096)
+def lacks(bowl: Bowl, given: frozenset[str]) -> str:
+    """Return why the machine under a bowl does not make its drive; '' where it does.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        With its drive, a leaf-spring drive.
+    given : frozenset of str
+        Names of the keys that the user gave, 'machine.leaves': these stay.
+
+    Returns
+    -------
+    str
+        Of a machine that is sized from the track alone: the angle of the springs, the tuning of the leaves,
+        their stress, or the pull of the magnets.
+    """
+    under = building.machine_on(bowl, given, exact=True)
+    made = replace(bowl, machine=under)
+    other = feasibility.can_make(made)
+    if other is not None:
+        return other.text
+    if "machine.leaves" not in given:
+        words = {name.partition(".")[2] for name in given if name.startswith("machine.")}
+        under = on_leaves(made, words)
+    return leaves_lack(replace(made, machine=under))
+
+
+def leaves_lack(bowl: Bowl) -> str:
+    """Return what keeps the leaves and the magnets of a machine from making its drive; '' for nothing.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        With its machine.
+    """
+    rules, machine, moved = bowl.sizing, bowl.machine, stroke(bowl)
+    natural = springs(machine).natural_frequency
+    detuning = natural / moved.frequency - 1.0
+    if not rules.least_detuning <= detuning <= rules.greatest_detuning:
+        return f"its leaves tune it to {natural:.4g} Hz, {100.0 * detuning:.2g} % above the drive"
+    stress = leaf_stress(machine, moved.springs)
+    if stress > rules.fatigue_stress:
+        return f"its leaves bend to {stress / MPA:.4g} MPa"
+    kept = gain(moved.frequency, natural, machine.damping)
+    pull = upright_pull(springs(machine).stiffness * moved.springs / kept, machine)
+    if pull > GREATEST_PULL_N:
+        return f"its magnets have to pull with {pull:.4g} N"
+    return ""
 
 
 def _frequencies(bowl: Bowl, settings: Iterable[Setting]) -> tuple[float, ...]:
     """The drive's frequency as given; else that of the size, then the other wave of the mains."""
     if "frequency" in given(settings, "drive") or "supply" in given(settings, "machine"):
         return (bowl.drive.frequency,)
-    mains = bowl.machine.supply / FULL_WAVE
+    mains = bowl.sizing.mains_frequency
     large = 2.0 * bowl.track.radius > bowl.sizing.half_wave_diameter
     return (mains, FULL_WAVE * mains) if large else (FULL_WAVE * mains, mains)

@@ -1,6 +1,5 @@
 """Sets of leaf springs: what one leaf more or less does, and which sets tune a bowl to its drive."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from feederscrew.bowl.record import Machine, Sizing
@@ -13,10 +12,12 @@ from feederscrew.machine.springs import (
     twist,
 )
 
-THICKNESSES = (1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 5e-3, 6e-3)  # [m] that makers stock
+THICKNESSES = (1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3)  # [m] that makers stock
+WIDTHS = (30e-3, 40e-3, 50e-3, 60e-3)  # [m] the same
 LENGTHS = tuple(1e-3 * n for n in range(60, 270, 10))  # [m] free, where it may be chosen
 THICKER = 0.5e-3  # [m] step of the same
-MOST = 60  # leaves of one set
+USUAL_A_BANK = 4  # leaves of one bank that makers stack; more only where nothing else does
+MOST_A_BANK = 6  # leaves of one bank
 
 
 @dataclass(frozen=True)
@@ -120,33 +121,12 @@ def sets(machine: Machine, frequency: float, amplitude: float, rules: Sizing) ->
     Returns
     -------
     tuple of LeafSet
-        Thin leaves first; empty where no whole number of leaves does.
+        Thin leaves first; at most ``MOST_A_BANK`` in each bank. Empty where no whole number of leaves does.
     """
     stocked, mass = sorted({*THICKNESSES, machine.leaf_thickness}), effective_mass(machine)
     found = (
         leaf_set(machine, frequency, amplitude, leaves=n, thickness=t, mass=mass)
         for t in stocked
-        for n in range(int(rules.banks), MOST + 1, int(rules.banks))
+        for n in range(int(rules.banks), MOST_A_BANK * int(rules.banks) + 1, int(rules.banks))
     )
     return tuple(one for one in found if rules.least_detuning <= one.detuning <= rules.greatest_detuning)
-
-
-def chosen(found: Sequence[LeafSet], rules: Sizing) -> LeafSet | None:
-    """Return the set to build in: within its fatigue stress, with room for the fill, of a usual number.
-
-    Parameters
-    ----------
-    found : sequence of LeafSet
-        From ``sets``.
-    rules : Sizing
-
-    Returns
-    -------
-    LeafSet or None
-        In the upper half of the range where one is, because parts in the bowl only lower its natural
-        frequency; of these the one with about the usual number of leaves. None where none holds.
-    """
-    lasting = [one for one in found if one.stress <= rules.fatigue_stress]
-    middle = 0.5 * (rules.least_detuning + rules.greatest_detuning)
-    high = [one for one in lasting if one.detuning >= middle]
-    return min(high or lasting, key=lambda one: abs(one.leaves - rules.leaves), default=None)

@@ -10,6 +10,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.bowl.devices import strangers
 from feederscrew.bowl.record import Bowl
+from feederscrew.conveying import hop
 from feederscrew.conveying.answer import conveying
 from feederscrew.machine import speeds
 from feederscrew.part.facets import refuse_many_facets
@@ -204,6 +205,7 @@ class RateStudy(Shown):
             *self.of_size,
             *other,
             *odd,
+            *(hop.remark(self.bowl) if self.devices else ()),
         )
 
 

@@ -30,6 +30,7 @@ class Tuned(Shown):
     velocity: well_oriented.Range  # [m/s] over all starts and surfaces; >= 0
     over: tuple[str, ...]  # orientations that this drive turns over on the track
     several: bool  # steady velocities, depending on how the part arrives
+    driven: Bowl  # at this setting
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,4 +171,5 @@ def _tuned(solution: knobs.Solution, bowl: Bowl, ways: _DriveWays) -> Tuned:
         velocity=well_oriented.velocity(driven),
         over=tuple(one.name for one in ways.along(driven).lying if one.turns_over),
         several=bool(found.high - found.low > answer.COEXIST * found.speed),
+        driven=driven,
     )

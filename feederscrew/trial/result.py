@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.conveying import sensitivity
+from feederscrew.conveying import hop, sensitivity
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.rates import stream
 from feederscrew.rates.steadiness import gone, steady
@@ -18,10 +18,7 @@ from feederscrew.trial.queue import QueuedParts
 
 CLEAR = 2.5e-4  # [m] margin from which a static verdict should hold
 HELD = 0.95  # [1] of the trials in which it should
-HOPS = (
-    "throw number {:.3g}: parts hop over the tooling - the static verdicts stand below 1, at an amplitude "
-    "of {:.3g} mm"
-)
+HOPS = "throw number {:.3g}: {}"
 BOUNCES = (
     "restitution of single impacts spreads from {:.3g} to {:.3g}: a point would travel at {:.4g} to {:.4g} "
     "mm/s - velocities and rates here are of the value between"
@@ -227,9 +224,9 @@ class TrialRun:
     @property
     def remarks(self):
         """Say what a user must not overlook, a sentence each."""
-        drive = self.bowl.drive
         if self.throw_number > 1.0:
-            yield HOPS.format(self.throw_number, 1e3 * drive.amplitude / self.throw_number)
+            for said in hop.remark(self.bowl):
+                yield HOPS.format(self.throw_number, said)
             low, high = sensitivity.rebounds(self.bowl)
             yield BOUNCES.format(low, high, 1e3 * self.rebound.less, 1e3 * self.rebound.more)
         for k in np.flatnonzero(self.odd):

@@ -68,6 +68,11 @@ def test_a_design_says_which_machine_it_asks_for(sensing):
     peak = 0.42e-3 * (100.0 * np.pi) ** 2 * np.sin(np.radians(25.0))
     assert told["throw_number"] == pytest.approx(peak / (9.80665 * np.cos(np.radians(3.7))), rel=1e-3)
     assert told["velocity_mm_s"] > 0.0
+    # 1.77 g / w^2 at the throw number 1.8
+    assert told["hop_height_mm"] == pytest.approx(1.77 * 9.80665e3 / (100.0 * np.pi) ** 2, rel=0.03)
+    assert (told["vibration_angle_at_the_springs_deg"], told["hop_flight_mm"] > 1.0) == (None, True)
+    drawn = tables.machine(study(bowl=sensing, machine_drawn=True))
+    assert "30 deg at the springs, 25 deg to the track" in tables.machine_text(drawn)
     plain = tables.document(study())["machine"]
     assert (plain["cameras"], plain["valves"], plain["air"]) == (0, 0, False)
     phased = replace(sensing, drive=replace(sensing.drive, phase=-1.0))
@@ -78,11 +83,13 @@ def test_a_design_says_which_machine_it_asks_for(sensing):
 
 def test_the_machine_is_in_the_first_lines_of_text_and_page(sensing):
     one = study(bowl=sensing)
-    first = list(tables.summary(one)["quantity"][:7])
+    first = list(tables.summary(one)["quantity"][:9])
     assert first == [
-        "status", "drive", "frequency [Hz]", "stroke, peak to peak [mm]", "throw number", "velocity [mm/s]",
-        "cameras, valves, air",
+        "status", "drive", "frequency [Hz]", "stroke, peak to peak [mm]", "vibration angle", "throw number",
+        "a part hops", "velocity [mm/s]", "cameras, valves, air",
     ]  # fmt: skip
+    calm = replace(sensing, drive=replace(sensing.drive, amplitude=0.21e-3))
+    assert "a part hops" not in list(tables.summary(study(bowl=calm))["quantity"])
     page = design_page.page(one).partition("<table")[0].lower()
     assert all(word in page for word in ("leaf spring", "throw number", "stroke", "1 camera", "1 valve"))
 

@@ -254,7 +254,8 @@ def test_what_draws_lose_at_a_device_is_tried_again_at_a_faster_drive(monkeypatc
 
     monkeypatch.setattr(loop, "proved", proved)
     monkeypatch.setattr(loop.exploring, "attempted", attempted)
-    search, proofs = SimpleNamespace(least=0.0, given=frozenset()), []
+    request = DesignRequest(1.0)
+    search, proofs = SimpleNamespace(least=0.0, given=frozenset(), request=request), []
     loop._prove(search, first, proofs)
     assert [one.robust.held for one, _ in proofs] == [16, 19] and search.least == 0.0
     assert asked == [((), "rails", pytest.approx(loop.FASTER * speed))]

@@ -10,7 +10,7 @@ from two_masses import amplitude, driven
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.direction import direction, vibration_angle
-from feederscrew.machine import filling, stroke, tuning
+from feederscrew.machine import building, drive_sought, filling, stroke, tuning
 from feederscrew.machine.springs import (
     gain,
     held_fast,
@@ -159,7 +159,11 @@ def test_the_sets_that_tune():
     assert all(0.03 <= one.detuning <= 0.08 for one in found)
     assert (2.5e-3, 9) in {(one.thickness, one.leaves) for one in found}
     assert {one.leaves % 3 for one in found} == {0}
-    fours = tuning.sets(MACHINE, 100.0, 1e-4, replace(BOWL.sizing, banks=4.0))
+    assert max(one.leaves for one in found) <= 3 * tuning.MOST_A_BANK
+    assert {one.thickness for one in found} <= {*tuning.THICKNESSES, MACHINE.leaf_thickness}
+    rules = replace(BOWL.sizing, banks=4.0)
+    longer = [replace(MACHINE, leaf_length=length) for length in tuning.LENGTHS]
+    fours = [one for machine in longer for one in tuning.sets(machine, 100.0, 1e-4, rules)]
     assert fours and {one.leaves % 4 for one in fours} == {0}
     rows = tuning.changes(MACHINE, 100.0, 1e-4, 3)
     assert [(one.name, one.leaves) for one in rows] == [
@@ -190,9 +194,38 @@ def test_the_mean_of_a_magnets_pull_is_that_of_its_flux_squared(frequency, mean)
     assert mean_pull(1.0, frequency) == mean
 
 
-def test_a_weak_set_is_not_chosen():
-    rules = replace(BOWL.sizing, fatigue_stress=1.0)
-    assert tuning.chosen(tuning.sets(MACHINE, 100.0, 1e-4, rules), rules) is None
+@pytest.mark.parametrize("frequency", [50.0, 60.0, 100.0, 120.0])
+@pytest.mark.parametrize("radius", [0.1, 0.15, 0.25])
+@pytest.mark.parametrize("degrees", [15.0, 20.0, 30.0])
+def test_leaves_are_as_makers_stock_them(radius, frequency, degrees):
+    """At most four in a bank, 1 to 4 mm thick, tuned 5.5 to 8 % above the drive, and they last."""
+    track = replace(BOWL.track, radius=radius, climb=np.radians(3.0))
+    omega = 2.0 * np.pi * frequency
+    amplitude = 2.3 * BOWL.gravity / (omega**2 * np.sin(np.radians(degrees)))  # at a throw number of 2.3
+    drive = replace(BOWL.drive, frequency=frequency, amplitude=amplitude, vibration_angle=np.radians(degrees))
+    bowl = replace(BOWL, track=track, drive=drive)
+    bowl = replace(bowl, machine=building.machine_on(bowl, (), exact=True))
+    made = drive_sought.on_leaves(bowl, ())
+    natural = springs(made).natural_frequency
+    assert 1.055 <= natural / frequency <= 1.08
+    assert made.leaves % 3 == 0 and made.leaves <= 12
+    assert 1e-3 <= made.leaf_thickness <= 4e-3 and 60e-3 <= made.leaf_length <= 260e-3
+    bowl = replace(bowl, machine=made)
+    assert leaf_stress(made, stroke.stroke(bowl).springs) <= BOWL.sizing.fatigue_stress
+    assert drive_sought.lacks(bowl, frozenset()) == "" == drive_sought.leaves_lack(bowl)
+
+
+def test_a_drive_that_no_machine_makes_says_why():
+    bowl = replace(BOWL, track=replace(BOWL.track, radius=0.15, climb=np.radians(3.0)))
+    assert drive_sought.lacks(bowl, frozenset()) == ""
+    weak = replace(bowl, sizing=replace(bowl.sizing, fatigue_stress=1.0))
+    assert "bend to" in drive_sought.lacks(weak, frozenset())
+    steep = replace(bowl, drive=replace(bowl.drive, vibration_angle=np.radians(50.0)))
+    assert "at the track" in drive_sought.lacks(steep, frozenset())
+    known = replace(bowl, machine=replace(bowl.machine, leaves=30.0))
+    assert "% above the drive" in drive_sought.lacks(known, frozenset({"machine.leaves"}))
+    heavy = replace(bowl, track=replace(bowl.track, radius=0.4), machine=replace(bowl.machine, damping=0.5))
+    assert "have to pull" in drive_sought.lacks(heavy, frozenset())
 
 
 def test_the_stroke_as_a_bowl_empties():

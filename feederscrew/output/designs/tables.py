@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew import units
 from feederscrew.conveying.answer import answer, throw_number
+from feederscrew.conveying.hop import hop
 from feederscrew.designing import record
 from feederscrew.machine.feasibility import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import columns, tables
@@ -146,14 +147,21 @@ def machine(study):
         return None
     drive, two_axis = study.bowl.drive, is_two_axis(study.bowl.drive)
     velocity = answer(study.bowl).velocity
-    seen = [one for one in study.devices if one.senses]
+    seen, leap = [one for one in study.devices if one.senses], hop(study.bowl)
     return {
         "drive": TWO_AXIS if two_axis else LEAF_SPRING,
         "drive_needs": TWO_MAGNETS if two_axis else ONE_SET if study.drive_mismatch is None else OTHER_SET,
         "phase_deg": drive.phase / DEG,
         "frequency_hz": drive.frequency,
         "stroke_peak_to_peak_mm": 2.0 * drive.amplitude / MM,
+        "vibration_angle_at_the_track_deg": drive.vibration_angle / DEG,
+        "vibration_angle_at_the_springs_deg": (
+            study.bowl.machine.spring_angle / DEG if study.machine_drawn else None
+        ),
         "throw_number": float(throw_number(study.bowl)),
+        "hop_height_mm": leap.height / MM,
+        "hop_flight_mm": leap.flight / MM,
+        "hop": leap.text,
         "velocity_mm_s": float(velocity) / MM_S if np.isfinite(velocity) else None,
         "cameras": len(seen),
         "cameras_see": [one.sees for one in seen],
@@ -166,9 +174,24 @@ def machine_text(told):
     """Return the dict of ``machine`` as one sentence."""
     travels = "" if told["velocity_mm_s"] is None else f", {told['velocity_mm_s']:.3g} mm/s"
     return (
-        f"{_drive_kind(told)}; {told['frequency_hz']:.4g} Hz, stroke {told['stroke_peak_to_peak_mm']:.3g} mm "
-        f"peak to peak, throw number {told['throw_number']:.3g}{travels}; {_served_by(told)}"
+        f"{_drive_kind(told)}; {told['frequency_hz']:.4g} Hz, {_angles(told)}, stroke "
+        f"{told['stroke_peak_to_peak_mm']:.3g} mm peak to peak, throw number {told['throw_number']:.3g}"
+        f"{travels}{_hops(told)}; {_served_by(told)}"
     )
+
+
+def _angles(told):
+    """The direction of the vibration at the springs, where they are drawn, and at the track."""
+    at_springs, at_track = (told[f"vibration_angle_at_the_{place}_deg"] for place in ("springs", "track"))
+    drawn = (
+        "" if at_springs is None or told["drive"] == TWO_AXIS else f"{at_springs:.3g} deg at the springs, "
+    )
+    return f"{drawn}{at_track:.3g} deg to the track"
+
+
+def _hops(told):
+    """How a part hops, in words; '' where it does not."""
+    return f", parts hop {told['hop']}" if told["hop_height_mm"] > 0.0 else ""
 
 
 def _drive_kind(told):
@@ -193,7 +216,10 @@ def _machine(told):
     yield "drive", _drive_kind(told)
     yield "frequency [Hz]", f"{told['frequency_hz']:.4g}"
     yield "stroke, peak to peak [mm]", f"{told['stroke_peak_to_peak_mm']:.4g}"
+    yield "vibration angle", _angles(told)
     yield "throw number", f"{told['throw_number']:.4g}"
+    if told["hop_height_mm"] > 0.0:
+        yield "a part hops", told["hop"]
     if told["velocity_mm_s"] is not None:
         yield "velocity [mm/s]", f"{told['velocity_mm_s']:.4g}"
     yield "cameras, valves, air", _served_by(told)

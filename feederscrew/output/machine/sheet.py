@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from feederscrew import units
+from feederscrew.conveying.hop import hop
 from feederscrew.machine import feasibility
 from feederscrew.machine.springs import MAINS, mean_pull
 from feederscrew.output.motion_words import regime_words
@@ -204,6 +205,8 @@ def _readings(study):
     yield "accelerometer [m/s2]", f"{moved.acceleration:.3g} peak; {parts}"
     ratio = moved.acceleration / study.bowl.gravity
     yield "G, throw number", f"{ratio:.3g}, {study.answer.throw_number:.3g}"
+    if study.answer.throw_number > 1.0:
+        yield "a part hops", hop(study.bowl).text
 
 
 def _travel(study):

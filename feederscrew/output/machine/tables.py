@@ -3,6 +3,7 @@
 import numpy as np
 
 from feederscrew import units
+from feederscrew.conveying.hop import hop
 from feederscrew.machine import feasibility
 from feederscrew.machine.springs import mean_pull
 from feederscrew.output import tables
@@ -178,6 +179,8 @@ def _stroke(study):
         },
         "acceleration_ratio": moved.acceleration / bowl.gravity,
         "throw_number": found.throw_number,
+        "hop_height_mm": hop(bowl).height / MM,
+        "hop_flight_mm": hop(bowl).flight / MM,
         "vibration_angle_deg": bowl.drive.vibration_angle / DEG,
         "vibration_angle_at_the_track_deg": bowl.drive.vibration_angle / DEG,
         "vibration_angle_at_the_springs_deg": bowl.machine.spring_angle / DEG,

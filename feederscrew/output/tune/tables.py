@@ -3,10 +3,12 @@
 import math
 
 from feederscrew import units
+from feederscrew.conveying.hop import hop
 from feederscrew.output import columns, tables
 from feederscrew.output.motion_words import regime_words
 from feederscrew.rates.drive_settings import WITHIN
 
+MM = 1e-3  # [m]
 PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity")
 SEVERAL = ", several"  # velocities, depending on how the part arrives
 MET = {False: "at this friction", True: "at the worst friction"}
@@ -83,6 +85,7 @@ def _between(row):
 def _row(one, per_minute):
     """Return one Tuned setting by column; ``per_minute`` are parts/min for each m/s of velocity."""
     found, key = one.solution.answer, one.solution.key
+    leap = hop(one.driven)
     return {
         "key": key.name,
         "value": one.solution.shown,
@@ -93,6 +96,8 @@ def _row(one, per_minute):
         "velocity_mm_s": found.velocity / MM_S,
         "regime": found.regime,
         "throw_number": found.throw_number,
+        "hop_height_mm": leap.height / MM,
+        "hop_flight_mm": leap.flight / MM,
         "hardest_impact_mm_s": found.hardest_impact / MM_S,
         "margin_forward": found.margins["forward"],
         "margin_backward": found.margins["backward"],

@@ -130,3 +130,15 @@ def test_init_and_schema_can_be_quiet_and_escape_what_a_name_holds(run, command)
     assert run("config", command, "red\x1b[31m.yaml").stderr.splitlines()[0] == "Wrote red\\x1b[31m.yaml"
     done = run("config", command, "-q", "--force", "quiet.yaml")
     assert (done.exit_code, done.stdout, done.stderr) == (0, "", "") and Path("quiet.yaml").exists()
+
+
+def test_a_drive_unit_instead_of_all_defaults(run, tmp_path):
+    listed = run("config", "init", "--machine", "list")
+    assert listed.exit_code == 0 and len(listed.output.splitlines()) >= 6
+    path = tmp_path / "machine.yaml"
+    assert run("config", "init", str(path), "--machine", "d300-60hz").exit_code == 0
+    shown = json.loads(run("config", "show", "--config", str(path), "--format", "json").stdout)
+    values = {row["key"]: row["value"] for row in shown["settings"]}
+    assert values["machine.supply"] == "60 Hz half wave" and values["drive.frequency"] == "60 Hz"
+    refused = run("config", "init", "--machine", "d301")
+    assert refused.exit_code == 2 and "--machine 'd301': is not known" in refused.stderr

@@ -1,0 +1,125 @@
+"""How high a part hops over the track in a period of the drive, and how far it flies."""
+
+import functools
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew.bowl.record import Bowl
+from feederscrew.conveying.answer import STILL, settings
+from feederscrew.conveying.harmonic import after, gain, onward, travel
+from feederscrew.conveying.law import Law, law, throw_number
+from feederscrew.conveying.point_motion import TALLY, TRAVEL, State, at_rest, step
+from feederscrew.conveying.setting import FLIGHT, TURN, OperatingPoint
+from feederscrew.conveying.settling import settle
+
+FOLLOWED = 32  # periods of a motion that does not repeat
+MARGIN_M = 2.5e-4  # that a static verdict has where it counts as sure
+HALVINGS = 60  # of the span in which a part is highest
+
+
+@dataclass(frozen=True)
+class Hop:
+    """The motion of a part between two contacts with the track; all 0 where it never leaves the track."""
+
+    height: float  # [m] greatest gap between part and track, along the normal of the track
+    flight: float  # [m] longest way along the track, relative to the track, in one flight
+    duration: float  # [periods] of the longest flight
+
+    @property
+    def text(self) -> str:
+        """Height and length in words."""
+        return f"{1e3 * self.height:.2g} mm high and {1e3 * self.flight:.2g} mm far"
+
+
+STAYS = Hop(0.0, 0.0, 0.0)  # on the track
+
+
+def hop(bowl: Bowl) -> Hop:
+    """Return how high and how far a part hops in the steady motion of a bowl.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        One setting: no field is an array. Its devices and its restitution are not used.
+
+    Returns
+    -------
+    Hop
+        Of a point mass that does not rebound. It is 0 up to the throw number of 1.
+
+    Notes
+    -----
+    At the throw number k the part leaves the track at the angle asin(1 / k) of the drive. From there the gap
+    grows by g (k sin(w t) - 1), integrated twice. Its height in units of g / w^2 and its duration in periods
+    depend on k alone: 1.77 and 0.68 at 1.8, 3.79 and 0.81 at 2.3. So the height falls with the square of the
+    frequency.
+
+    References
+    ----------
+    Sloot and Kruyt, Powder Technology 87, 203-210, 1996: the flight between two plastic impacts, as in
+    ``flights.throw_of_flight``.
+    """
+    setting = OperatingPoint(*settings(replace(bowl, devices=())).tolist())
+    if setting.ratio <= STILL:
+        return STAYS
+    height, flight, duration = _hop(setting._replace(restitution=0.0))
+    amplitude = float(bowl.drive.amplitude)
+    return Hop(height * amplitude, flight * amplitude, duration)
+
+
+def remark(bowl: Bowl) -> tuple[str, ...]:
+    """Say that the drive of a bowl throws parts higher than the margin of a static verdict.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    tuple of str
+        A sentence, or none where the hop is lower than ``MARGIN_M``.
+    """
+    own = hop(bowl)
+    if own.height <= MARGIN_M:
+        return ()
+    return (
+        f"parts hop {own.text}: an edge, rail or blade that a part passes by less, and a hole that is "
+        "shorter, do not hold for sure",
+    )
+
+
+@functools.lru_cache(maxsize=4096)
+def _hop(setting: OperatingPoint) -> tuple[float, float, float]:
+    """Greatest gap [A], longest flight relative to the track [A] and in periods."""
+    rules = law(setting)
+    if throw_number(rules) <= 1.0:
+        return 0.0, 0.0, 0.0
+    state, period = settle(rules, at_rest(rules))
+    tally = np.zeros(TALLY)
+    height = farthest = longest = way = 0.0
+    for _ in range(period + 1 if period > 0 else FOLLOWED):  # one more: a flight may begin in the last one
+        while state.angle < TURN:
+            before = tally[TRAVEL]
+            following = step(rules, state, tally)
+            if state.phase == FLIGHT:
+                span = following.angle - state.angle
+                height = max(height, _greatest_gap(rules, state, span))
+                way = tally[TRAVEL] - before + (way if state.aloft > 0.0 else 0.0)
+                farthest, longest = max(farthest, abs(way)), max(longest, state.aloft + span)
+            state = following
+        state = state._replace(angle=0.0)
+    return height, farthest, longest / TURN
+
+
+def _greatest_gap(rules: Law, state: State, span: float) -> float:
+    """The greatest height [A] of a flight over the plate within a span [rad]."""
+    arc = onward(rules.lift, state.angle)
+    low = min(max(after(rules.lift.falls, state.angle) - state.angle, 0.0), span)  # it rises until there
+    high = span
+    if state.rising + gain(arc, low) <= 0.0:
+        low = 0.0
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if state.rising + gain(arc, middle) > 0.0 else (low, middle)
+    return max(state.height, state.height + state.rising * low + travel(arc, low))
