@@ -1,6 +1,10 @@
 """Short trials of chains: an orientation at its own drive, what the trial denies changed, and again."""
 
-from dataclasses import replace
+import heapq
+import itertools
+import math
+import re
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,10 +14,11 @@ from feederscrew.designing.record import DEVICE, DRIVE, PART, Attempt
 from feederscrew.designing.robust import denied, robust_run
 from feederscrew.designing.searching import Candidate
 from feederscrew.dropping.plate.drive import throw_number
-from feederscrew.rates import arrivals, spacing
+from feederscrew.rates import arrivals, spacing, stream
 from feederscrew.rates.tipping import FLAT
 from feederscrew.studies import solidbowl
 from feederscrew.studies.rate import shares
+from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.hanging import neck
 
 EACH = 2  # parts of each orientation in a short trial
@@ -24,62 +29,206 @@ LEAST_USE = 0.5  # of the best clean rate: an orientation that promises less is 
 SHORT = 5  # short trials where no orientation comes often enough for the target at any calm drive
 SCREENED = 6  # draws before a clean chain is proved
 ROLLS = 0.3  # of the parts that lie on a round side: then the bank is steep
+HOPELESS = 0.3  # [1] purity by the static rule, below which a chain is not tried
+# how promising an idea is beside another one: of its bank, of a turning device, of a hole of several corners,
+# with one device left out, for each device, and with one at which the same orientation was lost
+BANK_RANK, TURNED, HOLED, AGAIN, EACH_DEVICE, LOST_BEFORE = 0.93, 0.6, 0.5, 0.8, 0.98, 0.7
+LEAST_OF_MARGIN = 0.7  # of no margin at all
+OFTENER = 0.25  # power of the share: what comes oftener is tried first, all else alike
+BUDGETS = (0.5, 0.7, 1.0)  # of the trials that are allowed, after which each cost class has had its turn
+NUMBER = re.compile(r"(?<![A-Za-z_])-?[0-9]+(?:\.[0-9]+)?")
+LITTLE, LITTLE_SHARE = 0.1, 0.03  # [mm or deg], [1] of a value: chains that differ by less are alike
+AVOIDED = 2  # times that a device is left out at which what is wanted was lost
+HANGS_BELOW = np.radians(5.0)  # bank above which a part askew comes to rails beside its slot
 SLOWER = 1.2  # a chain that gains so many times what was taken for it is proposed again, at its own drive
 
 
-def candidates(search):
+LYING = proposals.Way(1, proposals.MARGINS[0], "any", ())  # of what a part may do at best
+
+
+@dataclass(frozen=True, eq=False)
+class _Track:
+    """A bank of the track: the bowl without devices, and what comes along it."""
+
+    made: calm_drive.PlainBowl
+    ways: stream.Orientations
+    weights: np.ndarray  # (M,)
+    rows: list[int]  # those worth a try
+    rank: float  # [1] how likely the bank is to do
+
+
+@dataclass(frozen=True, eq=False)
+class _Idea:
+    """An orientation on a track, and a way of proposing a chain for it."""
+
+    track: _Track
+    row: int
+    way: proposals.Way
+    proposal: proposals.Proposal | None = None  # once it was looked for
+    again: int = 0  # times that a device was left out at which it was lost
+
+
+def candidates(search, cost_class=None):
     """Try proposals, and yield each Candidate that is clean and brings the target, within the budget.
 
     Parameters
     ----------
     search : Search
         Its ``passed`` and ``failed`` are filled.
+    cost_class : int, optional
+        Of the chains; all of them, the cheapest first, without it.
     """
-    for bank in _banks(search, _aspects(search)):
-        made = calm_drive.section(
-            search.part,
-            _aspects(search),
-            search.plain,
-            search.given,
-            diameter=search.request.diameter,
-            bank=bank,
-            drive=search.request.drive,
-        )
-        start = replace(calm_drive.driven(made, 0.0), devices=search.plain.devices)
-        if search.known is None:
-            search.known = arriving(search, start)
-        ways, weights = offered(search, start)
-        yield from _searched(search, made, ways, weights)
+    for number in proposals.COST_CLASSES if cost_class is None else (cost_class,):
+        yield from _of_class(search, number)
 
 
-def _searched(search, made, ways, weights):
-    """Candidates on one track: no device at all, then each kind of chain for each orientation."""
-    alone = proposals.bare(ways, weights, search.request, search.plain.devices)
-    if alone is not None:
-        yield from _tried_out(search, made, alone, weights)
-    seen = {one.chain for one in search.attempts[: search.first]}
-    rows = proposals.promising(ways, weights, search.request)[: proposals.ROWS]
-    if not any(_promise(search, made, ways, weights, row) >= search.request.target for row in rows):
-        search.most = search.first + SHORT
-    for how in proposals.HOWS:
-        for row in rows:
-            if search.spent:
-                return
-            if _promise(search, made, ways, weights, row, how[2]) < _least(search):
-                continue
-            avoided = None
-            while avoided != search.avoided.get(row, ()) and not search.spent:
-                avoided = search.avoided.get(row, ())
-                proposal = _proposed(search, made, ways, weights, row, _without(how, avoided))
-                if proposal is not None and proposal.chain not in seen:
-                    seen.add(proposal.chain)
-                    yield from _tried_out(search, made, proposal, weights)
+def _of_class(search, cost_class):
+    """Candidates of a cost class: no device at all, then the most promising chain of all banks, and so on."""
+    if cost_class_of(search.plain.devices) > cost_class:  # the user's own devices are dearer
+        return
+    share = dict(zip(proposals.COST_CLASSES, BUDGETS, strict=True))[cost_class]
+    search.reach = search.first + math.ceil(share * (search.request.budget - search.first))
+    tracks = _tracks(search)
+    if cost_class == max(1, cost_class_of(search.plain.devices)):
+        for track in tracks:
+            alone = proposals.bare(track.ways, track.weights, search.request, search.plain.devices)
+            if alone is not None and not _tried_before(search, track, alone) and not search.spent:
+                yield from _tried_out(search, track.made, alone, track.weights)
+    ways = proposals.ways_of(cost_class, search.request)
+    ideas = [
+        _Idea(track, row, way)
+        for track in tracks for row in track.rows for way in ways if _worth(search, track, row, way)
+    ]  # fmt: skip
+    yield from _best_first(search, ideas)
 
 
-def _without(how, kinds):
-    """The same way of proposing, without kinds of devices at which the wanted orientation was lost."""
-    margin, left_out, outcome = how
-    return margin, (*left_out, *kinds), outcome
+def _best_first(search, ideas):
+    """Candidates of ideas, the most promising first; a chain is looked for where its bound is the highest."""
+    order = itertools.count()  # of equal ones the first
+    heap = [(-_bound(search, idea), next(order), idea) for idea in ideas]
+    heapq.heapify(heap)
+    while heap and not search.spent:
+        _, _, idea = heapq.heappop(heap)
+        if _promise(search, idea.track, idea.row, idea.way) < _least(search):
+            continue
+        if idea.proposal is None:
+            proposal = _proposed(search, idea.track, idea.row, idea.way)
+            if proposal is not None and not _tried_before(search, idea.track, proposal):
+                idea = replace(idea, proposal=proposal)
+                heapq.heappush(heap, (-_score(search, idea), next(order), idea))
+            continue
+        if _tried_before(search, idea.track, idea.proposal) or _lost_before(search, idea):
+            continue
+        if idea.proposal.purity < HOPELESS:
+            continue
+        yield from _tried_out(search, idea.track.made, idea.proposal, idea.track.weights)
+        kinds = search.avoided.get(_place(idea.track, idea.row), ())
+        more = tuple(kind for kind in kinds if kind not in idea.way.without)
+        if more and idea.again < AVOIDED:
+            way = replace(idea.way, without=(*idea.way.without, *more))
+            other = _Idea(idea.track, idea.row, way, again=idea.again + 1)
+            heapq.heappush(heap, (-_bound(search, other), next(order), other))
+
+
+def _tracks(search):
+    """The tracks that are tried, of each bank: once for all cost classes."""
+    if not search.tracks:
+        aspects = _aspects(search)
+        banks = _banks(search, aspects)
+        for place, bank in enumerate(banks):
+            made = calm_drive.section(
+                search.part, aspects, search.plain, search.given, diameter=search.request.diameter, bank=bank,
+                drive=search.request.drive,
+            )  # fmt: skip
+            start = replace(calm_drive.driven(made, 0.0), devices=search.plain.devices)
+            if search.known is None:
+                search.known = arriving(search, start)
+            ways, weights = offered(search, start)
+            rows = proposals.promising(ways, weights, search.request)[: proposals.ROWS]
+            search.tracks.append(_Track(made, ways, weights, rows, BANK_RANK**place))
+        lying = [
+            _promise(search, one, row, LYING) for one in search.tracks for row in one.rows
+        ]  # also of what may hang: infinite
+        turns = any(_share(search, one, row) < proposals.RARE for one in search.tracks for row in one.rows)
+        if not any(rate >= search.request.target for rate in lying) and not turns:
+            search.most = search.first + SHORT
+    return search.tracks
+
+
+def _worth(search, track, row, way):
+    """Whether an idea is one at all: what is not rare needs nothing that turns others into it."""
+    return not way.turns or _share(search, track, row) < proposals.RARE
+
+
+def _bound(search, idea):
+    """How promising [1] the chain of an idea can be at best."""
+    enough = search.reserve * search.request.target
+    rate = min(_promise(search, idea.track, idea.row, idea.way) / enough, 1.0)
+    flat = idea.track.made.bowl.track.bank <= HANGS_BELOW
+    rank = idea.track.rank if idea.way.outcome == "lying" else 1.0 if flat else BANK_RANK**2
+    ways = (TURNED if idea.way.turns else 1.0) * (HOLED if idea.way.holes else 1.0)
+    share = _share(search, idea.track, idea.row) ** OFTENER
+    return rate * rank * ways * share * _of_margin(idea.way.margin) * AGAIN**idea.again
+
+
+def _of_margin(margin):
+    """How promising [1] a margin [m] is: 1 of the greatest that is asked for."""
+    return LEAST_OF_MARGIN + (1.0 - LEAST_OF_MARGIN) * min(margin / proposals.MARGINS[0], 1.0)
+
+
+def _score(search, idea):
+    """How promising [1] a chain is: rate, purity, margin and number of devices, and what was lost before."""
+    proposal = idea.proposal
+    lost = set(search.avoided.get(_place(idea.track, idea.row), ()))
+    known = LOST_BEFORE if lost & {cut.device.kind for cut in proposal.cuts} else 1.0
+    return _bound(search, idea) * proposal.purity * EACH_DEVICE ** len(proposal.cuts) * known
+
+
+def _place(track, row):
+    """What names an orientation on a track of some bank."""
+    return track.made.bowl.track.bank, row
+
+
+def chain_key(track, proposal, lying):
+    """Return what names a chain on a track and what shall leave it, whatever the drive.
+
+    Parameters
+    ----------
+    track : Track
+    proposal : Proposal
+    lying : sequence of Orientation
+
+    Returns
+    -------
+    tuple
+        The order of what a sensor lets pass makes no difference.
+    """
+    wanted = "hanging" if proposal.hangs else lying[proposal.row].name
+    return track, wanted, tuple((one.kind, one.canonical_text) for one in proposal.devices)
+
+
+def _tried_before(search, track, proposal):
+    """Whether a chain was tried on that track, or one whose values differ by less than makes a difference."""
+    key = chain_key(track.made.bowl.track, proposal, track.ways.lying)
+    return key in search.chains or any(_is_alike(key, other) for other in search.chains)
+
+
+def _is_alike(key, other):
+    """Whether two chains for the same track and orientation differ by little in each of their numbers."""
+    if key[:2] != other[:2] or len(key[2]) != len(other[2]):
+        return False
+    texts, others = (" ".join(" ".join(device) for device in one[2]) for one in (key, other))
+    if NUMBER.sub("#", texts) != NUMBER.sub("#", others):
+        return False
+    pairs = zip(NUMBER.findall(texts), NUMBER.findall(others), strict=True)
+    values = ((float(a), float(b)) for a, b in pairs)
+    return all(abs(a - b) <= max(LITTLE, LITTLE_SHARE * abs(a)) for a, b in values)
+
+
+def _lost_before(search, idea):
+    """Whether what is wanted was lost whole at a device of another chain that begins in the same way."""
+    place, chain = _place(idea.track, idea.row), idea.proposal.chain
+    return any(own == place and chain[: len(head)] == head for own, head in search.lost_behind)
 
 
 def _least(search):
@@ -88,42 +237,44 @@ def _least(search):
     return target if 0.0 < best < target else LEAST_USE * best
 
 
-def _promise(search, made, ways, weights, row, outcome="any"):
+def _promise(search, track, row, way):
     """Parts [1/s] that an orientation brings at the fastest drive, were all others returned."""
-    if "lying" not in (outcome, search.request.outcome) and neck(ways.lying[row]) is not None:
+    if way.outcome != "lying" and neck(track.ways.lying[row]) is not None:
         return np.inf  # what hangs comes from several headings
-    pitch = trying.GAP * float((weights * ways.lengths).sum())
-    fastest = calm_drive.speed(calm_drive.driven(made, np.inf, hops=True))
-    return _share(search, ways, weights, row) * fastest / pitch
+    pitch = trying.GAP * float((track.weights * track.ways.lengths).sum())
+    fastest = calm_drive.speed(calm_drive.driven(track.made, np.inf, hops=True))
+    share = 1.0 if way.turns else _share(search, track, row)
+    return share * fastest / pitch
 
 
-def _share(search, ways, weights, row):
+def _share(search, track, row):
     """Share [1] in which an orientation comes, with those that count as it."""
-    return float(weights[[row, *proposals.alike(ways.lying, row, search.request.up)]].sum())
+    alike = proposals.alike(track.ways.lying, row, search.request.up)
+    return float(track.weights[[row, *alike]].sum())
 
 
-def _proposed(search, made, ways, weights, row, how):
+def _proposed(search, track, row, way):
     """A chain for one orientation at the drive that its share asks for; None where there is none."""
-    gain = _share(search, ways, weights, row)
-    found = _at(search, made, ways, weights, row, how, gain)
-    more = 0.0 if found is None else _gain(search, made, found, weights)
+    gain = _share(search, track, row)
+    found = _at(search, track, row, way, gain)
+    more = 0.0 if found is None else _gain(search, track, found)
     if more > SLOWER * gain:
-        return _at(search, made, ways, weights, row, how, more) or found
+        return _at(search, track, row, way, more) or found
     return found
 
 
-def _at(search, made, ways, weights, row, how, gain):
+def _at(search, track, row, way, gain):
     """The chain for a drive that a share [1] asks for."""
-    bowl = calm_drive.driven(made, asked(search, ways, weights, gain), hops=proposals.meets_nothing(how))
+    bowl = calm_drive.driven(track.made, asked(search, track.ways, track.weights, gain))
     bowl = replace(bowl, devices=search.plain.devices)
-    return proposals.proposed(search.part, bowl, search.known.aspects, row, ways, search.request, how)
+    return proposals.proposed(search.part, bowl, search.known.aspects, row, track.ways, search.request, way)
 
 
-def _gain(search, made, proposal, weights):
+def _gain(search, track, proposal):
     """Share of the parts that leaves as wanted, as the static rule says [1]."""
-    bowl = replace(made.bowl, devices=proposal.devices)
+    bowl = replace(track.made.bowl, devices=proposal.devices)
     ways = proposals.known_through(search.part, search.known.aspects, bowl)
-    return trying.gain(ways, weights, proposal.states(ways))
+    return trying.gain(ways, track.weights, proposal.states(ways))
 
 
 def asked(search, ways, weights, gain, apart=0.0):
@@ -136,7 +287,7 @@ def asked(search, ways, weights, gain, apart=0.0):
 
 
 def _banks(search, aspects):
-    """Banks of the track that are tried, in turn: steeper first where the part rolls."""
+    """Banks of the track that are tried: the steeper one first where the part rolls."""
     if "track.bank" in search.given:
         return (search.plain.track.bank,)
     chances = np.nan_to_num(aspects.chances[search.request.rule])
@@ -203,8 +354,12 @@ def _tried_out(search, made, proposal, weights):
         changed = proposals.better(proposal, candidate.tried, candidate.ways.lying, candidate.drawn)
         if changed is None or search.spent:
             break
+        if chain_key(made.bowl.track, changed, candidate.ways.lying) in search.chains:
+            break
         proposal = changed
-    search.avoid(proposal, candidate.tried)
+    place = made.bowl.track.bank, proposal.row
+    search.avoid(place, proposal, candidate.tried)
+    search.note_lost(place, proposal, candidate.tried)
 
 
 def _calmed(search, made, candidate, weights):
@@ -256,7 +411,7 @@ def _screened(search, candidate):
     drawn = robust_run(
         search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.rows,
         draws=min(SCREENED, request.draws), tolerance=request.tolerance, run=request.run,
-        any_heading=candidate.proposal.any_heading,
+        any_heading=candidate.proposal.any_heading, spared=trying.spared_rows(candidate.tried),
     )  # fmt: skip
     if drawn.partial:
         raise KeyboardInterrupt
@@ -289,6 +444,7 @@ def attempted(search, made, proposal, weights, driven=None):
     bowl = replace(own, track=made.bowl.track, devices=proposal.devices)
     ways = arrivals.oriented(proposals.known_through(part, search.known.aspects, bowl), search.known.measured)
     name = ways.lying[proposal.row].name
+    search.chains.add(chain_key(bowl.track, proposal, ways.lying))
     search.begin_trial(f"{name}, {proposal.step}")
     tried = _short(search, bowl, ways, weights, proposal)
     attempt = Attempt(
@@ -338,7 +494,7 @@ def _at_velocity(search, made, proposal, ways, weights, gain):
     apart = 0.0
     for _ in range(2):
         velocity = max(asked(search, ways, weights, gain, apart), search.least)
-        bowl = calm_drive.driven(made, velocity, hops=proposal.may_hop)
+        bowl = calm_drive.driven(made, velocity, hops=not proposal.devices)
         apart = spacing.needed(proposal.devices, ways.lying, bowl)
         if not apart > 0.0:
             break

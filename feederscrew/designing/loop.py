@@ -35,7 +35,7 @@ from feederscrew.tooling.orientations import orientations
 from feederscrew.trial.result import TrialRun
 
 ANY_RATE = 1e-6  # [1/s] a target below any rate
-PROVED = 3  # designs that go through draws and queue
+PROVED = 2  # designs of a cost class that go through draws and queue
 FASTER = 1.3  # times as fast, where draws lose what is wanted: what creeps over a slot falls in late
 Proofs = list[tuple[DesignStudy, Candidate]]
 
@@ -92,9 +92,9 @@ def design(
     search.shares_given = known is not None
     proofs: Proofs = []
     try:
-        for candidate in exploring.candidates(search):
-            _prove(search, candidate, proofs)
-            if _settled(proofs):
+        for cost_class in proposals.COST_CLASSES:
+            _search_class(search, cost_class, proofs)
+            if _answered(search, proofs):
                 break
         near, nearby = _nearest(search, proofs) if with_nearest else (None, None)
         if nearby is None:
@@ -175,10 +175,22 @@ def _check_named(part: Part, plain: Bowl, request: DesignRequest, known: Shares 
     place(every, request.aspect, request.heading, part.source)
 
 
-def _settled(proofs: Proofs) -> bool:
-    """Whether no further design is to be proved: one holds, was stopped, or enough were."""
-    study, _ = proofs[-1]
-    return study.status == "holds" or study.partial or len(proofs) >= PROVED
+def _search_class(search: Search, cost_class: int, proofs: Proofs) -> None:
+    """Prove the best chains of a cost class, until one holds or enough of them do not."""
+    own: Proofs = []
+    for candidate in exploring.candidates(search, cost_class):
+        before = len(proofs)
+        _prove(search, candidate, proofs)
+        own += proofs[before:]
+        if own[-1][0].status == HOLDS or own[-1][0].partial or len(own) >= PROVED:
+            break
+
+
+def _answered(search: Search, proofs: Proofs) -> bool:
+    """Whether no dearer cost class is searched: one was stopped, or one holds and no alternative is asked."""
+    if any(study.partial for study, _ in proofs):
+        return True
+    return any(study.status == HOLDS for study, _ in proofs) and not search.request.alternatives
 
 
 def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
@@ -263,7 +275,7 @@ def _drawn(search: Search, candidate: Candidate) -> RobustRun:
     return robust_run(
         search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.rows,
         draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
-        any_heading=candidate.proposal.any_heading,
+        any_heading=candidate.proposal.any_heading, spared=trying.spared_rows(candidate.tried),
     )  # fmt: skip
 
 
@@ -288,7 +300,7 @@ def _queued(study: DesignStudy, found: tuple[FilledQueue, ...]) -> DesignStudy:
 def _unproved(search: Search, candidate: Candidate, known: Shares) -> DesignStudy:
     """The design before anything of it is proved."""
     bowl, ways, weights = candidate.bowl, candidate.ways, candidate.weights
-    request, margin = search.request, proposals.HOWS[-1][0]
+    request, margin = search.request, proposals.MARGINS[-1]
     return DesignStudy(
         part=search.part,
         request=request,

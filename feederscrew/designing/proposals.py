@@ -8,30 +8,73 @@ from feederscrew.designing import pulses, trying
 from feederscrew.designing.slots import STEP, widened
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling.devices.kinds import names
+from feederscrew.tooling.devices.kinds import KINDS, cost_class, dearer, names
 from feederscrew.tooling.devices.named import nearest
 from feederscrew.tooling.devices.named import rows as rows_of
 from feederscrew.tooling.isolating.chain import WHERE, judged, limits, numbered
 from feederscrew.tooling.isolating.shop_values import millimetres
 
 ROWS = 6  # orientations for which chains are proposed, the most frequent first
-SOLID = names(searched=True)  # left out: holes of several corners, which a shop's tolerance soon spoils
-# and at first what clears itself and what sees: drops alone
-DROPS = (*names(overhead=True, proposed=True), *names(senses=True), *SOLID)
-# all that parts meet: what a sensor sees and air blows off is left
-MET = tuple(sorted(names(proposed=True, senses=False)))
-# margin [m] to either side, what is left out, and how parts leave: in turn
-HOWS = (
-    (5e-4, DROPS, "any"), (5e-4, SOLID, "hanging"), (5e-4, MET, "hanging"),
-    (5e-4, MET, "lying"), (5e-4, SOLID, "lying"),
-    (2.5e-4, DROPS, "any"), (2.5e-4, SOLID, "hanging"), (2.5e-4, MET, "lying"), (2.5e-4, SOLID, "lying"),
-    (2.5e-4, (), "any"),
-)  # fmt: skip
+HOLES = names(searched=True)  # holes of several corners, which a shop's tolerance soon spoils
+MET = tuple(sorted(names(proposed=True, senses=False)))  # all that parts meet: a sensor and air are left
+COST_CLASSES = (1, 2, 3)  # steel alone, steady air, a sensor with a valve
+SENSED = COST_CLASSES[-1]
+MARGINS = (5e-4, 2.5e-4)  # [m] to either side
+SWEEPS = (35, 20, 45, 30, 55)  # [deg] of a blade's face, in the order in which they are tried
+RARE = 0.2  # [1] share below which an orientation is worth a device that turns others into it
 ENOUGH = 0.985  # purity at which a chain is not made longer
 ON_THE_TRACK = names(leans=True, grooved=False)  # a bank is the bowl's own, and tried by the loop
 VERDICTS = 3000  # of the search for holes: values that a shop's tolerance does not lose are found early
 GUARDS = tuple(kind for kind in numbered() if kind.carries)
 LEAST_WINDOW = 1e-3  # [m] between what passes such a drop and what it rejects
+
+
+@dataclass(frozen=True)
+class Way:
+    """A way of proposing a chain for an orientation."""
+
+    cost_class: int
+    margin: float  # [m] to either side
+    outcome: str  # how parts leave: 'lying' or 'hanging'
+    without: tuple[str, ...]  # kinds of devices that are left out
+    turns: bool = False  # whether a device that turns others into the orientation may come first
+
+    @property
+    def holes(self):
+        """Whether holes of several corners may be used."""
+        return not set(HOLES) <= set(self.without)
+
+
+def ways_of(cost_class, request):
+    """Return the ways of proposing chains of a cost class, the most robust first.
+
+    Parameters
+    ----------
+    cost_class : int
+    request : DesignRequest
+
+    Returns
+    -------
+    list of Way
+        Of a sensor alone, and of one with devices that parts meet; none of a class of which no kind of
+        device may be used.
+    """
+    left_out = (*dearer(cost_class), *request.without)
+    own = [name for name in names(cost_class=cost_class, proposed=True) if name not in left_out]
+    if not own:
+        return []
+    outcomes = [one for one in ("hanging", "lying") if request.outcome in ("any", one)]
+    kinds = [(*left_out, *HOLES), *([(*left_out, *MET, *HOLES)] if cost_class == SENSED else [])]
+    found = [
+        Way(cost_class, margin, outcome, some)
+        for margin in MARGINS for outcome in outcomes for some in kinds
+    ]  # fmt: skip
+    if "lying" in outcomes:
+        lying = [way for way in found if way.outcome == "lying" and way.without == kinds[0]]
+        found += [replace(way, turns=True) for way in lying]
+    if "lying" in outcomes and cost_class == COST_CLASSES[0]:
+        found.append(Way(cost_class, MARGINS[-1], "lying", left_out))
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +87,14 @@ class Proposal:
     step: str  # why it is tried
     same: tuple = ()  # rows that count as it
     any_heading: tuple = ()  # names of aspects that count as it, whatever the heading
+    purity: float = 1.0  # [1] by the static rule, midway between what is sure and what may be
+    margin: float = np.inf  # [m] the least, of passing and of returning
+    sweeps: tuple = ()  # [deg] of a blade, those that were tried
+
+    @property
+    def cost_class(self):
+        """What it takes: 1 steel alone, 2 steady air, 3 a sensor with a valve."""
+        return cost_class(self.devices)
 
     @property
     def devices(self):
@@ -63,11 +114,6 @@ class Proposal:
     def hangs(self):
         """Whether parts leave hanging."""
         return any(cut.device.hangs for cut in self.cuts)
-
-    @property
-    def may_hop(self):
-        """Whether no device has to be met lying."""
-        return not any(one.met for one in self.devices)
 
     @property
     def chain(self):
@@ -93,12 +139,6 @@ def free_headings(lying, row, request):
 
 def _folded(names):
     return {name.strip().casefold() for name in names}
-
-
-def meets_nothing(how):
-    """Return whether a way of proposing, one of HOWS, leaves parts nothing to meet but track and air."""
-    _, left_out, outcome = how
-    return outcome == "lying" and set(MET) <= set(left_out)
 
 
 def promising(known, shares, request):
@@ -127,7 +167,7 @@ def bare(known, shares, request, devices):
     return made if pure >= ENOUGH else None
 
 
-def proposed(part, bowl, aspects, row, known, request, how):
+def proposed(part, bowl, aspects, row, known, request, way):
     """Return the static rule's chain for a row, or None where it isolates nothing or is not what was asked.
 
     Parameters
@@ -139,30 +179,27 @@ def proposed(part, bowl, aspects, row, known, request, how):
     row : int
     known : Orientations
     request : DesignRequest
-    how : (float [m], sequence of str, str)
-        Margin to either side, kinds of devices that are left out, and how parts leave.
+    way : Way
 
     Returns
     -------
     Proposal or None
         What would stand at a device is returned before it by a drop.
     """
-    one, (margin, left_out, outcome) = known.lying[row], how
-    if "any" not in (outcome, request.outcome) and outcome != request.outcome:
-        return None
-    outcome = request.outcome if outcome == "any" else outcome
-    without = tuple(dict.fromkeys((*request.without, *left_out, *ON_THE_TRACK)))
+    one = known.lying[row]
+    without = tuple(dict.fromkeys((*request.without, *way.without, *ON_THE_TRACK)))
     found = tooling(
-        part, bowl, one.aspect, heading=one.heading, rule=request.rule, margin=margin, known=aspects,
-        seed=request.seed, verdicts=VERDICTS, outcome=outcome, without=without,
+        part, bowl, one.aspect, heading=one.heading, rule=request.rule, margin=way.margin, known=aspects,
+        seed=request.seed, verdicts=VERDICTS, outcome=way.outcome, without=without, turn=way.turns,
         purity=ENOUGH, up=request.up, play=0.0, tolerance=0.0, vary=False,  # draws and the loop have them
     ).design  # fmt: skip
     if found is None or not found.efficiency > 0.0 or not (found.cuts or found.before):
         return None
     cuts = tuple(pulses.quickened(rounded(cut, known.lying, row), known.lying) for cut in found.cuts)
-    step = f"proposed with margins of {millimetres(margin)}"
+    step = f"proposed with margins of {millimetres(way.margin)}"
     same, free = alike(known.lying, row, request.up), free_headings(known.lying, row, request)
-    made = Proposal(row, cuts, tuple(found.before), step, same, free)
+    pure = float(np.nan_to_num(0.5 * (found.purity + found.hopeful)))
+    made = Proposal(row, cuts, tuple(found.before), step, same, free, pure, found.margin)
     if found.isolated:
         return made
     through = known_through(part, aspects, replace(bowl, devices=made.devices))
@@ -219,6 +256,38 @@ def mended(proposal, tried, every):
     return None
 
 
+def swept(proposal, tried, every):
+    """Return the proposal with another sweep of a blade at which parts stay; None where none is left.
+
+    Parameters
+    ----------
+    proposal : Proposal
+    tried : Tried
+    every : sequence of Orientation
+    """
+    stays = {end for n in range(len(tried.rows)) if tried.held[n] for end in tried.places[n]}
+    for place, cut in enumerate(proposal.cuts):
+        device = cut.device
+        if not device.overhead or not device.face or not any(end.endswith(device.name) for end in stays):
+            continue
+        used = proposal.sweeps or (round(np.degrees(device.sweep)),)
+        grip = every[proposal.row].grip
+        ways = [replace(device, sweep=np.radians(one)).rewritten() for one in SWEEPS if one not in used]
+        other = next((one for one in ways if one.clear_of(grip)), None)
+        if other is None:
+            continue
+        must = np.array([one.name in cut.returns for one in every])
+        ends = [replace(one, sweep=other.sweep).rewritten() for one in (cut.smallest, cut.largest)]
+        cuts = (
+            *proposal.cuts[:place],
+            judged(every, proposal.row, other, must, *ends),
+            *proposal.cuts[place + 1 :],
+        )
+        sweep = round(np.degrees(other.sweep))
+        return replace(proposal, cuts=cuts, sweeps=(*used, sweep), step=f"{device.kind} swept {sweep} deg")
+    return None
+
+
 def better(proposal, tried, every, drawn=None):
     """Return the proposal changed where its trial denies it; None where nothing is left to change.
 
@@ -235,7 +304,8 @@ def better(proposal, tried, every, drawn=None):
     if drawn is not None:
         return widened(proposal, every) if "lost" in drawn.worst else None
     wider = widened(proposal, every) if lost else None
-    moved_one = wider or mended(proposal, tried, every) or pulses.longer(proposal, tried, every)
+    moved_one = wider or swept(proposal, tried, every) or mended(proposal, tried, every)
+    moved_one = moved_one or pulses.longer(proposal, tried, every)
     return moved_one or guarded(proposal, tried, every)
 
 
@@ -290,7 +360,9 @@ def lost_at(tried, kind):
     """Return whether the wanted orientation ends at a device of a kind."""
     right = set(trying.wanted_rows(tried.known, tried.states))
     ends = [tried.places[n] for n, k in enumerate(tried.rows) if k in right]
-    return any(name.endswith(f"at {kind}") for one in ends for name in one)
+    own = KINDS[kind]
+    name = own.trade or own.kind.replace("_", " ")  # as a trial names the device
+    return any(end.endswith(f"at {name}") for some in ends for end in some)
 
 
 def known_through(part, aspects, bowl):

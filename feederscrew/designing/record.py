@@ -52,6 +52,7 @@ class DesignRequest:
     draws: int = 20
     seed: int = 1
     jobs: int = 1
+    alternatives: bool = False  # whether dearer cost classes are searched too where one holds
 
     @property
     def run(self) -> RunSettings:

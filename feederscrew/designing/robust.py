@@ -25,6 +25,7 @@ from feederscrew.tooling.fates import at_entry
 FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side
 CARRIED, CLEAN = " is carried through", 0.985  # and the purity from which that is let be
 ALIKE = 1e-4  # of the greatest: principal moments that a part of revolution has in common
+AGAIN = 3  # parts of a wanted orientation that are tried where one came back: a bowl brings it once more
 OTHERS = 3  # parts tried in each draw beside the wanted one, as they come
 
 
@@ -163,7 +164,7 @@ def matched(one, every):
     return min(range(len(every)), key=lambda k: away(every[k]))
 
 
-def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run, any_heading=()):
+def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run, any_heading=(), spared=()):
     """Try draws of part, friction, drive and cuts.
 
     Parameters
@@ -183,6 +184,8 @@ def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run, any_
         Its progress is told how many draws are done, of how many.
     any_heading : sequence of str
         Aspects that count as the wanted one, whatever the heading.
+    spared : sequence of int
+        Orientations that count as the wanted one and may be returned.
 
     Returns
     -------
@@ -203,6 +206,7 @@ def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run, any_
                 (run.seed, draw),
                 run.jobs,
                 any_heading,
+                spared,
             )
             held, done = held + (not faults), draw + 1
             wrong.update(set(faults))
@@ -214,12 +218,12 @@ def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run, any_
     return RobustRun(done, held, worst, float(min(speeds, default=np.nan)), partial=done < draws)
 
 
-def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading):
+def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading, spared):
     """What goes wrong in one draw, and the velocity there."""
     rng = np.random.default_rng(seed)
     other = drawn_part(part, tolerance, rng)
     driven = drawn_bowl(bowl, known.lying, rng)
-    chosen = drawn_rows(known, shares, wanted, rng)
+    chosen = drawn_rows(known, shares, wanted, rng, spared)
     try:
         aspects = find(other)
         bare = stream.orientations(other, aspects, bowl.track, (), bowl=driven)
@@ -230,16 +234,24 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading)
         free = {lying[matched(one, lying)].aspect for one in known.lying if one.aspect in any_heading}
         ways = stream.along(bare.lying, aspects, driven.devices, bowl=driven, rows={*rows, *alike})
         even = np.full(len(ways.lying), 1.0 / len(ways.lying))
+        own = {"aspects": aspects, "any_heading": tuple(sorted(free))}
+        wanted_rows = [rows[0], *alike]
         tried = trying.single(
-            other, driven, ways, even, [rows[0], *alike], rows=list(dict.fromkeys(rows)), each=1,
-            run=RunSettings(sum(seed), jobs), aspects=aspects, any_heading=tuple(sorted(free)),
+            other, driven, ways, even, wanted_rows, rows=list(dict.fromkeys(rows)), each=1,
+            run=RunSettings(sum(seed), jobs), **own,
         )  # fmt: skip
+        if came_back(tried, rows[0]):
+            more = trying.single(
+                other, driven, ways, even, wanted_rows, rows=rows[:1], each=AGAIN,
+                run=RunSettings(sum(seed) + 1, jobs), **own,
+            )  # fmt: skip
+            spared = (*spared, chosen[0]) if comes_through(more) else spared
     except FeederError as fault:  # the drawn bowl does not convey, or the part does not fit
         return [fault.what], 0.0
-    return faults(tried), tried.velocity
+    return faults(tried, {matched(known.lying[k], lying) for k in spared}), tried.velocity
 
 
-def drawn_rows(known, shares, rows, rng):
+def drawn_rows(known, shares, rows, rng, spared=()):
     """Return the orientations that one draw tries: a wanted one, then OTHERS parts as they come.
 
     Parameters
@@ -250,6 +262,8 @@ def drawn_rows(known, shares, rows, rng):
     rows : sequence of int
         The wanted orientation, and others that count as it.
     rng : numpy Generator
+    spared : sequence of int
+        Wanted orientations that may be returned: none of them is drawn first while another is left.
 
     Returns
     -------
@@ -257,22 +271,36 @@ def drawn_rows(known, shares, rows, rng):
         No orientation twice.
     """
     wanted = trying.wanted_rows(known, trying.wanted_states(known, rows)[:1]) or [rows[0]]
+    wanted = [k for k in wanted if k not in spared] or wanted
     likely = np.where([k in wanted for k in range(len(shares))], shares + 1e-12, 0.0)
     first = int(rng.choice(len(shares), p=likely / likely.sum()))
     more = rng.choice(len(shares), OTHERS, p=shares / shares.sum())
     return list(dict.fromkeys([first, *(int(k) for k in more)]))
 
 
-def faults(tried):
+def came_back(tried, row):
+    """Return whether the part of a wanted orientation was returned: it comes along once more."""
+    place = list(tried.rows).index(row)
+    ends = tried.places[place]
+    return not tried.right[place] and bool(ends) and all(end.startswith("returned") for end in ends)
+
+
+def comes_through(tried):
+    """Return whether most of some more parts of a wanted orientation leave, and the others come back."""
+    mostly = 2 * int(tried.right.sum()) > int(tried.parts.sum())
+    return mostly and not tried.wrong.any() and not tried.held.any()
+
+
+def faults(tried, spared=()):
     """Return what goes wrong in a short trial, a sentence each: (what is lost, stopped or carried, where).
 
-    What counts as the wanted one and comes back is a loss of parts a minute only.
+    What counts as the wanted one and comes back is a loss of parts a minute only; so is that of orientations
+    that are ``spared``, rows.
     """
-    found, right = [], set(trying.wanted_rows(tried.known, tried.states[:1]))
-    alike = set(trying.wanted_rows(tried.known, tried.states)) - right
+    found, right = [], set(trying.wanted_rows(tried.known, tried.states[:1])) - set(spared)
     for place, k in enumerate(tried.rows):
         name = tried.known.lying[k].name
-        if k in right or (tried.right[place] and k not in alike):
+        if k in right:
             if tried.right[place] < tried.parts[place]:
                 turns = tried.turns[place] if tried.turns else {}
                 where = ", ".join((*tried.places[place], *turns)) or "turned"
@@ -288,8 +316,8 @@ def denied(tried):
     """Say what a short trial denies: what leaves or stays though rejected, and what is lost in the main."""
     if not tried.efficiency > 0.0:
         yield "nothing leaves as wanted"
-    right = set(trying.wanted_rows(tried.known, tried.states))
-    for one in faults(tried):
+    right, spared = set(trying.wanted_rows(tried.known, tried.states)), trying.spared_rows(tried)
+    for one in faults(tried, spared):
         name = one.split(" ", 1)[0]
         place = next(n for n, k in enumerate(tried.rows) if tried.known.lying[k].name == name)
         if one.endswith(CARRIED) and tried.purity >= CLEAN:

@@ -39,7 +39,11 @@ class Search:
     before: Callable[[], None] | None = None
     reserve: float = RESERVE
     least: float = 0.0  # [m/s] through tooling, where what is wanted was lost at a slower drive
-    avoided: dict = field(default_factory=dict)  # kinds of devices at which a row was lost, by row
+    avoided: dict = field(default_factory=dict)  # kinds of devices at which a row was lost, by bank and row
+    tracks: list = field(default_factory=list)  # of each bank what comes along it
+    chains: set = field(default_factory=set)  # tracks and chains that were tried, whatever the drive
+    lost_behind: list = field(default_factory=list)  # (bank and row, first devices) that lost all of it
+    reach: float = np.inf  # trials, those made included, after which the next cost class has its turn
     most: float = np.inf  # short trials that are worth it
     first: int = 0  # trials that were made before this search began
     shares_given: bool = False  # the user says what arrives
@@ -101,14 +105,36 @@ class Search:
     @property
     def spent(self) -> bool:
         """Whether the budget of trials is used up."""
-        return len(self.attempts) >= min(self.request.budget, self.most)
+        return len(self.attempts) >= min(self.request.budget, self.most, self.reach)
 
-    def avoid(self, proposal: proposals.Proposal, tried: trying.Tried) -> None:
-        """Note the devices of a chain at which what is wanted is lost; rails are the only way to hang."""
+    def avoid(self, place: tuple[float, int], proposal: proposals.Proposal, tried: trying.Tried) -> None:
+        """Note the devices of a chain at which what is wanted is lost; rails are the only way to hang.
+
+        Parameters
+        ----------
+        place : (float [rad], int)
+            Bank of the track, and row of the orientation.
+        proposal : Proposal
+        tried : Tried
+        """
         lost = {cut.device.kind for cut in proposal.cuts if not cut.device.hangs}
         kinds = sorted(kind for kind in lost if proposals.lost_at(tried, kind))
-        known = self.avoided.get(proposal.row, ())
-        self.avoided[proposal.row] = tuple(dict.fromkeys((*known, *kinds)))
+        known = self.avoided.get(place, ())
+        self.avoided[place] = tuple(dict.fromkeys((*known, *kinds)))
+
+    def note_lost(self, place: tuple[float, int], proposal: proposals.Proposal, tried: trying.Tried) -> None:
+        """Note the first devices of a chain, where nothing wanted comes past the last of them.
+
+        Another chain that begins with them does no better on that track: parameters as for ``avoid``.
+        """
+        ends = {end for n, k in enumerate(tried.rows) if k == proposal.row for end in tried.places[n]}
+        if tried.efficiency > 0.0 or len(ends) != 1:
+            return
+        (end,) = ends
+        names = [f" at {device.name}" for device in proposal.devices]
+        heads = [k for k, name in enumerate(names) if end.endswith(name)]
+        if len(heads) == 1:
+            self.lost_behind.append((place, proposal.chain[: heads[0] + 1]))
 
     @property
     def best_rate(self) -> float:

@@ -285,6 +285,28 @@ def at_station(device: Device) -> str:
     return "on the track" if device.kind in ("", Device.kind) else f"at {device.name}"
 
 
+def spared_rows(tried: Tried) -> tuple[int, ...]:
+    """Return the wanted orientations of which a chain returns parts while it lets others of them leave.
+
+    Parameters
+    ----------
+    tried : Tried
+
+    Returns
+    -------
+    tuple of int
+        Their rows: fewer parts a minute, no fault. None where no wanted orientation leaves whole, nor any of
+        which a part stays or leaves otherwise.
+    """
+    right = set(wanted_rows(tried.known, tried.states))
+    own = [n for n, k in enumerate(tried.rows) if k in right]
+    if not any(tried.right[n] == tried.parts[n] for n in own):
+        return ()
+    some = [n for n in own if tried.right[n] < tried.parts[n] and not tried.wrong[n] and not tried.held[n]]
+    returned = [n for n in some if all(end.startswith("returned") for end in tried.places[n])]
+    return tuple(int(tried.rows[n]) for n in returned)
+
+
 def lost_by_motion(tried: Tried) -> int:
     """Return how many parts of what is wanted were turned, or ended on the track before any device.
 

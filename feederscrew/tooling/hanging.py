@@ -1,7 +1,7 @@
 """Headed parts: a slot between rails lets the shank down and holds the head; from there on they hang."""
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import cast
 
 import numpy as np
@@ -92,6 +92,25 @@ def neck(one):
     Neck or None
         None where no end is wider than the rest of the part, or its long axis does not lie along the track.
     """
+    return _neck(_Lying(one))
+
+
+class _Lying:
+    """An orientation, equal to any other of the same solid that is turned alike, on whatever track."""
+
+    def __init__(self, one):
+        self.one, self.solid, self.axes = one, one.posture.solid, one.axes.tobytes()
+
+    def __eq__(self, other):
+        return self.solid is other.solid and self.axes == other.axes
+
+    def __hash__(self):
+        return hash((id(self.solid), self.axes))
+
+
+@lru_cache(maxsize=512)
+def _neck(lying):
+    one = lying.one
     axis = _axis(one)
     if abs(axis[2]) > np.sin(STEEP) or abs(axis[1]) > np.sin(STEEP) * np.hypot(axis[0], axis[1]):
         return None
@@ -202,9 +221,16 @@ def shoulders(one, width):
     """
     if isinstance(one, Hanging) or one.kind == "rolling" or neck(one) is not None:
         return None
+    return _shoulders(_Lying(one), one.posture.height, one.track.radius, one.distance, width)
+
+
+@lru_cache(maxsize=512)
+def _shoulders(lying, height, radius, distance, width):
+    """Shoulders of what lies so on a track of some radius at some distance from its wall [m]."""
+    one = lying.one
     solid = one.posture.solid
     points = vectors.product(solid.vertices - solid.centre_of_mass, one.axes.T)
-    points = points + [0.0, 0.0, one.posture.height]
+    points = points + [0.0, 0.0, height]
     size = float(np.ptp(points, axis=0).max())
     flat = touching.TOUCHING * size
     foot = points[points[:, 2] < flat]
@@ -220,7 +246,7 @@ def shoulders(one, width):
     hull, weight = beside.convex_hull, shapely.Point(0.0, 0.0)
     if beside.area <= touching.SLIVER * size**2 or not hull.contains(weight):
         return None
-    centre = one.track.radius - one.distance
+    centre = radius - distance
     nearest = centre - np.hypot(foot[:, 0], centre - foot[:, 1]).max()  # the wall is curved
     return Shoulders(stem, float(nearest), middle, drop, float(hull.exterior.distance(weight)))
 

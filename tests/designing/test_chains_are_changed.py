@@ -9,12 +9,14 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import proposals, robust, trying
+from feederscrew.designing.record import DesignRequest
 from feederscrew.part import load
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling import sensor_views
 from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.isolating.chain import Cut
 from feederscrew.tooling.verdicts import verdict
 
 PARTS = Path(__file__).resolve().parents[2] / "parts"
@@ -129,15 +131,71 @@ def test_a_drawn_bowl_bounces_parts_as_filmed_impacts_scatter(block):
     assert len({one.friction.kinetic for one in drawn}) == 200
 
 
-def test_parts_may_hop_through_what_only_sees_and_blows(block):
-    _, ways, names = block
-    one = ways.lying[names["A@0"]]
-    sorter = made("sorter", "test", like=(one.aspect, one.heading, 1e-3), text="test")
+def test_a_chain_costs_what_its_dearest_device_does():
     gap = made("gap", "test", limit=9e-3, text="9 mm")
-    steeper = made("separation", "test", angle=-0.1, text="test")
-    seen = proposals.Proposal(0, (), (steeper, sorter), "test")
-    assert seen.may_hop and not replace(seen, before=(gap, sorter)).may_hop
-    assert [one.met for one in (sorter, gap, steeper)] == [False, True, False]
+    jet, sorter = made("jet", "test", text="test"), made("sorter", "test", text="test")
+    costs = [
+        proposals.Proposal(0, (), chain, "test").cost_class
+        for chain in ((), (gap,), (gap, jet), (sorter, gap))
+    ]
+    assert costs == [1, 1, 2, 3]
+
+
+@pytest.mark.parametrize("cost_class, dearer", [(1, {"jet", "sorter"}), (3, set())])
+def test_a_cost_class_is_proposed_without_dearer_devices_and_the_widest_margin_comes_first(
+    cost_class, dearer
+):
+    ways = proposals.ways_of(cost_class, DesignRequest(target=1.0))
+    assert all(dearer <= set(way.without) for way in ways)
+    assert any("sorter" not in way.without for way in ways) == (cost_class == 3)
+    margins = [way.margin for way in ways if not way.turns and not way.holes]
+    assert margins == sorted(margins, reverse=True) and len(set(margins)) == 2
+    assert [way.outcome for way in ways if way.holes] == ["lying"] * (cost_class == 1)
+
+
+def test_no_way_is_left_of_a_class_whose_devices_are_not_to_be_used():
+    assert proposals.ways_of(3, DesignRequest(target=1.0, without=("sorter",))) == []
+    hung = proposals.ways_of(1, DesignRequest(target=1.0, outcome="hanging"))
+    assert {way.outcome for way in hung} == {"hanging"} and not any(way.turns for way in hung)
+
+
+def test_a_blade_at_which_parts_stay_is_swept_otherwise(block):
+    _, ways, names = block
+    wanted, others = names["A@0"], names["C@0"]
+    wiper = made("wiper", "test", limit=8e-3, sweep=np.radians(30.0)).rewritten()
+    cut = Cut(wiper, 1e-3, 1e-3, wiper, wiper, ())
+    proposal = proposals.Proposal(wanted, (cut,), (), "test")
+    seen = tried(ways, {wanted}, (), {others}, wanted)
+    assert proposals.swept(proposal, seen, ways.lying) is None  # it stays at a gap
+    seen = replace(seen, places=tuple({"stopped at wiper": 2} if one else {} for one in seen.places))
+    sweeps = []
+    while proposal is not None:
+        proposal = proposals.swept(proposal, seen, ways.lying)
+        sweeps += [] if proposal is None else [round(np.degrees(proposal.devices[0].sweep))]
+    assert sweeps[:2] == [35, 20] and len(set(sweeps)) == len(sweeps) and 30 not in sweeps
+
+
+def test_a_device_is_found_by_the_name_that_the_trial_gives_it(block):
+    _, ways, names = block
+    seen = tried(ways, (), (), {names["A@0"]}, names["A@0"])
+    for kind, said in (("narrowed_track", "narrowed track"), ("sorter", "vision reject")):
+        lost = replace(seen, places=tuple({f"returned at {said}": 2} if one else {} for one in seen.places))
+        assert proposals.lost_at(lost, kind) and not proposals.lost_at(lost, "wiper")
+
+
+def test_what_comes_back_of_several_wanted_ones_is_no_fault_while_another_leaves(block):
+    _, ways, names = block
+    along, across = names["A@0"], names["A@90"]
+    leaving = ways.leaving.copy()
+    leaving[across] = leaving[along]  # both leave in the one state, as parts that hang do
+    both = replace(ways, leaving=leaving)
+    seen = tried(both, {along}, (), (), along)
+    back = {"returned at narrowed track": 2}
+    seen = replace(seen, places=tuple(back if k == across else {} for k in range(len(both.lying))))
+    assert trying.spared_rows(seen) == (across,) and not list(robust.denied(seen))
+    stays = replace(seen, held=2 * (np.arange(len(both.lying)) == across))
+    assert trying.spared_rows(stays) == () and list(robust.denied(stays))
+    assert trying.spared_rows(replace(seen, right=0 * seen.right)) == ()  # none of them leaves
 
 
 def test_what_is_tried_is_told_with_headings_in_whole_degrees():

@@ -85,6 +85,7 @@ class Device:
     senses: ClassVar[bool] = False  # whether it sees parts and blows off others: air, no edge that is met
     serves: ClassVar[str] = ""  # what one that returns nothing is for
     searched: ClassVar[bool] = False  # whether a design looks for its shape, by many verdicts
+    cost_class: ClassVar[int] = 1  # what it takes: 1 steel alone, 2 steady air, 3 a sensor with a valve
 
     @classmethod
     def read(cls, entry):
@@ -261,6 +262,11 @@ class Device:
             first, last = self.span
             return {"value_mm": (last - first) / MM, "span_mm": [first / MM, last / MM]}
         return {"value_mm": (self.like[2] if self.like else self.limit) / MM}
+
+    @property
+    def canonical_text(self):
+        """Its value as a bowl file has it, alike for devices that do the same."""
+        return self.text
 
     @property
     def label(self):

@@ -38,6 +38,16 @@ def names(**traits):
     )
 
 
+def cost_class(devices):
+    """Return what a chain takes, the dearest of its devices: 1 steel alone, 2 steady air, 3 a sensor."""
+    return max((device.cost_class for device in devices), default=1)
+
+
+def dearer(cost):
+    """Return the names of the kinds whose cost class is above one: a tuple of str."""
+    return tuple(name for name, kind in KINDS.items() if kind.cost_class > cost)
+
+
 def leaning():
     """Return the kinds (type, ...) that lean the track."""
     return tuple(kind for kind in KINDS.values() if kind.leans)

@@ -58,6 +58,7 @@ class Sorter(Device):
     nozzles: float = NOZZLE_COUNT  # one above the other
 
     kind = "sorter"
+    cost_class = 3
     trade = "vision reject"
     form = forms.mapping(
         ("sees", "resolution", "jet"),
@@ -110,6 +111,13 @@ class Sorter(Device):
         turns = [(name, f"{np.degrees(turn):.6g}") for name, turn in (self.like[:2], *self.also)]
         first, *also = ((name, float(np.radians(float(turn)))) for name, turn in turns)
         return replace(self, like=(*first, float(play)), also=tuple(also)).rewritten()
+
+    @property
+    def canonical_text(self):
+        """Its value with what it lets pass in one order."""
+        (aspect, heading, play), *also = self.like, *self.also
+        first, *others = sorted([(aspect, heading), *also])
+        return replace(self, like=(*first, play), also=tuple(others)).value_text()
 
     def with_pulse(self, time):
         """Return the same sorter with a pulse of some time [s]."""

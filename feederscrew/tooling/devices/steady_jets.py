@@ -45,6 +45,7 @@ class SteadyJet(Device):
     feature = "area that it offers a jet"
     picture = "above"
     layer = "NOZZLE"
+    cost_class = 2
 
     @classmethod
     def read(cls, entry):

@@ -100,8 +100,12 @@ class DesignTask:
 
     @property
     def allowed(self):
-        """Share of others [1] that may leave as well."""
-        return float(self.coming[self.wanted] * (1.0 / self.purity - 1.0))
+        """Share of others [1] that may leave beside the wanted one alone."""
+        return self.allowed_beside(np.arange(len(self.every)) == self.wanted)
+
+    def allowed_beside(self, same):
+        """Return the share of others [1] that may leave beside those (M,) bool that leave as wanted."""
+        return float(self.coming[same].sum() * (1.0 / self.purity - 1.0))
 
 
 def task(every, shares, wanted, margin, purity, before, turners=(), wishes=None):
@@ -154,10 +158,11 @@ def told(given, cuts, returned, same=None, late=False):
     impure = [f"only {100.0 * hopeful:.3g} % of what leaves is so"] if hopeful < least else []
     stands = any(cut.stops for cut in cuts)
     left = [k for k in np.flatnonzero(~returned & ~same) if given.often[k]]
+    rest = given.coming[left].sum()
     margins = [end for cut in cuts for end in (cut.margin_pass, cut.margin_reject) if np.isfinite(end)]
     return Design(
         wanted=wanted,
-        isolated=not (stands or impure) and (not left or bool(given.coming[left].sum() <= given.allowed)),
+        isolated=not (stands or impure) and (not left or bool(rest <= given.allowed_beside(same))),
         before=given.before,
         cuts=cuts,
         margin=float(min(margins, default=np.nan)),

@@ -45,16 +45,15 @@ def design(given):
     if not same[wanted]:
         return None
     margins = np.array([one.margin for one in found])
-    falls = np.array(
-        [chain.margin_at(device, one, every) <= -margin for one in every]
-    )  # what stands does not
-    gone = falls | ~given.stays | (given.coming <= 0.0)
+    at_rails = np.array([chain.margin_at(device, one, every) for one in every])  # NaN of what stands there
+    gone = (at_rails <= -margin) | ~given.stays | (given.coming <= 0.0)
     passed = gone | same
     for stage in STAGES:
         if not stage.get("sensed") or given.wishes.sensed:
             cuts, returned = _before(given, passed, same, stage)
         left = ~returned & ~passed & given.often
-        if given.coming[left].sum() <= given.coming[same].sum() * (1.0 / given.purity - 1.0):
+        jams = (left & np.isnan(at_rails)).any()  # however seldom it comes, it blocks the rails
+        if not jams and given.coming[left].sum() <= given.allowed_beside(same):
             break
     else:
         return None
