@@ -47,9 +47,9 @@ def test_a_leaf_spring_drive_is_fast_enough_at_any_friction(velocity):
 
 
 def test_a_drive_that_low_friction_slows_is_not_taken():
-    """At 50 Hz, 25 deg and throw number 0.9 a point mass makes 25 mm/s, and 8 mm/s at 0.6 of the friction."""
-    made = calm_drive.driven(plain(), 0.02, hops=True)
-    assert calm_drive.slowest(made) >= calm_drive.STEADY * 0.02
+    """At 50 Hz, 25 deg and throw number 0.9 a point mass makes 27 mm/s; 10 mm/s at 0.6 of the friction."""
+    made = calm_drive.driven(plain(), 0.025, hops=True)
+    assert calm_drive.slowest(made) >= calm_drive.STEADY * 0.025
     assert throw_number(made) > 1.0
 
 
