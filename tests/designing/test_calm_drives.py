@@ -46,6 +46,13 @@ def test_a_leaf_spring_drive_is_fast_enough_at_any_friction(velocity):
     assert calm_drive.slowest(made) >= calm_drive.STEADY * asked
 
 
+def test_a_drive_that_low_friction_slows_is_not_taken():
+    """At 50 Hz, 25 deg and throw number 0.9 a point mass makes 27 mm/s; 10 mm/s at 0.6 of the friction."""
+    made = calm_drive.driven(plain(), 0.025, hops=True)
+    assert calm_drive.slowest(made) >= calm_drive.STEADY * 0.025
+    assert throw_number(made) > 1.0
+
+
 def test_twice_the_mains_frequency_comes_first_and_half_of_it_where_it_is_too_slow():
     """A point mass makes 145 mm/s at 100 Hz, 15 deg and throw number 3.0, and twice that at 50 Hz."""
     fine, coarse = (calm_drive.driven(plain(), v) for v in (0.08, 0.2))

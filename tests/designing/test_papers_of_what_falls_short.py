@@ -173,6 +173,14 @@ def test_what_delivers_nothing_leaves_no_papers(built):
     assert set(offered(study(queues=(), partial=True), machine)) < kept
 
 
+def test_the_bowl_file_has_the_leaves_of_the_machine_that_is_drawn():
+    """Leaves of 30 mm, which a design may choose, were written as the usual 40 mm."""
+    lines = ("machine.leaf_width=30 mm", "machine.leaf_length=110 mm", "machine.leaves=6")
+    sheet = beside.machines.machine(bowls.settings(None, (*BOWL, *lines)))
+    text = design_file.bowl_file(study(), (), sheet)
+    assert "leaf_width: 30 mm" in text and "leaf_length: 110 mm" in text and "leaves: 6" in text
+
+
 def test_the_trial_that_papers_have_is_that_of_the_bowl_file(built, tmp_path):
     one, machine = built
     one = replace(one, request=DesignRequest(1.6, up=("A", "B")))

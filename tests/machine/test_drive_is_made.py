@@ -11,16 +11,18 @@ from matplotlib.text import Text
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.direction import shares, vibration_angle
+from feederscrew.bowl.reading import settings_of_text
 from feederscrew.conveying import answer
-from feederscrew.designing import beside
+from feederscrew.designing import beside, calm_drive
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
-from feederscrew.machine import building, drive_sought, feasibility, sizing, tuning
+from feederscrew.machine import building, drive_sought, drive_units, feasibility, sizing, tuning
 from feederscrew.machine.springs import leaf_stress, springs
 from feederscrew.machine.stroke import stroke
 from feederscrew.output.designs import design_file, design_page, tables
 from feederscrew.output.machine import figures
 from feederscrew.output.machine import tables as machine_tables
 from feederscrew.output.solidbowl import drawing_sheet
+from feederscrew.resting.aspects import find
 from feederscrew.studies import bowl as machines
 
 STEEL_PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
@@ -209,3 +211,29 @@ def test_a_design_whose_drawn_springs_do_not_make_its_angle_does_not_hold():
     assert found.status == "falls short" and "the springs make it" in found.why
     assert found.cause == "drive" and found.nearest.rate == one.request.target
     assert "springs that stand at" in found.nearest.change and found.nearest.draws_held == 20
+
+
+@pytest.mark.parametrize("name", [None, "d300-60hz"])
+def test_the_machine_that_is_drawn_makes_the_drive_that_is_chosen(name):
+    """Angle, tuning, stress and pull with the mass of the solid; the leaves of an owned machine are kept."""
+    text = None if name is None else drive_units.bowl_file(drive_units.unit(name))
+    settings = bowls.settings(None) if text is None else settings_of_text(text, "machine.yaml")
+    given = frozenset(one.key.name for one in settings if one.given)
+    plain = calm_drive.section(PART, find(PART), bowls.record(settings), given)
+    bowl = calm_drive.driven(plain, 0.08)
+    queue = FilledQueue("normal", 0.2, 12, 200.0, 200.0, 200.0, 200, 200, 0, 0, 0)
+    found = DesignStudy(
+        PART, DesignRequest(0.5), bowl, "A@0", 0, queues=(queue,), robust=RobustRun(20, 20, "")
+    )
+    built = beside.built(found, settings)
+    made = beside.with_machine(found, built)
+    assert made.drive_mismatch is None and made.machine_lacks == () and made.status == "holds"
+    under = made.bowl.machine
+    assert 1.03 <= springs(under).natural_frequency / bowl.drive.frequency <= 1.08
+    assert under.leaves <= 18 and 1e-3 <= under.leaf_thickness <= 4e-3
+    assert leaf_stress(under, stroke(made.bowl).springs) <= bowl.sizing.fatigue_stress
+    if name is not None:
+        own = bowls.record(settings).machine
+        kept = ("leaves", "leaf_thickness", "leaf_length", "spring_angle", "spring_radius", "bowl_mass")
+        assert [getattr(under, word) for word in kept] == pytest.approx([getattr(own, word) for word in kept])
+    assert design_file.bowl_file(made, settings, built.sheet)  # it is read back and compared

@@ -24,7 +24,8 @@ TRACK = (
 MACHINE = (
     ("bowl_mass", "kg", "mass"), ("bowl_inertia", "kg m2", "inertia"), ("base_mass", "kg", "mass"),
     ("base_inertia", "kg m2", "inertia"), ("spring_radius", "mm", "length"), ("spring_angle", "deg", "angle"),
-    ("leaf_thickness", "mm", "length"), ("leaf_length", "mm", "length"), ("leaves", "", "count"),
+    ("leaf_width", "mm", "length"), ("leaf_thickness", "mm", "length"), ("leaf_length", "mm", "length"),
+    ("leaves", "", "count"),
 )  # fmt: skip
 SIZING = (("fill_density", "g/cm3", "density"), ("outlet_height", "mm", "length"))
 OWN = {"drive": DRIVE, "track": TRACK, "machine": MACHINE, "sizing": SIZING}
