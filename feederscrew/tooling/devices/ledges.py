@@ -58,6 +58,7 @@ class PressureBreak(_OneNumber):
     """A ledge before the tooling, from which parts that back up leave the track."""
 
     kind = "pressure_break"
+    serves = "takes off parts that back up"
     example = "10 mm"
     meaning = (
         "ledge of that width before the tooling: returns what it does not carry; where parts back up, those "
