@@ -115,7 +115,7 @@ def marked(lying: Sequence[Orientation], bowl: Bowl) -> tuple[tuple[Orientation,
     """
     found, energy = tipping(lying, bowl), landing_energy(bowl)
     known = tuple(replace(one, turns_over=bool(turns)) for one, turns in zip(lying, found.over))
-    if energy > 0.0:
+    if energy > 0.0 or bowl.track.bank > 0.0:  # a bank presses parts to the wall, thrown or not
         known = tuple(landing(one, bowl, energy) for one in known)
     return travelling(known, bowl), found
 
@@ -127,7 +127,7 @@ def remark(lying: Sequence[Orientation]) -> tuple[str, ...]:
     hop, flight = max(((one.hop, one.flight) for one in lying), default=(0.0, 0.0))
     if hop > 0.0:
         said.append(HOPS.format(hop / MM, flight / MM))
-    turning = [one.name for one in lying if one.may_turn]
+    turning = [one.name for one in lying if one.may_turn and one.hop > 0.0]
     return (*said, TURNS.format(listed(turning))) if turning else tuple(said)
 
 
@@ -187,12 +187,13 @@ def landing(one: Orientation, bowl: Bowl, energy: float) -> Orientation:
     bowl : Bowl
         Single values.
     energy : float [m]
-        From ``landing_energy``: above 0.
+        From ``landing_energy``: of 0 nothing tips so.
     """
     if one.falls_off or one.touching is None:
         return one
     contact = seated(one, bowl.track.bank).contact
-    return replace(one, may_tip=may_tip(contact, one, bowl, energy), may_yaw=may_yaw(one, bowl))
+    tips = energy > 0.0 and may_tip(contact, one, bowl, energy)
+    return replace(one, may_tip=tips, may_yaw=may_yaw(one, bowl))
 
 
 def may_tip(contact: np.ndarray, one: Orientation, bowl: Bowl, energy: float, margin: float = 0.0) -> bool:
@@ -231,7 +232,7 @@ def may_tip(contact: np.ndarray, one: Orientation, bowl: Bowl, energy: float, ma
 
 
 def may_yaw(one: Orientation, bowl: Bowl) -> bool:
-    """Return whether the wall may turn an orientation out of its heading while the track does not hold it.
+    """Return whether the wall may turn an orientation out of its heading: a shaken track does not hold it.
 
     Source: own; docs/tooling.md, "Parts that hop": the couple of the wall's friction.
 

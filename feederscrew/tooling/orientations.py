@@ -45,7 +45,7 @@ class Orientation:
     touching: np.ndarray | None = None  # of its corners, where it touches the wall; None where not known
     turns_over: bool = False  # the drive tips it over on the track
     may_tip: bool = False  # the drive throws it, and a landing may tip it over
-    may_yaw: bool = False  # the drive throws it, and the wall may turn it out of its heading
+    may_yaw: bool = False  # the drive throws it or a bank presses it on, and the wall may turn its heading
     may_roll_back: bool = False  # on its round side, not along a climbing track: no verdict is sure
     carry: float = 0.0  # [m] it travels on unsupported before it has tipped: 0 of one that is only placed
     carry_ahead: float = 0.0  # [m] the same over an edge across the track

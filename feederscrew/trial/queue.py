@@ -18,6 +18,7 @@ from feederscrew.trial.shape import solid_of
 
 GAPS = 0.2  # of a part's length: mean free way between parts as they come in a row
 HOLD = 1.0  # [s] a part that stands at a device with nothing before it is taken out by hand after so long
+BACKED_UP = 0.5  # [s] a part that stands at a pressure break so long, and is pushed, has left the track
 MOVED = 0.05  # of the unit of length: a part that has come no further stands
 PART_OF_TURN = 0.5  # of the bowl's circumference, less two lengths: more parts than fit there wait to enter
 CARRIED = 0.1  # of its weight that other parts carry, and ...
@@ -48,6 +49,7 @@ class QueuedParts:
     pressure: np.ndarray  # (D,) [N] greatest mean force of a period on a part that stands at a device
     depth: float  # [m] the deepest that anything was in anything
     partial: bool  # stopped by the user: of the seconds until then
+    relieved: int = 0  # of those returned, backed up at a pressure break and pushed off there
 
     @property
     def rate(self):
@@ -139,6 +141,7 @@ class PartsQueue:
         turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # some rolls back
         room = min(1.5 * longest * parts + 2.0 * longest, max(turn, 2.0 * longest))
         self.track = crowd.crowded(bowl, every, bowl.devices, room)
+        self.placed = [device for device in bowl.devices if device.placed]
         self.outlet, self.windows = self.track.outlet / known.length, self.track.windows / known.length
         self.apart = spacing.needed(bowl.devices, every, bowl) / known.length
         self.crowd = crowd.PartsOnTrack(known, self.track, parts)
@@ -146,7 +149,7 @@ class PartsQueue:
         self.mark, self.since, self.on_others = np.zeros(parts), np.zeros(parts), np.zeros(parts, bool)
         self.below, self.hanging = AspectsBelow(part, aspects), [isinstance(one, Hanging) for one in poses]
         self.left = np.zeros((len(poses) + 1, len(aspects.names) + 1), int)
-        self.returned = self.jams = self.climbs = 0
+        self.returned = self.jams = self.climbs = self.relieved = 0
         self.way, self.free, self.touch, self.depth = [], [], [], 0.0
         self.pressure, self.whole, self.first, self.most = np.zeros(len(self.windows)), 0, None, 0
         self.periods, self.waiting, self.deep = 0, list(range(parts)), solid.radius * length
@@ -266,8 +269,28 @@ class PartsQueue:
             self.again(n)
         elif way - self.mark[n] > MOVED:
             self.mark[n], self.since[n] = way, self.time
+        elif self.time - self.since[n] >= BACKED_UP and self.pushed_off(n, rear, front):
+            self.returned += 1
+            self.relieved += 1
+            self.again(n)
         else:
             self.stand(n, front, reach, order)
+
+    def pushed_off(self, n, rear, front):
+        """Whether a part that stands is at a pressure break, reaches over its ledge, and is pushed.
+
+        Source: the trade's use of a pressure break: parts that back up leave the track there.
+        """
+        at = [
+            device.limit
+            for device, (begin, end) in zip(self.placed, self.windows)
+            if device.relieves and rear < end and front > begin
+        ]
+        if not at or not self.crowd.forces[n, BEHIND] > 0.0:
+            return False
+        state = self.crowd.arrays.states[n]
+        across = whereabouts.reach(state, self.known.solid.corners, self.known.radius)
+        return bool(across * self.known.length > min(at))
 
     def leave(self, n):
         """Count a part that has left: its orientation, and the aspect on which it lies."""
@@ -334,4 +357,5 @@ class PartsQueue:
             pressure=check.frozen(self.pressure * self.part.mass * self.bowl.gravity),
             depth=self.depth * length,
             partial=partial,
+            relieved=self.relieved,
         )

@@ -180,12 +180,10 @@ class TrialRun:
     def sure(self):
         """Return (M,) bool, whether the static rule is sure of an orientation that comes alone.
 
-        What a pressure break carries and is wider than it only goes where the queue pushes it off; what
-        passes may rock where a device leaves little of its foot; what a hole does not carry may rest in it.
+        What passes may rock where a device leaves little of its foot; what a hole does not carry may rest
+        in it.
         """
         lying, found = self.known.lying, self.known.sure.copy()
-        breaks = [device.limit for device in self.bowl.devices if device.queued]
-        found &= ~np.array([any(one.balcony <= limit < one.width for limit in breaks) for one in lying], bool)
         rows = np.flatnonzero(found & self.predicted)
         found[rows] = steady(self.bowl.devices, [lying[k] for k in rows], self.bowl, CLEAR)
         return found & gone(self.bowl.devices, lying, self.known.passes)

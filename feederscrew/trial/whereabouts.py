@@ -99,6 +99,12 @@ def reaches(states, corners, radius):
     return np.stack([along.min(axis=1), along.max(axis=1), z.min(axis=1)], axis=1)
 
 
+def reach(state, corners, radius):
+    """Return how far a part reaches from the wall [any]."""
+    spots = state[:2] + vectors.product(corners, matrix(state).T)[:, :2]
+    return float(radius - np.hypot(spots[:, 0], radius - spots[:, 1]).min())
+
+
 def moved(states, by, radius):
     """Return states (N, 13) turned about the bowl's axis by ways along the wall, in one unit of length."""
     theta = np.broadcast_to(np.asarray(by) / radius, len(states))

@@ -193,10 +193,11 @@ def test_width_and_centre_of_mass_decide_at_the_edge(tmp_path):
             if kept is None
             else (passing == pytest.approx([kept]))
         )
-    _, _, known = stream(
-        shapes.box(10, 20, 30), chain=chain(tmp_path, "devices:\n  - pressure_break: 20 mm\n")
-    )
-    np.testing.assert_array_equal(known.passes[:, 1] == 1.0, known.widths <= 20e-3 + 1e-9)
+    for kind in ("pressure_break", "narrowed_track"):  # alone parts meet the same ledge
+        _, _, known = stream(
+            shapes.box(10, 20, 30), chain=chain(tmp_path, f"devices:\n  - {kind}: 14.9 mm\n")
+        )
+        np.testing.assert_array_equal(known.passes[:, 1] == 1.0, known.widths <= 20e-3 + 1e-9)
 
 
 def test_yield_by_aspect(tmp_path):

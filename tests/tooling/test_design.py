@@ -54,7 +54,7 @@ def test_a_block_is_isolated_by_devices_of_one_number(monkeypatch):
         assert one.efficiency == pytest.approx(study.shares[one.wanted] / study.shares.sum())
         assert one.margin >= MARGIN - 1e-9
         assert {cut.device.kind for cut in one.cuts} <= {
-            "wiper", "narrowed_track", "pressure_break", "canyon", "gap", "cut_out",
+            "wiper", "narrowed_track", "canyon", "gap", "cut_out",
         }  # fmt: skip
 
 

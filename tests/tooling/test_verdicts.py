@@ -53,7 +53,7 @@ def across(block):
         ("wiper: 6 mm", 1.0, 1.0),
         ("height_bar: 4 mm", -1.0, -1.0),
         ("hold_down: 5.5 mm", 0.5, 0.5),
-        ("pressure_break: 15 mm", 3.0, -5.0),
+        ("pressure_break: 8 mm", 2.0, -2.0),
         ("narrowed_track: 8 mm", 2.0, -2.0),
         ("canyon: 8 mm", -2.0, 2.0),
         ("gap: 9 mm", 1.0, -3.0),

@@ -56,6 +56,17 @@ def test_a_hold_down_over_the_heads_does_as_its_rule_says(clearance, passes):
     assert found.jams == found.returned == 0 and found.leaving[:-1][hangs].sum() == found.leaving.sum() > 0
 
 
+def test_rails_hold_what_a_swept_wiper_would_clear():
+    """The head stands 3 mm over the rails: a wiper at 2 mm stops it, and cannot sweep it off them."""
+    bowl = awkward.bowl("track.radius=0.15 m", "track.bank=6 deg")
+    rails = made("rails", "r", span=(2.25e-3, 6.65e-3), lead=(1e-3, 6.95e-3, 20e-3, 10e-3))
+    devices = (rails, made("wiper", "w", limit=2e-3, sweep=0.5))
+    _, known, rows, seen = tried(
+        HEADED, bowl, devices, lambda one: one.height < 9e-3 and one.length > 0.012, 2
+    )
+    assert {known.fates[row] for row in rows} == {"stopped"} and set(seen.fates) == {course.STOPPED}
+
+
 def test_a_t_nut_hangs_by_its_shoulders_in_rails_and_stops_in_a_slot():
     """Stem 5 mm wide and 6 mm deep, head 10 mm: between rails of 6.4 mm it goes down until the head rests."""
     bowl = awkward.bowl("track.radius=0.15 m")

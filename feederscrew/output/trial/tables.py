@@ -113,6 +113,7 @@ def queue(study, run):
         "counted_seconds": found.counted,
         "delivered": found.delivered,
         "returned": found.returned,
+        "backed_up": found.relieved,
         "jams": found.jams,
         "climbs": found.climbs,
         "velocity_mm_s": found.velocity / MM_S,
@@ -255,10 +256,11 @@ def _queued(found):
     """What a queue did, in a sentence."""
     way = "poured" if found.poured else "in a row"
     force = 1e3 * found.pressure.max(initial=0.0)
+    relieved = f" ({found.relieved} backed up at a pressure break)" if found.relieved else ""
     return (
         f"queue of {found.parts} {way}, {found.on_track} on the track at a time: {found.delivered:.4g} "
-        f"delivered in the last {found.counted:.4g} of {found.seconds:.4g} s, {found.returned} returned, "
-        f"{found.jams} jams, {found.climbs} climbed on others; gap {found.gap / MM:.3g} mm, "
+        f"delivered in the last {found.counted:.4g} of {found.seconds:.4g} s, {found.returned} returned"
+        f"{relieved}, {found.jams} jams, {found.climbs} climbed on others; gap {found.gap / MM:.3g} mm, "
         f"{100.0 * found.touching:.3g} % pushed, up to {force:.3g} mN on a part that stands at a device"
     )
 

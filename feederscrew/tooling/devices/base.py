@@ -72,7 +72,7 @@ class Device:
     turns: ClassVar[bool] = False  # whether it turns parts over instead of returning them
     hangs: ClassVar[bool] = False  # whether parts go on hanging by their heads
     overhead: ClassVar[bool] = False  # whether it is a blade over the track, open to its free edge
-    queued: ClassVar[bool] = False  # whether it needs a queue that pushes
+    relieves: ClassVar[bool] = False  # whether parts that back up leave the track at it
     bound: ClassVar[str] = ""  # 'upper', 'lower': what passes needs no more, bears no less
     proposed: ClassVar[bool] = False  # whether a design tries it
     rank: ClassVar[int] = 0  # of those of one bound, which a design tries first
@@ -241,6 +241,11 @@ class Device:
     def proposal(cls, where, limit):
         """Return the device of a value [m] that a design tries."""
         return cls(where, limit=limit)
+
+    @classmethod
+    def relieving(cls, wanted, margin, where):
+        """Return the device before the tooling at which orientations leave where they back up, or None."""
+        return None
 
     def valued(self, limit):
         """Return it with another value [m], and with the text of that."""

@@ -11,6 +11,7 @@ from feederscrew import value_forms as forms
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import (
+    RETURNED,
     STOPPED,
     Device,
     angle_text,
@@ -129,7 +130,8 @@ class Wiper(_Overhead):
         return self.face is not None and self.sweep < SQUARE - math.atan(friction)
 
     def fate(self, met):
-        return super().fate(met) if not self.clear_of(met.grip) else "returned"
+        clears = self.clear_of(met.grip) and not met.hanging  # rails hold what hangs
+        return RETURNED if clears else super().fate(met)
 
     def opening(self, every, width):
         if not self.contour:

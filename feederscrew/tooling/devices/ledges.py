@@ -9,6 +9,7 @@ from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import RETURNED, UNSURE, Device, carried, length_text, mapping_text
 
+SHOP_STEP_M = 5e-5  # [m] of which a value that is proposed is a whole multiple
 DISTANCE = "distance from the wall to the centre of mass"
 
 
@@ -54,17 +55,20 @@ class NarrowedTrack(_OneNumber):
 
 
 class PressureBreak(_OneNumber):
-    """A ledge from which the queue pushes parts off."""
+    """A ledge before the tooling, from which parts that back up leave the track."""
 
     kind = "pressure_break"
+    serves = "takes off parts that back up"
     example = "10 mm"
-    meaning = "gap where the queue pushes parts off; returns orientations wider than the ledge left"
+    meaning = (
+        "ledge of that width before the tooling: returns what it does not carry; where parts back up, those "
+        "that stand on it and reach over it are pushed off, so that a queue behind it is no longer pushed"
+    )
     hanging = False
-    queued = True
+    relieves = True
     bound = "upper"
-    proposed = True
-    rank = 4
-    feature = "width"
+    carries = True
+    feature = DISTANCE
 
     def span_on(self, track):
         return (self.limit, track.extent) if self.limit < track.extent else None
@@ -74,10 +78,33 @@ class PressureBreak(_OneNumber):
 
     @classmethod
     def needed(cls, one):
-        return one.width
+        return one.balcony
+
+    @classmethod
+    def relieving(cls, wanted, margin, where):
+        """Return the break that carries some orientations by a margin [m], each of which reaches over it.
+
+        Parameters
+        ----------
+        wanted : sequence of Orientation
+            That shall pass it alone, and leave it where they back up.
+        margin : float [m]
+            Beside what their hop takes of it.
+        where : str
+
+        Returns
+        -------
+        PressureBreak or None
+            None where one of them would not reach over the ledge.
+        """
+        least = max(one.balcony + margin + cls(where).hop_blur(one) for one in wanted)
+        limit = math.ceil(least / SHOP_STEP_M - 1e-6) * SHOP_STEP_M
+        reach = min(one.width for one in wanted)
+        return cls(where).valued(limit) if limit + margin <= reach else None
 
     def judged(self, met):
-        return met.verdict(self.limit - met.one.width)
+        needed = met.one.balcony
+        return met.verdict(self.limit - needed if math.isfinite(needed) else -met.one.standing.reach)
 
 
 class Canyon(_OneNumber):

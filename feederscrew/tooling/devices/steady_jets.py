@@ -90,9 +90,9 @@ class SteadyJet(Device):
         return np.array([out - met.grip * max(down, 0.0) for out, down in pushes]) / force
 
     def judged(self, met):
-        """Return what it does: what hangs between rails is held by them."""
+        """Return what it does: what hangs between rails is held by them, and may be pressed on them."""
         if met.hanging:
-            return met.passing()
+            return met.verdict(0.0)
         factor, most = self.factor(met), self.most(met)
         way = met.one.track.width - met.one.distance
         margin = way * (1.0 - (most if factor < 1.0 else factor))

@@ -192,7 +192,7 @@ def _surely(given, flow, states):
     loose = [
         one.returned
         or one.may_roll_back
-        or one.may_turn
+        or one.may_tip
         or (one.kind == "rolling" and not one.groove and (one.track.bank <= 0.0 or one.along_a_bank))
         for one in given.every
     ]
