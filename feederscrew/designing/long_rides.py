@@ -29,6 +29,11 @@ class LongRide:
     wanted: tuple[int, ...]  # orientations that leave as wanted
 
     @property
+    def either(self) -> NDArray[np.float64]:
+        """(M,) [1] shares of which half are those that enter and half those that arrive."""
+        return 0.5 * (self.entering + self.arriving)
+
+    @property
     def gained(self) -> NDArray[np.float64]:
         """(M,) [1] of all that enters, what began so and arrives as wanted though it was not."""
         return np.where(self._is_wanted, 0.0, self.entering * self._share_wanted)

@@ -245,12 +245,12 @@ def proved(
     ride, candidate = _at_the_tooling(search, candidate)
     bowl, ways, row = candidate.bowl, candidate.ways, candidate.proposal.row
     study = replace(_unproved(search, candidate, known), long_ride=ride)
-    tested = drawn or _drawn(search, candidate)
+    tested = drawn or _drawn(search, candidate, ride.either)
     study = replace(study, robust=tested, partial=tested.partial)
     if tested.partial or not (whole or tested.share >= DRAWS_HELD):
         return study
     try:
-        study = _in_queues(search, study, candidate, known, whole=whole)
+        study = _in_queues(search, study, candidate, known, ride.entering, whole=whole)
     except KeyboardInterrupt:
         return replace(study, partial=True)
     every = [ways.lying[k] for k in trying.often(candidate.weights)]
@@ -267,27 +267,37 @@ def _at_the_tooling(search: Search, candidate: Candidate) -> tuple[LongRide, Can
     return ride, replace(candidate, weights=ride.arriving)
 
 
-def _drawn(search: Search, candidate: Candidate) -> RobustRun:
-    """The draws of a design."""
+def _drawn(search: Search, candidate: Candidate, shares: np.ndarray) -> RobustRun:
+    """The draws of a design, of parts that come in some shares (M,) [1]."""
     request = search.request
     text = f"{request.draws} of part, friction, drive and cuts"
     search.begin_proof(f"draws: {candidate.attempt.wanted}, {text}")
     return robust_run(
-        search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.rows,
+        search.part, candidate.bowl, candidate.ways, shares, candidate.proposal.rows,
         draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
         any_heading=candidate.proposal.any_heading, spared=trying.spared_rows(candidate.tried),
     )  # fmt: skip
 
 
 def _in_queues(
-    search: Search, study: DesignStudy, candidate: Candidate, known: Shares, *, whole: bool
+    search: Search,
+    study: DesignStudy,
+    candidate: Candidate,
+    known: Shares,
+    entering: np.ndarray,
+    *,
+    whole: bool,
 ) -> DesignStudy:
-    """The design with its queues, as far as it holds unless ``whole``, and with the slowest for longer."""
+    """The design with its queues, as far as it holds unless ``whole``, and with the slowest for longer.
+
+    Parts that touch on their way come as they enter the track, in shares (M,) [1]: they ride otherwise than
+    alone.
+    """
     search.told(f"queue: {candidate.attempt.wanted}, {candidate.proposal.told}")
     line = queues.FollowedRow(
         search.part, candidate.bowl, known.aspects, candidate.ways, candidate.weights,
         candidate.tried.states, search.request.seed, search.told, RATE_KEPT * search.request.target,
-        candidate.proposal.any_heading, search.run("queue").progress,
+        candidate.proposal.any_heading, search.run("queue").progress, entering,
     )  # fmt: skip
     study = _queued(study, queues.filled(line, whole=whole))
     return _queued(study, queues.longer(line, study))

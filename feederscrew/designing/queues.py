@@ -49,12 +49,17 @@ class FollowedRow:
     least: float = 0.0  # wanted parts [1/s] below which a fill does not hold
     any_heading: tuple[str, ...] = ()  # aspects on which parts are wanted, whatever their heading
     progress: Callable[[int, int], None] | None = None  # told how many periods are done, of how many
+    # (M,) [1] in which they come where they touch on their way: as they entered the track; as shares without
+    touching: np.ndarray | None = None
 
     def queue(self, gaps: float, seed: int) -> PartsQueue:
         """Return a queue of PARTS that come with a mean free way of so many lengths between them."""
         poses = trying.counted(self.known, self.states, self.any_heading)
-        offered, plan = (self.known.lying, self.shares), QueuePlan(PARTS, SECONDS, gaps)
-        return PartsQueue(self.part, self.bowl, self.aspects, offered, poses, plan, seed)
+        shares = self.shares if gaps > 0.0 or self.touching is None else self.touching
+        plan = QueuePlan(PARTS, SECONDS, gaps)
+        return PartsQueue(
+            self.part, self.bowl, self.aspects, (self.known.lying, shares), poses, plan, seed
+        )  # fmt: skip
 
     def followed(self, fill: str, gaps: float, seed: int) -> FilledQueue:
         """Return what a queue did in SECONDS."""

@@ -8,7 +8,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import long_rides, loop, queues
-from feederscrew.designing.record import DesignRequest
+from feederscrew.designing.record import DesignRequest, RobustRun
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.output.designs import tables
 from feederscrew.trial.long_ride import LEFT, RideOfTrack
@@ -87,8 +87,8 @@ def test_those_that_turn_ride_again(monkeypatch):
     assert seen.arriving == pytest.approx([0.8, 0.0, 0.04, 0.04, 0.12])
 
 
-def test_a_proof_is_of_the_mix_that_arrives(monkeypatch):
-    """Queue and draws are of the mix behind the ride, and the document has both."""
+def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypatch):
+    """Apart parts come as the ride has made them, touching as they entered; draws are half of each."""
     monkeypatch.setattr(queues, "PARTS", 3)
     monkeypatch.setattr(queues, "SECONDS", 1.0)
     cube, seen = shapes.part(shapes.box(10, 10, 10)), []
@@ -96,19 +96,28 @@ def test_a_proof_is_of_the_mix_that_arrives(monkeypatch):
 
     def ride(*values):
         found = first(*values)
-        count = len(found.entering)
-        mix = np.full(count, 1.0 / count) if count > 1 else found.arriving
-        return replace(found, arriving=mix)
+        mix = np.arange(1.0, len(found.entering) + 1.0)
+        return replace(found, arriving=mix / mix.sum())
 
     def filled(row, *, whole):
-        seen.append(row.shares)
+        seen.append((row.shares, row.touching))
         return queues_filled(row, whole=whole)
 
-    queues_filled = queues.filled
+    def robust_run(part, bowl, known, shares, *_, **__):
+        drawn.append(shares)
+        return RobustRun(1, 1, "")
+
+    queues_filled, drawn = queues.filled, []
+    monkeypatch.setattr(loop, "robust_run", robust_run)
     monkeypatch.setattr(loop, "long_ride", ride)
     monkeypatch.setattr(queues, "filled", filled)
     found = loop.design(cube, bowls.default(), frozenset(), DesignRequest(0.5, draws=1), with_nearest=False)
-    assert found.long_ride is not None and seen
-    assert all(np.array_equal(shares, found.long_ride.arriving) for shares in seen)
+    ride = found.long_ride
+    assert ride is not None and seen and drawn
+    assert all(
+        np.array_equal(apart, ride.arriving) and np.array_equal(touching, ride.entering)
+        for apart, touching in seen
+    )
+    assert all(shares == pytest.approx(0.5 * (ride.arriving + ride.entering)) for shares in drawn)
     (row,) = tables.document(found)["long_ride"][:1]
     assert row["parts"] >= long_rides.EACH and row["stays"] + row["left"] <= row["parts"]

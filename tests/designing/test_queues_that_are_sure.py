@@ -199,3 +199,20 @@ def test_what_the_user_stops_is_handed_over_as_far_as_it_went():
     assert followed(row(*at_once)) == [("low", 20.0, True)]
     with pytest.raises(KeyboardInterrupt):
         followed(row(*(FakeQueue(2.0, stop_at=0.0) for _ in range(3))))
+
+
+def test_touching_parts_come_as_they_entered_the_track(monkeypatch):
+    """Parts apart come in the shares behind the ride, touching ones in those before it."""
+    offered = {}
+    monkeypatch.setattr(
+        queues,
+        "PartsQueue",
+        lambda part, bowl, aspects, parts, poses, plan, seed: offered.update({plan.gaps: parts[1]}),
+    )
+    monkeypatch.setattr(queues.trying, "counted", lambda *_: ())
+    known, arriving, entering = SimpleNamespace(lying=()), np.array([0.9, 0.1]), np.array([0.5, 0.5])
+    made = queues.FollowedRow(None, None, None, known, arriving, (0,), 1, touching=entering)
+    for _, gaps in queues.FILLS:
+        made.queue(gaps, 1)
+    assert [offered[gaps] is entering for _, gaps in queues.FILLS] == [False, False, True]
+    assert [offered[gaps] is arriving for _, gaps in queues.FILLS] == [True, True, False]

@@ -108,6 +108,18 @@ def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings(gaps, seconds
     assert found.jams == found.returned == found.climbs == 0 and found.depth < 5e-6
 
 
+@pytest.mark.parametrize("gaps", [0.0, queue.GAPS])
+def test_a_row_that_hops_travels_as_the_point_mass_touching_or_not(gaps):
+    """Throw number 2.27 at 100 Hz, no rebound: 83.2 mm/s; nothing climbs, and the rate is its pitch's."""
+    own = ("drive.amplitude=0.1647 mm", "drive.frequency=100 Hz", "drive.vibration_angle=20 deg")
+    more = ("track.radius=50 m", "track.climb=3 deg", "track.bank=0 deg", "friction.static=0.6")
+    bowl = bowls.read(None, [*own, *more, "restitution=0", "track.width=30 mm"])
+    found = queued(bowl, 4, 3.0, gaps=gaps)
+    assert found.velocity == pytest.approx(answer.answer(bowl).velocity, rel=0.04)
+    assert found.rate == pytest.approx(found.velocity / (0.02 + found.gap), rel=0.08)
+    assert found.climbs == found.returned == found.jams == 0
+
+
 def test_a_row_that_reaches_round_the_bowl_stays_on_the_track():
     # 12 blocks on a track of 80 mm in radius: the last enter beyond a quarter of the turn
     tight = replace(BOWL, track=replace(BOWL.track, radius=0.08, width=0.04))
