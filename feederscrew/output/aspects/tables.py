@@ -5,10 +5,10 @@ import numpy as np
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
 from feederscrew.output import columns, tables
-from feederscrew.output.columns import DEG, G_MM2, MM, MM2, UJ
+from feederscrew.output.columns import G_MM2, MM2, UJ
 from feederscrew.resting import names_file
 from feederscrew.resting.forms import postures
-from feederscrew.units import shown
+from feederscrew.units import DEG, MM, shown
 
 MOST = 24  # rows that a picture shows
 NORMALS = ("normal_x", "normal_y", "normal_z")

@@ -7,9 +7,8 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from feederscrew.output import marking
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 HEADER = "feeder bowl: the bowl as a solid, in mm"
 HEADER_BYTES = 80  # of a binary STL
 BETWEEN = 10e-3  # [m] from segment to segment

@@ -6,9 +6,8 @@ from feederscrew.output import marking
 from feederscrew.output.page.blocks import Notes, Views
 from feederscrew.output.solid import meshes
 from feederscrew.output.solidbowl.bowl_picture import HIGH, SIDE, parts
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
 TURN = (
     "The bowl as one closed body, parts on its track. Drag it to turn it, or use the arrow keys; "

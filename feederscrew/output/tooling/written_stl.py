@@ -4,9 +4,8 @@ import numpy as np
 
 from feederscrew.output import marking
 from feederscrew.tooling.solid import triangles
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 HEADER = "feeder tooling: track section in mm"
 HEADER_BYTES = 80  # of a binary STL
 

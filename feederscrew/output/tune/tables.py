@@ -6,8 +6,8 @@ from feederscrew import units
 from feederscrew.output import columns, tables
 from feederscrew.output.motion_words import regime_words
 from feederscrew.rates.drive_settings import WITHIN
+from feederscrew.units import MM_S, PER_MINUTE
 
-PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity")
 SEVERAL = ", several"  # velocities, depending on how the part arrives
 MET = {False: "at this friction", True: "at the worst friction"}
 
