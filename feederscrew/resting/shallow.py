@@ -12,7 +12,7 @@ from feederscrew.resting.basins.landscape import SMOOTH, Landscape, angle
 from feederscrew.resting.faces import Face
 from feederscrew.resting.flats import ONE_PLANE
 from feederscrew.resting.rules import published
-from feederscrew.units import factor
+from feederscrew.units import MM
 
 MIN_INSIDE_SHARE = (
     1e-2  # [1] of the part's radius: a foot nearer to a facet's border is one of the file's noise
@@ -21,7 +21,6 @@ MAX_SHALLOW = 500  # of such facets, the furthest from a border first: with more
 MIN_CHANGE = 5e-4  # [1] of a probability: less does not show in a table
 ALIKE_DIGITS = 4  # of height and area, in which equal facets agree
 RULES = ("pmi", "csa", "stability")
-MM = factor("mm", "length")
 
 
 @dataclass(frozen=True, eq=False)
