@@ -35,7 +35,7 @@ def pdf(study, tried=None, mark=None):
     -------
     bytes
     """
-    title = marking.named(f"{study.order.part.name}: bowl", marking.of_trial(tried, mark))
+    title = marking.marked_title(f"{study.order.part.name}: bowl", marking.of_trial(tried, mark))
     return sheet(study, tried, mark).pdf(title)
 
 
