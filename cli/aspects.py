@@ -73,6 +73,14 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     out.show(shown, tables.document(study))
 
 
+ONCE = (
+    "PMI counts an aspect once, as Tables 3-8 and 3-9: without --as-published each of its equal faces counts."
+)
+EACH = (
+    "PMI counts each of the equal faces of an aspect: --as-published counts it once, as Tables 3-8 and 3-9."
+)
+
+
 def _files_wanted(graph, out):
     if graph and out.directory is None:
         raise click.UsageError("--graph writes files: give -o DIR as well")
@@ -95,4 +103,6 @@ def _study(solid, chosen, out):
     out.warn(*study.aspects.warnings)
     if out.format == "table" and study.recommended is not None:
         out.say("PMI, CSA and stability are published rules, to compare with: go by recommended.")
+    if out.format == "table" and (study.aspects.faces > 1).any():
+        out.say(ONCE if chosen["as_published"] else EACH)
     return study

@@ -110,7 +110,7 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
         _found(bowl, measured, out)
         return
     settings, path = bowls.settings(**bowl), bowl["path"]
-    out.warn(*bowls.assumed(settings))
+    out.warn(*bowls.assumptions(settings))
     solid = out.part(part) if part["source"] else None
     identity = solid.inputs if solid else {}
     effective = (columns.conditions(solid) if solid else {}) | bowls.texts(settings)
@@ -137,7 +137,7 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
         out.show(tables.summary(found, holding), document)
 
 
-def _typed(*names):
+def _typed_options(*names):
     """The options, as '--bed', of those parameters that the user typed."""
     context = click.get_current_context()
     typed = [name for name in names if context.get_parameter_source(name) is ParameterSource.COMMANDLINE]
@@ -163,10 +163,10 @@ def _fitting(part, target, made, measured):
     if made["solid"] and not part["source"]:
         raise click.UsageError("--solid is given without PART - name the part's file")
     if not made["solid"]:
-        for option in _typed("material", "bed", "step", "chord"):
+        for option in _typed_options("material", "bed", "step", "chord"):
             raise click.UsageError(f"{option} is given without --solid - add --solid")
     if not part["source"]:
-        for option in _typed(*options.READING, *orientation.WANTED):
+        for option in _typed_options(*options.READING, *orientation.WANTED):
             raise click.UsageError(f"{option} is given without PART - name the part's file")
     if made["join"] and not made["bed"]:
         raise click.UsageError("--join is given without --bed - give the printer's bed: --bed 220x220x250mm")

@@ -144,7 +144,7 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
         from feederscrew.output.designs import tables
 
     settings = bowls.settings(**bowl)
-    out.warn(*bowls.assumed(settings))
+    out.warn(*bowls.assumptions(settings))
     record, given = bowls.record(settings), {s.key.name for s in settings if s.given}
     request = DesignRequest(**asked | {"jobs": asked["jobs"] or os.cpu_count()}, rule=rule)
     named = any(value is not None for value in taken.values())

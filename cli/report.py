@@ -2,6 +2,7 @@
 
 import gc
 import shlex
+from dataclasses import replace
 
 import click
 
@@ -83,12 +84,14 @@ def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
     waiting.conveying(out)
     chosen = orientation.choice(taken) | orientation.telling(out)
     found = study(solid, **bowl, **wanted, **chosen, command=repeated(out.arguments))
+    tried, kept = verified(bowl["path"]), record(found.settings)
+    found = replace(found, as_tried=proof.holds(tried, solid, kept, orientation.name(wanted)))
     effective = columns.conditions(solid) | texts(found.settings)
     gc.freeze()  # what is loaded stays: it need not be looked through after every chapter
     with out.folder(solid.name, found.inputs, effective) as folder:
         made = page(found, out.step)
         out.warn(*(line for line in made.warnings if line not in solid.warnings))
-        out.warn(*proof.warnings(verified(bowl["path"]), solid, record(found.settings), found.aspect))
+        out.warn(*proof.warnings(tried, solid, kept, found.aspect))
         write(folder, made, format)
 
 

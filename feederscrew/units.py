@@ -50,6 +50,8 @@ UNITS = {  # dimension: {unit: SI units in it}, the unit we suggest first
     "supply": {"Hz full wave": 2.0, "Hz half wave": 1.0},  # mains: hertz of the drive in one of the supply
     "energy": {"J": 1.0, "mJ": 1e-3, "uJ": 1e-6},
 }
+MM, DEG = UNITS["length"]["mm"], UNITS["angle"]["deg"]  # [m], [rad] of those that people read most
+MM_S, PER_MINUTE = UNITS["velocity"]["mm/s"], UNITS["rate"]["/min"]  # [m/s], [1/s]
 SPELLINGS = {
     **{"°": "deg", "degree": "deg", "degrees": "deg", "µm": "um", "μm": "um", "inch": "in", '"': "in"},
     **{f"Hz {wave}{end}": f"Hz {wave} wave" for wave in ("full", "half") for end in ("", "-wave", "wave")},

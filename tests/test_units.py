@@ -94,3 +94,11 @@ def test_a_number_of_a_file_is_of_plain_digits(text):
 
 def test_a_number_of_a_file():
     assert [units.decimal(text) for text in (" 1.5 ", "-2", "+.5e1", "3.")] == [1.5, -2.0, 5.0, 3.0]
+
+
+def test_the_units_that_people_read_most_are_those_of_the_table():
+    for value, unit, dimension in (
+        (units.MM, "mm", "length"), (units.DEG, "deg", "angle"), (units.MM_S, "mm/s", "velocity"),
+        (units.PER_MINUTE, "/min", "rate"),
+    ):  # fmt: skip
+        assert value == units.factor(unit, dimension) == units.quantity(f"1 {unit}", dimension)

@@ -10,14 +10,14 @@ from pathlib import Path
 
 from feederscrew.bowl.reading import adjust, settings
 from feederscrew.bowl.record import Bowl, Drive, Friction, Track
-from feederscrew.bowl.settings import assumed, by_machine, effective, record, remarks, swept, texts
+from feederscrew.bowl.settings import assumptions, by_machine, effective, record, remarks, swept, texts
 from feederscrew.bowl.strokes import named, strokes
 from feederscrew.bowl.vary import ranges
 from feederscrew.bowl.verified import verified
 
 __all__ = [
     "Bowl", "Drive", "Friction", "Track",
-    "adjust", "assumed", "by_machine", "default", "identity", "name", "named", "ranges", "read", "record",
+    "adjust", "assumptions", "by_machine", "default", "identity", "name", "named", "ranges", "read", "record",
     "remarks", "settings", "strokes", "swept", "texts", "verified",
 ]  # fmt: skip
 

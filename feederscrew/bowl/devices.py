@@ -153,7 +153,7 @@ def check_written(chain: Iterable[Device], name: str) -> None:
 
 
 def differences(
-    one: object, other: object, unlike: Container[str] = ("where", "text", "assumed")
+    one: object, other: object, unlike: Container[str] = ("where", "text", "assumption")
 ) -> list[str]:
     """Return in what two records of one kind differ by more than a file's digits, an attribute a sentence.
 

@@ -35,7 +35,7 @@ KEYS = (
         "amplitude at twice the frequency, as a fraction of drive.amplitude",
     ),
     Key(
-        "drive.second_harmonic_phase", "drive.second_harmonic_phase", "angle", "-180 deg", "180 deg", "0 deg",
+        "drive.second_harmonic_phase", "drive.second_harmonic_phase", "angle", "-360 deg", "360 deg", "0 deg",
         "psi of the motion sin(w t) + r sin(2 w t + psi), r being drive.second_harmonic",
     ),
     Key(

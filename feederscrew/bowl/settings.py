@@ -144,14 +144,14 @@ def has_machine(given: Iterable[str]) -> bool:
     return any(name in BY_NAME and BY_NAME[name].field.startswith("machine.") for name in given)
 
 
-def assumed(settings: Sequence[Setting]) -> tuple[str, ...]:
+def assumptions(settings: Sequence[Setting]) -> tuple[str, ...]:
     """Return what was taken for granted as devices were read, a sentence each."""
-    return tuple(device.assumed for device in chain(settings) if device.assumed)
+    return tuple(device.assumption for device in chain(settings) if device.assumption)
 
 
 def remarks(settings: Sequence[Setting]) -> tuple[str, ...]:
     """Return what a user must not overlook in a bowl file, a sentence each."""
-    return (*by_machine(settings), *assumed(settings))
+    return (*by_machine(settings), *assumptions(settings))
 
 
 def by_machine(settings: Sequence[Setting]) -> tuple[str, ...]:

@@ -113,7 +113,7 @@ class Verified:
     @property
     def sentence(self) -> str:
         """What the trial showed, in a sentence."""
-        minute = units.factor("/min", "rate")
+        minute = units.PER_MINUTE
         purity = "nothing left" if self.purity is None else f"purity {100.0 * self.purity:.3g} %"
         counted = f", {self.up} at any heading counted in: a rule counts one orientation" if self.up else ""
         return (

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from feederscrew.units import factor
+from feederscrew.units import MM, factor
 
-MM, MM2, MM3 = factor("mm", "length"), factor("mm2", "area"), factor("mm3", "volume")
-UJ, DEG = factor("uJ", "energy"), factor("deg", "angle")
+MM2, MM3 = factor("mm2", "area"), factor("mm3", "volume")
+UJ = factor("uJ", "energy")
 GRAM, G_MM2, G_CM3 = factor("g", "mass"), factor("g mm2", "inertia"), factor("g/cm3", "density")
 
 

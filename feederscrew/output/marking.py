@@ -32,7 +32,7 @@ def of_trial(tried, mark=None):
     return MARK if tried is not None and tried.status == FALLS_SHORT else ""
 
 
-def named(text, mark):
+def marked_title(text, mark):
     """Return the name of a body or the title of a file with a mark: 'bowl - FALLS SHORT - ...'."""
     return f"{text} - {mark}" if mark else text
 
@@ -58,7 +58,7 @@ def file_name(name, mark):
     return f"{path.stem}{NAME_END}{path.suffix}" if mark else name
 
 
-def step(data, mark):
+def mark_step(data, mark):
     """Return a STEP file whose head and products bear a mark.
 
     Parameters

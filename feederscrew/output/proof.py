@@ -1,8 +1,7 @@
 """What the trial of a design has shown, beside what other commands compute of it."""
 
-from feederscrew import __version__, units
-
-PER_MINUTE = units.factor("/min", "rate")
+from feederscrew import __version__
+from feederscrew.units import PER_MINUTE
 
 
 def warnings(verified, part, bowl, wanted=None):

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from feederscrew.mechanics.floor.balance import STATES
-from feederscrew.units import DEGREE, MINUTE, counted, listed
+from feederscrew.units import DEGREE, MINUTE, MM, counted, listed
 
-MM, UM, GRAM, PERCENT = 1e-3, 1e-6, 1e-3, 0.01  # [SI]
+UM, GRAM, PERCENT = 1e-6, 1e-3, 0.01  # [SI]
 MOST_SHARES = 8  # aspects in a line
 
 

@@ -5,11 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from feederscrew.part.record import Part
-from feederscrew.units import factor
+from feederscrew.units import MM
 
 SMALL_PART_M = 1e-3  # [m] largest dimension: below it shops measure in other tolerances
 SMALL_SHARE, SHARE_SAID = 0.05, 0.25  # [1] of the largest dimension: said of such a part, and of any
-MM = factor("mm", "length")
 
 
 def small_part_remarks(part: Part, allowances: Mapping[str, float], width: float | None) -> tuple[str, ...]:

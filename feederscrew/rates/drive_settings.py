@@ -264,7 +264,7 @@ def _unreachable(looks: list[_Look], target: float, density: Density) -> Argumen
     bowl = looks[0].bowl
     peaks = [(speed, one.key, value) for one in looks for speed, value in zip(one.speeds, one.values)]
     peaks = sorted((peak for peak in peaks if np.isfinite(peak[0])), key=lambda peak: -peak[0])
-    per_minute = units.factor("/min", "rate")
+    per_minute = units.PER_MINUTE
     what = f"no setting reaches {target / per_minute:.6g}/min"
     mend = "lower the target, or change two keys of the drive together"
     if peaks[0][0] <= 0.0:

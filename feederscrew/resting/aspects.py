@@ -27,7 +27,7 @@ from feederscrew.resting.rules import published, recommended, registry, surface
 from feederscrew.resting.rules.quantities import ClassQuantities
 from feederscrew.resting.rules.recommended import Recommended
 from feederscrew.resting.tumbling import by_class, walk
-from feederscrew.units import factor
+from feederscrew.units import MM
 
 CONVEX = 1e-6  # [1] of the hull's volume: a smaller difference breaks no symmetry
 TIE = 1e-4  # probabilities that differ by less of themselves are equal but for rounding
@@ -41,7 +41,6 @@ MAX_SHALLOW = 500  # facets with the foot inside, the furthest from a border fir
 MIN_CHANGE = 5e-4  # [1] of a probability: less does not show in a table
 ALIKE_DIGITS = 4  # of height and area, in which equal facets agree
 PUBLISHED_RULES = ("pmi", "csa", "stability")
-MM = factor("mm", "length")
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,9 +5,8 @@ import shapely
 from shapely import affinity
 
 from feederscrew.errors import FeederError
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")  # manifold3d works on numbers of that size
 CRUMB = 1e-9  # [m3] a loose piece smaller than this is left out
 SIDES = 48  # of a round hole
 APART = 0.5  # of a side: no corner of a hole lies on an edge of what it is drilled through

@@ -11,6 +11,7 @@ from feederscrew.solidbowl import facets, lugs
 from feederscrew.solidbowl.plan import TURN
 from feederscrew.solidbowl.track import fillet
 from feederscrew.tooling import whole_surface
+from feederscrew.units import MM
 
 MOST = 6  # segments in one direction
 TURNS = 36  # positions of the seams that are tried, over a quarter turn
@@ -22,7 +23,6 @@ GRID = 1.5e-3  # [m] at which places for dowels are looked for
 NEAR = 1e-3  # [m] of a surface
 PLACES = "floor", "wall", "track", "outlet"  # what may hang over
 DOWELS, SCREWS = JOINTS = ("dowels", "screws")
-MM = 1e-3
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,6 @@ from functools import cached_property
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew import units
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting
 from feederscrew.bowl.vary import KeyRange
@@ -18,8 +17,7 @@ from feederscrew.conveying.steady import STATUSES
 from feederscrew.geometry import grids
 from feederscrew.machine import speeds
 from feederscrew.records import Shown
-
-MM, DEG = units.factor("mm", "length"), units.factor("deg", "angle")
+from feederscrew.units import DEG, MM
 
 
 @dataclass(frozen=True, eq=False)

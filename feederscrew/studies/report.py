@@ -56,6 +56,7 @@ class ReportStudy(Shown):
     inputs: dict[str, str] = field(default_factory=dict)  # sha256 by path
     command: str = ""  # that repeats it
     sent: int | None = None  # parts of a trial; None without one
+    as_tried: bool = False  # a trial of the bowl file holds: its drive is kept for the target
 
     @property
     def part(self) -> Part:
@@ -126,7 +127,7 @@ class ReportStudy(Shown):
             return machines.bowl(
                 self.settings, self.part, self.target,
                 aspect=self.counted, heading=heading, rule=self.rule, gap=self.gap, fill=self.fill,
-                known=self.resting.aspects,
+                known=self.resting.aspects, as_tried=self.as_tried,
             )  # fmt: skip
         given = has_machine({s.key.name for s in self.settings if s.given})
         return machines.machine(self.settings) if given else None

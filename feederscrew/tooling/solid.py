@@ -10,9 +10,8 @@ from feederscrew import check
 from feederscrew.tooling import whole_surface
 from feederscrew.tooling.devices.hole_shapes import beyond_borders
 from feederscrew.tooling.strip import CHORD, bent
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")  # manifold3d works on numbers of that size
 PLATE, WALL = 3e-3, 3e-3  # [m] thickness of track and wall
 ABOVE = 5e-3  # [m] of the wall above the tallest part
 INTO = 1e-3  # [m] by which wall and gates reach into plate and wall, so that they are one body

@@ -12,9 +12,8 @@ from scipy.spatial import cKDTree
 from feederscrew import check
 from feederscrew.errors import FeederError
 from feederscrew.geometry.graphs import components
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 SIMPLER = 0.0, 1e-5, 2e-4, 2e-3  # [mm] corners nearer than this become one: the first that closes
 CRUMB = 1.0  # [mm3] a film of air that closes in itself, or a piece, smaller than this is left out
 ROUNDED = 1e-6  # of a volume: by that and a crumb at most may rounding change it

@@ -357,7 +357,7 @@ def test_a_drawing_that_names_no_unit_is_read_in_millimetres_and_that_is_said(ru
     said = (
         f"{tmp_path}/bowl.yaml:3:20: hole.dxf names no unit ($INSUNITS), read in mm - save it in millimetres"
     )
-    assert bowls.remarks(settings) == bowls.assumed(settings) == ((said,) if warned else ())
+    assert bowls.remarks(settings) == bowls.assumptions(settings) == ((said,) if warned else ())
     done = run("slide", "--config", tmp_path / "bowl.yaml", "--format", "json")
     assert done.exit_code == 0 and ("names no unit" in done.stderr) is warned
     size = {0: 1e-3, 4: 1e-3, 1: 25.4e-3}[code] / 1e-3

@@ -341,3 +341,13 @@ def test_title_of_a_cycle_says_what_is_shown(overrides, title):
     drive = tuple(text for text in drive if text.partition("=")[0] not in names)
     found = answer.answer(bowls.read(None, (*drive, *overrides)))
     assert re.fullmatch(title, convey_plots.cycle_title(trace(found.setting), found))
+
+
+def test_a_phase_of_the_second_harmonic_may_be_written_as_a_whole_turn_more():
+    """220 deg, as thesis and papers print it, is -140 deg: the same motion."""
+    keys = ("drive.phase=20 deg", "drive.second_harmonic=0.3")
+    found = [
+        answer.answer(bowls.read(None, (*keys, f"drive.second_harmonic_phase={angle} deg"))).velocity
+        for angle in (220.0, -140.0, 140.0)
+    ]
+    assert found[0] == pytest.approx(found[1], rel=1e-9) != pytest.approx(found[2], rel=1e-3)

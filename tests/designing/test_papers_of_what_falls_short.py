@@ -18,6 +18,7 @@ from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
 from feederscrew.errors import FeederError
 from feederscrew.output import marking, solidbowl, style
+from feederscrew.output import report as report_page
 from feederscrew.output.designs import design_file, design_page, family, family_page, files, tables
 from feederscrew.output.machine import figures
 from feederscrew.output.machine import sheet as sheets
@@ -279,6 +280,22 @@ def test_feeder_bowl_takes_it_too_where_the_static_rule_finds_none(run, tmp_path
     assert "the static rule finds none for 2e+04/min" in done.stderr
     assert json.loads(done.stdout)["peak_to_peak_mm"] == pytest.approx(0.84, rel=1e-9)
     assert "20000/min are not kept" in done.stderr or "2e+04/min are not kept" in done.stderr
+
+
+def test_a_report_takes_the_drive_that_was_tried_as_well(run, tmp_path, monkeypatch):
+    path, config, seen = tmp_path / "box.stl", tmp_path / "design.yaml", []
+    shapes.box(12.0, 10.0, 8.0).export(path)
+    sheet = beside.machines.machine(bowls.settings(None, BOWL))
+    config.write_text(design_file.bowl_file(study(part=load(path)), (), sheet))
+
+    def page(found, _):
+        seen.append(2e3 * found.machine.bowl.drive.amplitude)
+        raise FeederError("page", "is not made", "look at the sheet")
+
+    monkeypatch.setattr(report_page, "page", page)
+    line = ("report", path, "--config", config, "--target", "30/min", "--launch", "place", "-o", tmp_path)
+    assert run(*line).exit_code == run(*line, "--set", "friction.static=0.5").exit_code == 1
+    assert seen[0] == pytest.approx(0.84, rel=1e-9) and seen[1] < 0.6
 
 
 STEP = (

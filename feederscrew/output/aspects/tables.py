@@ -5,10 +5,10 @@ import numpy as np
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
 from feederscrew.output import columns, tables
-from feederscrew.output.columns import DEG, G_MM2, MM, MM2, UJ
+from feederscrew.output.columns import G_MM2, MM2, UJ
 from feederscrew.resting import names_file
 from feederscrew.resting.forms import postures
-from feederscrew.units import shown
+from feederscrew.units import DEG, MM, shown
 
 MOST = 24  # rows that a picture shows
 NORMALS = ("normal_x", "normal_y", "normal_z")
@@ -66,7 +66,8 @@ def printed(frame, wanted=None):
     frame : Frame
         From ``aspects``.
     wanted : str, optional
-        Names with commas between, or 'all'; without it the columns of ``PRINTED`` that there are.
+        Names, or what the table heads them, with commas between, or 'all'; without it the columns of
+        ``PRINTED`` that there are.
 
     Returns
     -------
@@ -80,10 +81,18 @@ def printed(frame, wanted=None):
     if wanted is None:
         return by_share(frame.only(name for name in PRINTED if name in frame))
     names = list(frame) if wanted.strip() == "all" else [name.strip() for name in wanted.split(",")]
+    headed = _by_heading(frame)
+    names = [name if name in frame else headed.get(name.casefold(), name) for name in names]
     for name in names:
         if name not in frame:
             raise ArgumentError("columns", f"there is no column {shown(name)}", hint(name, list(frame)))
     return frame.only(names)
+
+
+def _by_heading(frame):
+    """The columns by what a table heads them, 'height' and 'pmi'; without what heads several, 'low'."""
+    words = [tables.heading(name)[0].casefold() for name in frame]
+    return {word: name for word, name in zip(words, frame) if words.count(word) == 1}
 
 
 def by_share(frame):

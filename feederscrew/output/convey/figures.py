@@ -10,9 +10,8 @@ from feederscrew.conveying.setting import PHASES
 from feederscrew.output import style
 from feederscrew.output.motion_words import PHASE_WORDS
 from feederscrew.output.tables import heading
-from feederscrew.units import factor
+from feederscrew.units import MM_S, factor
 
-MM_S = factor("mm/s", "velocity")
 PHASE_COLOURS = {"stick": "#5c6b78", "forward": "#009e73", "backward": "#d55e00", "flight": "#0072b2"}
 PLATE = "#aab4bd"
 PHASE_LINES = {"stick": "-", "forward": "-", "backward": "--", "flight": ":"}

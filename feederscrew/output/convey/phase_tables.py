@@ -3,7 +3,8 @@
 import numpy as np
 
 from feederscrew.output import tables
-from feederscrew.output.convey.tables import MM_S, between, number
+from feederscrew.output.convey.tables import between, number
+from feederscrew.units import MM_S
 
 
 def document(found):

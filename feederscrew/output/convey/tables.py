@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from feederscrew import units
 from feederscrew.conveying import answer, sensitivity, steady
 from feederscrew.output import tables
 from feederscrew.output.motion_words import PHASE_WORDS, regime_words
+from feederscrew.units import MM_S
 
-MM_S = units.factor("mm/s", "velocity")
 VELOCITIES = {"velocity": "velocity_mm_s", "low": "velocity_low_mm_s", "high": "velocity_high_mm_s"}
 NO_STEADY_STATE = (
     "no steady state: the part slides down the track without stopping, and no velocity is steady"

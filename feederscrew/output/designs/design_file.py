@@ -9,8 +9,8 @@ from feederscrew.bowl.devices import SECTION
 from feederscrew.bowl.verified import NOTHING_LEFT, Verified, body_fingerprint, fingerprint
 from feederscrew.designing.record import NOT_PROVED
 from feederscrew.errors import FeederError
+from feederscrew.units import MM, PER_MINUTE
 
-PER_MINUTE, MM = units.factor("/min", "rate"), units.factor("mm", "length")
 DRIVE = (
     ("amplitude", "mm", "length"), ("frequency", "Hz", "frequency"), ("vibration_angle", "deg", "angle"),
     ("phase", "deg", "angle"),

@@ -6,16 +6,16 @@ from feederscrew import units
 from feederscrew.output.designs import tables
 
 DRIVE = (
-    ("amplitude", units.factor("mm", "length"), "mm"),
+    ("amplitude", units.MM, "mm"),
     ("frequency", 1.0, "Hz"),
-    ("vibration_angle", units.factor("deg", "angle"), "deg"),
-    ("phase", units.factor("deg", "angle"), "deg"),
+    ("vibration_angle", units.DEG, "deg"),
+    ("phase", units.DEG, "deg"),
 )
 TRACK = (
-    ("radius", units.factor("mm", "length"), "mm"),
-    ("width", units.factor("mm", "length"), "mm"),
-    ("bank", units.factor("deg", "angle"), "deg"),
-    ("climb", units.factor("deg", "angle"), "deg"),
+    ("radius", units.MM, "mm"),
+    ("width", units.MM, "mm"),
+    ("bank", units.DEG, "deg"),
+    ("climb", units.DEG, "deg"),
 )
 SET, TAUGHT, SWAPPED = "set", "taught", "swapped"  # at the controller, at the sensor, by hand
 NOTHING = "-"
@@ -75,7 +75,7 @@ def changeover(study):
 
 def summary(study):
     """Return what is printed: a row for each part, then what is changed."""
-    minute = tables.PER_MINUTE
+    minute = units.PER_MINUTE
     rows = [("status", study.status), ("one bowl for all", "yes" if study.shared else "no")]
     for one in study.members:
         rate, low, _ = (value / minute for value in one.delivered)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew.output import style
-from feederscrew.output.designs.tables import PER_MINUTE
+from feederscrew.units import PER_MINUTE
 
 FEWEST = 8  # trials there is room for: a single one is a bar, not a block
 CLEAN, DENIED = "#009e73", style.ACCENT

@@ -10,9 +10,7 @@ from feederscrew.conveying.hop import hop
 from feederscrew.designing import record
 from feederscrew.machine.feasibility import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import columns, tables
-
-PER_MINUTE = units.factor("/min", "rate")
-MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
+from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 SAID_FIRST = {  # or elsewhere
     "drive_kind", "drive_needs", "drive_of_the_springs", "vibration_angle_deg", "phase_deg", "frequency_hz",

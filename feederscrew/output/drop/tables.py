@@ -3,8 +3,8 @@
 import numpy as np
 
 from feederscrew.output import tables
-from feederscrew.output.columns import MM
 from feederscrew.output.drop import trace_tables
+from feederscrew.units import MM
 
 
 def counts(study):

@@ -4,7 +4,7 @@ import numpy as np
 
 from feederscrew.dropping.launch_file import FACES
 from feederscrew.output import style
-from feederscrew.output.columns import MM
+from feederscrew.units import MM
 
 LOOKS = (  # what is computed of the upper side: label, marker, colour
     ("upper side as measured", "o", "#0072b2"),

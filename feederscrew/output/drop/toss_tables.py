@@ -9,7 +9,7 @@ from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
 from feederscrew.dropping import toss_runs
 from feederscrew.dropping.launch_file import FACES
 from feederscrew.output import columns, tables
-from feederscrew.output.columns import MM
+from feederscrew.units import MM
 
 NONE = "none"  # the side that points up where no run came to rest
 BY_SIDE = tuple(f"p_{'plus' if side[0] == '+' else 'minus'}_{side[1]}" for side in FACES)

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator
 
 from feederscrew.output import style
-from feederscrew.output.columns import MM
+from feederscrew.units import MM
 
 HEIGHT = "#0072b2"  # colour of the height of the centre of mass
 APART = 0.075  # of the axis: labels closer than this would touch

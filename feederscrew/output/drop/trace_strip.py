@@ -8,11 +8,11 @@ from scipy.ndimage import binary_dilation
 from feederscrew.dropping.key_moments import chosen
 from feederscrew.dropping.traces import DropTrace
 from feederscrew.output import style
-from feederscrew.output.columns import MM
 from feederscrew.output.drop import trace_curve
 from feederscrew.output.solid import marks, render, shading
 from feederscrew.output.solid.shading import Shot
 from feederscrew.output.solid.stance import TURN, outermost, placed
+from feederscrew.units import MM
 
 ACROSS, DOWN = 6, 2  # stills
 WIDTH, TALLEST, GAP = 262, 430, 12  # [px] of a still; its greatest height; to the next

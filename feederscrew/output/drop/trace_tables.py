@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew.output import tables
-from feederscrew.output.columns import MM
+from feederscrew.units import MM
 
 NONE = "none"  # the class of a drop that never settles
 

@@ -9,9 +9,8 @@ from feederscrew.mechanics.floor.balance import STATES
 from feederscrew.output import style as plots
 from feederscrew.output.floor.map_figures import phase_axis, state_band, state_legend
 from feederscrew.output.solid import marks
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 PART, CONTACT = "#dfe6ec", plots.ACCENT
 DRIVE, FRICTION, MOTION, NORMAL = "#0072b2", "#b5482a", "#2f7d5b", "#5b3a8e"
 LONGEST = 0.62  # of the part's size: the longest arrow

@@ -5,9 +5,8 @@ import numpy as np
 from feederscrew.mechanics.floor.balance import HOP, ON_THE_LINE, STATES, regime, rolls, stable_heading
 from feederscrew.output import tables
 from feederscrew.studies.floor import FloorStudy
-from feederscrew.units import factor
+from feederscrew.units import MM, factor
 
-MM = factor("mm", "length")
 COARSE = 46  # values of each quantity of a map in a table
 MAPS = {  # by the end of their file's name
     "beta_friction": FloorStudy.over_angle_and_friction,

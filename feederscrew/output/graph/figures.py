@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 
 from feederscrew.output import style
-from feederscrew.output.columns import MM
+from feederscrew.units import MM
 
 MOST = 12  # aspects a picture can show
 CLEAR = 4.0  # [pt] between an arrow and a disc

@@ -3,8 +3,8 @@
 import numpy as np
 
 from feederscrew.output import tables
-from feederscrew.output.columns import MM, UJ
-from feederscrew.units import GRAVITY
+from feederscrew.output.columns import UJ
+from feederscrew.units import GRAVITY, MM
 
 
 def transitions(study):

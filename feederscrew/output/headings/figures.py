@@ -6,8 +6,9 @@ from matplotlib.ticker import MaxNLocator
 
 from feederscrew.geometry.polygons import turned
 from feederscrew.output import style as plots
-from feederscrew.output.floor.figures import CONTACT, MM, PART
+from feederscrew.output.floor.figures import CONTACT, PART
 from feederscrew.output.solid import marks
+from feederscrew.units import MM
 
 COLUMNS = 4
 MOST = 16  # headings of one picture, the most frequent

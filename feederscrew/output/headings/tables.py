@@ -4,9 +4,8 @@ import numpy as np
 
 from feederscrew.output import tables
 from feederscrew.part.smallness import small_part_remarks
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 HIDDEN = ("contact_1_x_mm", "contact_1_y_mm", "contact_2_x_mm", "contact_2_y_mm")
 SPARE = (
     ("straight_wall_share",),

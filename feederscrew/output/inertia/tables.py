@@ -3,8 +3,9 @@
 import numpy as np
 
 from feederscrew.output import columns, tables
-from feederscrew.output.columns import G_CM3, G_MM2, MM, MM3
+from feederscrew.output.columns import G_CM3, G_MM2, MM3
 from feederscrew.part.density import MATERIALS
+from feederscrew.units import MM
 
 AXES = "xyz"
 NOISE = 1e-8  # of the largest of a vector or matrix: rounding of the file, 0 in the table

@@ -2,10 +2,8 @@
 
 import math
 
-from feederscrew import units
 from feederscrew.output import tables
-
-MM, MM_S = units.factor("mm", "length"), units.factor("mm/s", "velocity")
+from feederscrew.units import MM, MM_S
 
 
 def summary(one):

@@ -5,7 +5,7 @@ from matplotlib.patches import Circle, Polygon, Rectangle, Wedge
 
 from feederscrew.output import style
 from feederscrew.output.machine import sheet as sheets
-from feederscrew.output.machine.sheet import DEG, MM, PER_MINUTE
+from feederscrew.units import DEG, MM, PER_MINUTE
 
 WIDE, HIGH = 1760, 1500  # [px] of the page
 SHEET, TRACK, FLOOR, FILL, BASE = "#22303c", "#b9cbd8", "#eef2f5", "#e9d9b6", "#c9d0d6"

@@ -10,10 +10,10 @@ from feederscrew.machine import feasibility
 from feederscrew.machine.springs import MAINS, mean_pull
 from feederscrew.output.motion_words import regime_words
 from feederscrew.part.density import DEFAULT_MATERIAL
+from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
-MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
 N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
-PER_MINUTE, LITRE = units.factor("/min", "rate"), units.factor("l", "volume")
+LITRE = units.factor("l", "volume")
 GRAM, GRAM_CM3 = units.factor("g", "mass"), units.factor("g/cm3", "density")
 
 

@@ -9,10 +9,10 @@ from feederscrew.machine.springs import mean_pull
 from feederscrew.output import tables
 from feederscrew.output.machine import sheet as sheets
 from feederscrew.output.solidbowl import tables as solids
+from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
-MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
 N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
-PER_MINUTE, LITRE = units.factor("/min", "rate"), units.factor("l", "volume")
+LITRE = units.factor("l", "volume")
 
 
 def document(study):

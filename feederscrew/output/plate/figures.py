@@ -4,10 +4,9 @@ import matplotlib
 import numpy as np
 
 from feederscrew.output import style
-from feederscrew.output.columns import MM
-from feederscrew.output.plate.tables import MM_S, travels
+from feederscrew.output.plate.tables import travels
 from feederscrew.resting.rules import registry
-from feederscrew.units import counted
+from feederscrew.units import MM, MM_S, counted
 
 COLOURS = [rule.colour for rule in registry.RULES] + list(style.SPARE)
 LABELLED = 0.02  # share of the parts from which an aspect carries its name, or a line in a trend

@@ -2,13 +2,10 @@
 
 import numpy as np
 
-from feederscrew import units
 from feederscrew.dropping.plate.occupancy import FEW
 from feederscrew.output import tables
-from feederscrew.output.columns import MM
-from feederscrew.units import counted
+from feederscrew.units import MM, MM_S, counted
 
-MM_S = units.factor("mm/s", "velocity")
 SURFACE = ("restitution", "friction")  # of a launch: the plate's own
 HIDDEN = ("velocity_low_mm_s", "velocity_high_mm_s")  # in a table for people
 TIMES = 101  # rows an aspect in the course over time, at most

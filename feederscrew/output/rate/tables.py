@@ -6,9 +6,8 @@ from feederscrew import units
 from feederscrew.output import columns, tables
 from feederscrew.rates.shares_on_track import entering
 from feederscrew.rates.tipping import remark
+from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
-PER_MINUTE = units.factor("/min", "rate")
-MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
 SCARCE = 0.25  # share of the parts at the entry that stay on the track, below which it is said
 
 

@@ -41,7 +41,7 @@ def bowl(case):
 def _mark(case):
     """The mark of a bowl file whose trial falls short, as long as that trial holds."""
     tried = bowls.verified(case.path)
-    return marking.of_trial(tried if proof.holds(tried, case.part, case.bowl, case.aspect) else None)
+    return marking.of_trial(tried if proof.holds(tried, case.part, case.bowl, case.counted) else None)
 
 
 def _turned(case, mark):

@@ -22,9 +22,8 @@ from feederscrew.output.slide import tables as slide_tables
 from feederscrew.output.track import files as track_files
 from feederscrew.output.track import map_tables
 from feederscrew.output.track import tables as track_tables
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM, DEG = factor("mm", "length"), factor("deg", "angle")
 HEADINGS = {  # columns of the table, and their names here
     "aspect": "aspect",
     "heading_deg": "heading_deg",

@@ -5,9 +5,8 @@ import numpy as np
 from feederscrew.mechanics.floor.balance import HOP
 from feederscrew.output.page.numbers import SHORT, number
 from feederscrew.rates import tipping
-from feederscrew.units import factor
+from feederscrew.units import MM_S
 
-MM_S = factor("mm/s", "velocity")
 SLIDES_DOWN = "On this track the part slides down continuously: it does not travel."
 THROWN = "It is thrown: the reactions below are those of the contact; conveying follows its flights."
 WORDS = {  # what the rate has it do

@@ -6,7 +6,6 @@ from feederscrew import units
 from feederscrew.output import style, tables
 from feederscrew.output.aspects import files as aspects_files
 from feederscrew.output.aspects import tables as aspects_tables
-from feederscrew.output.columns import MM
 from feederscrew.output.graph import figures
 from feederscrew.output.inertia import tables as inertia_tables
 from feederscrew.output.offers import by_name
@@ -23,6 +22,7 @@ from feederscrew.output.page.blocks import (
 )
 from feederscrew.output.page.numbers import percent
 from feederscrew.output.report.scene import scene
+from feederscrew.units import MM
 
 MOST_VIEWS = aspects_tables.MOST
 CARD = "A part card is published data without a shape: there is nothing to draw or to turn."

@@ -3,11 +3,11 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from feederscrew.output.columns import MM
 from feederscrew.output.solid import meshes
 from feederscrew.output.solid.meshes import short
 from feederscrew.output.solid.stance import outermost, stance
 from feederscrew.output.tooling import relief
+from feederscrew.units import MM
 
 REACH = 1.25  # of the part's radius: how much of the track around it is seen
 

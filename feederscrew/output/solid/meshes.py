@@ -4,7 +4,7 @@ import base64
 
 import numpy as np
 
-from feederscrew.output.columns import MM
+from feederscrew.units import MM
 
 MOST_FACETS = 200_000  # that a browser is shown
 FINEST = 2.0**10  # cells across the part of the first grid tried on a larger mesh

@@ -23,7 +23,7 @@ def offers(study, tried=None, mark=None):
     from feederscrew.output.solidbowl import bowl_picture, drawing_sheet, printing
 
     name, cut, mark = study.order.part.name, study.solid.segments, marking.of_trial(tried, mark)
-    title = marking.named(f"bowl for {name}", mark)
+    title = marking.marked_title(f"bowl for {name}", mark)
     pieces = (
         ()
         if cut is None
@@ -55,4 +55,4 @@ def _file(name, mark, make, *arguments):
 
 
 def _step(solid, mark):
-    return marking.step(solid.step.data, mark)
+    return marking.mark_step(solid.step.data, mark)

@@ -9,9 +9,8 @@ from feederscrew.output.solidbowl import lists, unrolled_strip, views
 from feederscrew.output.solidbowl.paper import THICK, THIN, Paper
 from feederscrew.solidbowl import facets
 from feederscrew.solidbowl.measuring import measures
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1 : 2.5
 ROOM = 134.0  # [mm] of paper for the bowl across
 HIGH = 56.0  # and upright, in each of two views
@@ -36,7 +35,7 @@ def pdf(study, tried=None, mark=None):
     -------
     bytes
     """
-    title = marking.named(f"{study.order.part.name}: bowl", marking.of_trial(tried, mark))
+    title = marking.marked_title(f"{study.order.part.name}: bowl", marking.of_trial(tried, mark))
     return sheet(study, tried, mark).pdf(title)
 
 

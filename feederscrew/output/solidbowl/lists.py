@@ -6,9 +6,9 @@ from feederscrew.output.machine import sheet as sheets
 from feederscrew.output.solidbowl.unrolled_strip import numbered
 from feederscrew.output.tooling.drawing import EDGES
 from feederscrew.solidbowl import lugs
-from feederscrew.units import factor
+from feederscrew.units import MM, PER_MINUTE, factor
 
-MM, MIN, LITRE = factor("mm", "length"), factor("/min", "rate"), factor("l", "volume")
+LITRE = factor("l", "volume")
 CUT = "±0.1"  # [mm] of an edge that parts meet
 GENERAL = "ISO 2768-m"
 MOST = 12  # rows of a list
@@ -112,7 +112,7 @@ def _fields(study, solid, found, scale, tried):
     )
     return [
         ("drawing of part", _short(order.part.source.rpartition("/")[2])),
-        ("rate asked for", f"{order.target / MIN:.4g} a minute"),
+        ("rate asked for", f"{order.target / PER_MINUTE:.4g} a minute"),
         ("orientation", wanted if tried is None else _short(tried.wanted, NARROW)),
         *([] if tried is None else [("rate of its trial", _short(sheets.rate_of_trial(tried), NARROW))]),
         ("part material", sheets.material(order.part)),

@@ -7,9 +7,8 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from feederscrew.output import marking
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 HEADER = "feeder bowl: the bowl as a solid, in mm"
 HEADER_BYTES = 80  # of a binary STL
 BETWEEN = 10e-3  # [m] from segment to segment
@@ -58,7 +57,7 @@ def binary(vertices, faces, mark=""):
     normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0.0)
     record = np.zeros(len(corners), dtype=[("numbers", "<f4", (4, 3)), ("nothing", "<u2")])
     record["numbers"][:, 0], record["numbers"][:, 1:] = normal, corners
-    head = marking.named(HEADER, mark).encode("ascii").ljust(HEADER_BYTES)[:HEADER_BYTES]
+    head = marking.marked_title(HEADER, mark).encode("ascii").ljust(HEADER_BYTES)[:HEADER_BYTES]
     return head + np.uint32(len(corners)).tobytes() + record.tobytes()
 
 
@@ -90,7 +89,7 @@ def side_by_side(pieces, title, mark=""):
 
 def packed(objects, title, mark=""):
     """Return objects (name, vertices (V, 3) [m], faces (F, 3)) as the bytes of a 3MF file."""
-    objects = [(marking.named(name, mark), *surface) for name, *surface in objects]
+    objects = [(marking.marked_title(name, mark), *surface) for name, *surface in objects]
     model = MODEL + f'<metadata name="Title">{quoteattr(title)[1:-1]}</metadata>\n<resources>\n'
     model += "".join(_object(k + 1, *one) for k, one in enumerate(objects))
     items = "".join(f'<item objectid="{k + 1}"/>' for k in range(len(objects)))

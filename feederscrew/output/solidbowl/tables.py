@@ -2,7 +2,7 @@
 
 from feederscrew.solidbowl import lugs
 from feederscrew.solidbowl.segments import overhangs
-from feederscrew.units import factor
+from feederscrew.units import DEG, MM
 
 NOT_EXACT = (
     "what runs along the track is ruled between cubic splines through its helices every 0.1 rad",
@@ -10,7 +10,6 @@ NOT_EXACT = (
     "slanted edges of cuts are splines",
 )
 WALL = "the wall is no surface of revolution: it is ruled between splines through 16 places a quarter turn"
-MM, DEG = factor("mm", "length"), factor("deg", "angle")
 
 
 def document(solid):

@@ -6,9 +6,8 @@ from feederscrew.output import marking
 from feederscrew.output.page.blocks import Notes, Views
 from feederscrew.output.solid import meshes
 from feederscrew.output.solidbowl.bowl_picture import HIGH, SIDE, parts
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
 TURN = (
     "The bowl as one closed body, parts on its track. Drag it to turn it, or use the arrow keys; "
@@ -38,7 +37,7 @@ def blocks(solid, part, why="", mark=""):
     if solid is None:
         return [Notes((f"the bowl as a solid: {why}",))] if why else []
     text = f"{2.0 * solid.plan.way.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
-    captions = ((marking.named("bowl", mark), text, ()),)
+    captions = ((marking.marked_title("bowl", mark), text, ()),)
     return [Views(scene(solid, part), captions, "solid-bowl", "The", hint=TURN, printed=True, mark=mark)]
 
 

@@ -3,9 +3,8 @@
 import numpy as np
 
 from feederscrew.output.solidbowl.paper import THICK, THIN
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 NARROW = 5.0  # [mm] of paper: a cut that has no room for its number
 HOLE, PLATE = "#d55e00", "#0072b2"
 

@@ -8,9 +8,8 @@ from feederscrew import dxf as files
 from feederscrew.dxf import Layer
 from feederscrew.output import marking
 from feederscrew.tooling.orientations import ROUNDED
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 APART = 20e-3  # [m] between the views
 NARROW = 1e-9  # [m] the line of the wall needs no width
 COLOURS = {

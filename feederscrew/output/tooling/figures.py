@@ -13,9 +13,8 @@ from feederscrew.tooling import tightest
 from feederscrew.tooling.isolating.proposal import (
     LEAST_SHARE,  # orientations that come less often have no row
 )
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 WIDTH = 1200  # pixels
 LEAST = 900  # pixels: room for the lines over the rows
 LEFT, COLUMN, ROW, HEAD, FOOT, OUT = 230, 300, 170, 134, 30, 210  # pixels

@@ -130,7 +130,7 @@ def _printed(study, mark):
 def _quoted(study, mark):
     from feederscrew.output.tooling import written_step
 
-    return marking.step(written_step.step(_strip(study)), mark)
+    return marking.mark_step(written_step.step(_strip(study)), mark)
 
 
 def _strip(study):

@@ -7,9 +7,8 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
 from feederscrew.output import style
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 SHRINK = 0.82  # of a size in points
 
 

@@ -6,9 +6,8 @@ from matplotlib.lines import Line2D
 from feederscrew.output import style
 from feederscrew.output.tooling import ink, profile
 from feederscrew.tooling.hanging import Hanging
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 SHEET, DEEP = "#c3ccd4", 2.0  # [mm] of a rail as drawn
 PART = "#9fb3c4"
 BAR = 120  # pixels: at most as long is a bar

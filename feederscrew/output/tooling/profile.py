@@ -5,9 +5,8 @@ import shapely
 from shapely import affinity
 
 from feederscrew.output.tooling import ink
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 BESIDE = 1.0  # [mm] from the left end of what is drawn
 
 

@@ -5,9 +5,8 @@ import numpy as np
 from feederscrew.output import columns, tables
 from feederscrew.tooling import tightest as passages_of
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE
-from feederscrew.units import factor
+from feederscrew.units import DEG, MM
 
-MM, DEG = factor("mm", "length"), factor("deg", "angle")
 LEAVING = (  # efficiency and purity, of the trial where there is one
     "efficiency", "efficiency_low", "efficiency_high", "purity", "purity_low", "efficiency_static",
     "purity_static",

@@ -8,9 +8,8 @@ import numpy as np
 
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.tooling import solid
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 WHEN = re.compile(rb"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'")  # in the file's head: the same bytes twice
 COUNT = re.compile(rb"track section \d+")  # of the files this process wrote
 NAME = "write.step.product.name", "track section"

@@ -4,9 +4,8 @@ import numpy as np
 
 from feederscrew.output import marking
 from feederscrew.tooling.solid import triangles
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 HEADER = "feeder tooling: track section in mm"
 HEADER_BYTES = 80  # of a binary STL
 
@@ -37,5 +36,5 @@ def _binary(corners, mark):
     normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0.0)
     record = np.zeros(len(corners), dtype=[("numbers", "<f4", (4, 3)), ("nothing", "<u2")])
     record["numbers"][:, 0], record["numbers"][:, 1:] = normal, corners
-    head = marking.named(HEADER, mark).encode("ascii").ljust(HEADER_BYTES)[:HEADER_BYTES]
+    head = marking.marked_title(HEADER, mark).encode("ascii").ljust(HEADER_BYTES)[:HEADER_BYTES]
     return head + np.uint32(len(corners)).tobytes() + record.tobytes()

@@ -7,9 +7,10 @@ from feederscrew.geometry.polygons import outline, turned
 from feederscrew.mechanics.floor.balance import STATES
 from feederscrew.mechanics.track.frame import frame
 from feederscrew.output import style as plots
-from feederscrew.output.floor.figures import CONTACT, DRIVE, FRICTION, MM, NORMAL, PART, arrow, newtons
+from feederscrew.output.floor.figures import CONTACT, DRIVE, FRICTION, NORMAL, PART, arrow, newtons
 from feederscrew.output.floor.map_figures import phase_axis, state_band, state_legend
 from feederscrew.output.solid import marks
+from feederscrew.units import MM
 
 WALL, SURFACE, WEIGHT = "#5d6b78", "#e9edf0", "#22303c"
 SHADES = ("#b5482a", "#e08a3c")  # of R1 and R2

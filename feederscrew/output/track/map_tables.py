@@ -5,9 +5,8 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew.output import tables
 from feederscrew.output.floor.tables import none_slides
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 IN_MM = {
     "normal_line_offset_m": "normal_line_offset_mm",
     "normal_line_offset_across_m": "normal_line_offset_y_mm",

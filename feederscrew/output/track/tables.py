@@ -6,7 +6,6 @@ from feederscrew.mechanics.floor.balance import HOP, STATES, regime
 from feederscrew.output import tables
 from feederscrew.output.floor.tables import (
     EVERY,
-    MM,
     OUTSIDE,
     STATE_WORDS,
     chosen,
@@ -17,6 +16,7 @@ from feederscrew.output.floor.tables import (
     shown_value,
     tips,
 )
+from feederscrew.units import MM
 
 CONTACTS = ("floor", "wall_1", "wall_2")
 HELD_ACROSS = (

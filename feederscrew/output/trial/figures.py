@@ -4,8 +4,8 @@ import numpy as np
 from matplotlib.patches import Polygon
 
 from feederscrew.output import style
-from feederscrew.output.columns import MM
 from feederscrew.trial import course
+from feederscrew.units import MM
 
 LOOKS = {  # of each fate: colour, told apart by colour-blind eyes, line, and mark where the path ends
     "passed": ("#0072b2", "-", ""),

@@ -3,12 +3,12 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from feederscrew.output.columns import MM
 from feederscrew.output.solid import meshes
 from feederscrew.output.solid.meshes import encoded, short
 from feederscrew.output.tooling import relief
 from feederscrew.output.trial.section import section
 from feederscrew.output.trial.shown import shown
+from feederscrew.units import MM
 
 REACH = 1.9  # of the part's radius: how much of the track around it is seen
 ABOVE = 1.5  # of the part's radius: how high the wall is

@@ -4,11 +4,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
 from feederscrew.output import style
-from feederscrew.output.columns import MM
 from feederscrew.output.solid import pair
 from feederscrew.output.tooling.relief import clearest
 from feederscrew.output.trial.section import section
 from feederscrew.output.trial.shown import shown
+from feederscrew.units import MM
 
 STILLS, WIDTH, HEIGHT, GAP, EDGE, HEAD, CAPTION = 6, 250, 210, 10, 24, 54, 26  # stills of a row, pixels
 VIEW = 1.6  # of the part's radius: what is seen to either side of it

@@ -2,15 +2,13 @@
 
 import numpy as np
 
-from feederscrew import units
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import columns, tables
 from feederscrew.output.convey.tables import rebound
 from feederscrew.studies.trial import ENGINE
 from feederscrew.trial import course
+from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
-PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity")
-MM, DEG = columns.MM, columns.DEG
 UM = 1e-3 * MM
 ENGINE_FIGURES = ("penetration_mm", "energy_won_um")  # how closely the engine keeps to the laws: for -v
 HIDDEN = ("fell_mm", "seconds", *ENGINE_FIGURES)

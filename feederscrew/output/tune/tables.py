@@ -7,9 +7,8 @@ from feederscrew.conveying.hop import hop
 from feederscrew.output import columns, tables
 from feederscrew.output.motion_words import regime_words
 from feederscrew.rates.drive_settings import WITHIN
+from feederscrew.units import MM, MM_S, PER_MINUTE
 
-MM = 1e-3  # [m]
-PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity")
 SEVERAL = ", several"  # velocities, depending on how the part arrives
 MET = {False: "at this friction", True: "at the worst friction"}
 

@@ -15,9 +15,8 @@ from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.geometry.vectors import product
 from feederscrew.solidbowl.exact import exact_faces
 from feederscrew.solidbowl.facets import in_space
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 SMOOTH = True  # a curve is a curve
 SEAM = 0.7  # [rad] where a face of revolution is closed: nothing else of a bowl ends there
 CRUMB = 1.0  # [mm3] a loose piece smaller than this is left out

@@ -3,9 +3,8 @@
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 SEWN = 1e-5  # [mm] edges nearer than this are one
 CHORD = 0.05  # [rad] of a curve between two places that it is led through
 EPS = 1e-6  # of a volume

@@ -11,9 +11,8 @@ import numpy as np
 from feederscrew.errors import FeederError
 from feederscrew.solidbowl.closed_body import pieces
 from feederscrew.solidbowl.exact import exact_body, exact_faces
-from feederscrew.units import factor
+from feederscrew.units import MM
 
-MM = factor("mm", "length")
 WHEN = re.compile(rb"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'")  # in the file's head: the same bytes twice
 NAME = "write.step.product.name"
 PLACES = 24  # along the track at which the height of the opened file is measured

@@ -60,7 +60,7 @@ class Device:
     like: tuple[str, float, float] | tuple[()] = ()  # of an opening: aspect, heading [rad], play [m]
     also: tuple[tuple[str, float], ...] = ()  # of a sensor: other aspects and headings [rad] beside it
     text: str = ""  # its value as written
-    assumed: str = ""  # what was taken for granted as it was read, a sentence; '' of nothing
+    assumption: str = ""  # what was taken for granted as it was read, a sentence; '' of nothing
 
     kind: ClassVar[str] = "track"  # what it is called in a bowl file
     trade: ClassVar[str] = ""  # what the trade calls it; '': its kind, with blanks

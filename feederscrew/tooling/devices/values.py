@@ -110,10 +110,13 @@ def shares(entry):
 
 
 def polygon(entry):
-    """Read a polygon of lengths or the file that holds it, as {'corners': ((m, m), ...), 'assumed': ''}."""
+    """Read a polygon of lengths, or the file that holds it, as 'corners' and an 'assumption'.
+
+    The assumption is what was taken for granted of the file, a sentence; '' of nothing.
+    """
     written_here = entry.value.kind != "mapping"
-    corners, assumed = (_corners(entry.value, entry.key), "") if written_here else _drawn(entry)
-    return {"corners": simple(corners, entry.value.where, entry.key), "assumed": assumed}
+    corners, assumption = (_corners(entry.value, entry.key), "") if written_here else _drawn(entry)
+    return {"corners": simple(corners, entry.value.where, entry.key), "assumption": assumption}
 
 
 def opening(entry):

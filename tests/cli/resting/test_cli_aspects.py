@@ -297,6 +297,23 @@ def test_other_columns_are_printed_on_demand(run, stl):
     assert "Error: --columns: there is no column 'barier_mm' - did you mean barrier_mm?" in wrong.stderr
 
 
+def test_columns_may_be_named_as_the_table_heads_them(run, stl):
+    line = ("aspects", stl, "--rule", "closed", "--columns")
+    assert run(*line, "aspect,Height,pmi").stdout == run(*line, "aspect,height_mm,p_pmi").stdout
+    wrong = run("aspects", stl, "--drops", "300", "--columns", "aspect,low")  # of p_recommended and p_drop
+    assert wrong.exit_code == 2 and "there is no column 'low'" in wrong.stderr
+
+
+def test_how_the_pmi_rule_counts_equal_faces_is_said_where_there_are_any(run, stl):
+    """The flat T shape has 57.6 % by default, and 50.7 % in the tables of the thesis, which count it once."""
+    line = ("aspects", stl, "--rule", "closed")
+    assert "--as-published counts it once" in run(*line).stderr
+    assert "without --as-published each of its equal faces counts" in run(*line, "--as-published").stderr
+    assert "--as-published" not in run(*line, "--format", "csv").stderr
+    bracket = run("aspects", PARTS / "lbracket_30x20x15.stl", "--rule", "closed")  # no two faces are equal
+    assert bracket.exit_code == 0 and "--as-published" not in bracket.stderr
+
+
 def test_a_column_that_is_not_there_leaves_no_files(run, tmp_path):
     done = run("aspects", PARTS / "squarenut_m5.stl", "--columns", "nonsense", "-o", "out", "--no-pictures")
     assert (done.exit_code, list(tmp_path.iterdir())) == (2, [])
