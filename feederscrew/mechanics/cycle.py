@@ -121,11 +121,11 @@ def _closed_in(gained, bracket, close):
         if abs(far - near) <= close or fall == 0.0:
             break
         middle = far - fall * (far - near) / (fall - rise)
-        found = gained(middle)
-        if found * rise > 0.0:
-            near, rise, fall, side = middle, found, 0.5 * fall if side == 1 else fall, 1
+        gain = gained(middle)
+        if gain * rise > 0.0:
+            near, rise, fall, side = middle, gain, 0.5 * fall if side == 1 else fall, 1
         else:
-            far, fall, rise, side = middle, found, 0.5 * rise if side == -1 else rise, -1
+            far, fall, rise, side = middle, gain, 0.5 * rise if side == -1 else rise, -1
     return far
 
 

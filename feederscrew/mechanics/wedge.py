@@ -57,7 +57,7 @@ def level(bowl):
         With the effective friction, of rest and of sliding, up and down the track.
     """
     mu, bank = bowl.friction, bowl.track.bank
-    held = (effective(one, mu.wall, bank) for one in (mu.static, mu.kinetic, *mu.backward))
+    held = (effective(coefficient, mu.wall, bank) for coefficient in (mu.static, mu.kinetic, *mu.backward))
     static, kinetic, static_back, kinetic_back = held
     surfaces = Friction(static, kinetic, mu.wall, static_back, kinetic_back)
     return replace(bowl, friction=surfaces, track=replace(bowl.track, bank=0.0 * bank))

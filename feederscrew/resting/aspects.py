@@ -74,7 +74,7 @@ class Aspects(Shown):
     def chances(self):
         """Probability of each aspect by every name a user may ask for: the rules, 'closed', 'recommended'."""
         answers = {"closed": self.closed, "recommended": self.recommended}
-        return self.probabilities | {name: one.p for name, one in answers.items() if one is not None}
+        return self.probabilities | {name: answer.p for name, answer in answers.items() if answer is not None}
 
     @property
     def rolling_circles(self):
@@ -182,11 +182,11 @@ def _tumbled(named, ground, part, exponent):
     )
 
 
-def _answered(known, launch, exponent):
+def _answered(aspects, launch, exponent):
     """The record with the closed form that is recommended for a launch, or for the user's own surface."""
     own = None if exponent is None else surface.named(exponent)
-    form = recommended.closed_form(known.probabilities, known.stable, known.kinds, launch, own)
-    return replace(known, recommended=form, closed=form)
+    form = recommended.closed_form(aspects.probabilities, aspects.stable, aspects.kinds, launch, own)
+    return replace(aspects, recommended=form, closed=form)
 
 
 def _moments(part, hull):
@@ -210,23 +210,23 @@ def _geometry(groups, part):
     """Columns of the table in the order of the groups; a class's numbers are its faces' means."""
 
     counts = np.array([len(group) for group in groups])
-    every = [face for group in groups for face in group]
+    all_faces = [face for group in groups for face in group]
 
     def mean(values):
         return np.add.reduceat(values, np.cumsum(counts) - counts) / counts
 
-    shown = [max(group, key=_direction) if len(group) > 1 else group[0] for group in groups]
+    examples = [max(group, key=_direction) if len(group) > 1 else group[0] for group in groups]
     return {
         "kinds": [group[0].kind for group in groups],
         "faces": counts,
         "stable": np.array([group[0].stable for group in groups]),
-        "normals": _clean(np.array([face.normal for face in shown])),
-        "axes": _clean(np.array([face.axis for face in shown])),
-        "heights": mean([face.height for face in every]),
-        "contact_areas": mean([face.area for face in every]),
-        "solid_angles": mean([face.solid_angle for face in every]),
-        "polar_inertias": mean(_about(np.array([face.normal for face in every]), part.inertia)),
-        "polygons": [face.polygon for face in shown],
+        "normals": _clean(np.array([face.normal for face in examples])),
+        "axes": _clean(np.array([face.axis for face in examples])),
+        "heights": mean([face.height for face in all_faces]),
+        "contact_areas": mean([face.area for face in all_faces]),
+        "solid_angles": mean([face.solid_angle for face in all_faces]),
+        "polar_inertias": mean(_about(np.array([face.normal for face in all_faces]), part.inertia)),
+        "polygons": [face.polygon for face in examples],
     }
 
 
@@ -283,14 +283,14 @@ def _ranked(table, chance, part, moments):
     return np.lexsort((*-direction.T, height, rank))
 
 
-def _named(names, table, chances, order, told):
+def _named(names, table, chances, order, naming_warnings):
     """The record, rows in their order."""
     columns: dict = {k: check.frozen(v[order]) for k, v in table.items() if isinstance(v, np.ndarray)}
     columns |= {name: tuple(table[name][k] for k in order) for name in ("kinds", "forms", "polygons")}
     return Aspects(
         names=names,
         probabilities={rule: check.frozen(chance[order]) for rule, chance in chances.items()},
-        warnings=(*said(table["forms"]), *told),
+        warnings=(*said(table["forms"]), *naming_warnings),
         **columns,
     )
 
@@ -343,7 +343,7 @@ def _over(own, heights):
     return check.frozen(np.where(np.isnan(own), heights, own))
 
 
-def name_classes(groups, normals, hull, given):
+def name_classes(groups, normals, hull, user_names):
     """Name the classes of aspects.
 
     Source: own; docs/resting.md, "Names that stay".
@@ -355,14 +355,14 @@ def name_classes(groups, normals, hull, given):
     normals : (A, 3) float [1]
         What is down when the part rests on each.
     hull : Hull
-    given : AspectNames or None
+    user_names : AspectNames or None
         Names with the direction that is down on each; what has none takes the first letter that is free.
 
     Returns
     -------
     names : tuple of str
         One a class.
-    said : tuple of str
+    warnings : tuple of str
         Names that fit no aspect, and aspects that got none of the names; a sentence each.
 
     Raises
@@ -370,23 +370,25 @@ def name_classes(groups, normals, hull, given):
     ConfigError
         If a name fits two aspects and is of neither.
     """
-    if given is None:
+    if user_names is None:
         return tuple(letters_of(k) for k in range(len(groups))), ()
-    apart = np.column_stack([_angles_to_names(faces, hull, given) for faces in groups])
-    place = _match_names(apart)
-    _refuse_doubtful(given, apart, place)
-    names = {row: given.names[k] for k, row in place.items()}
-    taken = {name.casefold() for name in given.names}
+    angles = np.column_stack([_angles_to_names(faces, hull, user_names) for faces in groups])
+    place = _match_names(angles)
+    _refuse_doubtful(user_names, angles, place)
+    names = {row: user_names.names[k] for k, row in place.items()}
+    taken = {name.casefold() for name in user_names.names}
     free = (name for name in map(letters_of, itertools.count()) if name.casefold() not in taken)
-    every = tuple(names[row] if row in names else next(free) for row in range(len(groups)))
+    all_names = tuple(names[row] if row in names else next(free) for row in range(len(groups)))
     fresh = [row for row, faces in enumerate(groups) if row not in names and faces[0].stable]
-    said = [_unmatched(given, apart, place, k) for k in range(len(given.names)) if k not in place]
-    said += [
-        f"{given.source} has no name for the aspect with {_direction_text(normals[row])} down: it is called "
-        f"{every[row]}"
+    warnings = [
+        _unmatched(user_names, angles, place, k) for k in range(len(user_names.names)) if k not in place
+    ]
+    warnings += [
+        f"{user_names.source} has no name for the aspect with {_direction_text(normals[row])} down:"
+        f" it is called {all_names[row]}"
         for row in fresh
     ]
-    return every, tuple(said)
+    return all_names, tuple(warnings)
 
 
 def letters_of(k):
@@ -398,42 +400,42 @@ def letters_of(k):
     return name
 
 
-def _angles_to_names(faces, hull, given):
+def _angles_to_names(faces, hull, user_names):
     """(names,) [rad] from each direction given to the nearest of a class; infinite out of reach."""
-    down = np.array([direction for _, direction in given.directions])
+    down = np.array([direction for _, direction in user_names.directions])
     own = [hull.normals[face.triangles] if face.kind == "rolling" else face.normal[None] for face in faces]
     nearest = angle(down[:, None], np.concatenate(own)[None]).min(axis=1)
     within = faces[0].stable & (nearest <= NAMING_REACH[faces[0].kind])
     return np.where(within, nearest, np.inf)
 
 
-def _match_names(apart):
+def _match_names(angles):
     """Class by name: the nearest two first, each once."""
     place: dict[int, int] = {}
-    for k, row in zip(*np.unravel_index(np.argsort(apart, axis=None, kind="stable"), apart.shape)):
-        if np.isfinite(apart[k, row]) and k not in place and row not in place.values():
+    for k, row in zip(*np.unravel_index(np.argsort(angles, axis=None, kind="stable"), angles.shape)):
+        if np.isfinite(angles[k, row]) and k not in place and row not in place.values():
             place[int(k)] = int(row)
     return place
 
 
-def _unmatched(given, apart, place, k):
+def _unmatched(user_names, angles, place, k):
     """What to say of a name that fits no aspect of its own."""
-    name, down = given.directions[k]
-    row = int(np.argmin(apart[k]))
-    if not np.isfinite(apart[k, row]):
-        return f"{given.source}: the part rests on no aspect {name!r} ({_direction_text(down)} down)"
-    other = next(given.names[m] for m, at in place.items() if at == row)
-    return f"{given.source}: {name!r} is one aspect with {other!r} and goes by that name"
+    name, down = user_names.directions[k]
+    row = int(np.argmin(angles[k]))
+    if not np.isfinite(angles[k, row]):
+        return f"{user_names.source}: the part rests on no aspect {name!r} ({_direction_text(down)} down)"
+    other = next(user_names.names[m] for m, at in place.items() if at == row)
+    return f"{user_names.source}: {name!r} is one aspect with {other!r} and goes by that name"
 
 
-def _refuse_doubtful(given, apart, place):
+def _refuse_doubtful(user_names, angles, place):
     """Refuse a name that is off its own aspect while another is within reach: either may be meant."""
     for k, row in place.items():
-        rest = np.delete(apart[k], row)
-        if apart[k, row] >= NAMING_TOLERANCE and np.isfinite(rest).any():
-            off = " and ".join(f"{np.degrees(one):.2g}" for one in (apart[k, row], rest.min()))
-            what = f"the direction of {given.names[k]!r} is {off} deg off two aspects of the part"
-            raise ConfigError(given.source, what, "write the direction of the one that is meant")
+        rest = np.delete(angles[k], row)
+        if angles[k, row] >= NAMING_TOLERANCE and np.isfinite(rest).any():
+            off = " and ".join(f"{np.degrees(off_by):.2g}" for off_by in (angles[k, row], rest.min()))
+            what = f"the direction of {user_names.names[k]!r} is {off} deg off two aspects of the part"
+            raise ConfigError(user_names.source, what, "write the direction of the one that is meant")
 
 
 def _direction_text(direction):
@@ -461,15 +463,15 @@ def join_classes(faces, part, moments):
     (N,) int [1]
         Class of each face, numbered in order of first appearance.
     """
-    middles, alike = np.array([face.middle for face in faces]), _are_equal(faces)
+    middles, equal = np.array([face.middle for face in faces]), _are_equal(faces)
     axes = np.array([face.axis for face in faces])
-    if alike.sum() == len(faces):
+    if equal.sum() == len(faces):
         return np.arange(len(faces))
-    carried = np.zeros_like(alike)
+    carried = np.zeros_like(equal)
     for rotation in symmetries(faces, part, moments):
         there = _are_parallel(vectors.product(axes, rotation.T), axes)
         carried |= there & _lie_on(vectors.product(middles, rotation.T), middles)
-    return component_of(np.argwhere(carried & alike), len(faces))
+    return component_of(np.argwhere(carried & equal), len(faces))
 
 
 def _lie_on(turned, middles):
@@ -477,8 +479,8 @@ def _lie_on(turned, middles):
 
     Of a round side the lowest strip says nothing: it lies wherever the tessellation begins.
     """
-    apart = turned[:, None] - middles
-    return vectors.norm(apart) < 2.0 * np.sin(0.5 * SYMMETRY_ANGLE)
+    gaps = turned[:, None] - middles
+    return vectors.norm(gaps) < 2.0 * np.sin(0.5 * SYMMETRY_ANGLE)
 
 
 def _are_parallel(turned, axes):
@@ -505,12 +507,12 @@ def symmetries(faces, part, moments):
         Enough of them to carry every face onto all its equals.
     """
     tolerance = moments.error + 2.0 * max(face.roughness for face in faces) / moments.size
-    found = _by_landmarks(faces)
-    if found is None:
+    rotations = _by_landmarks(faces)
+    if rotations is None:
         flats = [face for face in faces if face.kind == "flat"]
-        found = _half_turns((flats or faces)[0].normal, moments)
-    found = np.concatenate([found, _principal(part)])
-    return found[moments.mismatch(found) < tolerance]
+        rotations = _half_turns((flats or faces)[0].normal, moments)
+    rotations = np.concatenate([rotations, _principal(part)])
+    return rotations[moments.mismatch(rotations) < tolerance]
 
 
 def body_frame(part, moments):
@@ -545,8 +547,8 @@ def _are_equal(faces):
     heights = np.array([face.height for face in faces])
     kinds = np.array([face.kind for face in faces])
     noise = 2.0 * max(face.roughness for face in faces)
-    apart = np.abs(heights[:, None] - heights)
-    near = apart < SYMMETRY_HEIGHT_SHARE * np.minimum(heights[:, None], heights) + noise
+    gaps = np.abs(heights[:, None] - heights)
+    near = gaps < SYMMETRY_HEIGHT_SHARE * np.minimum(heights[:, None], heights) + noise
     return near & (kinds[:, None] == kinds)
 
 
@@ -568,9 +570,9 @@ def _carrying(normals, a, b, a_images, b_images):
     """(N, 3, 3) rotations taking normals a, b to every pair of images that keeps their angle."""
     c, d = (images.ravel() for images in np.meshgrid(a_images, b_images, indexing="ij"))
     between = angle(normals[a], normals[b])
-    kept = np.abs(angle(normals[c], normals[d]) - between) < SYMMETRY_ANGLE
-    kept = np.flatnonzero(kept & ((c != a) | (d != b)))[:MAX_ROTATIONS]
-    ends = _frames(normals[c[kept]], normals[d[kept]])
+    pairs = np.abs(angle(normals[c], normals[d]) - between) < SYMMETRY_ANGLE
+    pairs = np.flatnonzero(pairs & ((c != a) | (d != b)))[:MAX_ROTATIONS]
+    ends = _frames(normals[c[pairs]], normals[d[pairs]])
     return vectors.product(ends, _frames(normals[a], normals[b]).T)
 
 
@@ -647,9 +649,9 @@ def shallow_facets(hull: Hull, basins: Landscape, faces: list[Face]) -> ShallowF
     bounds = np.searchsorted(plane[order], [candidates, candidates + 1])
     facets = [order[start:end] for start, end in bounds.T]
     rows = [_described(hull, facet) for facet in facets]
-    kept = [row for row in rows if row[4] > MIN_INSIDE_SHARE * hull.radius]
-    kept = sorted(kept, key=lambda row: -row[4])[:MAX_SHALLOW]
-    normals, *columns = zip(*kept) if kept else (np.empty((0, 3)), *[np.empty(0)] * 4)
+    largest = [row for row in rows if row[4] > MIN_INSIDE_SHARE * hull.radius]
+    largest = sorted(largest, key=lambda row: -row[4])[:MAX_SHALLOW]
+    normals, *columns = zip(*largest) if largest else (np.empty((0, 3)), *[np.empty(0)] * 4)
     return ShallowFacets(np.array(normals), *(np.array(column) for column in columns))
 
 

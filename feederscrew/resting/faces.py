@@ -102,9 +102,11 @@ def _coarse_curves(hull, basins, members):
     place, sinks = np.searchsorted(basins.sinks, basins.ripples), basins.ripples
     levels = hull.heights[sinks]
     step = np.abs(np.diff(levels, axis=1))[:, 0] / levels.max(axis=1, initial=0.0)  # whichever comes first
-    meant = flats.meant(hull, basins)[place].any(axis=1)
-    strips = ~meant & (basins.rises < COARSE) & (basins.bends < SMOOTH) & (step < EQUAL + basins.bends**2)
-    level = ~meant & (step < EQUAL)
+    flat_pairs = flats.meant(hull, basins)[place].any(axis=1)
+    strips = (
+        ~flat_pairs & (basins.rises < COARSE) & (basins.bends < SMOOTH) & (step < EQUAL + basins.bends**2)
+    )
+    level = ~flat_pairs & (step < EQUAL)
     labels = component_of(place[level & strips], len(basins.sinks))
     for label in np.flatnonzero(np.bincount(labels) > 1):
         group = np.flatnonzero(labels == label)
@@ -124,8 +126,8 @@ def _one_round(hull, sinks, members, sides):
     """Whether the sinks lie on one round side: on many of its strips, or on a few of a rocker's."""
     if len(sinks) >= FEWEST and _spread(hull.normals[sinks]) >= ARC and _round(hull, sinks):
         return True
-    lowest, every = sinks[np.argmin(hull.heights[sinks])], np.concatenate(members)
-    side = every[sides[every] == sides[lowest]]
+    lowest, triangles = sinks[np.argmin(hull.heights[sinks])], np.concatenate(members)
+    side = triangles[sides[triangles] == sides[lowest]]
     return bool(_may_roll(hull, [side])[0]) and _rocks(hull, side, lowest)
 
 
@@ -133,14 +135,16 @@ def _strips(hull, basins, group, sides):
     """(F,) lowest sink and the triangles of each face, from the (B,) face of every sink."""
     count, sinks = group.max() + 1, basins.sinks
     at = np.searchsorted(sinks, basins.basins)
-    every = np.lexsort((at, group[at]))
-    owners, heights = group[at][every], hull.heights
+    triangles = np.lexsort((at, group[at]))
+    owners, heights = group[at][triangles], hull.heights
     lowest = sinks[np.lexsort((heights[sinks], group))[groups.starts(np.sort(group), count)]]
-    level = heights[every] <= heights[basins.basins[every]] * (1.0 + 1e-9) + FLATNESS * hull.radius / 2
-    beside = sides[every] == sides[lowest][owners]
-    strips = groups.split(every[level], owners[level], count)
-    aside = groups.split(every[beside], owners[beside], count)
-    rocking, own = _may_roll(hull, aside), groups.split(every, owners, count)
+    level = (
+        heights[triangles] <= heights[basins.basins[triangles]] * (1.0 + 1e-9) + FLATNESS * hull.radius / 2
+    )
+    on_side = sides[triangles] == sides[lowest][owners]
+    strips = groups.split(triangles[level], owners[level], count)
+    aside = groups.split(triangles[on_side], owners[on_side], count)
+    rocking, own = _may_roll(hull, aside), groups.split(triangles, owners, count)
     for k in np.flatnonzero(rocking):
         rocking[k] = _rocks(hull, aside[k], lowest[k])
         strips[k] = aside[k] if rocking[k] else strips[k]
@@ -214,9 +218,11 @@ def _described(hull, triangles, lowest, stable):
     standing = groups.joined(feet)
     normals, heights, roughness = _seats(hull, *standing, count)
     polygons = contact_outlines(hull.vertices, *_corners(hull, *standing), normals)
-    every, owners = groups.joined(triangles)
-    middles = groups.sums(hull.areas[every] * np.ascontiguousarray(hull.normals.T)[:, every], owners, count)
-    areas, angles = (groups.sums(of[every], owners, count) for of in (hull.areas, hull.solid_angles))
+    members, owners = groups.joined(triangles)
+    middles = groups.sums(
+        hull.areas[members] * np.ascontiguousarray(hull.normals.T)[:, members], owners, count
+    )
+    areas, angles = (groups.sums(of[members], owners, count) for of in (hull.areas, hull.solid_angles))
     axes = np.full((count, 3), np.nan)
     for k in some:
         axes[k] = _axis(hull.normals[triangles[k]], hull.areas[triangles[k]], normals[k])
@@ -280,9 +286,9 @@ def _curved(hull, triangles):
     """(F,) whether the triangles of each face, a list of F arrays, are strips of a curve and not a plane."""
     if not len(triangles):
         return np.empty(0, dtype=bool)
-    (every, owners), count = groups.joined(triangles), len(triangles)
-    areas = hull.areas[every]
-    mean = groups.sums(areas * np.ascontiguousarray(hull.normals.T)[:, every], owners, count)
+    (members, owners), count = groups.joined(triangles), len(triangles)
+    areas = hull.areas[members]
+    mean = groups.sums(areas * np.ascontiguousarray(hull.normals.T)[:, members], owners, count)
     several = np.bincount(owners, minlength=count) > 2
     bent = several & (vectors.norm(mean) < CURVED * groups.sums(areas, owners, count))
     for k in np.flatnonzero(bent):
@@ -295,8 +301,8 @@ def _spread(normals):
     if len(normals) > MOST_PAIRED:  # from the one furthest from their mean
         end = normals[np.argmax(angle(normals, normals.mean(axis=0)))]
         return angle(normals, end).max()
-    one, other = np.divmod(np.argmin(vectors.product(normals, normals.T)), len(normals))
-    return angle(normals[one], normals[other])
+    first, second = np.divmod(np.argmin(vectors.product(normals, normals.T)), len(normals))
+    return angle(normals[first], normals[second])
 
 
 def planes(hull, sinks, members, of_curves=False):
@@ -326,15 +332,15 @@ def planes(hull, sinks, members, of_curves=False):
     if not len(sinks):
         return []
     fewest = [1 if of_curves and _is_fan(hull, each) else 2 for each in members]  # triangles of a strip
-    every, owners = groups.joined([np.sort(each) for each in members])
-    depth = _plane_depth(hull, sinks, every, owners)
-    lean = vectors.dot(hull.normals[every], hull.normals[sinks][owners])
+    triangles, owners = groups.joined([np.sort(each) for each in members])
+    depth = _plane_depth(hull, sinks, triangles, owners)
+    lean = vectors.dot(hull.normals[triangles], hull.normals[sinks][owners])
     near = (depth < FLATNESS * hull.radius) & (lean > GENTLE)
-    every, owners, tight = every[near], owners[near], depth[near] < TIGHTEST_FIRST[0] * hull.radius
+    triangles, owners, tight = triangles[near], owners[near], depth[near] < TIGHTEST_FIRST[0] * hull.radius
     if not tight.all():
-        kept = tight | _in_the_tightest(hull, every, owners, tight, np.array(fewest), of_curves)
-        every, owners = every[kept], owners[kept]
-    return groups.split(every, owners, len(sinks))
+        in_plane = tight | _in_the_tightest(hull, triangles, owners, tight, np.array(fewest), of_curves)
+        triangles, owners = triangles[in_plane], owners[in_plane]
+    return groups.split(triangles, owners, len(sinks))
 
 
 def _in_the_tightest(hull, members, owners, tight, fewest, of_curves):
@@ -351,8 +357,8 @@ def _in_the_tightest(hull, members, owners, tight, fewest, of_curves):
         enough |= count >= fewest
     good = enough[:-1] & (held[1:] <= 1.02 * held[:-1])
     chosen = np.where(good.any(axis=0), good.argmax(axis=0), len(TIGHTEST_FIRST))
-    every = np.ones((1, len(members)), dtype=bool)
-    return np.concatenate([inside, every])[chosen[owners], np.arange(len(members))]
+    all_members = np.ones((1, len(members)), dtype=bool)
+    return np.concatenate([inside, all_members])[chosen[owners], np.arange(len(members))]
 
 
 def _is_fan(hull, members):
@@ -392,7 +398,7 @@ def contact_outlines(vertices, corners, owners, normals):
     """
     points, count = vertices[corners], len(normals)
     x, y = (vectors.dot(points, axes[owners]) for axes in _plane_axes(normals))
-    u, v = (seen - (groups.sums(seen, owners, count) / np.bincount(owners))[owners] for seen in (x, y))
+    u, v = (along - (groups.sums(along, owners, count) / np.bincount(owners))[owners] for along in (x, y))
     around = np.lexsort((np.arctan2(v, u), owners))
     convex = _turn_at_every_corner(x[around], y[around], owners, count)
     turned, as_given = (groups.split(of, owners, count) for of in (points[around], points))

@@ -92,10 +92,10 @@ def _posture(row, sizes, areas, normals, radius):
     return words
 
 
-def said(found):
+def said(forms_of_classes):
     """Say of forms, (A,) str, what a user must know, a sentence each."""
-    if list(found) == [BALL]:
+    if list(forms_of_classes) == [BALL]:
         return (ALONE,)
-    rocks = dict.fromkeys(form for form in found if form in (OFF_CENTRE, WITH_A_FLAT))
-    listed = (CENTRED,) if BALL in found else ()
+    rocks = dict.fromkeys(form for form in forms_of_classes if form in (OFF_CENTRE, WITH_A_FLAT))
+    listed = (CENTRED,) if BALL in forms_of_classes else ()
     return listed + tuple(ROCKS.format(f"{'an' if form[0] == 'o' else 'a'} {form}") for form in rocks)

@@ -86,8 +86,8 @@ def _borders(faces, low):
     """Ends (E, 2) of the edges between low corners but for those within low facets; lone corners twice."""
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     lying = np.tile(low[faces].all(axis=1), 3)
-    kept = low[ends].all(axis=1)
-    ends, lying = np.sort(ends[kept], axis=1), lying[kept]
+    low_edges = low[ends].all(axis=1)
+    ends, lying = np.sort(ends[low_edges], axis=1), lying[low_edges]
     _, first, place = np.unique(ends[:, 0] * len(low) + ends[:, 1], return_index=True, return_inverse=True)
     edges = ends[first[np.bincount(place, lying) < 2.0]]
     alone = low.copy()
@@ -123,12 +123,12 @@ def posture(part, aspects, name):
 def _row(part, aspects, name):
     check.kind("aspect", name, str, "give the name of an aspect, 'A'")
     wanted = name.strip().casefold()
-    found = [row for row, known in enumerate(aspects.names) if known.casefold() == wanted]
-    if not found:
-        known = ", ".join(aspects.names)
+    rows = [row for row, own in enumerate(aspects.names) if own.casefold() == wanted]
+    if not rows:
+        names = ", ".join(aspects.names)
         where = f"aspect of {part.source}"
-        raise ArgumentError(where, f"there is no aspect {name[:20]!r}", f"choose one of {known}")
-    return found[0]
+        raise ArgumentError(where, f"there is no aspect {name[:20]!r}", f"choose one of {names}")
+    return rows[0]
 
 
 def _of_mesh(part, aspects, row):
@@ -165,8 +165,8 @@ def _of_mesh(part, aspects, row):
 
 def _upright(up):
     """Rows x, y, z of some axes with z along ``up``."""
-    beside = np.eye(3)[np.argmin(np.abs(up))]
-    x = vectors.unit(vectors.cross(beside, up))
+    across = np.eye(3)[np.argmin(np.abs(up))]
+    x = vectors.unit(vectors.cross(across, up))
     return np.array([x, vectors.cross(up, x), up])
 
 
@@ -230,5 +230,5 @@ def _of_card(part, aspects, row):
 
 def _analysis(part, block, name):
     """A card's data of the floor or the track, if they are of this aspect."""
-    shown = (part.printed or {}).get(block, {})
-    return dict(shown) if shown.get("aspect") == name else {}
+    printed = (part.printed or {}).get(block, {})
+    return dict(printed) if printed.get("aspect") == name else {}

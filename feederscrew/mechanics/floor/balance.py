@@ -152,13 +152,13 @@ def _slips(bowl):
 
 def _loose(bowl):
     """Phases within which a flat part at rest breaks loose, as ``cycle.settle`` takes them; eq. [4.28]."""
-    (push, lift), mu, found = _reversal(bowl), bowl.friction.static, []
+    (push, lift), mu, windows = _reversal(bowl), bowl.friction.static, []
     for sense, start in ((1.0, 0.0), (-1.0, math.pi)):
         gain = push + sense * mu * lift
         onset = math.asin(mu * bowl.gravity / gain) if gain > mu * bowl.gravity else math.inf
         if onset < math.inf:
-            found.append((start + onset, start + math.pi - onset, sense))
-    return found
+            windows.append((start + onset, start + math.pi - onset, sense))
+    return windows
 
 
 def _reversal(bowl):

@@ -28,12 +28,12 @@ def cells(posture, bowl, heading):
         ``acceleration_z_m_s2`` V'_z, NaN where the part has lost contact; ``alignment_acceleration_rad_s2``;
         ``throw_number``, above 1 where it hops; 'regime', places in ``REGIMES``.
     """
-    found = balance.motion(posture, bowl, heading)
-    contact = found.state != HOP
+    motion = balance.motion(posture, bowl, heading)
+    contact = motion.state != HOP
     ratio = limits.acceleration_ratio(bowl.drive.amplitude, bowl.drive.frequency, bowl.gravity)
     return {
-        "acceleration_z_m_s2": np.where(contact, found.acceleration[..., 0], np.nan),
-        "alignment_acceleration_rad_s2": np.where(contact, found.turning, np.nan),
+        "acceleration_z_m_s2": np.where(contact, motion.acceleration[..., 0], np.nan),
+        "alignment_acceleration_rad_s2": np.where(contact, motion.turning, np.nan),
         "throw_number": limits.throw_number(ratio, bowl.drive.vibration_angle),
-        "regime": found.state,
+        "regime": motion.state,
     }

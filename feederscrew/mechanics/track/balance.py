@@ -91,8 +91,8 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
         return vars(system.sliding(seat, axes, load, closed, kinetic, use, course)) | {"wall_use": use}
 
     slipping = _chosen(sliding_on, bowl.gravity) if slides.any() else still
-    found = {name: _where(slides, slipping[name], still[name]) for name in still}
-    return _motion(seat, found, slides, needed, load)
+    solution = {name: _where(slides, slipping[name], still[name]) for name in still}
+    return _motion(seat, solution, slides, needed, load)
 
 
 def needed_at_rest(seat, bowl, phase):
@@ -149,8 +149,8 @@ def _still(seat, bowl, axes, load):
     ratio = np.divide(wall, static, out=np.zeros(np.shape(static)), where=static > 0.0)
 
     def holding(closed):
-        found = system.held(seat, axes, load, closed, ratio)
-        return vars(found) | {"wall_use": found.mobilised * ratio}
+        solution = system.held(seat, axes, load, closed, ratio)
+        return vars(solution) | {"wall_use": solution.mobilised * ratio}
 
     still = _chosen(holding, bowl.gravity)
     return still, _needed(still, ratio)
@@ -169,13 +169,13 @@ def _chosen(solve, gravity):
     least = -PULL * np.max(gravity)
     chosen: dict[str, np.ndarray] = {}
     for closed in system.SETS:
-        found = solve(closed)
-        found = found | {"closed": np.broadcast_to(closed, found["walls"].shape)}
-        fits = (found["walls"] >= least).all(axis=-1) & (found["parting"] >= least).all(axis=-1)
+        solution = solve(closed)
+        solution = solution | {"closed": np.broadcast_to(closed, solution["walls"].shape)}
+        fits = (solution["walls"] >= least).all(axis=-1) & (solution["parting"] >= least).all(axis=-1)
         if not chosen:
-            chosen, decided = found, fits
+            chosen, decided = solution, fits
             continue
-        chosen = {name: _where(decided, chosen[name], found[name]) for name in found}
+        chosen = {name: _where(decided, chosen[name], solution[name]) for name in solution}
         decided = decided | fits
         if decided.all():
             break
@@ -190,32 +190,32 @@ def _needed(still, ratio):
     return np.concatenate([floor[..., None], wall], axis=-1)
 
 
-def _motion(seat, found, slides, needed, load):
+def _motion(seat, solution, slides, needed, load):
     """The record, in newtons and metres, with what holds while there is no contact."""
     mass, height = seat.mass, seat.height
-    contact = found["normal"] > 0.0
-    normal = np.where(contact, found["normal"], 0.0)
+    contact = solution["normal"] > 0.0
+    normal = np.where(contact, solution["normal"], 0.0)
     offset = np.divide(
-        height * found["moments"], normal[..., None],
-        out=np.full(found["moments"].shape, np.nan), where=contact[..., None],
+        height * solution["moments"], normal[..., None],
+        out=np.full(solution["moments"].shape, np.nan), where=contact[..., None],
     )  # fmt: skip
     inside = inset(seat.contact, offset)
-    walls = np.where(found["closed"] & contact[..., None], np.maximum(found["walls"], 0.0), 0.0)
+    walls = np.where(solution["closed"] & contact[..., None], np.maximum(solution["walls"], 0.0), 0.0)
     state = np.where(inside < -ON_THE_LINE, TIP, np.where(slides, SLIDE, STICK))
-    friction = np.where(contact[..., None], found["friction"], 0.0)
+    friction = np.where(contact[..., None], solution["friction"], 0.0)
     noise = NOISE * np.linalg.norm(load, axis=-1)[..., None] / mass
     walls, friction = (mass * np.where(np.abs(force) < noise, 0.0, force) for force in (walls, friction))
     return TrackMotion(
         state=np.where(contact, state, HOP),
         normal_force=mass * normal,
         walls=walls,
-        closed=found["closed"],
+        closed=solution["closed"],
         radial_friction=friction[..., 1],
         traction=0.0 - friction[..., 0],
-        wall_friction=found["wall_use"][..., None] * walls,
-        couple=mass * height * found["couple"] * contact,
-        acceleration=np.where(contact[..., None], found["acceleration"], load[..., :2] / mass),
-        turning=found["turning"] / height * contact,
+        wall_friction=solution["wall_use"][..., None] * walls,
+        couple=mass * height * solution["couple"] * contact,
+        acceleration=np.where(contact[..., None], solution["acceleration"], load[..., :2] / mass),
+        turning=solution["turning"] / height * contact,
         offset=offset,
         inside=inside,
         needed=np.where(contact[..., None], needed, np.nan),
@@ -322,22 +322,25 @@ def _loose_edges(beyond, low, high, falls):
         share = np.where((left < 0.0) & (right > 0.0) & (count % 3 < 2), left / (left - right), 0.5)
         middle = low + (high - low) * share
         now = margin(middle)
-        below, met = now <= 0.0, np.abs(now) <= PHASE_TOLERANCE
+        below, exact = now <= 0.0, np.abs(now) <= PHASE_TOLERANCE
         low, left = np.where(below, middle, low), np.where(below, now, left)
         high, right = np.where(below, high, middle), np.where(below, right, now)
-        low, high = np.where(met, middle, low), np.where(met, middle, high)
+        low, high = np.where(exact, middle, low), np.where(exact, middle, high)
     return high
 
 
 def _cut_windows(starts, senses):
     """Windows within one period from where each begins; a state lasts to the next one's begin."""
-    found = []
+    windows = []
     for start, end, sense in zip(starts, np.append(starts[1:], starts[0] + cycle.TURN), senses):
         if sense and end > cycle.TURN:
-            found += [(0.0, float(end - cycle.TURN), float(sense)), (float(start), cycle.TURN, float(sense))]
+            windows += [
+                (0.0, float(end - cycle.TURN), float(sense)),
+                (float(start), cycle.TURN, float(sense)),
+            ]
         elif sense:
-            found.append((float(start), float(end), float(sense)))
-    return sorted(found)
+            windows.append((float(start), float(end), float(sense)))
+    return sorted(windows)
 
 
 def _loose_sense(rest, static):
@@ -353,12 +356,17 @@ def _sliding_rows(seat, bowl, axes, sense):
     """
     unit = seat.mass * np.eye(3)
     course = np.tile(sense * system.AHEAD, (3, 1))
-    wall, found = sense * bowl.friction.wall, []
+    wall, sets = sense * bowl.friction.wall, []
     for closed in system.SETS:
         use = np.full(3, wall if any(closed) else 0.0)
-        one = system.sliding(seat, axes, unit, closed, np.full(3, bowl.friction.kinetic), use, course)
-        conditions = [one.walls[:, k] if shut else one.parting[:, k] for k, shut in enumerate(closed)]
-        rows = (one.acceleration[:, 0], one.normal, *conditions)
+        motion_of_set = system.sliding(
+            seat, axes, unit, closed, np.full(3, bowl.friction.kinetic), use, course
+        )
+        conditions = [
+            motion_of_set.walls[:, k] if shut else motion_of_set.parting[:, k]
+            for k, shut in enumerate(closed)
+        ]
+        rows = (motion_of_set.acceleration[:, 0], motion_of_set.normal, *conditions)
         along, normal, *conditions = (row.tolist() for row in rows)
-        found.append((along, normal, *conditions))
-    return found
+        sets.append((along, normal, *conditions))
+    return sets

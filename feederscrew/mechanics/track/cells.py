@@ -49,9 +49,9 @@ def seated(posture, bowl, heading=None):
     """
     if posture.corners is None:
         return card_seat(posture), None, 0
-    found = headings(posture, bowl.track)
-    row = laid(found, heading)
-    return seat(posture, float(found.headings[row]), found.touching[row], bowl.track.bank), found, row
+    stable = headings(posture, bowl.track)
+    row = laid(stable, heading)
+    return seat(posture, float(stable.headings[row]), stable.touching[row], bowl.track.bank), stable, row
 
 
 def cells(posture, bowl, heading=None):
@@ -74,15 +74,15 @@ def cells(posture, bowl, heading=None):
         where the part does not fit; no acceleration where it hops.
     """
     shape = np.broadcast_shapes(*(np.shape(value) for _, _, value in _fields(bowl)))
-    found = {name: np.full(shape, np.nan) for name in COLUMNS} | {"regime": np.full(shape, UNFIT)}
+    columns = {name: np.full(shape, np.nan) for name in COLUMNS} | {"regime": np.full(shape, UNFIT)}
     for place, here in _seats(posture, bowl, heading, shape):
         there = _answers(balance.motion(place, _picked(bowl, shape, here)))
         for name, values in there.items():
-            found[name][here] = values
+            columns[name][here] = values
     drive, track = bowl.drive, bowl.track
     ratio = limits.acceleration_ratio(drive.amplitude, drive.frequency, bowl.gravity)
-    found["throw_number"] = limits.throw_number(ratio, drive.vibration_angle, track.climb)
-    return found
+    columns["throw_number"] = limits.throw_number(ratio, drive.vibration_angle, track.climb)
+    return columns
 
 
 def _seats(posture, bowl, heading, shape):
@@ -91,47 +91,47 @@ def _seats(posture, bowl, heading, shape):
     values = np.stack([np.broadcast_to(getattr(bowl.track, name), shape).ravel() for name in names])
     kinds, place = np.unique(np.round(values, ROUNDED), axis=1, return_inverse=True)
     groups: dict[Any, tuple[Any, list[int]]] = {}  # by the name of a seat: itself, and its tracks
-    known: dict[Any, Any] = {}
+    cache: dict[Any, Any] = {}
     for k, kind in enumerate(kinds.T):
-        key, seat_there = _seat(posture, bowl, heading, Track(*kind), known)
+        key, seat_there = _seat(posture, bowl, heading, Track(*kind), cache)
         if seat_there is not None:
             groups.setdefault(key, (seat_there, []))[1].append(k)
     for seat_there, members in groups.values():
         yield seat_there, np.isin(place.reshape(shape), members)
 
 
-def _seat(posture, bowl, heading, there, known):
+def _seat(posture, bowl, heading, there, cache):
     """A name for the seat on one track, and the seat; None where the part does not fit."""
     if posture.corners is None:
         return "card", card_seat(posture)
     try:
-        if there.radius not in known:
-            known[there.radius] = headings(posture, there)
-        one = known[there.radius]
-        if (there.radius, there.width) not in known:
-            known[there.radius, there.width] = support.reaches(one, posture, there)
-        found = on_track(one, posture, there, known[there.radius, there.width])
-        row = laid(found, heading)
+        if there.radius not in cache:
+            cache[there.radius] = headings(posture, there)
+        free = cache[there.radius]
+        if (there.radius, there.width) not in cache:
+            cache[there.radius, there.width] = support.reaches(free, posture, there)
+        stable = on_track(free, posture, there, cache[there.radius, there.width])
+        row = laid(stable, heading)
     except FeederError:
         return None, None
     lean = float(np.sign(there.bank))
-    return (there.radius, row, lean), seat(posture, float(found.headings[row]), found.touching[row], lean)
+    return (there.radius, row, lean), seat(posture, float(stable.headings[row]), stable.touching[row], lean)
 
 
-def _answers(found):
-    leaves = ~found.closed.any(axis=-1) & (found.state != HOP) & (found.acceleration[..., 1] > 0.0)
-    along = np.where(found.slides, found.acceleration[..., 0], 0.0)
-    along = np.where(found.state == HOP, np.nan, along)
-    walls, offsets = np.moveaxis(found.walls, -1, 0), np.moveaxis(found.offset, -1, 0)
-    values = (along, found.normal_force, *walls, found.radial_friction, found.traction, *offsets)
-    return dict(zip(COLUMNS, values)) | {"regime": np.where(leaves, LEAVES, found.state)}
+def _answers(motion):
+    leaves = ~motion.closed.any(axis=-1) & (motion.state != HOP) & (motion.acceleration[..., 1] > 0.0)
+    along = np.where(motion.slides, motion.acceleration[..., 0], 0.0)
+    along = np.where(motion.state == HOP, np.nan, along)
+    walls, offsets = np.moveaxis(motion.walls, -1, 0), np.moveaxis(motion.offset, -1, 0)
+    values = (along, motion.normal_force, *walls, motion.radial_friction, motion.traction, *offsets)
+    return dict(zip(COLUMNS, values)) | {"regime": np.where(leaves, LEAVES, motion.state)}
 
 
 def _fields(bowl):
     """Yield every field that acts on a part: its section or '', its name, its value."""
     for section in SECTIONS:
         record = getattr(bowl, section)
-        yield from ((section, one.name, getattr(record, one.name)) for one in fields(record))
+        yield from ((section, field.name, getattr(record, field.name)) for field in fields(record))
     yield from (("", name, getattr(bowl, name)) for name in SINGLE)
 
 

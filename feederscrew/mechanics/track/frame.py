@@ -96,20 +96,20 @@ def card_seat(posture):
     FeederError
         If the card has no such data.
     """
-    shown = (posture.printed or {}).get("track") or {}
-    missing = [word for word in ("wall_lever", "wall_lever_angle", "wall_x") if word not in shown]
+    block = (posture.printed or {}).get("track") or {}
+    missing = [word for word in ("wall_lever", "wall_lever_angle", "wall_x") if word not in block]
     if missing:
         what = f"the card has no {missing[0]} for this aspect in its track block"
         mend = "choose the aspect that its track block names, or give the part as a mesh"
         raise FeederError(f"part card, aspect {posture.name}", what, mend)
-    lever, angle, (behind, ahead) = shown["wall_lever"], shown["wall_lever_angle"], shown["wall_x"]
-    beside, level = -lever * np.cos(angle), lever * np.sin(angle)
+    lever, angle, (behind, ahead) = block["wall_lever"], block["wall_lever_angle"], block["wall_x"]
+    side, level = -lever * np.cos(angle), lever * np.sin(angle)
     return Seat(
         mass=posture.mass,
         height=posture.height,
         heading=0.0,
         inertia=posture.inertia[2],
-        walls=check.frozen(np.array([[-behind, beside, level], [ahead, beside, level]])),
+        walls=check.frozen(np.array([[-behind, side, level], [ahead, side, level]])),
         contact=posture.contact,
     )
 

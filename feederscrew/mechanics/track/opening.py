@@ -73,8 +73,10 @@ def first_to_open(seat, bowl):
         reciprocal to the five other wrenches. The axis is that of the twist reciprocal to the normals of
         the other four contacts and to the traction: the part tips or turns about it without sliding.
     """
-    candidates = [found for name, phase in REVERSALS.items() for found in _openings(seat, bowl, name, phase)]
-    return min(candidates, key=lambda found: found.drive_factor, default=_none())
+    candidates = [
+        opening for name, phase in REVERSALS.items() for opening in _openings(seat, bowl, name, phase)
+    ]
+    return min(candidates, key=lambda opening: opening.drive_factor, default=_none())
 
 
 def _openings(seat, bowl, reversal, phase):
@@ -82,7 +84,7 @@ def _openings(seat, bowl, reversal, phase):
     now, axes = balance.motion(seat, bowl, phase), frame(bowl, seat.walls)
     driven = loads(seat, bowl, axes, phase)
     resting = loads(seat, bowl, axes, phase, without_drive=True)
-    weight, at_work, found = seat.mass * bowl.gravity, _at_work(now, seat.height), []
+    weight, at_work, openings = seat.mass * bowl.gravity, _at_work(now, seat.height), []
     on_floor = np.array([0.0, np.nan_to_num(now.offset[1]), -seat.height])
     for place, points in enumerate(_triangles(seat.contact)):
         six = contact_wrenches(seat, axes, points, **at_work)
@@ -90,8 +92,8 @@ def _openings(seat, bowl, reversal, phase):
         twists = tipping_twists(contact_wrenches(seat, axes, points, traction=on_floor))
         for name, k in _watched(seat, place).items():
             factor = _factor(still[k], moving[k])
-            found.append(_opening(name, factor, reversal, twists[k], seat.height))
-    return [one for one in found if np.isfinite(one.drive_factor)]
+            openings.append(_opening(name, factor, reversal, twists[k], seat.height))
+    return [opening for opening in openings if np.isfinite(opening.drive_factor)]
 
 
 def _watched(seat, place):

@@ -119,13 +119,13 @@ def _mobilised(slip, force):
     nothing = np.zeros(force.shape[:-1])
     unheld, divisor = slip(nothing)
     guess = _ratio(unheld, divisor) / np.maximum(-force[..., 2], 1e-3 * np.abs(force).max() + 1e-30)
-    found = _zero(
+    root = _zero(
         lambda mobilised: slip(mobilised)[0], nothing, unheld, guess,
         lambda after, step: after - np.clip(step, -10.0, 10.0),
     )  # fmt: skip
-    left, at_found = slip(found)
-    holds = (np.abs(left) <= HELD * np.abs(unheld)) & (found * guess >= 0.0) & (at_found * divisor > 0.0)
-    return np.where(holds, found, guess)
+    left, at_found = slip(root)
+    holds = (np.abs(left) <= HELD * np.abs(unheld)) & (root * guess >= 0.0) & (at_found * divisor > 0.0)
+    return np.where(holds, root, guess)
 
 
 def _zero(slip, before, slip_before, after, stepped):
@@ -267,13 +267,13 @@ class _Acting:
         across, turning = motion
         about_x, about_y = (dot(self.pushes[..., place], walls) for place in (3, 4))
         ahead = about_y - inertia[1] * turning - friction[..., 0]
-        beside = inertia[0] * turning - about_x - friction[..., 1]
+        offset_moment = inertia[0] * turning - about_x - friction[..., 1]
         shape = walls.shape[:-1]
         return TrackSolution(
             acceleration=np.stack([self.left_over(walls, 0), across], axis=-1),
             turning=turning,
             normal=self.normal(walls),
-            moments=np.stack([ahead, beside], axis=-1),
+            moments=np.stack([ahead, offset_moment], axis=-1),
             walls=walls,
             friction=friction,
             couple=np.broadcast_to(couple, shape),

@@ -65,10 +65,10 @@ def rests(outline, radius, merge=ROUND):
     balanced = (_ahead(np.roll(outward, 1), towards) > 0.0) & (_ahead(towards, outward) > 0.0)
     lowest, highest = np.flatnonzero(stable), np.flatnonzero(balanced)
     tops = highest[np.searchsorted(highest, lowest, side="right") - 1]  # the corner it tips over backwards
-    kept, start, share, rounded = _merged(
+    merged, start, share, rounded = _merged(
         distance[lowest], np.hypot(*corners[tops].T), towards[tops], merge * np.hypot(*corners.T).max()
     )
-    chosen = lowest[kept]
+    chosen = lowest[merged]
     return Rests(
         outward=check.frozen(outward[chosen]),
         touching=check.frozen(np.stack([corners[chosen], after[chosen]], axis=1)),

@@ -74,8 +74,8 @@ def firsts(posture, headings):
     rows = [(supports[k], None if moments is None else moments[k]) for k in range(len(headings))]
     first = np.arange(len(headings))
     for row in range(len(headings)):
-        known = (k for k in np.unique(first[:row]) if alike(rows[row], rows[k]))
-        first[row] = next(known, row)
+        earlier = (k for k in np.unique(first[:row]) if alike(rows[row], rows[k]))
+        first[row] = next(earlier, row)
     return first
 
 

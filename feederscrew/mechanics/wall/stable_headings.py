@@ -68,13 +68,13 @@ def headings(posture, track):
         If the bowl is smaller than the part, or the part is a card without an outline.
     """
     _check_fits(posture, track)
-    found, straight = rests(posture.outline, track.radius), rests(posture.outline, np.inf)
-    order, first, shares = _distinct(posture, found)
-    turn = _heading(found.outward[order])
+    curved, straight = rests(posture.outline, track.radius), rests(posture.outline, np.inf)
+    order, first, shares = _distinct(posture, curved)
+    turn = _heading(curved.outward[order])
     halves = _apart(turn[:, None] + np.pi, turn) + np.pi * np.eye(len(turn))  # a row is not its own half turn
     mirrored = _apart(np.pi - turn[:, None], turn)  # as the body's own axes are mirrored
     shapes = [turned(posture.outline, angle) for angle in turn]
-    distances = found.distance[order]
+    distances = curved.distance[order]
     widths = np.array([_width(shape, d, track.radius) for shape, d in zip(shapes, distances)])
     nothing = np.zeros(len(turn))
     geometry = Headings(
@@ -82,30 +82,30 @@ def headings(posture, track):
         headings=check.frozen(turn),
         shares=check.frozen(shares[order]),
         turns=check.frozen(np.bincount(first, minlength=len(shares))[order]),
-        ranges=check.frozen(_ranges(found)),
-        settles=check.frozen(np.array([np.flatnonzero(order == one)[0] for one in first])),
-        straight_shares=check.frozen(_summed(_at_straight(found.outward, straight), first)[order]),
+        ranges=check.frozen(_ranges(curved)),
+        settles=check.frozen(np.array([np.flatnonzero(order == place)[0] for place in first])),
+        straight_shares=check.frozen(_summed(_at_straight(curved.outward, straight), first)[order]),
         lengths=check.frozen(np.array([np.ptp(shape[:, 0]) for shape in shapes])),
         widths=check.frozen(widths),
         distances=check.frozen(distances),
         overhangs=check.frozen(nothing),
         falls_off=check.frozen(nothing > 0.0),
-        touching=check.frozen(turned(found.touching[order], turn[:, None])),
+        touching=check.frozen(turned(curved.touching[order], turn[:, None])),
         half_turns=check.frozen(_partners(shapes, lambda shape: -shape, halves)),
         mirrors=check.frozen(_partners(shapes, lambda shape: shape * [-1.0, 1.0], mirrored)),
-        rounded=found.rounded,
+        rounded=curved.rounded,
     )
     return on_track(geometry, posture, track)
 
 
-def on_track(found, posture, track, reaches=None):
+def on_track(headings, posture, track, reaches=None):
     """Return the same headings on a track of other width, climb or bank, but of the same radius.
 
     Source: own; docs/mechanics.md, "Headings".
 
     Parameters
     ----------
-    found : Headings
+    headings : Headings
     posture : Posture
     track : Track
     reaches : list of (K, 2) float [m], optional
@@ -116,20 +116,20 @@ def on_track(found, posture, track, reaches=None):
     Headings
         With its own overhangs and falls.
     """
-    reaches = support.reaches(found, posture, track) if reaches is None else reaches
+    reaches = support.reaches(headings, posture, track) if reaches is None else reaches
     falls = np.array([support.falls(posture, reach, track) for reach in reaches])
-    overhangs = np.maximum(found.widths - track.width, 0.0)
-    return replace(found, overhangs=check.frozen(overhangs), falls_off=check.frozen(falls))
+    overhangs = np.maximum(headings.widths - track.width, 0.0)
+    return replace(headings, overhangs=check.frozen(overhangs), falls_off=check.frozen(falls))
 
 
-def laid(found, heading=None):
+def laid(headings, heading=None):
     """Return the row of the heading that a part ends in, laid on the track and pushed to the wall.
 
     Source: own; docs/mechanics.md, "Headings".
 
     Parameters
     ----------
-    found : Headings
+    headings : Headings
     heading : float [rad], optional
         As laid down; without one, the most frequent heading that stays on the track.
 
@@ -143,36 +143,36 @@ def laid(found, heading=None):
         If the part falls off the track in that heading, or in every one.
     """
     if heading is None:
-        if found.falls_off.all():
+        if headings.falls_off.all():
             what = "the part falls off the track in every heading"
-            raise FeederError(f"aspect {found.aspect}", what, "give a wider track, or another aspect")
-        return int(np.argmin(found.falls_off))
-    row = settled(found, heading)
-    if found.falls_off[row]:
-        what = f"the part needs {1e3 * found.widths[row]:.4g} mm of track and falls off"
-        where = f"aspect {found.aspect}, heading {np.degrees(found.headings[row]):.4g} deg"
+            raise FeederError(f"aspect {headings.aspect}", what, "give a wider track, or another aspect")
+        return int(np.argmin(headings.falls_off))
+    row = settled(headings, heading)
+    if headings.falls_off[row]:
+        what = f"the part needs {1e3 * headings.widths[row]:.4g} mm of track and falls off"
+        where = f"aspect {headings.aspect}, heading {np.degrees(headings.headings[row]):.4g} deg"
         raise FeederError(where, what, "give a wider track, or another heading")
     return row
 
 
-def settled(found, heading):
+def settled(headings, heading):
     """Return the row whose range of headings [rad] holds one; on a border the one nearer in heading."""
-    lowest, width = found.ranges.T
+    lowest, width = headings.ranges.T
     beyond = np.mod(heading - lowest, 2.0 * np.pi) - width
     middle = _apart(lowest + 0.5 * width, heading)
-    return int(found.settles[np.lexsort((middle, beyond > 1e-9))[0]])
+    return int(headings.settles[np.lexsort((middle, beyond > 1e-9))[0]])
 
 
-def _distinct(posture, found):
+def _distinct(posture, headings):
     """Places of the rests that are each other's like under no turn, ranked; of each rest the like that
     stands for it; the shares of all its likes together, at its place."""
-    order = _ranked(found.share, found.outward)
-    like = sameness.firsts(posture, _heading(found.outward[order]))
+    order = _ranked(headings.share, headings.outward)
+    like = sameness.firsts(posture, _heading(headings.outward[order]))
     first = np.empty(len(order), dtype=int)
     first[order] = order[like]
-    shares = _summed(found.share, first)
-    kept = np.unique(first)
-    return kept[_ranked(shares[kept], found.outward[kept])], first, shares
+    shares = _summed(headings.share, first)
+    rows = np.unique(first)
+    return rows[_ranked(shares[rows], headings.outward[rows])], first, shares
 
 
 def _summed(shares, first):
@@ -180,10 +180,10 @@ def _summed(shares, first):
     return np.bincount(first, shares, minlength=len(shares))
 
 
-def _ranges(found):
+def _ranges(headings):
     """(N, 2) [rad] where the range of headings of each rest begins, and how wide it is."""
-    width = 2.0 * np.pi * found.share
-    return np.column_stack([_heading(found.start + width), width])
+    width = 2.0 * np.pi * headings.share
+    return np.column_stack([_heading(headings.start + width), width])
 
 
 def _ranked(share, outward):

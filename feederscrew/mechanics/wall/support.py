@@ -9,12 +9,12 @@ NOISE = 1e-12  # [m] places along the track nearer than this are one
 SAME = 1e-6  # of the outline's size: nearer than this to the edge is on it
 
 
-def reaches(found, posture, track):
+def reaches(headings, posture, track):
     """Return how far from the wall a track of some radius and width supports a part in each of its headings.
 
     Parameters
     ----------
-    found : Headings
+    headings : Headings
     posture : Posture
     track : Track
 
@@ -24,7 +24,7 @@ def reaches(found, posture, track):
         Places along the track and how far it reaches there, as seen from the centre of mass; none where it
         supports nothing.
     """
-    where = zip(found.headings, found.distances)
+    where = zip(headings.headings, headings.distances)
     return [_reach(_on_track(turned(posture.feet, angle), wall, track)) for angle, wall in where]
 
 

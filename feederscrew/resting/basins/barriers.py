@@ -70,12 +70,12 @@ def tipping(tumbling, labels):
 def _between(basins, pairs):
     """(N,) saddles and (N, 2) faces on both sides, smaller first: each way from a face to a face."""
     many = np.diff(basins.indptr)[pairs]
-    ways = many[:, 0] * many[:, 1]
-    saddles = np.repeat(np.arange(len(pairs)), ways)
-    step = np.arange(len(saddles)) - np.repeat(np.cumsum(ways) - ways, ways)
+    paths = many[:, 0] * many[:, 1]
+    saddles = np.repeat(np.arange(len(pairs)), paths)
+    step = np.arange(len(saddles)) - np.repeat(np.cumsum(paths) - paths, paths)
     turn = np.column_stack(np.divmod(step, many[saddles, 1]))
-    one, other = basins.indices[basins.indptr[pairs[saddles]] + turn].T
-    return saddles, np.column_stack([np.minimum(one, other), np.maximum(one, other)])
+    first, other = basins.indices[basins.indptr[pairs[saddles]] + turn].T
+    return saddles, np.column_stack([np.minimum(first, other), np.maximum(first, other)])
 
 
 def rises(tips):
@@ -174,18 +174,18 @@ def critical_solid_angles(polygons, heights):
     heights, corners = np.repeat(heights, counts), np.concatenate(polygons)
     lifts, shares = np.hypot(across, heights) - heights, np.empty(len(polygons))
     for size in np.unique(counts):
-        alike = np.flatnonzero(counts == size)
-        edges = first[alike, None] + np.arange(size)
-        seen = _lifted_angles(corners[edges], normals[alike], lifts[edges])
-        critical, whole = seen[:, 1:].mean(axis=1), seen[:, 0]
-        shares[alike] = 1.0 - np.divide(critical, whole, out=np.ones(len(whole)), where=whole > 0.0)
+        same_size = np.flatnonzero(counts == size)
+        edges = first[same_size, None] + np.arange(size)
+        angles = _lifted_angles(corners[edges], normals[same_size], lifts[edges])
+        critical, whole = angles[:, 1:].mean(axis=1), angles[:, 0]
+        shares[same_size] = 1.0 - np.divide(critical, whole, out=np.ones(len(whole)), where=whole > 0.0)
     return shares
 
 
 def _lifted_angles(polygons, normals, lifts):
     """(F, K + 1) [sr] polygons (F, K, 3) seen from the centre of mass as it is and from each lift of it."""
-    apex, one, other = polygons[:, :1], polygons[:, 1:-1], polygons[:, 2:]
-    fan = np.stack([np.broadcast_to(apex, one.shape), one, other], axis=2)
+    apex, first, second = polygons[:, :1], polygons[:, 1:-1], polygons[:, 2:]
+    fan = np.stack([np.broadcast_to(apex, first.shape), first, second], axis=2)
     down = np.insert(lifts, 0, 0.0, axis=1)[..., None] * normals[:, None]
     triangles = fan[:, None] + down[:, :, None, None]
     return solid_angles(np.zeros(3), triangles.reshape(-1, 3, 3)).reshape(triangles.shape[:3]).sum(axis=-1)
@@ -311,8 +311,8 @@ def _claims(tumbling, labels):
     pairs, tops = tumbling.pairs[order], tumbling.saddle_heights[order]
     parent, claims = np.arange(len(labels)), np.empty_like(pairs)
     adopt = fitting(forest.adopt, len(order))
-    made = adopt(pairs, tops, SADDLE_TIE * tops.max(initial=0.0), labels.copy(), parent, claims)
-    claimed, by = claims[:made].T
+    count = adopt(pairs, tops, SADDLE_TIE * tops.max(initial=0.0), labels.copy(), parent, claims)
+    claimed, by = claims[:count].T
     pairs = np.divmod(np.unique(claimed * len(labels) + by), len(labels))
     return forest.roots(parent), np.column_stack(pairs)
 

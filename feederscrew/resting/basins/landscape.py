@@ -66,8 +66,8 @@ def passes(hull, pairs, ends):
     along = q - p
     square = np.maximum(coordinates.dot(along, along), np.finfo(float).tiny)
     foot = p - along * (coordinates.dot(p, along) / square)  # of the centre
-    ways = ((n1, n2), (n1, foot), (foot, n2))
-    turn, before, after = (coordinates.dot(coordinates.cross(*way), along) for way in ways)
+    sides = ((n1, n2), (n1, foot), (foot, n2))
+    turn, before, after = (coordinates.dot(coordinates.cross(*side), along) for side in sides)
     between = (before * turn > 0.0) & (after * turn > 0.0)
     higher = np.maximum(*hull.heights[pairs.T])
     return np.where(between, np.maximum(np.sqrt(coordinates.dot(foot, foot)), higher), higher)
@@ -166,10 +166,10 @@ def _broad_normals(hull, below):
     thin = 2.0 * hull.areas < SLIVER * hull.radius * np.maximum(np.maximum(*sides[:2]), sides[2])
     end = forest.roots(np.where(thin, below, np.arange(len(thin))))
     still = np.flatnonzero(thin & (end == np.arange(len(thin))))  # no way down, or half of a flat strip
-    lengths, beside = np.column_stack(sides)[still], hull.neighbours[still]
-    end = _over_longest(end, thin, still, beside[np.arange(len(still)), lengths.argmax(axis=1)])
-    level = angle(hull.normals[still, None], hull.normals[beside]) < FLAT
-    best = np.where(thin[end[beside]], 0.0, np.where(level, np.inf, lengths)).argmax(axis=1)
+    lengths, neighbours = np.column_stack(sides)[still], hull.neighbours[still]
+    end = _over_longest(end, thin, still, neighbours[np.arange(len(still)), lengths.argmax(axis=1)])
+    level = angle(hull.normals[still, None], hull.normals[neighbours]) < FLAT
+    best = np.where(thin[end[neighbours]], 0.0, np.where(level, np.inf, lengths)).argmax(axis=1)
     out = np.arange(len(thin))
     out[still] = np.where(thin[end[still]], end[hull.neighbours[still, best]], end[still])
     return hull.normals[out[end]]
@@ -181,8 +181,8 @@ def _over_longest(end, thin, still, longest):
     Two slivers that share their longest side, as those of a narrow chamfer, stand for themselves.
     """
     end = end.copy()
-    while (found := thin[end[still]] & ~thin[end[longest]]).any():
-        end[still[found]] = end[longest[found]]
+    while (still_thin := thin[end[still]] & ~thin[end[longest]]).any():
+        end[still[still_thin]] = end[longest[still_thin]]
     return end
 
 
@@ -195,14 +195,23 @@ def _joined(hull, basins, pairs, tops, limit):
     place = np.empty(len(basins), dtype=int)
     place[sinks] = np.arange(len(sinks))
     place = place[basins]
-    ones, others = place[pairs].T
-    ways = np.flatnonzero(ones != others)
-    ways = ways[np.argsort(tops[ways], kind="stable")]
+    firsts, seconds = place[pairs].T
+    crossings = np.flatnonzero(firsts != seconds)
+    crossings = crossings[np.argsort(tops[crossings], kind="stable")]
     region, basin = np.arange(len(sinks)), np.arange(len(sinks))
-    standing = np.zeros(len(ways), dtype=bool)
+    standing = np.zeros(len(crossings), dtype=bool)
     join = fitting(forest.join, 3 * len(basins), forest.on_lists(forest.join))
-    join(hull.heights[sinks], limit[sinks], ones[ways], others[ways], tops[ways], region, basin, standing)
-    return sinks[forest.roots(basin)][place], ways[standing]
+    join(
+        hull.heights[sinks],
+        limit[sinks],
+        firsts[crossings],
+        seconds[crossings],
+        tops[crossings],
+        region,
+        basin,
+        standing,
+    )
+    return sinks[forest.roots(basin)][place], crossings[standing]
 
 
 def _sinks(basins):

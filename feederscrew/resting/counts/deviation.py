@@ -109,8 +109,8 @@ def chi_square(counts, fractions, estimated=0):
     expected = counts.sum() * fractions / fractions.sum()
     if counts[expected == 0.0].any():
         return ChiSquare(np.inf, max(int(np.count_nonzero(counts + expected)) - 1 - estimated, 1), 0.0)
-    seen = expected > 0.0
-    return _test(counts[None, seen], expected[None, seen], estimated)
+    expected_some = expected > 0.0
+    return _test(counts[None, expected_some], expected[None, expected_some], estimated)
 
 
 def chi_square_between(first, second):

@@ -83,9 +83,9 @@ def _cleaned(key, value):
     return value if digest is None else digest[1].lower()
 
 
-def _fault(where, key, value, known):
+def _fault(where, key, value, choices):
     """What is wrong with one line of the head, or None."""
-    if key in known:
+    if key in choices:
         return FeederError(where, f"{key} is given twice", "keep one of them")
     if not value:
         return FeederError(where, f"{key} has no value", "give one, or remove the line")

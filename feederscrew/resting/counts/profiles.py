@@ -164,22 +164,22 @@ def measured(table, where, sha256, names, taken=()):
     if missing := [name for name in names if name not in {key[0] for key in cells if key}]:
         faults.add(where, f"has no row for aspect {', '.join(missing)}", "add it, 0 if never seen")
     faults.raise_any()
-    lying = [(name, turn) for name in names for known, turn in cells if known == name]
+    lying = [(name, turn) for name in names for aspect, turn in cells if aspect == name]
     texts = list(zip(*(cells[key][1] for key in lying), strict=True))
-    every = _profiles(line, columns, texts)
+    profiles = _profiles(line, columns, texts)
     if by == ASPECT:
-        return Measured(where, sha256, every, table.head)
+        return Measured(where, sha256, profiles, table.head)
     rows = np.array([names.index(name) for name, _ in lying])
-    values = np.column_stack([profile.values for profile in every])
-    together = tuple(_by_aspect(profile, rows, len(names)) for profile in every)
+    values = np.column_stack([profile.values for profile in profiles])
+    together = tuple(_by_aspect(profile, rows, len(names)) for profile in profiles)
     return Measured(where, sha256, together, table.head, tuple(lying), check.frozen(values))
 
 
 def _profiles(where, columns, texts):
-    made = [_measured(where, name, column) for name, column in zip(columns, texts, strict=True)]
-    if faults := [entry for entry in made if isinstance(entry, FeederError)]:
+    columns_read = [_measured(where, name, column) for name, column in zip(columns, texts, strict=True)]
+    if faults := [entry for entry in columns_read if isinstance(entry, FeederError)]:
         raise Faults(faults[: count_rows.TOLD])
-    return tuple(made)
+    return tuple(columns_read)
 
 
 def _by_aspect(profile, rows, count):
@@ -192,8 +192,8 @@ def _counted(table):
     """Header and rows; of our own ``drop.csv`` its first column and its counts."""
     if table.header[1:3] != DROPPED:
         return table.header, table.rows
-    kept = [(number, [row[0], *row[2:3]]) for number, row in table.rows]
-    return (table.header[0], *table.header[2:3]), kept
+    rows = [(number, [row[0], *row[2:3]]) for number, row in table.rows]
+    return (table.header[0], *table.header[2:3]), rows
 
 
 def _columns(where, header, taken):

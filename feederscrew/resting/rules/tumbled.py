@@ -88,9 +88,9 @@ def hop_shares(tips, radius):
     ``benchmarks/accuracy.py`` compares.
     """
     present = np.flatnonzero(np.isfinite(tips.heights) & (tips.shares > 0.0))
-    ways = np.isin(tips.pairs, present).all(axis=1)
-    pairs = np.searchsorted(present, tips.pairs[ways])
-    tops, radius = tips.tops[ways], check.positive("radius", radius)
+    between = np.isin(tips.pairs, present).all(axis=1)
+    pairs = np.searchsorted(present, tips.pairs[between])
+    tops, radius = tips.tops[between], check.positive("radius", radius)
     ended = _cascade(tips.shares[present], tips.heights[present] / radius, pairs, tops / radius)
     shares = np.zeros(len(tips.shares))
     shares[present] = ended / ended.sum() if ended.any() else tips.shares[present]  # a ball has no room
@@ -104,23 +104,23 @@ def _cascade(shares, heights, pairs, tops):
     levels = np.linspace(1.0, tops.min(), ENERGY_LEVELS + 1)
     lowest = np.full(len(shares), np.inf)
     np.minimum.at(lowest, pairs.ravel(), np.repeat(tops, 2))
-    ways = _Hops(shares, heights, pairs, tops)
+    hops = _Hops(shares, heights, pairs, tops)
     below = (
         np.maximum(levels[:, None] - heights, 0.0) ** KEPT_ENERGY_EXPONENT
     )  # of what is kept, up to each level
-    energies, kept, sinking = 0.5 * (levels[:-1] + levels[1:]), below[:-1] - below[1:], below[1:] > 0.0
+    energies, retained, sinking = 0.5 * (levels[:-1] + levels[1:]), below[:-1] - below[1:], below[1:] > 0.0
     reach, moves = np.where(sinking, below[1:], np.inf), energies[:, None] > lowest
-    density = ways.moved(shares, ways.parts(np.ones(1))[0]) / np.maximum(below[0], np.finfo(float).tiny)
-    before, sunk = np.empty(kept.shape), np.zeros(len(shares))
-    step = max(1, HOP_BLOCK_SIZE // len(ways.start))
+    density = hops.moved(shares, hops.parts(np.ones(1))[0]) / np.maximum(below[0], np.finfo(float).tiny)
+    before, sunk = np.empty(retained.shape), np.zeros(len(shares))
+    step = max(1, HOP_BLOCK_SIZE // len(hops.start))
     for some in (slice(k, k + step) for k in range(0, ENERGY_LEVELS, step)):
-        parts = ways.parts(energies[some]) * (kept * moves)[some, ways.start]
-        for k, part in enumerate(parts / reach[some, ways.end], some.start):
+        parts = hops.parts(energies[some]) * (retained * moves)[some, hops.start]
+        for k, part in enumerate(parts / reach[some, hops.end], some.start):
             before[k] = density
-            density = density + ways.moved(density, part)
-        lost = before[some, ways.start] * parts * ~sinking[some, ways.end]
-        sunk += np.bincount(ways.end, lost.sum(axis=0), minlength=len(shares))
-    return (before * kept * ~moves).sum(axis=0) + sunk + density * below[-1]
+            density = density + hops.moved(density, part)
+        lost = before[some, hops.start] * parts * ~sinking[some, hops.end]
+        sunk += np.bincount(hops.end, lost.sum(axis=0), minlength=len(shares))
+    return (before * retained * ~moves).sum(axis=0) + sunk + density * below[-1]
 
 
 class _Hops:

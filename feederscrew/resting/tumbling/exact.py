@@ -129,10 +129,10 @@ def _areas(raw):
 
 def _doubts(areas, euler, arrived):
     total = areas.sum() / SPHERE
-    found = {
+    doubts = {
         f"the basins fill {total:.6g} of the sphere": abs(total - 1.0) > ROUNDING,
         "a basin has a negative area": (areas < 0.0).any(),
         f"sinks - saddles + maxima is {euler}, not 2": euler != 2,
         "a walk from a saddle does not fall to a sink and rise to a maximum": not arrived,
     }
-    return tuple(text for text, wrong in found.items() if wrong)
+    return tuple(text for text, wrong in doubts.items() if wrong)

@@ -62,24 +62,24 @@ def half_edges(hull):
     origins = hull.triangles[:, [1, 2, 0]].ravel().astype(int)
     targets = hull.triangles[:, [2, 0, 1]].ravel().astype(int)
     twins = _twins(hull.neighbours)
-    found = facet_borders(hull, origins, targets, twins, np.repeat(_facets(hull, twins), 3))
-    facets, edges = found.facets[::3], np.flatnonzero(found.part)
+    borders = facet_borders(hull, origins, targets, twins, np.repeat(_facets(hull, twins), 3))
+    facets, edges = borders.facets[::3], np.flatnonzero(borders.part)
     normals = _facet_normals(hull, facets)
-    slopes, sides = _signs(hull.vertices, normals, origins, found)
-    slopes = _one_way_out(slopes, sides, found)
+    slopes, sides = _signs(hull.vertices, normals, origins, borders)
+    slopes = _one_way_out(slopes, sides, borders)
     by_facet, by_vertex = np.zeros(len(normals), int), np.zeros(len(hull.vertices), int)
-    by_facet[found.facets[edges]] = edges
-    by_vertex[origins] = by_facet[found.facets]
+    by_facet[borders.facets[edges]] = edges
+    by_vertex[origins] = by_facet[borders.facets]
     by_vertex[origins[edges]] = edges
     arrays = {
         "vertices": hull.vertices,
         "origins": origins,
-        "targets": found.targets,
-        "twins": found.twins,
+        "targets": borders.targets,
+        "twins": borders.twins,
         "facets": facets,
-        "borders": found.part,
-        "ahead": found.ahead,
-        "around": found.around,
+        "borders": borders.part,
+        "ahead": borders.ahead,
+        "around": borders.around,
         "slopes": slopes,
         "sides": sides,
         "normals": normals,
@@ -89,12 +89,16 @@ def half_edges(hull):
     return Edges(**{name: check.frozen(array) for name, array in arrays.items()})
 
 
-def _signs(vertices, normals, origins, found):
+def _signs(vertices, normals, origins, borders):
     """(H,) and (H,) [m2] slopes and sides, as ``Edges`` has them, from each half-edge's corners and facet."""
     slopes, sides = np.empty((2, len(origins)))
     corners, facets = np.ascontiguousarray(vertices.T), np.ascontiguousarray(normals.T)
     for some in _blocks(len(origins)):
-        u, w, n = corners[:, origins[some]], corners[:, found.targets[some]], facets[:, found.facets[some]]
+        u, w, n = (
+            corners[:, origins[some]],
+            corners[:, borders.targets[some]],
+            facets[:, borders.facets[some]],
+        )
         slopes[some] = walk.dot(u, w - u)
         sides[some] = walk.triple(n, u, w)
     return slopes, sides
@@ -105,25 +109,25 @@ def _blocks(count):
     return [slice(start, start + BLOCK) for start in range(0, count, BLOCK)]
 
 
-def _one_way_out(slopes, sides, found):
+def _one_way_out(slopes, sides, borders):
     """(H,) [m2] slopes with which every facet is left one way: over one edge, over one corner, or not at all.
 
     The foot of the centre of mass lies nearest to one place of a convex polygon. Where a corner of the
     border lies on or, by rounding, behind the line between its neighbours, the signs may name two places or
     none: the nearest is taken, and at the others the foot is past the corner on the other side of it.
     """
-    edges = np.flatnonzero(found.part)
-    before = np.zeros_like(found.ahead)
-    before[found.ahead[edges]] = edges
+    edges = np.flatnonzero(borders.part)
+    before = np.zeros_like(borders.ahead)
+    before[borders.ahead[edges]] = edges
     slopes, leaves = slopes.copy(), sides[edges] < 0.0
-    over_edge = leaves & (slopes[edges] <= 0.0) & (slopes[found.twins[edges]] <= 0.0)
-    over_corner = (slopes[edges] > 0.0) & (slopes[found.twins[before[edges]]] > 0.0)
-    facet = found.facets[edges]
-    ways, unstable = np.bincount(facet, over_edge * 1 + over_corner), np.bincount(facet, leaves) > 0
-    for doubtful in np.flatnonzero(ways != unstable):
+    over_edge = leaves & (slopes[edges] <= 0.0) & (slopes[borders.twins[edges]] <= 0.0)
+    over_corner = (slopes[edges] > 0.0) & (slopes[borders.twins[before[edges]]] > 0.0)
+    facet = borders.facets[edges]
+    exits, unstable = np.bincount(facet, over_edge * 1 + over_corner), np.bincount(facet, leaves) > 0
+    for doubtful in np.flatnonzero(exits != unstable):
         own = facet == doubtful
         over = edges[own & over_edge].tolist(), edges[own & over_corner].tolist()
-        _settle(slopes, sides, found.twins, before, over, edges[own & leaves].tolist())
+        _settle(slopes, sides, borders.twins, before, over, edges[own & leaves].tolist())
     return slopes
 
 
@@ -270,11 +274,13 @@ def facet_borders(hull, origins, targets, twins, facets):
     """
     facets = _convex(hull, origins, twins, facets)
     while True:
-        found = _straightened(origins, _bordered(targets, twins, facets))
-        needles = _of_two_edges(found)
+        straightened = _straightened(origins, _bordered(targets, twins, facets))
+        needles = _of_two_edges(straightened)
         if not len(needles):
-            return found if np.bincount(facets).all() else found._replace(facets=_numbered(facets))
-        facets = _joined(facets, facets[needles], facets[found.twins[needles]])
+            return (
+                straightened if np.bincount(facets).all() else straightened._replace(facets=_numbered(facets))
+            )
+        facets = _joined(facets, facets[needles], facets[straightened.twins[needles]])
 
 
 def _bordered(targets, twins, facets):
@@ -297,18 +303,18 @@ def _convex(hull, origins, twins, facets):
     """(H,) facets, those with a reflex corner taken apart into their triangles."""
     targets, single = origins[twins], np.arange(len(facets)) // 3
     while True:
-        found = _bordered(targets, twins, facets)
+        bordered = _bordered(targets, twins, facets)
         merged = np.bincount(facets[::3])[facets] > 1
-        edges = np.flatnonzero(found.part & merged)
+        edges = np.flatnonzero(bordered.part & merged)
         corner = hull.vertices[targets[edges]]
-        before, after = hull.vertices[origins[edges]], hull.vertices[targets[found.ahead[edges]]]
+        before, after = hull.vertices[origins[edges]], hull.vertices[targets[bordered.ahead[edges]]]
         across = vectors.cross(corner - before, after - corner)
         turn = (across * _normals(hull, facets)[facets[edges]]).sum(axis=1)
         reflex = turn < -STRAIGHTNESS_TOLERANCE * hull.radius * np.sqrt(((after - before) ** 2).sum(axis=1))
         if not reflex.any():
             return facets
-        apart = np.isin(facets, facets[edges[reflex]])
-        facets = _numbered(np.where(apart, facets.max() + 1 + single, facets))
+        split = np.isin(facets, facets[edges[reflex]])
+        facets = _numbered(np.where(split, facets.max() + 1 + single, facets))
 
 
 def _numbered(facets):
@@ -323,28 +329,30 @@ def _normals(hull, facets):
     return sums / np.maximum(np.sqrt((sums**2).sum(axis=1)), np.finfo(float).tiny)[:, None]
 
 
-def _straightened(origins, found):
+def _straightened(origins, borders):
     """Borders with one edge where several met at corners of two facets."""
-    valence = np.bincount(origins[found.part], minlength=origins.max() + 1)
-    passing = found.part & (valence[found.targets] < MIN_FACETS_AT_CORNER)  # ends at a corner of two facets
+    valence = np.bincount(origins[borders.part], minlength=origins.max() + 1)
+    passing = borders.part & (
+        valence[borders.targets] < MIN_FACETS_AT_CORNER
+    )  # ends at a corner of two facets
     if not passing.any():
-        return found
-    starts = np.flatnonzero(found.part & ~passing[found.twins])
+        return borders
+    starts = np.flatnonzero(borders.part & ~passing[borders.twins])
     last, going = starts.copy(), np.flatnonzero(passing[starts])
     while len(going):
-        last[going] = found.ahead[last[going]]
+        last[going] = borders.ahead[last[going]]
         going = going[passing[last[going]]]
-    targets, twins, ahead = (array.copy() for array in (found.targets, found.twins, found.ahead))
+    targets, twins, ahead = (array.copy() for array in (borders.targets, borders.twins, borders.ahead))
     targets[starts], twins[starts], ahead[starts] = targets[last], twins[last], ahead[last]
-    part = np.zeros_like(found.part)
+    part = np.zeros_like(borders.part)
     part[starts] = True
-    return Borders(targets, twins, part, ahead, found.facets)
+    return Borders(targets, twins, part, ahead, borders.facets)
 
 
-def _of_two_edges(found):
+def _of_two_edges(borders):
     """Half-edges of facets with two edges, one of the two."""
-    edges = np.flatnonzero(found.part)
-    return edges[(found.ahead[found.ahead[edges]] == edges) & (edges < found.ahead[edges])]
+    edges = np.flatnonzero(borders.part)
+    return edges[(borders.ahead[borders.ahead[edges]] == edges) & (edges < borders.ahead[edges])]
 
 
 def _joined(facets, first, second):
