@@ -12,14 +12,14 @@ import numpy as np
 
 from feederscrew import check
 
-SAMPLES = 360  # of one period
-TURN = 2.0 * math.pi
-PATIENCE = 8  # periods followed before the settled one is sought by its velocity at phase 0
-DOUBLINGS = 40  # of the step that brackets it
-CLOSE = 1e-12  # of the greatest speed gained in a period: a velocity this near is found
+PERIOD_SAMPLES = 360  # of one period
+FULL_TURN = 2.0 * math.pi
+PERIODS_FOLLOWED = 8  # periods followed before the settled one is sought by its velocity at phase 0
+MAX_STEP_DOUBLINGS = 40  # of the step that brackets it
+VELOCITY_TOLERANCE = 1e-12  # of the greatest speed gained in a period: a velocity this near is found
 KINK = 1e-11  # the same: halves of a step that differ by more are halved again
-HALVINGS = 14
-STEPS = 60
+ONSET_HALVINGS = 14
+MAX_BRACKETING_STEPS = 60
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,15 +31,15 @@ class Cycle:
     settled: bool  # whether the period repeats itself
 
 
-def phases(samples=SAMPLES):
+def phases(samples=PERIOD_SAMPLES):
     """Return phases w t of one period, (samples,) [rad]; the upper reversal is at a quarter.
 
     Source: a harmonic drive; docs/mechanics.md, "Frames and signs".
     """
-    return TURN * np.arange(samples) / samples
+    return FULL_TURN * np.arange(samples) / samples
 
 
-def settle(acceleration, windows, period, samples=SAMPLES):
+def settle(acceleration, windows, period, samples=PERIOD_SAMPLES):
     """Follow a part from rest until its velocity repeats every period.
 
     Source: docs/mechanics.md, "The floor"; the mean agrees with the two-burst velocity of
@@ -65,15 +65,17 @@ def settle(acceleration, windows, period, samples=SAMPLES):
     The velocity after a period is a function of that before it which keeps their order, so from rest it tends
     to the first velocity that it leaves as it is.
     """
-    ride = _Ride(acceleration, tuple(windows), period / TURN, samples)
+    ride = _Ride(acceleration, tuple(windows), period / FULL_TURN, samples)
     speed, scale = 0.0, 0.0
-    for _ in range(PATIENCE):
+    for _ in range(PERIODS_FOLLOWED):
         velocity, mean = ride.over(speed)
         scale = max(scale, float(np.ptp(velocity)))
-        if abs(velocity[-1] - speed) <= CLOSE * scale:
+        if abs(velocity[-1] - speed) <= VELOCITY_TOLERANCE * scale:
             return Cycle(check.frozen(velocity[:-1]), mean, True)
         speed = float(velocity[-1])
-    start, settled = _steady(lambda speed: float(ride.over(speed)[0][-1]) - speed, speed, CLOSE * scale)
+    start, settled = _steady(
+        lambda speed: float(ride.over(speed)[0][-1]) - speed, speed, VELOCITY_TOLERANCE * scale
+    )
     velocity, mean = ride.over(start)
     return Cycle(check.frozen(velocity[:-1]), mean, settled)
 
@@ -104,7 +106,7 @@ def _steady(gained, begun, close):
     """The velocity that a period does not change, and whether there is one; ``gained`` is what it adds."""
     near, rise = begun, gained(begun)
     step, far, fall = rise, near, rise
-    for _ in range(DOUBLINGS):
+    for _ in range(MAX_STEP_DOUBLINGS):
         if fall * rise <= 0.0:
             return _closed_in(gained, (near, rise, far, fall), close), True
         near, rise = far, fall
@@ -117,7 +119,7 @@ def _closed_in(gained, bracket, close):
     """The root between two velocities, by the secant rule in its Illinois form."""
     near, rise, far, fall = bracket
     side = 0
-    for _ in range(STEPS):
+    for _ in range(MAX_BRACKETING_STEPS):
         if abs(far - near) <= close or fall == 0.0:
             break
         middle = far - fall * (far - near) / (fall - rise)
@@ -135,17 +137,17 @@ class _Ride:
     def __init__(self, acceleration, windows, pace, samples):
         self.windows, self.samples = windows, samples
         self.gain = lambda phase, speed, sense: pace * acceleration(phase, speed, sense)  # a radian
-        self.kink = KINK * pace * max(abs(acceleration(0.25 * TURN * k, 0.0, 1.0)) for k in range(4))
+        self.kink = KINK * pace * max(abs(acceleration(0.25 * FULL_TURN * k, 0.0, 1.0)) for k in range(4))
 
     def over(self, speed):
         """Return velocities at the samples and at the end of a period that begins with one, and the mean."""
-        grid = [TURN * k / self.samples for k in range(self.samples + 1)]
+        grid = [FULL_TURN * k / self.samples for k in range(self.samples + 1)]
         found, way = [speed], 0.0
         for start, end in itertools.pairwise(grid):
             speed, more = self._between(speed, start, end)
             way += more
             found.append(speed)
-        return np.array(found), way / TURN
+        return np.array(found), way / FULL_TURN
 
     def _between(self, speed, start, end):
         """Velocity at the end of a stretch, and the way made in it, times the pace of the phase."""
@@ -188,7 +190,7 @@ class _Ride:
         if sense * self.gain(now, speed, sense) >= 0.0 or sense * self.gain(now + span, speed, sense) <= 0.0:
             return span
         low, high = 0.0, span
-        for _ in range(STEPS):
+        for _ in range(MAX_BRACKETING_STEPS):
             middle = 0.5 * (low + high)
             slows = sense * self.gain(now + middle, speed, sense) < 0.0
             low, high = (middle, high) if slows else (low, middle)
@@ -196,7 +198,7 @@ class _Ride:
 
     def _stop(self, now, low, high, speed, sense):
         """Span after which a slip stops, between one at which it slides and one at which it would not."""
-        for _ in range(STEPS):
+        for _ in range(MAX_BRACKETING_STEPS):
             middle = 0.5 * (low + high)
             if not low < middle < high:
                 break
@@ -210,7 +212,7 @@ class _Ride:
         whole = whole or self._once(now, span, speed, sense, begun)
         first = self._once(now, half, speed, sense, begun)
         last = self._once(now + half, half, first[0], sense)
-        if abs(last[0] - whole[0]) > self.kink * span and depth < HALVINGS:
+        if abs(last[0] - whole[0]) > self.kink * span and depth < ONSET_HALVINGS:
             first = self._step(now, half, speed, sense, first, depth + 1)
             last = self._step(now + half, half, first[0], sense, None, depth + 1)
         return last[0], first[1] + last[1]

@@ -25,7 +25,7 @@ RIDE, FORWARD, BACKWARD, BOTH, HOP = range(len(REGIMES))
 ROUNDING = 1e-9  # [1] a throw number this near 1 counts as hopping: there the forces hang on rounding
 
 USE = "leave it out, or use feeder convey"
-STRAIGHT = ("phase", "second_harmonic")  # of the drive: zero where it is straight and harmonic
+STRAIGHT_DRIVE_KEYS = ("phase", "second_harmonic")  # of the drive: zero where it is straight and harmonic
 
 
 def plain(bowl):
@@ -45,7 +45,7 @@ def plain(bowl):
     ConfigError
         If it does not: the formulas for one point of the cycle know no other.
     """
-    for word in STRAIGHT:
+    for word in STRAIGHT_DRIVE_KEYS:
         if np.any(getattr(bowl.drive, word) != 0.0):
             raise ConfigError(
                 f"drive.{word}", "is not 0, and this command knows a straight harmonic drive only", USE

@@ -19,10 +19,10 @@ from feederscrew.geometry.graphs import component_of
 from feederscrew.part.hull import Hull, convex_hull
 from feederscrew.part.moments import Moments
 from feederscrew.records import Shown
-from feederscrew.resting.basins.landscape import SMOOTH, Landscape, angle, landscape
+from feederscrew.resting.basins.landscape import SMOOTH_ANGLE, Landscape, angle, landscape
 from feederscrew.resting.faces import Face, stable_faces, unstable_faces
 from feederscrew.resting.flats import ONE_PLANE
-from feederscrew.resting.forms import FLAT, LEVEL, forms, said
+from feederscrew.resting.forms import FLAT, LEVEL_SLOPE, form_remarks, forms
 from feederscrew.resting.rules import published, recommended, registry, surface
 from feederscrew.resting.rules.quantities import ClassQuantities
 from feederscrew.resting.rules.recommended import Recommended
@@ -30,7 +30,7 @@ from feederscrew.resting.tumbling import by_class, walk
 from feederscrew.units import factor
 
 CONVEX = 1e-6  # [1] of the hull's volume: a smaller difference breaks no symmetry
-TIE = 1e-4  # probabilities that differ by less of themselves are equal but for rounding
+CHANCE_TIE = 1e-4  # probabilities that differ by less of themselves are equal but for rounding
 NAMING_REACH = {"flat": np.radians(3.0), "rolling": np.radians(15.0)}  # off the direction of a name
 NAMING_TOLERANCE = np.radians(0.05)  # a direction closer than this to an aspect means that one
 SYMMETRY_ANGLE = np.radians(3.0)  # a turned face lies on another when their normals agree this well
@@ -83,7 +83,7 @@ class Aspects(Shown):
         The axis of a cone, or of a part on two circles, meets the floor at a point that stays where it is.
         """
         down = (self.axes * self.normals).sum(axis=1)
-        level, off = np.sqrt(np.maximum(1.0 - down**2, 0.0)), np.abs(down) > LEVEL
+        level, off = np.sqrt(np.maximum(1.0 - down**2, 0.0)), np.abs(down) > LEVEL_SLOPE
         return np.where(off, self.heights * level / np.where(off, np.abs(down), 1.0), np.inf + 0.0 * down)
 
     @property
@@ -115,7 +115,7 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
     exponent : float [1], optional
         Of the surface-weighted closed form, which is then the recommended one; see `surface.EXPONENTS`.
     launch : str
-        What is done to the part, one of `recommended.LAUNCHES` or a former name: the recommended closed
+        What is done to the part, one of `recommended.LAUNCH_NAMES` or a former name: the recommended closed
         form depends on it.
 
     Returns
@@ -273,7 +273,7 @@ def _ranked(table, chance, part, moments):
     """
     size = np.where(table["stable"], 1.0 + chance, table["faces"] * table["solid_angles"] / (4.0 * np.pi))
     order = np.argsort(-size, kind="stable")
-    tied = np.concatenate([[False], -np.diff(size[order]) < TIE * size[order][1:]])
+    tied = np.concatenate([[False], -np.diff(size[order]) < CHANCE_TIE * size[order][1:]])
     if not tied.any():
         return order
     rank = np.empty(len(order), dtype=int)
@@ -290,7 +290,7 @@ def _named(names, table, chances, order, naming_warnings):
     return Aspects(
         names=names,
         probabilities={rule: check.frozen(chance[order]) for rule, chance in chances.items()},
-        warnings=(*said(table["forms"]), *naming_warnings),
+        warnings=(*form_remarks(table["forms"]), *naming_warnings),
         **columns,
     )
 
@@ -634,7 +634,7 @@ def shallow_facets(hull: Hull, basins: Landscape, faces: list[Face]) -> ShallowF
         None of a curved side that rolls: its facets are those of the tessellation.
     """
     bends = angle(*(hull.normals[basins.pairs[:, k]] for k in (0, 1)))
-    side = component_of(basins.pairs[bends < SMOOTH], len(hull.triangles))
+    side = component_of(basins.pairs[bends < SMOOTH_ANGLE], len(hull.triangles))
     free = np.ones(len(hull.triangles), dtype=bool)
     for face in faces:
         free[face.triangles] = False

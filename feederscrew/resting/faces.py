@@ -7,23 +7,32 @@ import numpy as np
 from feederscrew.geometry import groups, vectors
 from feederscrew.geometry.graphs import component_of, components
 from feederscrew.resting import flats
-from feederscrew.resting.basins.landscape import GENTLE, RIPPLE_OF_RADIUS, SMOOTH, angle, edges, gentle
+from feederscrew.resting.basins.landscape import (
+    GENTLE_COSINE,
+    RIPPLE_OF_RADIUS,
+    SMOOTH_ANGLE,
+    angle,
+    edges,
+    gentle,
+)
 
-COARSE = 1.0 / np.cos(0.5 * SMOOTH) - 1.0  # the ripple a smooth edge leaves at most, as a share of the height
+MAX_RIPPLE_SHARE = (
+    1.0 / np.cos(0.5 * SMOOTH_ANGLE) - 1.0
+)  # the ripple a smooth edge leaves at most, as a share of the height
 CURVED = np.sinc(np.radians(15.0) / np.pi)  # mean resultant of normals over an arc of 30 deg; below: no plane
 EQUAL = 5e-3  # of the height: strips of one curve about the centre of mass are as high as each other
-STRAIGHT = (
+MAX_CONE_VARIANCE = (
     1e-2  # of their variance along the curve: how far normals of a rocker may leave their plane or cone
 )
 DOUBLE = 2e-3  # of the same: normals off their plane or cone by more belong to a side curved both ways
 FEWEST_OF_A_BALL = 24  # facets that show a side curved both ways: a ball, or a cap of one
-ALIKE = np.radians(1.0)  # strips that lean by less apart are of one cone
+CONE_LEAN_TOLERANCE = np.radians(1.0)  # strips that lean by less apart are of one cone
 SLIVERS = 1e-2  # of their area: what a file's noise leaves between them
-BEND = 2.5  # strips, by their effective number: two planes that meet are a bend and no curve
-FEWEST = 6  # strips that show a curve whose middle is not the centre of mass
+MAX_BEND_STRIPS = 2.5  # strips, by their effective number: two planes that meet are a bend and no curve
+MIN_ROCKER_STRIPS = 6  # strips that show a curve whose middle is not the centre of mass
 SMALLEST_NORMAL = np.finfo(float).tiny
 MOST_PAIRED = 1000  # directions of which every pair is looked at
-ARC = np.radians(60.0)  # coarse strips that turn less may be meant as flats
+MIN_CURVE_ARC = np.radians(60.0)  # coarse strips that turn less may be meant as flats
 FLATNESS = 1e-2  # of the radius: how deep a corner may lie under the plane of its face
 TIGHTEST_FIRST = np.array([1e-6, 1e-5, 1e-4, 1e-3, FLATNESS])
 ON_A_LINE = 1e-6  # of the contact's size: a corner off the line between its neighbours by less is none
@@ -89,7 +98,7 @@ def unstable_faces(hull, taken):
     pairs = pairs[free[pairs].all(axis=1)]
     bend = angle(*(hull.normals[pairs[:, k]] for k in (0, 1)))
     step = np.abs(np.diff(hull.heights[pairs], axis=1))[:, 0]
-    joined = (bend < np.radians(0.2)) | ((bend < SMOOTH) & (step < RIPPLE_OF_RADIUS * hull.radius))
+    joined = (bend < np.radians(0.2)) | ((bend < SMOOTH_ANGLE) & (step < RIPPLE_OF_RADIUS * hull.radius))
     labels = component_of(pairs[joined], len(free))
     order = np.flatnonzero(free)[np.argsort(labels[free], kind="stable")]
     parts = np.split(order, np.flatnonzero(np.diff(labels[order])) + 1) if len(order) else []
@@ -102,15 +111,18 @@ def _coarse_curves(hull, basins, members):
     place, sinks = np.searchsorted(basins.sinks, basins.ripples), basins.ripples
     levels = hull.heights[sinks]
     step = np.abs(np.diff(levels, axis=1))[:, 0] / levels.max(axis=1, initial=0.0)  # whichever comes first
-    flat_pairs = flats.meant(hull, basins)[place].any(axis=1)
+    flat_pairs = flats.intended_flats(hull, basins)[place].any(axis=1)
     strips = (
-        ~flat_pairs & (basins.rises < COARSE) & (basins.bends < SMOOTH) & (step < EQUAL + basins.bends**2)
+        ~flat_pairs
+        & (basins.rises < MAX_RIPPLE_SHARE)
+        & (basins.bends < SMOOTH_ANGLE)
+        & (step < EQUAL + basins.bends**2)
     )
     level = ~flat_pairs & (step < EQUAL)
     labels = component_of(place[level & strips], len(basins.sinks))
     for label in np.flatnonzero(np.bincount(labels) > 1):
         group = np.flatnonzero(labels == label)
-        if _spread(hull.normals[basins.sinks[group]]) < ARC:
+        if _spread(hull.normals[basins.sinks[group]]) < MIN_CURVE_ARC:
             labels[group] = labels.max() + 1 + np.arange(len(group))
     around = component_of(place[strips], len(basins.sinks))
     several = np.flatnonzero(np.bincount(around) > 1)
@@ -124,7 +136,11 @@ def _coarse_curves(hull, basins, members):
 
 def _one_round(hull, sinks, members, sides):
     """Whether the sinks lie on one round side: on many of its strips, or on a few of a rocker's."""
-    if len(sinks) >= FEWEST and _spread(hull.normals[sinks]) >= ARC and _round(hull, sinks):
+    if (
+        len(sinks) >= MIN_ROCKER_STRIPS
+        and _spread(hull.normals[sinks]) >= MIN_CURVE_ARC
+        and _round(hull, sinks)
+    ):
         return True
     lowest, triangles = sinks[np.argmin(hull.heights[sinks])], np.concatenate(members)
     side = triangles[sides[triangles] == sides[lowest]]
@@ -157,7 +173,7 @@ def _strips(hull, basins, group, sides):
 
 def _may_roll(hull, triangles):
     """(F,) whether there are enough triangles, in each of a list of F arrays, and so unlike, for a curve."""
-    return _curved(hull, triangles) & (np.array([len(each) for each in triangles]) >= FEWEST)
+    return _curved(hull, triangles) & (np.array([len(each) for each in triangles]) >= MIN_ROCKER_STRIPS)
 
 
 def _smooth_sides(hull, basins, group):
@@ -166,7 +182,7 @@ def _smooth_sides(hull, basins, group):
     Where no group has the triangles of a curved side, each has a label of its own.
     """
     owner = group[np.searchsorted(basins.sinks, basins.basins)]
-    if np.bincount(owner).max() < FEWEST:
+    if np.bincount(owner).max() < MIN_ROCKER_STRIPS:
         return np.arange(len(owner))
     first, second = basins.pairs.T
     joined = (owner[first] == owner[second]) & gentle(hull.normals, basins.pairs)
@@ -177,10 +193,10 @@ def _rocks(hull, side, sink):
     """Whether a side that may roll is of strips of a curve, whose axis may lie off the centre of mass."""
     normals, share = hull.normals[side], hull.areas[side] / hull.areas[side].sum()
     leans = angle(normals, hull.normals[sink])
-    if share[leans < 0.5 * SMOOTH].sum() > 0.5 or _ring(leans, share):
+    if share[leans < 0.5 * SMOOTH_ANGLE].sum() > 0.5 or _ring(leans, share):
         return False
     across = vectors.eigen(vectors.covariance(normals, share))[0]
-    fewest = FEWEST if across[0] < STRAIGHT * across[1] else FEWEST_OF_A_BALL
+    fewest = MIN_ROCKER_STRIPS if across[0] < MAX_CONE_VARIANCE * across[1] else FEWEST_OF_A_BALL
     return _even(normals, share) > fewest - 0.5 and _round(hull, side)
 
 
@@ -194,9 +210,11 @@ def _even(normals, share):
 
 def _ring(leans, share):
     """Whether the strips of a curved side that lean do so alike: a cone about a flat touches a ball, too."""
-    leaning = leans > ALIKE
+    leaning = leans > CONE_LEAN_TOLERANCE
     lean = np.average(leans[leaning], weights=share[leaning])
-    return bool(share[np.abs(leans - lean) < ALIKE].sum() > (1.0 - SLIVERS) * share[leaning].sum())
+    return bool(
+        share[np.abs(leans - lean) < CONE_LEAN_TOLERANCE].sum() > (1.0 - SLIVERS) * share[leaning].sum()
+    )
 
 
 def _round(hull, triangles):
@@ -292,7 +310,7 @@ def _curved(hull, triangles):
     several = np.bincount(owners, minlength=count) > 2
     bent = several & (vectors.norm(mean) < CURVED * groups.sums(areas, owners, count))
     for k in np.flatnonzero(bent):
-        bent[k] = _even(hull.normals[triangles[k]], hull.areas[triangles[k]]) > BEND
+        bent[k] = _even(hull.normals[triangles[k]], hull.areas[triangles[k]]) > MAX_BEND_STRIPS
     return bent
 
 
@@ -335,7 +353,7 @@ def planes(hull, sinks, members, of_curves=False):
     triangles, owners = groups.joined([np.sort(each) for each in members])
     depth = _plane_depth(hull, sinks, triangles, owners)
     lean = vectors.dot(hull.normals[triangles], hull.normals[sinks][owners])
-    near = (depth < FLATNESS * hull.radius) & (lean > GENTLE)
+    near = (depth < FLATNESS * hull.radius) & (lean > GENTLE_COSINE)
     triangles, owners, tight = triangles[near], owners[near], depth[near] < TIGHTEST_FIRST[0] * hull.radius
     if not tight.all():
         in_plane = tight | _in_the_tightest(hull, triangles, owners, tight, np.array(fewest), of_curves)

@@ -16,7 +16,7 @@ from feederscrew.records import Shown
 
 COINCIDE = 1e-5  # of the part's size: a contact centroid nearer to the foot gives no direction
 TOUCHING = 2e-4  # of the part's size: what is lower than that over the floor touches it
-ALIKE = 1e-6  # of the part's size: sides whose lengths differ by less are equally long
+SIDE_TOLERANCE = 1e-6  # of the part's size: sides whose lengths differ by less are equally long
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,7 +177,7 @@ def _forward(contact, shape, corners, size):
         return towards / np.hypot(*towards)
     edges = sides(shape)
     lengths = np.hypot(*edges.T)
-    longest = edges[lengths >= lengths.max() - ALIKE * size]
+    longest = edges[lengths >= lengths.max() - SIDE_TOLERANCE * size]
     unit = longest / np.hypot(*longest.T)[:, None]
     return max(unit, key=lambda along: _lopsidedness(along, corners / size))
 

@@ -17,8 +17,8 @@ from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import inset
 from feederscrew.mechanics import cycle
 
-STATES = ("stick", "slide", "hop", "tip")  # a state code is a place in this list
-STICK, SLIDE, HOP, TIP = range(len(STATES))
+MOTION_STATES = ("stick", "slide", "hop", "tip")  # a state code is a place in this list
+STICK, SLIDE, HOP, TIP = range(len(MOTION_STATES))
 UPPER_REVERSAL = 0.5 * np.pi
 ON_THE_LINE = 1e-9  # [m] a normal force this near the contact polygon's border does not tip the part
 SLIP_HALVINGS = 90  # of the interval of slip accelerations: down to rounding
@@ -113,7 +113,7 @@ def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0):
     )
 
 
-def over_cycle(posture, bowl, heading, samples=cycle.SAMPLES):
+def over_cycle(posture, bowl, heading, samples=cycle.PERIOD_SAMPLES):
     """Return the same over one settled period.
 
     Parameters
@@ -176,7 +176,7 @@ def rolls(posture):
 def regime(states):
     """Return the state that names a whole cycle: contact lost, else tipping, else sliding, else sticking."""
     present = set(np.ravel(states).tolist())
-    return next(STATES[code] for code in (HOP, TIP, SLIDE, STICK) if code in present)
+    return next(MOTION_STATES[code] for code in (HOP, TIP, SLIDE, STICK) if code in present)
 
 
 def stable_heading(posture, bowl):

@@ -4,9 +4,9 @@ import numpy as np
 
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.floor import balance
-from feederscrew.mechanics.floor.balance import HOP, STATES
+from feederscrew.mechanics.floor.balance import HOP, MOTION_STATES
 
-REGIMES = STATES  # a regime code is a place in this list
+FLOOR_REGIMES = MOTION_STATES  # a regime code is a place in this list
 
 
 def cells(posture, bowl, heading):
@@ -26,7 +26,7 @@ def cells(posture, bowl, heading):
     -------
     dict of str to array [SI, as each name says]
         ``acceleration_z_m_s2`` V'_z, NaN where the part has lost contact; ``alignment_acceleration_rad_s2``;
-        ``throw_number``, above 1 where it hops; 'regime', places in ``REGIMES``.
+        ``throw_number``, above 1 where it hops; 'regime', places in ``FLOOR_REGIMES``.
     """
     motion = balance.motion(posture, bowl, heading)
     contact = motion.state != HOP

@@ -16,8 +16,8 @@ from feederscrew.mechanics.floor.balance import HOP, ON_THE_LINE, SLIDE, STICK, 
 from feederscrew.mechanics.track import system
 from feederscrew.mechanics.track.frame import frame, loads
 
-PULL = 1e-9  # of the weight: a reaction more negative than this would be a pull
-NOISE = 1e-12  # of the weight: less than this is rounding
+PULL_TOLERANCE = 1e-9  # of the weight: a reaction more negative than this would be a pull
+FORCE_NOISE = 1e-12  # of the weight: less than this is rounding
 PHASE_TOLERANCE = 1e-13  # [rad] width of the bracket in which a part breaks loose
 BRACKETING_STEPS = 60
 UNBOUNDED_FRICTION = 1e9  # [1] friction in place of one that is not finite
@@ -83,7 +83,7 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
 
     def sliding_on(closed):
         """Along the track while a wall contact is closed; a part off the wall goes where it is pushed."""
-        course = sense[..., None] * system.AHEAD if any(closed) else free
+        course = sense[..., None] * system.ALONG_X if any(closed) else free
         use = sense * wall if any(closed) else 0.0 * sense * wall
         turns = (moving == 0.0) & (sum(closed) == 1)
         if turns.any():
@@ -110,7 +110,7 @@ def needed_at_rest(seat, bowl, phase):
     return np.where(still["normal"][..., None] > 0.0, needed, np.nan)
 
 
-def over_cycle(seat, bowl, samples=cycle.SAMPLES):
+def over_cycle(seat, bowl, samples=cycle.PERIOD_SAMPLES):
     """Return the same over one settled period.
 
     Parameters
@@ -126,7 +126,7 @@ def over_cycle(seat, bowl, samples=cycle.SAMPLES):
         Flights are not followed: past the hop the state says ``hop`` and the velocity is that of a part that
         keeps to the track.
     """
-    slips = sliding_acceleration(seat, bowl, frame(bowl, seat.walls), -PULL * bowl.gravity)
+    slips = sliding_acceleration(seat, bowl, frame(bowl, seat.walls), -PULL_TOLERANCE * bowl.gravity)
     loose = loose_windows(
         lambda phase: motion(seat, bowl, phase),
         lambda phase: needed_at_rest(seat, bowl, phase)[..., 0],
@@ -161,12 +161,12 @@ def _course(load, moving, sense):
     push = load[..., :2]
     size = np.hypot(push[..., 0], push[..., 1])
     along = np.divide(push, size[..., None], out=np.zeros(push.shape), where=size[..., None] > 0.0)
-    return np.where((moving == 0.0)[..., None], along, sense[..., None] * system.AHEAD)
+    return np.where((moving == 0.0)[..., None], along, sense[..., None] * system.ALONG_X)
 
 
 def _chosen(solve, gravity):
     """At each instant the solution with most closed contacts of which none pulls and no gap closes."""
-    least = -PULL * np.max(gravity)
+    least = -PULL_TOLERANCE * np.max(gravity)
     chosen: dict[str, np.ndarray] = {}
     for closed in system.SETS:
         solution = solve(closed)
@@ -203,7 +203,7 @@ def _motion(seat, solution, slides, needed, load):
     walls = np.where(solution["closed"] & contact[..., None], np.maximum(solution["walls"], 0.0), 0.0)
     state = np.where(inside < -ON_THE_LINE, TIP, np.where(slides, SLIDE, STICK))
     friction = np.where(contact[..., None], solution["friction"], 0.0)
-    noise = NOISE * np.linalg.norm(load, axis=-1)[..., None] / mass
+    noise = FORCE_NOISE * np.linalg.norm(load, axis=-1)[..., None] / mass
     walls, friction = (mass * np.where(np.abs(force) < noise, 0.0, force) for force in (walls, friction))
     return TrackMotion(
         state=np.where(contact, state, HOP),
@@ -274,7 +274,7 @@ def sliding_acceleration(seat, bowl, axes, least):
     return at
 
 
-def loose_windows(rest, needed, static, samples=cycle.SAMPLES):
+def loose_windows(rest, needed, static, samples=cycle.PERIOD_SAMPLES):
     """Return the phases at which a part at rest breaks loose.
 
     Source: Coulomb's law on the reactions of ``system.held``; docs/mechanics.md, "The track".
@@ -298,8 +298,8 @@ def loose_windows(rest, needed, static, samples=cycle.SAMPLES):
     sense = _loose_sense(rest(phase), static)
     change = np.flatnonzero(sense != np.roll(sense, 1))
     if len(change) == 0:
-        return [(0.0, cycle.TURN, float(sense[0]))] if sense[0] else []
-    before, step = sense[change - 1], cycle.TURN / samples
+        return [(0.0, cycle.FULL_TURN, float(sense[0]))] if sense[0] else []
+    before, step = sense[change - 1], cycle.FULL_TURN / samples
     low, high = phase[change] - step, phase[change].copy()
     edges = _loose_edges(lambda at: needed(at) - static, low, high, (before != 0.0) & (sense[change] == 0.0))
     return _cut_windows(edges, sense[change])
@@ -332,11 +332,11 @@ def _loose_edges(beyond, low, high, falls):
 def _cut_windows(starts, senses):
     """Windows within one period from where each begins; a state lasts to the next one's begin."""
     windows = []
-    for start, end, sense in zip(starts, np.append(starts[1:], starts[0] + cycle.TURN), senses):
-        if sense and end > cycle.TURN:
+    for start, end, sense in zip(starts, np.append(starts[1:], starts[0] + cycle.FULL_TURN), senses):
+        if sense and end > cycle.FULL_TURN:
             windows += [
-                (0.0, float(end - cycle.TURN), float(sense)),
-                (float(start), cycle.TURN, float(sense)),
+                (0.0, float(end - cycle.FULL_TURN), float(sense)),
+                (float(start), cycle.FULL_TURN, float(sense)),
             ]
         elif sense:
             windows.append((float(start), float(end), float(sense)))
@@ -355,7 +355,7 @@ def _sliding_rows(seat, bowl, axes, sense):
     Each row is a list of three numbers: the value for a unit of load per mass along X, Y and Z.
     """
     unit = seat.mass * np.eye(3)
-    course = np.tile(sense * system.AHEAD, (3, 1))
+    course = np.tile(sense * system.ALONG_X, (3, 1))
     wall, sets = sense * bowl.friction.wall, []
     for closed in system.SETS:
         use = np.full(3, wall if any(closed) else 0.0)

@@ -8,20 +8,20 @@ import numpy as np
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.mechanics import limits
-from feederscrew.mechanics.floor.balance import HOP, STATES
+from feederscrew.mechanics.floor.balance import HOP, MOTION_STATES
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import card_seat, seat
 from feederscrew.mechanics.wall import support
-from feederscrew.mechanics.wall.stable_headings import headings, laid, on_track
+from feederscrew.mechanics.wall.stable_headings import headings, on_track, stable_row
 
-REGIMES = (*STATES, "leaves the wall", "does not fit")  # a code is a place in this list
-LEAVES, UNFIT = len(STATES), len(STATES) + 1
-COLUMNS = (
+TRACK_REGIMES = (*MOTION_STATES, "leaves the wall", "does not fit")  # a code is a place in this list
+LEAVES, UNFIT = len(MOTION_STATES), len(MOTION_STATES) + 1
+MAP_COLUMNS = (
     "acceleration_x_m_s2", "normal_force_N", "wall_1_N", "wall_2_N",
     "radial_friction_N", "traction_N", "normal_line_offset_m", "normal_line_offset_across_m",
 )  # fmt: skip
 SECTIONS, SINGLE = ("drive", "friction", "track"), ("restitution", "gravity")  # of a bowl, that act on a part
-ROUNDED = 12  # decimals that tell two radii, widths or banks apart
+TRACK_DECIMALS = 12  # decimals that tell two radii, widths or banks apart
 
 
 def seated(posture, bowl, heading=None):
@@ -50,7 +50,7 @@ def seated(posture, bowl, heading=None):
     if posture.corners is None:
         return card_seat(posture), None, 0
     stable = headings(posture, bowl.track)
-    row = laid(stable, heading)
+    row = stable_row(stable, heading)
     return seat(posture, float(stable.headings[row]), stable.touching[row], bowl.track.bank), stable, row
 
 
@@ -70,11 +70,11 @@ def cells(posture, bowl, heading=None):
     Returns
     -------
     dict of str to array [SI, as each column's name says]
-        Columns of the map, ``throw_number``, above 1 where it hops, and 'regime', places in ``REGIMES``; NaN
-        where the part does not fit; no acceleration where it hops.
+        Columns of the map, ``throw_number``, above 1 where it hops, and 'regime', places in
+        ``TRACK_REGIMES``; NaN where the part does not fit; no acceleration where it hops.
     """
     shape = np.broadcast_shapes(*(np.shape(value) for _, _, value in _fields(bowl)))
-    columns = {name: np.full(shape, np.nan) for name in COLUMNS} | {"regime": np.full(shape, UNFIT)}
+    columns = {name: np.full(shape, np.nan) for name in MAP_COLUMNS} | {"regime": np.full(shape, UNFIT)}
     for place, here in _seats(posture, bowl, heading, shape):
         there = _answers(balance.motion(place, _picked(bowl, shape, here)))
         for name, values in there.items():
@@ -89,7 +89,7 @@ def _seats(posture, bowl, heading, shape):
     """Each seat that occurs and the cells, (...) bool, where it does."""
     names = ("climb", "bank", "radius", "width")
     values = np.stack([np.broadcast_to(getattr(bowl.track, name), shape).ravel() for name in names])
-    kinds, place = np.unique(np.round(values, ROUNDED), axis=1, return_inverse=True)
+    kinds, place = np.unique(np.round(values, TRACK_DECIMALS), axis=1, return_inverse=True)
     groups: dict[Any, tuple[Any, list[int]]] = {}  # by the name of a seat: itself, and its tracks
     cache: dict[Any, Any] = {}
     for k, kind in enumerate(kinds.T):
@@ -111,7 +111,7 @@ def _seat(posture, bowl, heading, there, cache):
         if (there.radius, there.width) not in cache:
             cache[there.radius, there.width] = support.reaches(free, posture, there)
         stable = on_track(free, posture, there, cache[there.radius, there.width])
-        row = laid(stable, heading)
+        row = stable_row(stable, heading)
     except FeederError:
         return None, None
     lean = float(np.sign(there.bank))
@@ -124,7 +124,7 @@ def _answers(motion):
     along = np.where(motion.state == HOP, np.nan, along)
     walls, offsets = np.moveaxis(motion.walls, -1, 0), np.moveaxis(motion.offset, -1, 0)
     values = (along, motion.normal_force, *walls, motion.radial_friction, motion.traction, *offsets)
-    return dict(zip(COLUMNS, values)) | {"regime": np.where(leaves, LEAVES, motion.state)}
+    return dict(zip(MAP_COLUMNS, values)) | {"regime": np.where(leaves, LEAVES, motion.state)}
 
 
 def _fields(bowl):

@@ -12,8 +12,8 @@ from scipy.optimize import linprog
 
 from feederscrew.mechanics.track.frame import frame, loads
 
-SIDES = 64  # of the pyramid within a friction cone: its corners lie on it, its sides 0.12 % within
-MARGIN = 1e-6  # of every coefficient, so that an equilibrium on the very limit is none
+CONE_SIDES = 64  # of the pyramid within a friction cone: its corners lie on it, its sides 0.12 % within
+CONE_MARGIN = 1e-6  # of every coefficient, so that an equilibrium on the very limit is none
 
 
 def exists(seat, bowl, phase=0.5 * np.pi):
@@ -46,16 +46,16 @@ def exists(seat, bowl, phase=0.5 * np.pi):
 
 def _rays(seat, bowl, axes):
     """Edges of the friction pyramids as wrenches about the centre of mass, its height the unit; (R, 6)."""
-    angle = 2.0 * np.pi * np.arange(SIDES) / SIDES
+    angle = 2.0 * np.pi * np.arange(CONE_SIDES) / CONE_SIDES
     around = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    static, wall = (mu * (1.0 - MARGIN) for mu in (bowl.friction.static, bowl.friction.wall))
-    floor = np.column_stack([static * around, np.ones(SIDES)])
+    static, wall = (mu * (1.0 - CONE_MARGIN) for mu in (bowl.friction.static, bowl.friction.wall))
+    floor = np.column_stack([static * around, np.ones(CONE_SIDES)])
     feet = np.column_stack([seat.contact, np.full(len(seat.contact), -seat.height)])
-    places, forces = [np.repeat(feet, SIDES, axis=0)], [np.tile(floor, (len(feet), 1))]
+    places, forces = [np.repeat(feet, CONE_SIDES, axis=0)], [np.tile(floor, (len(feet), 1))]
     for place, normal, course in zip(seat.walls, axes.normals, axes.courses):
         upward = np.cross(course, normal)
         tangents = around[:, :1] * course + around[:, 1:] * upward
-        places.append(np.tile(place, (SIDES, 1)))
+        places.append(np.tile(place, (CONE_SIDES, 1)))
         forces.append(normal + wall * tangents)
     place, force = np.concatenate(places) / seat.height, np.concatenate(forces)
     return np.concatenate([force, np.cross(place, force)], axis=1)

@@ -14,7 +14,7 @@ from feederscrew import check
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned
 
-SAME = 1e-5  # of the part's size: corners above one another within this are one edge of its side
+EDGE_DEPTH_SHARE = 1e-5  # of the part's size: corners above one another within this are one edge of its side
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,7 +192,7 @@ def bank_without_radial_friction(seat):
 def _level(plan, levels, point, lean):
     """Height at which the edge of a side above ``point`` touches the wall."""
     size = np.ptp(plan, axis=0).max()
-    there = levels[np.hypot(*(plan - point).T) <= SAME * size]
+    there = levels[np.hypot(*(plan - point).T) <= EDGE_DEPTH_SHARE * size]
     if lean == 0.0:
         return 0.5 * (there.max() + there.min())
     return there.max() if lean > 0.0 else there.min()

@@ -16,9 +16,9 @@ from feederscrew.geometry.polygons import cross
 from feederscrew.geometry.vectors import dot
 
 SETS = ((True, True), (True, False), (False, True), (False, False))  # closed wall contacts, in order of trial
-STEPS = 14  # of the secant rule; the functions are nearly straight
-HELD = 1e-6  # [1] of the slip of a part that nothing holds: less than this is none
-AHEAD = np.array([1.0, 0.0])
+SECANT_STEPS = 14  # of the secant rule; the functions are nearly straight
+HELD_SLIP_SHARE = 1e-6  # [1] of the slip of a part that nothing holds: less than this is none
+ALONG_X = np.array([1.0, 0.0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ class TrackSolution:
     parting: np.ndarray  # (..., 2) [m/s2] at which each wall contact opens
 
 
-def sliding(seat, axes, load, closed, floor, wall, course=AHEAD):
+def sliding(seat, axes, load, closed, floor, wall, course=ALONG_X):
     """Solve the wrench equations of a sliding part: accelerations and reactions.
 
     Parameters
@@ -94,12 +94,12 @@ def held(seat, axes, load, closed, ratio):
 
     def resting(mobilised):
         """What acts, and the reactions that leave no motion across and no turning."""
-        acting = wall.acting(force, mobilised * ratio, -mobilised[..., None] * AHEAD)
+        acting = wall.acting(force, mobilised * ratio, -mobilised[..., None] * ALONG_X)
         return acting, acting.reactions(closed, np.zeros(2))
 
     def slip(mobilised):
         """What is left over along the track, and the divisor of the wall's reactions that it is of."""
-        return wall.acting(force, mobilised * ratio, -mobilised[..., None] * AHEAD).undivided(closed)
+        return wall.acting(force, mobilised * ratio, -mobilised[..., None] * ALONG_X).undivided(closed)
 
     mobilised = _mobilised(slip, force)
     acting, walls = resting(mobilised)
@@ -124,13 +124,17 @@ def _mobilised(slip, force):
         lambda after, step: after - np.clip(step, -10.0, 10.0),
     )  # fmt: skip
     left, at_found = slip(root)
-    holds = (np.abs(left) <= HELD * np.abs(unheld)) & (root * guess >= 0.0) & (at_found * divisor > 0.0)
+    holds = (
+        (np.abs(left) <= HELD_SLIP_SHARE * np.abs(unheld))
+        & (root * guess >= 0.0)
+        & (at_found * divisor > 0.0)
+    )
     return np.where(holds, root, guess)
 
 
 def _zero(slip, before, slip_before, after, stepped):
     """Where a function is zero, by the secant rule from two guesses; ``stepped`` keeps a step in bounds."""
-    for _ in range(STEPS):
+    for _ in range(SECANT_STEPS):
         if np.array_equal(before, after, equal_nan=True):  # it would stay there
             break
         slip_after = slip(after)

@@ -8,11 +8,11 @@ from feederscrew.geometry import vectors
 from feederscrew.mechanics.wall.sameness import directions
 
 FIRST, LAST = np.radians(6.0), np.radians(0.02)  # [rad] steps of the way down, the largest and the smallest
-AXES = 24  # about which a step may turn it, either way
+STEP_AXES = 24  # about which a step may turn it, either way
 YAW = np.radians(5.0)  # [rad] askew to either side, as it comes
-ASKEW = np.radians(np.linspace(-10.0, 10.0, 11))  # by which one may lie turned and be known
+HEADING_OFFSETS = np.radians(np.linspace(-10.0, 10.0, 11))  # by which one may lie turned and be known
 SEEN = 160  # directions in which reaches are compared
-ALIKE = 0.05  # of the part's size, by which they may differ
+REACH_TOLERANCE = 0.05  # of the part's size, by which they may differ
 
 
 def height(points, angle):
@@ -58,7 +58,7 @@ def settled(points, angle):
 @functools.lru_cache(maxsize=32)
 def _turns(step):
     """Matrices (2 AXES, 3, 3) that turn rows by a step [rad] about axes spread over the sphere."""
-    axes = directions()[:: len(directions()) // AXES][:AXES]
+    axes = directions()[:: len(directions()) // STEP_AXES][:STEP_AXES]
     s, c = np.sin(step), np.cos(step)
     rotations = []
     for x, y, z in np.concatenate([axes, -axes]):
@@ -86,9 +86,9 @@ def _reach(points):
 
 
 @functools.lru_cache(maxsize=2048)
-def _known(posture, heading):
+def _reach_of_orientation(posture, heading):
     """What an orientation reaches (N, SEEN) [m], turned a little."""
-    return np.array([_reach(_standing(posture, heading + by)) for by in ASKEW])
+    return np.array([_reach(_standing(posture, heading + by)) for by in HEADING_OFFSETS])
 
 
 def becomes(orientation, orientations, angle):
@@ -115,8 +115,11 @@ def becomes(orientation, orientations, angle):
 
 def _like(reach, orientation, orientations):
     """Place of the orientation that reaches so, that of ``orientation`` first; -1 where none does."""
-    off = [float(np.abs(_known(k.posture, k.heading) - reach).max(axis=1).min()) for k in orientations]
-    size = ALIKE * float(reach.max())
+    off = [
+        float(np.abs(_reach_of_orientation(k.posture, k.heading) - reach).max(axis=1).min())
+        for k in orientations
+    ]
+    size = REACH_TOLERANCE * float(reach.max())
     own = [
         other.posture is orientation.posture and other.heading == orientation.heading
         for other in orientations

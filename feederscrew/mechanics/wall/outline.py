@@ -12,8 +12,8 @@ import numpy as np
 from feederscrew import check
 from feederscrew.geometry.polygons import cross, inset
 
-LEVEL = 0.1  # of that depth: tops of a curved end that differ by less are one, and halved
-ROUND = 1e-2  # of the outline's size: dips between headings shallower than this are facets of a curve
+SAME_TOP_SHARE = 0.1  # of that depth: tops of a curved end that differ by less are one, and halved
+MIN_DIP_SHARE = 1e-2  # of the outline's size: dips between headings shallower than this are facets of a curve
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +28,7 @@ class Rests:
     rounded: bool = False  # the outline is round as far as is known: every direction is as good
 
 
-def rests(outline, radius, merge=ROUND):
+def rests(outline, radius, merge=MIN_DIP_SHARE):
     """Return how an outline can lie against a wall.
 
     Source: own; docs/mechanics.md, "Headings".
@@ -133,7 +133,9 @@ def _merged(lows, tops, borders, least):
             break
         _join(dips, edges, i)
     rounded = bool(max(tops) - min(lows) < 2.0 * least)
-    starts = np.array([_border(tops, borders, dips[i - 1], k, LEVEL * least) for i, k in enumerate(dips)])
+    starts = np.array(
+        [_border(tops, borders, dips[i - 1], k, SAME_TOP_SHARE * least) for i, k in enumerate(dips)]
+    )
     share = np.mod(np.roll(starts, -1) - starts, 2.0 * np.pi) / (2.0 * np.pi)
     return np.array(dips), starts, np.where(share > 0.0, share, 1.0), rounded
 

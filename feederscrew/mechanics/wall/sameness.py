@@ -12,7 +12,7 @@ from feederscrew.part.moments import Moments
 
 SAME_SURFACE = 1e-3  # of the part's size: support functions that differ by less are equal
 SAME_SOLID = 5e-4  # [1] mismatch of moments; a tessellated turn leaves 1e-6, another shape 1e-2
-DIRECTIONS = 750  # on half the sphere; their images by mirroring are the other half
+LOOK_DIRECTIONS = 750  # on half the sphere; their images by mirroring are the other half
 
 
 def looks(posture, headings):
@@ -43,7 +43,7 @@ def looks(posture, headings):
     return np.array(supports), np.array([_moments_of(solid, posture.axes, turn) for turn in headings])
 
 
-def alike(first, second, mirrored=False):
+def looks_alike(first, second, mirrored=False):
     """Return whether two looks are one and the same, or each other's mirror image.
 
     Parameters
@@ -74,7 +74,7 @@ def firsts(posture, headings):
     rows = [(supports[k], None if moments is None else moments[k]) for k in range(len(headings))]
     first = np.arange(len(headings))
     for row in range(len(headings)):
-        earlier = (k for k in np.unique(first[:row]) if alike(rows[row], rows[k]))
+        earlier = (k for k in np.unique(first[:row]) if looks_alike(rows[row], rows[k]))
         first[row] = next(earlier, row)
     return first
 
@@ -92,7 +92,7 @@ def _supports(corners, turn):
 
 def _moments_of(solid, axes, turn):
     """(2, n, 6) directional moments along some directions of the track and their images."""
-    there = directions()[:: DIRECTIONS // 24]
+    there = directions()[:: LOOK_DIRECTIONS // 24]
     both = np.stack([there, there * [-1.0, 1.0, 1.0]])
     return solid.directional(np.einsum("ji,...j->...i", axes, _turned_back(both, turn)))
 
@@ -111,8 +111,8 @@ def directions():
     Source: R. Swinbank, R. J. Purser, "Fibonacci grids: a novel approach to global modelling", Q. J. R.
     Meteorol. Soc. 132(619), 1769-1793, 2006.
     """
-    k = np.arange(DIRECTIONS) + 0.5
-    z, turn = 1.0 - 2.0 * k / DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * k
+    k = np.arange(LOOK_DIRECTIONS) + 0.5
+    z, turn = 1.0 - 2.0 * k / LOOK_DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * k
     r = np.sqrt(1.0 - z * z)
     return np.column_stack([r * np.cos(turn), r * np.sin(turn), z])
 

@@ -15,9 +15,9 @@ from feederscrew.mechanics.wall import sameness, support
 from feederscrew.mechanics.wall.outline import rests
 from feederscrew.records import Shown
 
-ALIKE = 1e-5  # of the outline's size: outlines that differ by less are the same
+OUTLINE_TOLERANCE = 1e-5  # of the outline's size: outlines that differ by less are the same
 NO_TURN = 1e-5  # [rad] files in single precision turn a part by a hundredth of it
-TIE = 1e-4  # shares that differ by less of themselves are equal but for rounding
+SHARE_TIE = 1e-4  # shares that differ by less of themselves are equal but for rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,8 +71,10 @@ def headings(posture, track):
     curved, straight = rests(posture.outline, track.radius), rests(posture.outline, np.inf)
     order, first, shares = _distinct(posture, curved)
     turn = _heading(curved.outward[order])
-    halves = _apart(turn[:, None] + np.pi, turn) + np.pi * np.eye(len(turn))  # a row is not its own half turn
-    mirrored = _apart(np.pi - turn[:, None], turn)  # as the body's own axes are mirrored
+    halves = _angle_between(turn[:, None] + np.pi, turn) + np.pi * np.eye(
+        len(turn)
+    )  # a row is not its own half turn
+    mirrored = _angle_between(np.pi - turn[:, None], turn)  # as the body's own axes are mirrored
     shapes = [turned(posture.outline, angle) for angle in turn]
     distances = curved.distance[order]
     widths = np.array([_width(shape, d, track.radius) for shape, d in zip(shapes, distances)])
@@ -122,7 +124,7 @@ def on_track(headings, posture, track, reaches=None):
     return replace(headings, overhangs=check.frozen(overhangs), falls_off=check.frozen(falls))
 
 
-def laid(headings, heading=None):
+def stable_row(headings, heading=None):
     """Return the row of the heading that a part ends in, laid on the track and pushed to the wall.
 
     Source: own; docs/mechanics.md, "Headings".
@@ -159,7 +161,7 @@ def settled(headings, heading):
     """Return the row whose range of headings [rad] holds one; on a border the one nearer in heading."""
     lowest, width = headings.ranges.T
     beyond = np.mod(heading - lowest, 2.0 * np.pi) - width
-    middle = _apart(lowest + 0.5 * width, heading)
+    middle = _angle_between(lowest + 0.5 * width, heading)
     return int(headings.settles[np.lexsort((middle, beyond > 1e-9))[0]])
 
 
@@ -191,11 +193,11 @@ def _ranked(share, outward):
     order = np.argsort(-share)
     ordered = share[order]
     rank = np.zeros(len(order), dtype=int)
-    rank[order[1:]] = np.cumsum(ordered[:-1] - ordered[1:] > TIE * ordered[:-1])
+    rank[order[1:]] = np.cumsum(ordered[:-1] - ordered[1:] > SHARE_TIE * ordered[:-1])
     return np.lexsort((_heading(outward), rank))
 
 
-def _apart(first, second):
+def _angle_between(first, second):
     """Angle between headings, 0 to pi."""
     return np.abs(np.mod(first - second + np.pi, 2.0 * np.pi) - np.pi)
 
@@ -239,14 +241,14 @@ def _partners(shapes, image, astray):
     """For each outline the row that is its image, of several the least astray; -1 for none but itself."""
     partner = np.full(len(shapes), -1)
     for i, shape in enumerate(shapes):
-        like = [j for j, s in enumerate(shapes) if _alike(image(shape), s)]
+        like = [j for j, s in enumerate(shapes) if _same_corners(image(shape), s)]
         partner[i] = min(like, key=lambda j: round(astray[i, j], 3), default=-1)
     return np.where(partner == np.arange(len(shapes)), -1, partner)
 
 
-def _alike(first, second):
+def _same_corners(first, second):
     """Whether two outlines have the same corners."""
     if len(first) != len(second):
         return False
     gap = np.linalg.norm(first[:, None] - second, axis=-1).min(axis=1).max()
-    return gap < ALIKE * np.abs(second).max()
+    return gap < OUTLINE_TOLERANCE * np.abs(second).max()

@@ -5,8 +5,8 @@ import numpy as np
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import cross, turned
 
-NOISE = 1e-12  # [m] places along the track nearer than this are one
-SAME = 1e-6  # of the outline's size: nearer than this to the edge is on it
+PLACE_TOLERANCE_M = 1e-12  # [m] places along the track nearer than this are one
+EDGE_TOLERANCE = 1e-6  # of the outline's size: nearer than this to the edge is on it
 
 
 def reaches(headings, posture, track):
@@ -54,14 +54,14 @@ def falls(posture, reach, track):
     size = np.ptp(posture.outline, axis=0).max()
     most = reach[:, 1].max()
     if posture.kind == "rolling":
-        return bool(inward > most + SAME * size)
+        return bool(inward > most + EDGE_TOLERANCE * size)
     along, off = reach.T
-    return bool(inward > np.interp(ahead, along, off, left=most, right=most) + SAME * size)
+    return bool(inward > np.interp(ahead, along, off, left=most, right=most) + EDGE_TOLERANCE * size)
 
 
 def _reach(points):
     """(K, 2) the side of the hull of points that is away from the wall, along the track."""
-    places = np.column_stack([NOISE * np.round(points[:, 0] / NOISE), points[:, 1]])
+    places = np.column_stack([PLACE_TOLERANCE_M * np.round(points[:, 0] / PLACE_TOLERANCE_M), points[:, 1]])
     chain: list[np.ndarray] = []
     for point in places[np.lexsort((-places[:, 1], places[:, 0]))]:
         if chain and point[0] == chain[-1][0]:

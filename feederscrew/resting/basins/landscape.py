@@ -13,13 +13,17 @@ from feederscrew.geometry import coordinates, vectors
 from feederscrew.geometry.compiled import fitting
 from feederscrew.resting.basins import forest
 
-SMOOTH = np.radians(25.0)  # a sharper edge is meant: a bar of 12 sides (30 deg) has flats, one of 16 rolls
-GENTLE = np.cos(SMOOTH)  # of two normals, their product
+SMOOTH_ANGLE = np.radians(
+    25.0
+)  # a sharper edge is meant: a bar of 12 sides (30 deg) has flats, one of 16 rolls
+GENTLE_COSINE = np.cos(SMOOTH_ANGLE)  # of two normals, their product
 RIPPLE_OF_RADIUS = 2e-3  # noise and tessellation leave barriers below this share of the part's radius ...
 RIPPLE_OF_HEIGHT = 2e-2  # ... and below this share of the height, or slender parts would lose their sides
-BARE = 1e-4  # of the radius, 1 um on a small part: a lower barrier holds nothing, however sharp its edge
-FLAT = 1e-6  # [rad] between halves of one strip
-SLIVER = 1e-3  # of the radius: a narrower triangle has no direction of its own
+MIN_BARRIER_SHARE = (
+    1e-4  # of the radius, 1 um on a small part: a lower barrier holds nothing, however sharp its edge
+)
+STRIP_ANGLE = 1e-6  # [rad] between halves of one strip
+MIN_TRIANGLE_WIDTH = 1e-3  # of the radius: a narrower triangle has no direction of its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +99,7 @@ def landscape(hull):
     pairs, ends = edges(hull)
     tops = passes(hull, pairs, ends)
     ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * hull.heights)
-    nothing = np.full(len(hull.heights), BARE * hull.radius)
+    nothing = np.full(len(hull.heights), MIN_BARRIER_SHARE * hull.radius)
     below = _downhill(hull, pairs, tops)
     smooth = gentle(_broad_normals(hull, below), pairs)
     local = forest.roots(below)
@@ -137,7 +141,7 @@ def gentle(normals, pairs):
     -------
     (E,) bool
     """
-    return coordinates.dot(*coordinates.at(normals, pairs)) > GENTLE
+    return coordinates.dot(*coordinates.at(normals, pairs)) > GENTLE_COSINE
 
 
 def _downhill(hull, pairs, tops):
@@ -163,12 +167,12 @@ def _broad_normals(hull, below):
     """
     a, b, c = coordinates.at(hull.vertices, hull.triangles)
     sides = [np.sqrt(coordinates.dot(side, side)) for side in (b - c, c - a, a - b)]  # opposite each corner
-    thin = 2.0 * hull.areas < SLIVER * hull.radius * np.maximum(np.maximum(*sides[:2]), sides[2])
+    thin = 2.0 * hull.areas < MIN_TRIANGLE_WIDTH * hull.radius * np.maximum(np.maximum(*sides[:2]), sides[2])
     end = forest.roots(np.where(thin, below, np.arange(len(thin))))
     still = np.flatnonzero(thin & (end == np.arange(len(thin))))  # no way down, or half of a flat strip
     lengths, neighbours = np.column_stack(sides)[still], hull.neighbours[still]
     end = _over_longest(end, thin, still, neighbours[np.arange(len(still)), lengths.argmax(axis=1)])
-    level = angle(hull.normals[still, None], hull.normals[neighbours]) < FLAT
+    level = angle(hull.normals[still, None], hull.normals[neighbours]) < STRIP_ANGLE
     best = np.where(thin[end[neighbours]], 0.0, np.where(level, np.inf, lengths)).argmax(axis=1)
     out = np.arange(len(thin))
     out[still] = np.where(thin[end[still]], end[hull.neighbours[still, best]], end[still])

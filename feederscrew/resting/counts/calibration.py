@@ -13,7 +13,7 @@ from feederscrew.resting.tumbling.by_class import ground
 
 LOWEST, HIGHEST = -2.0, 8.0  # [1] exponents tried
 CONFIDENCE = 0.95
-SAME = 1e-9  # [1] so near two heights or shares are the same
+EQUAL_SHARE_TOLERANCE = 1e-9  # [1] so near two heights or shares are the same
 DEVICES_FIT = "devices"  # the name of the fit to a feeding test
 
 
@@ -100,7 +100,7 @@ def calibrate_passes(passed, rejected, paths, shares, heights, radius):
     telling = _telling(paths, shares)
     passed, rejected = (np.asarray(counts, float)[telling] for counts in (passed, rejected))
     came, on = np.asarray(paths)[:, telling]
-    if not telling.any() or np.ptp(heights[shares > 0.0]) <= SAME * heights.max():
+    if not telling.any() or np.ptp(heights[shares > 0.0]) <= EQUAL_SHARE_TOLERANCE * heights.max():
         raise ValueError("the devices pass all aspects alike: the counts say nothing about the exponent")
 
     def fitted(exponent):
@@ -120,7 +120,9 @@ def _telling(paths, shares):
     """(D,) bool, the devices of which aspects pass unlike shares."""
     came, on = np.asarray(paths)[:, :, shares > 0.0]
     each = np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), np.nan)
-    equal = np.nanmax(each, axis=1, initial=0.0) - np.nanmin(each, axis=1, initial=1.0) <= SAME
+    equal = (
+        np.nanmax(each, axis=1, initial=0.0) - np.nanmin(each, axis=1, initial=1.0) <= EQUAL_SHARE_TOLERANCE
+    )
     return ~equal
 
 
@@ -148,7 +150,7 @@ def _aligned(counts, shares, heights):
         raise ValueError("counts must not be negative, nor all zero")
     if (counts[shares <= 0.0] > 0.0).any():
         raise ValueError("counts has parts on an aspect that no direction rolls to")
-    if np.ptp(heights[shares > 0.0]) <= SAME * heights.max():
+    if np.ptp(heights[shares > 0.0]) <= EQUAL_SHARE_TOLERANCE * heights.max():
         raise ValueError("heights are all the same: the counts say nothing about the exponent")
     return counts, shares, heights
 

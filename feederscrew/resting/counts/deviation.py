@@ -8,7 +8,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.resting.counts.profiles import AspectProfile
 
-LEAST = 5.0  # expected count below which the chi-square distribution is no longer trusted
+MIN_EXPECTED_COUNT = 5.0  # expected count below which the chi-square distribution is no longer trusted
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class ChiSquare:
     statistic: float
     degrees_of_freedom: int  # 0 where there is no test
     p_value: float
-    joined: int = 0  # aspects counted as one because fewer than ``LEAST`` were expected
+    joined: int = 0  # aspects counted as one because fewer than ``MIN_EXPECTED_COUNT`` were expected
 
 
 NO_TEST = ChiSquare(np.nan, 0, np.nan)
@@ -95,7 +95,7 @@ def chi_square(counts, fractions, estimated=0):
 
     Notes
     -----
-    Aspects of which fewer than ``LEAST`` are expected are joined, the weakest first, until the
+    Aspects of which fewer than ``MIN_EXPECTED_COUNT`` are expected are joined, the weakest first, until the
     group expects enough; ``joined`` says how many. There is no test without a degree of freedom: groups
     less one, less the parameters that were estimated.
 
@@ -154,12 +154,12 @@ def chi_square_passes(passed, rejected, expected, estimated=0):
     Returns
     -------
     ChiSquare
-        Devices at which fewer than ``LEAST`` are expected to pass or to be rejected are left out, and
-        counted in ``joined``.
+        Devices at which fewer than ``MIN_EXPECTED_COUNT`` are expected to pass or to be rejected are left
+        out, and counted in ``joined``.
     """
     passed, rejected = (_weights(values) for values in _pair(passed, rejected))
     came, expected = passed + rejected, check.shaped("expected", expected, passed.shape)
-    enough = came * np.minimum(expected, 1.0 - expected) >= LEAST
+    enough = came * np.minimum(expected, 1.0 - expected) >= MIN_EXPECTED_COUNT
     freedom, few = int(enough.sum()) - estimated, int((~enough).sum())
     if freedom <= 0:
         return ChiSquare(np.nan, 0, np.nan, few)
@@ -216,13 +216,13 @@ def _tested(statistic, freedom, joined):
 
 
 def _joined(observed, expected):
-    """The weakest columns added up until each expects ``LEAST`` in every row."""
+    """The weakest columns added up until each expects ``MIN_EXPECTED_COUNT`` in every row."""
     order = np.argsort(expected.min(axis=0), kind="stable")
     observed, expected = observed[:, order], expected[:, order]
-    weak = int((expected.min(axis=0) < LEAST).sum())
+    weak = int((expected.min(axis=0) < MIN_EXPECTED_COUNT).sum())
     if weak == 0:
         return observed, expected, 0
-    enough = np.flatnonzero(expected.cumsum(axis=1).min(axis=0) >= LEAST)
+    enough = np.flatnonzero(expected.cumsum(axis=1).min(axis=0) >= MIN_EXPECTED_COUNT)
     last = max(weak, 1 + int(enough[0])) if len(enough) else expected.shape[1]
     observed, expected = (
         np.column_stack([table[:, :last].sum(axis=1), table[:, last:]]) for table in (observed, expected)

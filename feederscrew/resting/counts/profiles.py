@@ -10,19 +10,19 @@ from feederscrew import check
 from feederscrew.documents import hint
 from feederscrew.errors import Faults, FeederError
 from feederscrew.resting.counts import count_rows
-from feederscrew.resting.counts.count_rows import EXAMPLE, Few
+from feederscrew.resting.counts.count_rows import COUNTS_EXAMPLE, Few
 from feederscrew.resting.counts.head import NO_HEAD, Head
 from feederscrew.units import shown
 
-ROUNDING = 0.005  # of the whole: how far printed fractions may miss their sum
-WHOLE = {"counts": 0.0, "fractions": 1.0, "percent": 100.0}  # what a column sums to; counts, to anything
+SUM_TOLERANCE = 0.005  # of the whole: how far printed fractions may miss their sum
+COLUMN_SUM = {"counts": 0.0, "fractions": 1.0, "percent": 100.0}  # what a column sums to; counts, to anything
 DROPPED = ("height_mm", "count")  # columns by which a table of ``feeder drop`` is known
 ASPECT, ORIENTATION, DEVICE = "aspect", "orientation", "device"  # what a file counts by: its first column
 INTEGER = re.compile(r"\+?\d+", re.ASCII)
 FULL_TURN = 360.0  # [deg]
-MOST = 1e12  # of a count
-LETTERS = 40  # of a column's name in a message
-DECIMAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+MAX_COUNT = 1e12  # of a count
+MAX_NAME_LETTERS = 40  # of a column's name in a message
+DECIMAL_PATTERN = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ class Measured:
     @property
     def notes(self):
         """What the columns were taken for, a line a kind."""
-        document = {kind: [_told(p) for p in self.profiles if p.kind == kind] for kind in WHOLE}
+        document = {kind: [_name_with_sum(p) for p in self.profiles if p.kind == kind] for kind in COLUMN_SUM}
         return tuple(
             f"{self.source}: {kind}: {', '.join(names)}" for kind, names in document.items() if names
         )
@@ -131,7 +131,7 @@ def measured(table, where, sha256, names, taken=()):
     Parameters
     ----------
     table : CountSheet
-        Whole numbers are counts; fractions sum to 1 and percents to 100, both within ``ROUNDING`` of the
+        Whole numbers are counts; fractions sum to 1 and percents to 100, both within ``SUM_TOLERANCE`` of the
         whole. Of a table of ``feeder drop`` only the counts are taken. Rows are aspects or, where the first
         column is 'orientation', aspects at a heading in degrees: 'A@180'.
     where : str
@@ -205,9 +205,9 @@ def _columns(where, header, taken):
         what = "counts by device, which does not say how often the part lies on each aspect"
         raise FeederError(where, what, "give counts by aspect or by orientation")
     if first.lower() not in (ASPECT, ORIENTATION):
-        raise FeederError(where, f"the first column is {shown(first)}, not aspect", EXAMPLE)
+        raise FeederError(where, f"the first column is {shown(first)}, not aspect", COUNTS_EXAMPLE)
     if not columns:
-        raise FeederError(where, "has no profile", EXAMPLE)
+        raise FeederError(where, "has no profile", COUNTS_EXAMPLE)
     if "" in columns:
         raise FeederError(where, "a column has no name", "give each its own name")
     if double := next((name for name in columns if columns.count(name) > 1), None):
@@ -240,7 +240,7 @@ def _row(where, row, columns, cells, names, by, faults):
 def _oriented(where, name, faults):
     """Aspect and heading [rad] of 'A@180'; None where it is not of that form."""
     aspect, _, degrees = name.rpartition("@")
-    if not aspect or not DECIMAL.fullmatch(degrees) or not abs(float(degrees)) <= FULL_TURN:
+    if not aspect or not DECIMAL_PATTERN.fullmatch(degrees) or not abs(float(degrees)) <= FULL_TURN:
         what = f"{shown(name)} is not an aspect at a heading"
         faults.add(where, what, "write it as feeder tooling does: A@180")
         return None
@@ -248,13 +248,13 @@ def _oriented(where, name, faults):
 
 
 def _judge(where, column, value, faults):
-    what = f"{column[:LETTERS]}: {shown(value)}"
-    if not DECIMAL.fullmatch(value):
+    what = f"{column[:MAX_NAME_LETTERS]}: {shown(value)}"
+    if not DECIMAL_PATTERN.fullmatch(value):
         faults.add(where, f"{what} is not a number", "write digits with a decimal point")
     elif float(value) < 0.0:
         faults.add(where, f"{what} is negative", "give a number from 0")
-    elif float(value) > MOST:
-        faults.add(where, f"{what} is too large", f"give a number up to {MOST:g}")
+    elif float(value) > MAX_COUNT:
+        faults.add(where, f"{what} is too large", f"give a number up to {MAX_COUNT:g}")
 
 
 def _measured(where, name, texts):
@@ -265,17 +265,19 @@ def _measured(where, name, texts):
         return FeederError(where, f"column {shown(name)} holds only zeros", "give at least one count above 0")
     if all(INTEGER.fullmatch(text) for text in texts) and total != 1.0:
         return _profile(name, "counts", values, total)
-    for kind, whole in WHOLE.items():
-        if abs(total - whole) <= ROUNDING * whole:
+    for kind, whole in COLUMN_SUM.items():
+        if abs(total - whole) <= SUM_TOLERANCE * whole:
             return _profile(name, kind, values, whole)
     what = f"column {shown(name)} sums to {total:.6g}"
     return FeederError(where, what, "give whole counts, fractions that sum to 1 or percents that sum to 100")
 
 
-def _told(profile):
+def _name_with_sum(profile):
     """A column's name, with its sum where that is not understood."""
     total = profile.values.sum()
-    return profile.name if abs(total - WHOLE[profile.kind]) < 1e-9 else f"{profile.name} (sum {total:.6g})"
+    return (
+        profile.name if abs(total - COLUMN_SUM[profile.kind]) < 1e-9 else f"{profile.name} (sum {total:.6g})"
+    )
 
 
 def _profile(name, kind, values, whole=1.0):

@@ -14,7 +14,7 @@ from feederscrew.resting.rules import published, surface, tumbled
 from feederscrew.resting.rules.quantities import ClassQuantities, FaceQuantities
 from feederscrew.units import shown
 
-RECOMMENDED = "recommended"  # the answer that is made from the rules; a name beside theirs
+RECOMMENDED_ANSWER = "recommended"  # the answer that is made from the rules; a name beside theirs
 
 
 @dataclass(frozen=True)
@@ -102,10 +102,10 @@ RULES = (
         "own: see below",
     ),
 )  # fmt: skip
-BY_NAME = {rule.name: rule for rule in RULES}
-NAMES = tuple(BY_NAME)
+RULE_OF = {rule.name: rule for rule in RULES}
+RULE_NAMES = tuple(RULE_OF)
 CLOSED = "closed"  # of the rules the one that is nearest to the recommended answer: the quick look
-CHOICES = (*NAMES, CLOSED, RECOMMENDED)  # what a user may ask for
+CHOICES = (*RULE_NAMES, CLOSED, RECOMMENDED_ANSWER)  # what a user may ask for
 
 
 def require_rule(rule):

@@ -10,8 +10,10 @@ from feederscrew.resting.tumbling import abreast, walk
 from feederscrew.resting.tumbling import half_edges as tumbling_edges
 
 SPHERE = 4.0 * np.pi  # [sr]
-ROUNDING = 1e-6  # [1] what the shares may miss 1 by before the result is called doubtful
-UNEVEN = 1e-7  # [1] of the radius: what the corners of a facet merged from needles may lie off its plane
+SHARE_SUM_TOLERANCE = 1e-6  # [1] what the shares may miss 1 by before the result is called doubtful
+FACET_UNEVENNESS = (
+    1e-7  # [1] of the radius: what the corners of a facet merged from needles may lie off its plane
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +70,7 @@ def tumble(hull):
     directions = feet / saddle_heights[:, None]
     pairs, raw, arrived = _basins(edges, sinks, saddles, maxima, directions)
     areas = _areas(raw)
-    falls = (pairs >= 0) & (heights[pairs] <= saddle_heights[:, None] + UNEVEN * hull.radius)
+    falls = (pairs >= 0) & (heights[pairs] <= saddle_heights[:, None] + FACET_UNEVENNESS * hull.radius)
     doubts = _doubts(areas, len(sinks) - len(saddles) + len(maxima), arrived and falls.all())
     axes = edges.vertices[edges.targets[saddles]] - edges.vertices[edges.origins[saddles]]
     return Tumbling(
@@ -124,13 +126,13 @@ def _areas(raw):
     areas = raw.copy()
     if missing:
         areas[np.argsort(raw, kind="stable")[:missing]] += SPHERE
-    return np.where((areas < 0.0) & (areas > -ROUNDING), 0.0, areas)
+    return np.where((areas < 0.0) & (areas > -SHARE_SUM_TOLERANCE), 0.0, areas)
 
 
 def _doubts(areas, euler, arrived):
     total = areas.sum() / SPHERE
     doubts = {
-        f"the basins fill {total:.6g} of the sphere": abs(total - 1.0) > ROUNDING,
+        f"the basins fill {total:.6g} of the sphere": abs(total - 1.0) > SHARE_SUM_TOLERANCE,
         "a basin has a negative area": (areas < 0.0).any(),
         f"sinks - saddles + maxima is {euler}, not 2": euler != 2,
         "a walk from a saddle does not fall to a sink and rise to a maximum": not arrived,

@@ -18,8 +18,8 @@ from feederscrew.geometry.graphs import components
 from feederscrew.resting.tumbling import walk
 
 COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
-SLIVER = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own
-BLOCK = 1 << 12  # half-edges at a time
+NEEDLE_WIDTH = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own
+HALF_EDGE_BLOCK = 1 << 12  # half-edges at a time
 PLANE = 1e-14  # [1] error of a triangle's plane at the far end of the part, times its width over the radius
 MIN_FACETS_AT_CORNER = 3  # facets at a corner
 STRAIGHTNESS_TOLERANCE = 1e-9  # [1] of the radius: of a corner behind the line of its neighbours
@@ -106,7 +106,7 @@ def _signs(vertices, normals, origins, borders):
 
 def _blocks(count):
     """Slices of half-edges, as many at a time as a processor's cache holds."""
-    return [slice(start, start + BLOCK) for start in range(0, count, BLOCK)]
+    return [slice(start, start + HALF_EDGE_BLOCK) for start in range(0, count, HALF_EDGE_BLOCK)]
 
 
 def _one_way_out(slopes, sides, borders):
@@ -220,8 +220,8 @@ def _flat(hull, near, twins, depths):
         corners = hull.vertices[hull.triangles[triangle]]
         lengths = vectors.norm(corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]])  # opposite each corner
         width = 2.0 * hull.areas[triangle] / lengths.max(axis=1) / hull.radius
-        narrow = width < SLIVER
-        inside &= depth <= hull.radius * (COPLANAR + PLANE / np.maximum(width, SLIVER))
+        narrow = width < NEEDLE_WIDTH
+        inside &= depth <= hull.radius * (COPLANAR + PLANE / np.maximum(width, NEEDLE_WIDTH))
         across |= narrow & (edge == lengths.argmax(axis=1))
         sliver |= narrow
     return across | (inside & ~sliver)
