@@ -7,8 +7,10 @@ between them the velocity is integrated by steps of fourth order, halved whereve
 import itertools
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 
@@ -31,7 +33,7 @@ class Cycle:
     settled: bool  # whether the period repeats itself
 
 
-def phases(samples=PERIOD_SAMPLES):
+def phases(samples=PERIOD_SAMPLES) -> NDArray[np.float64]:
     """Return phases w t of one period, (samples,) [rad]; the upper reversal is at a quarter.
 
     Source: a harmonic drive; docs/mechanics.md, "Frames and signs".
@@ -39,7 +41,7 @@ def phases(samples=PERIOD_SAMPLES):
     return FULL_TURN * np.arange(samples) / samples
 
 
-def settle(acceleration, windows, period, samples=PERIOD_SAMPLES):
+def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
     """Follow a part from rest until its velocity repeats every period.
 
     Source: docs/mechanics.md, "The floor"; the mean agrees with the two-burst velocity of
@@ -80,7 +82,7 @@ def settle(acceleration, windows, period, samples=PERIOD_SAMPLES):
     return Cycle(check.frozen(velocity[:-1]), mean, settled)
 
 
-def swing(acceleration, period):
+def swing(acceleration, period) -> Cycle:
     """Return the velocity of a part that nothing brings to rest, as one that rolls: a swing about zero.
 
     Source: the integral of a harmonic acceleration; docs/mechanics.md, "The floor".
@@ -102,7 +104,7 @@ def swing(acceleration, period):
     return Cycle(velocity - np.mean(velocity, axis=0), 0.0, True)
 
 
-def _steady(gained, begun, close):
+def _steady(gained, begun, close) -> tuple[float, bool]:
     """The velocity that a period does not change, and whether there is one; ``gained`` is what it adds."""
     near, rise = begun, gained(begun)
     step, far, fall = rise, near, rise
@@ -115,7 +117,7 @@ def _steady(gained, begun, close):
     return begun, False
 
 
-def _closed_in(gained, bracket, close):
+def _closed_in(gained, bracket, close) -> float:
     """The root between two velocities, by the secant rule in its Illinois form."""
     near, rise, far, fall = bracket
     side = 0
@@ -134,12 +136,12 @@ def _closed_in(gained, bracket, close):
 class _Ride:
     """One period after another of a part under a given acceleration."""
 
-    def __init__(self, acceleration, windows, pace, samples):
+    def __init__(self, acceleration, windows, pace, samples) -> None:
         self.windows, self.samples = windows, samples
         self.gain = lambda phase, speed, sense: pace * acceleration(phase, speed, sense)  # a radian
         self.kink = KINK * pace * max(abs(acceleration(0.25 * FULL_TURN * k, 0.0, 1.0)) for k in range(4))
 
-    def over(self, speed):
+    def over(self, speed) -> tuple[Any, ...]:
         """Return velocities at the samples and at the end of a period that begins with one, and the mean."""
         grid = [FULL_TURN * k / self.samples for k in range(self.samples + 1)]
         found, way = [speed], 0.0
@@ -149,7 +151,7 @@ class _Ride:
             found.append(speed)
         return np.array(found), way / FULL_TURN
 
-    def _between(self, speed, start, end):
+    def _between(self, speed, start, end) -> tuple[Any, ...]:
         """Velocity at the end of a stretch, and the way made in it, times the pace of the phase."""
         way, now = 0.0, start
         while now < end:
@@ -163,14 +165,14 @@ class _Ride:
             way += more
         return speed, way
 
-    def _loose(self, now, end):
+    def _loose(self, now, end) -> tuple[float, float, float]:
         """Where a part at rest breaks loose within a stretch, how long it is loose there, and its sense."""
         for start, stop, sense in self.windows:
             if now < stop and start < end:
                 return max(now, start), min(stop, end), sense
         return end, end, 0.0
 
-    def _slip(self, speed, now, end, until, sense):
+    def _slip(self, speed, now, end, until, sense) -> tuple[float, float, float]:
         """Velocity, way and phase where a slip stops or the stretch ends."""
         span = end - now
         after, way = self._step(now, span, speed, sense)
@@ -185,7 +187,7 @@ class _Ride:
         span = self._stop(now, low, span, speed, sense)
         return 0.0, self._step(now, span, speed, sense)[1], now + span
 
-    def _slowest(self, now, span, speed, sense):
+    def _slowest(self, now, span, speed, sense) -> float:
         """Span after which a slip that slows down and then gets faster is slowest; else all of it."""
         if sense * self.gain(now, speed, sense) >= 0.0 or sense * self.gain(now + span, speed, sense) <= 0.0:
             return span
@@ -196,7 +198,7 @@ class _Ride:
             low, high = (middle, high) if slows else (low, middle)
         return high
 
-    def _stop(self, now, low, high, speed, sense):
+    def _stop(self, now, low, high, speed, sense) -> float:
         """Span after which a slip stops, between one at which it slides and one at which it would not."""
         for _ in range(MAX_BRACKETING_STEPS):
             middle = 0.5 * (low + high)
@@ -206,7 +208,7 @@ class _Ride:
             low, high = (middle, high) if slides else (low, middle)
         return low
 
-    def _step(self, now, span, speed, sense, whole=None, depth=0):
+    def _step(self, now, span, speed, sense, whole=None, depth=0) -> tuple[Any, ...]:
         """Velocity and way after a span, by one step or, where two halves differ from it, by theirs."""
         half, begun = 0.5 * span, self.gain(now, speed, sense)
         whole = whole or self._once(now, span, speed, sense, begun)
@@ -217,7 +219,7 @@ class _Ride:
             last = self._step(now + half, half, first[0], sense, None, depth + 1)
         return last[0], first[1] + last[1]
 
-    def _once(self, now, span, speed, sense, begun=None):
+    def _once(self, now, span, speed, sense, begun=None) -> tuple[Any, ...]:
         """One step of the classical Runge-Kutta rule for the velocity and its integral."""
         half = 0.5 * span
         a = self.gain(now, speed, sense) if begun is None else begun

@@ -1,12 +1,14 @@
 """Which aspect a part stands on where none is asked for."""
 
+from typing import Any
+
 from feederscrew.resting import aspects
 from feederscrew.resting.posture import posture
 
 LIKELIEST, LISTED = "the likeliest ({})", "the first of the card"
 
 
-def standing(part, aspect, block, answered=aspects.find):
+def standing(part, aspect, block, answered=aspects.find) -> tuple[Any, ...]:
     """Return the part on an aspect.
 
     Parameters

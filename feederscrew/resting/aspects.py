@@ -8,6 +8,7 @@ with a deeper neighbour, change the published rules alone.
 import itertools
 from dataclasses import dataclass, field, replace
 from string import ascii_uppercase
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,13 +72,13 @@ class Aspects(Shown):
     warnings: tuple[str, ...] = ()
 
     @property
-    def chances(self):
+    def chances(self) -> dict[Any, Any]:
         """Probability of each aspect by every name a user may ask for: the rules, 'closed', 'recommended'."""
         answers = {"closed": self.closed, "recommended": self.recommended}
         return self.probabilities | {name: answer.p for name, answer in answers.items() if answer is not None}
 
     @property
-    def rolling_circles(self):
+    def rolling_circles(self) -> NDArray[np.float64]:
         """(A,) [m] radius of the circle in which the centre of mass rolls; infinite where straight, else NaN.
 
         The axis of a cone, or of a part on two circles, meets the floor at a point that stays where it is.
@@ -87,21 +88,21 @@ class Aspects(Shown):
         return np.where(off, self.heights * level / np.where(off, np.abs(down), 1.0), np.inf + 0.0 * down)
 
     @property
-    def likeliest(self):
+    def likeliest(self) -> str:
         """Name of the aspect it rests on most often: by the recommended answer, of a card by CSA."""
         return self.names[int(np.argmax(np.nan_to_num(self.chances[self.ranking])))]
 
-    def source(self, rule):
+    def source(self, rule) -> str:
         """Say whose the probabilities of a rule are: 'csa', of an answer 'drop test, launch feed'."""
         return getattr({"closed": self.closed, "recommended": self.recommended}.get(rule), "rule", rule)
 
     @property
-    def ranking(self):
+    def ranking(self) -> str:
         """Name of the answer that ranks the aspects: 'recommended', of a card 'csa'."""
         return "csa" if self.recommended is None else "recommended"
 
 
-def find(part, *, as_published=False, unstable=False, exponent=None, launch=recommended.LAUNCH):
+def find(part, *, as_published=False, unstable=False, exponent=None, launch=recommended.LAUNCH) -> Aspects:
     """Find the resting aspects of a part, with their probability by every rule.
 
     Parameters
@@ -167,7 +168,7 @@ def waits(part):
     return compiled.due(walk.trace_saddles, 3 * len(part.hull.triangles))
 
 
-def _tumbled(named, ground, part, exponent):
+def _tumbled(named, ground, part, exponent) -> Aspects:
     """The record with all that exact tumbling adds to it."""
     more = by_class.exact(ground, part, named, exponent)
     doubts = tuple(f"exact tumbling is doubtful: {doubt}" for doubt in more.doubts)
@@ -182,37 +183,37 @@ def _tumbled(named, ground, part, exponent):
     )
 
 
-def _answered(aspects, launch, exponent):
+def _answered(aspects, launch, exponent) -> Aspects:
     """The record with the closed form that is recommended for a launch, or for the user's own surface."""
     own = None if exponent is None else surface.named(exponent)
     form = recommended.closed_form(aspects.probabilities, aspects.stable, aspects.kinds, launch, own)
     return replace(aspects, recommended=form, closed=form)
 
 
-def _moments(part, hull):
+def _moments(part, hull) -> Moments:
     """Moments of the part; from its hull, of fewer triangles, where the volumes are the same."""
     if abs(hull.volume - part.volume) < CONVEX * hull.volume:
         return Moments(hull.vertices, hull.triangles, np.zeros(3))
     return Moments(part.vertices, part.faces, part.centre_of_mass)
 
 
-def _about(axes, inertia):
+def _about(axes, inertia) -> NDArray[np.float64]:
     """(N,) moments of inertia about unit axes (N, 3)."""
     return vectors.dot(vectors.product(axes, inertia), axes)
 
 
-def _direction(face):
+def _direction(face) -> tuple[float, float, np.float64]:
     """What orders the faces of a class: their direction in the file."""
     return tuple(np.round(face.normal, 6))
 
 
-def _geometry(groups, part):
+def _geometry(groups, part) -> dict[Any, Any]:
     """Columns of the table in the order of the groups; a class's numbers are its faces' means."""
 
     counts = np.array([len(group) for group in groups])
     all_faces = [face for group in groups for face in group]
 
-    def mean(values):
+    def mean(values) -> NDArray[np.float64]:
         return np.add.reduceat(values, np.cumsum(counts) - counts) / counts
 
     examples = [max(group, key=_direction) if len(group) > 1 else group[0] for group in groups]
@@ -230,22 +231,22 @@ def _geometry(groups, part):
     }
 
 
-def _clean(directions):
+def _clean(directions) -> NDArray[np.float64]:
     """Directions with rounding noise and minus zeros swept out."""
     return np.where(np.abs(directions) < 1e-9, 0.0, directions)
 
 
-def _probabilities(table, as_published):
+def _probabilities(table, as_published) -> dict[Any, Any]:
     """Probability of each class by every rule that weighs classes."""
     return _normalised(_quantities(table, as_published), table["stable"])
 
 
-def _in_order(chances, order):
+def _in_order(chances, order) -> dict[Any, Any]:
     """Probabilities by rule, rows in another order."""
     return {rule: chance[order] for rule, chance in chances.items()}
 
 
-def _quantities(table, as_published):
+def _quantities(table, as_published) -> ClassQuantities:
     """What the rules weigh of each class."""
     faces, heights = table["faces"], table["heights"]
     return ClassQuantities(
@@ -260,13 +261,13 @@ def _quantities(table, as_published):
     )
 
 
-def _normalised(quantities, stable):
+def _normalised(quantities, stable) -> dict[Any, Any]:
     """Probabilities by every rule that weighs classes."""
     weights = registry.weights(quantities)
     return {rule: published.normalised(weight, stable) for rule, weight in weights.items()}
 
 
-def _ranked(table, chance, part, moments):
+def _ranked(table, chance, part, moments) -> NDArray[np.int64]:
     """Order of the rows: by falling CSA probability, then by size, then by direction in the part.
 
     The last is taken in axes fixed in the part, so that a turned file keeps its names.
@@ -283,7 +284,7 @@ def _ranked(table, chance, part, moments):
     return np.lexsort((*-direction.T, height, rank))
 
 
-def _named(names, table, chances, order, naming_warnings):
+def _named(names, table, chances, order, naming_warnings) -> Aspects:
     """The record, rows in their order."""
     columns: dict = {k: check.frozen(v[order]) for k, v in table.items() if isinstance(v, np.ndarray)}
     columns |= {name: tuple(table[name][k] for k in order) for name in ("kinds", "forms", "polygons")}
@@ -295,7 +296,7 @@ def _named(names, table, chances, order, naming_warnings):
     )
 
 
-def _from_card(part):
+def _from_card(part) -> Aspects:
     """Aspects as the card's source gives them, by its own names and in its order."""
     rows = part.aspects
     quantities, stable = _printed(rows), check.frozen(np.ones(len(rows), dtype=bool))
@@ -318,7 +319,7 @@ def _from_card(part):
     )
 
 
-def _printed(rows):
+def _printed(rows) -> ClassQuantities:
     """What the rows of a part card print; NaN where they are silent."""
     faces, heights = check.frozen(np.array([row.faces for row in rows])), _column(rows, "height")
     return ClassQuantities(
@@ -333,17 +334,17 @@ def _printed(rows):
     )
 
 
-def _column(rows, quantity):
+def _column(rows, quantity) -> NDArray[np.float64]:
     values = [getattr(row, quantity) for row in rows]
     return check.frozen(np.array([np.nan if value is None else value for value in values], dtype=float))
 
 
-def _over(own, heights):
+def _over(own, heights) -> NDArray[np.float64]:
     """Heights that a rule's own table gives, else those of the aspects."""
     return check.frozen(np.where(np.isnan(own), heights, own))
 
 
-def name_classes(groups, normals, hull, user_names):
+def name_classes(groups, normals, hull, user_names) -> tuple[Any, ...]:
     """Name the classes of aspects.
 
     Source: own; docs/resting.md, "Names that stay".
@@ -391,7 +392,7 @@ def name_classes(groups, normals, hull, user_names):
     return all_names, tuple(warnings)
 
 
-def letters_of(k):
+def letters_of(k) -> str:
     """Return A, B ... Z, AA, AB ... for 0, 1 ..."""
     name = ""
     while k >= 0:
@@ -400,7 +401,7 @@ def letters_of(k):
     return name
 
 
-def _angles_to_names(faces, hull, user_names):
+def _angles_to_names(faces, hull, user_names) -> NDArray[np.float64]:
     """(names,) [rad] from each direction given to the nearest of a class; infinite out of reach."""
     down = np.array([direction for _, direction in user_names.directions])
     own = [hull.normals[face.triangles] if face.kind == "rolling" else face.normal[None] for face in faces]
@@ -409,7 +410,7 @@ def _angles_to_names(faces, hull, user_names):
     return np.where(within, nearest, np.inf)
 
 
-def _match_names(angles):
+def _match_names(angles) -> dict[int, int]:
     """Class by name: the nearest two first, each once."""
     place: dict[int, int] = {}
     for k, row in zip(*np.unravel_index(np.argsort(angles, axis=None, kind="stable"), angles.shape)):
@@ -418,7 +419,7 @@ def _match_names(angles):
     return place
 
 
-def _unmatched(user_names, angles, place, k):
+def _unmatched(user_names, angles, place, k) -> str:
     """What to say of a name that fits no aspect of its own."""
     name, down = user_names.directions[k]
     row = int(np.argmin(angles[k]))
@@ -428,7 +429,7 @@ def _unmatched(user_names, angles, place, k):
     return f"{user_names.source}: {name!r} is one aspect with {other!r} and goes by that name"
 
 
-def _refuse_doubtful(user_names, angles, place):
+def _refuse_doubtful(user_names, angles, place) -> None:
     """Refuse a name that is off its own aspect while another is within reach: either may be meant."""
     for k, row in place.items():
         rest = np.delete(angles[k], row)
@@ -438,11 +439,11 @@ def _refuse_doubtful(user_names, angles, place):
             raise ConfigError(user_names.source, what, "write the direction of the one that is meant")
 
 
-def _direction_text(direction):
+def _direction_text(direction) -> str:
     return ", ".join(f"{x + 0.0:.3g}" for x in vectors.unit(np.asarray(direction)).round(4))
 
 
-def join_classes(faces, part, moments):
+def join_classes(faces, part, moments) -> NDArray[np.int64]:
     """Return labels of equal faces.
 
     Only rotations count: a feeder cannot reflect a part, so mirror images stay apart. The rotation must be
@@ -474,7 +475,7 @@ def join_classes(faces, part, moments):
     return component_of(np.argwhere(carried & equal), len(faces))
 
 
-def _lie_on(turned, middles):
+def _lie_on(turned, middles) -> NDArray[np.bool_]:
     """(N, N) bool: whether the mean normals of turned faces are those of others.
 
     Of a round side the lowest strip says nothing: it lies wherever the tessellation begins.
@@ -483,12 +484,12 @@ def _lie_on(turned, middles):
     return vectors.norm(gaps) < 2.0 * np.sin(0.5 * SYMMETRY_ANGLE)
 
 
-def _are_parallel(turned, axes):
+def _are_parallel(turned, axes) -> NDArray[np.bool_]:
     """(N, N) bool: whether turned axes are parallel to others; true where one has none."""
     return ~(np.abs(vectors.product(turned, axes.T)) < np.cos(SYMMETRY_ANGLE))
 
 
-def symmetries(faces, part, moments):
+def symmetries(faces, part, moments) -> NDArray[np.float64]:
     """Return rotations that leave the solid as it is, the identity left out.
 
     Source: own; docs/resting.md, "Exact tumbling".
@@ -515,7 +516,7 @@ def symmetries(faces, part, moments):
     return rotations[moments.mismatch(rotations) < tolerance]
 
 
-def body_frame(part, moments):
+def body_frame(part, moments) -> NDArray[np.float64]:
     """Return axes fixed in the part: principal axes of inertia, pointed by the solid's third moments.
 
     Source: the eigenvectors of the inertia matrix; own: their signs.
@@ -542,7 +543,7 @@ def body_frame(part, moments):
     return axes
 
 
-def _are_equal(faces):
+def _are_equal(faces) -> NDArray[np.bool_]:
     """(N, N) bool: of one kind and of one height, as far as the file's noise lets us tell."""
     heights = np.array([face.height for face in faces])
     kinds = np.array([face.kind for face in faces])
@@ -552,7 +553,7 @@ def _are_equal(faces):
     return near & (kinds[:, None] == kinds)
 
 
-def _by_landmarks(faces):
+def _by_landmarks(faces) -> NDArray[np.float64] | None:
     """Rotations that carry one pair of unlike directions onto another; None where all are parallel."""
     normals = np.array([face.normal for face in faces])
     heights = np.array([face.height for face in faces])
@@ -566,7 +567,7 @@ def _by_landmarks(faces):
     return None
 
 
-def _carrying(normals, a, b, a_images, b_images):
+def _carrying(normals, a, b, a_images, b_images) -> NDArray[np.float64]:
     """(N, 3, 3) rotations taking normals a, b to every pair of images that keeps their angle."""
     c, d = (images.ravel() for images in np.meshgrid(a_images, b_images, indexing="ij"))
     between = angle(normals[a], normals[b])
@@ -576,12 +577,12 @@ def _carrying(normals, a, b, a_images, b_images):
     return vectors.product(ends, _frames(normals[a], normals[b]).T)
 
 
-def _half_turns(axis, moments):
+def _half_turns(axis, moments) -> NDArray[np.float64]:
     """Half turns about axes across ``axis``: the likeliest, where the solid changes least."""
     u = vectors.unit(vectors.cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
     v = vectors.cross(axis, u)
 
-    def turns(phases):
+    def turns(phases) -> NDArray[np.float64]:
         across = np.cos(phases)[:, None] * u + np.sin(phases)[:, None] * v
         return 2.0 * across[:, :, None] * across[:, None, :] - np.eye(3)
 
@@ -594,13 +595,13 @@ def _half_turns(axis, moments):
     return np.concatenate([across, along[None], vectors.product(across, along)])
 
 
-def _principal(part):
+def _principal(part) -> NDArray[np.float64]:
     """Half turns about the principal axes: all there are where the principal moments differ."""
     axes = vectors.eigen(part.inertia)[1].T
     return 2.0 * axes[:, :, None] * axes[:, None, :] - np.eye(3)
 
 
-def _frames(first, second):
+def _frames(first, second) -> NDArray[np.float64]:
     """(..., 3, 3) right-handed axes as columns: along first (..., 3), and in the plane of both."""
     z = first
     y = vectors.unit(vectors.cross(first, second))
@@ -741,7 +742,7 @@ def shallow_remark(
     )
 
 
-def _described(hull, facet):
+def _described(hull, facet) -> tuple[NDArray[np.float64], float, float, float, float]:
     """Normal, height, area, solid angle of the triangles of one plane; how far the foot is inside it."""
     areas, corners = hull.areas[facet], hull.triangles[facet]
     normal = vectors.unit(np.einsum("t,tx->x", areas, hull.normals[facet]))

@@ -1,8 +1,10 @@
 """Hull triangles gathered into faces a part can rest on: flats, and curved sides it rolls on."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.geometry import groups, vectors
 from feederscrew.geometry.graphs import component_of, components
@@ -57,7 +59,7 @@ class Face:
     roughness: float  # [m] mean depth of the contact's corners off its plane: the file's noise
 
 
-def stable_faces(hull, basins):
+def stable_faces(hull, basins) -> list[Face]:
     """Faces the part rests on.
 
     Parameters
@@ -79,7 +81,7 @@ def stable_faces(hull, basins):
     return _described(hull, strips, lowest, stable=True)
 
 
-def unstable_faces(hull, taken):
+def unstable_faces(hull, taken) -> list[Face]:
     """Faces made of the triangles no stable face has taken: the part rolls off them.
 
     Parameters
@@ -106,7 +108,7 @@ def unstable_faces(hull, taken):
     return _described(hull, parts, largest, stable=False)
 
 
-def _coarse_curves(hull, basins, members):
+def _coarse_curves(hull, basins, members) -> NDArray[np.int64]:
     """(B,) label of each sink; strips of one coarsely tessellated curve share it."""
     place, sinks = np.searchsorted(basins.sinks, basins.ripples), basins.ripples
     levels = hull.heights[sinks]
@@ -134,7 +136,7 @@ def _coarse_curves(hull, basins, members):
     return labels
 
 
-def _one_round(hull, sinks, members, sides):
+def _one_round(hull, sinks, members, sides) -> bool:
     """Whether the sinks lie on one round side: on many of its strips, or on a few of a rocker's."""
     if (
         len(sinks) >= MIN_ROCKER_STRIPS
@@ -147,7 +149,7 @@ def _one_round(hull, sinks, members, sides):
     return bool(_may_roll(hull, [side])[0]) and _rocks(hull, side, lowest)
 
 
-def _strips(hull, basins, group, sides):
+def _strips(hull, basins, group, sides) -> tuple[NDArray[np.int64], list[NDArray[np.int64]]]:
     """(F,) lowest sink and the triangles of each face, from the (B,) face of every sink."""
     count, sinks = group.max() + 1, basins.sinks
     at = np.searchsorted(sinks, basins.basins)
@@ -171,12 +173,12 @@ def _strips(hull, basins, group, sides):
     return lowest, strips
 
 
-def _may_roll(hull, triangles):
+def _may_roll(hull, triangles) -> NDArray[np.bool_]:
     """(F,) whether there are enough triangles, in each of a list of F arrays, and so unlike, for a curve."""
     return _curved(hull, triangles) & (np.array([len(each) for each in triangles]) >= MIN_ROCKER_STRIPS)
 
 
-def _smooth_sides(hull, basins, group):
+def _smooth_sides(hull, basins, group) -> NDArray[np.int64]:
     """(T,) label of each triangle; gentle bends within its group lead to all others of the same.
 
     Where no group has the triangles of a curved side, each has a label of its own.
@@ -189,7 +191,7 @@ def _smooth_sides(hull, basins, group):
     return np.zeros_like(owner) if joined.all() else components(first[joined], second[joined], len(owner))[1]
 
 
-def _rocks(hull, side, sink):
+def _rocks(hull, side, sink) -> bool:
     """Whether a side that may roll is of strips of a curve, whose axis may lie off the centre of mass."""
     normals, share = hull.normals[side], hull.areas[side] / hull.areas[side].sum()
     leans = angle(normals, hull.normals[sink])
@@ -200,7 +202,7 @@ def _rocks(hull, side, sink):
     return _even(normals, share) > fewest - 0.5 and _round(hull, side)
 
 
-def _even(normals, share):
+def _even(normals, share) -> float:
     """Effective number of strips, of (N, 3) normals and (N,) weights: 1 over the sum of squared shares."""
     places = vectors.product(np.round(100.0 * normals), np.array([1.0, 1e3, 1e6]))  # one number a direction
     strips = np.unique(places, return_inverse=True)[1]
@@ -208,7 +210,7 @@ def _even(normals, share):
     return weights.sum() ** 2 / (weights**2).sum()
 
 
-def _ring(leans, share):
+def _ring(leans, share) -> bool:
     """Whether the strips of a curved side that lean do so alike: a cone about a flat touches a ball, too."""
     leaning = leans > CONE_LEAN_TOLERANCE
     lean = np.average(leans[leaning], weights=share[leaning])
@@ -217,7 +219,7 @@ def _ring(leans, share):
     )
 
 
-def _round(hull, triangles):
+def _round(hull, triangles) -> bool:
     """Whether triangles touch one cylinder, cone or ball, wherever its middle is."""
     weights, height = np.sqrt(hull.areas[triangles]), hull.heights[triangles]
     around = np.column_stack([np.ones(len(triangles)), hull.normals[triangles]])
@@ -225,7 +227,7 @@ def _round(hull, triangles):
     return bool(vectors.length(off) < EQUAL * height.mean() * vectors.length(weights))
 
 
-def _described(hull, triangles, lowest, stable):
+def _described(hull, triangles, lowest, stable) -> list[Face]:
     """Records of the faces made of triangles, a list of F arrays, from the (F,) lowest of each."""
     if not len(triangles):
         return []
@@ -263,7 +265,9 @@ def _described(hull, triangles, lowest, stable):
     ]
 
 
-def _seats(hull, triangles, owners, count):
+def _seats(
+    hull, triangles, owners, count
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """(F, 3) normals, (F,) [m] heights and roughness of the triangles that F faces stand on."""
     weights = np.maximum(hull.areas[triangles], SMALLEST_NORMAL)
     whole = groups.sums(weights, owners, count)
@@ -285,7 +289,7 @@ def _corners(hull, triangles, owners) -> tuple[np.ndarray, np.ndarray]:
     return corners, owners
 
 
-def _axis(normals, weights, lowest):
+def _axis(normals, weights, lowest) -> NDArray[np.float64]:
     """Axis of the cylinder or cone with these normals: all make one angle with it; NaN for a ball.
 
     A cap of a ball has normals in two dimensions about the ``lowest`` one, which is no axis to roll about.
@@ -300,7 +304,7 @@ def _axis(normals, weights, lowest):
     return axis * np.sign(axis[np.argmax(np.abs(axis))])
 
 
-def _curved(hull, triangles):
+def _curved(hull, triangles) -> NDArray[np.bool_]:
     """(F,) whether the triangles of each face, a list of F arrays, are strips of a curve and not a plane."""
     if not len(triangles):
         return np.empty(0, dtype=bool)
@@ -314,7 +318,7 @@ def _curved(hull, triangles):
     return bent
 
 
-def _spread(normals):
+def _spread(normals) -> float:
     """Angle across a set of directions [rad]: between the two furthest apart, whatever their order."""
     if len(normals) > MOST_PAIRED:  # from the one furthest from their mean
         end = normals[np.argmax(angle(normals, normals.mean(axis=0)))]
@@ -323,7 +327,7 @@ def _spread(normals):
     return angle(normals[first], normals[second])
 
 
-def planes(hull, sinks, members, of_curves=False):
+def planes(hull, sinks, members, of_curves=False) -> list[Any]:
     """Return the members in the plane about each sink, and with them what lies in the sink's own.
 
     Parameters
@@ -361,7 +365,7 @@ def planes(hull, sinks, members, of_curves=False):
     return groups.split(triangles, owners, len(sinks))
 
 
-def _in_the_tightest(hull, members, owners, tight, fewest, of_curves):
+def _in_the_tightest(hull, members, owners, tight, fewest, of_curves) -> NDArray[np.bool_]:
     """(N,) which members lie in the tightest plane that holds enough, about the largest triangle of each."""
     first, areas = groups.starts(owners, len(fewest)), hull.areas[members]
     own = np.where(tight, areas, -1.0) if of_curves else areas
@@ -379,12 +383,12 @@ def _in_the_tightest(hull, members, owners, tight, fewest, of_curves):
     return np.concatenate([inside, all_members])[chosen[owners], np.arange(len(members))]
 
 
-def _is_fan(hull, members):
+def _is_fan(hull, members) -> bool:
     """Whether most triangles meet at one corner, as the strips of a cone do at its tip."""
     return np.bincount(hull.triangles[members].ravel()).max() > 0.5 * len(members)
 
 
-def _plane_depth(hull, planes, members, owners):
+def _plane_depth(hull, planes, members, owners) -> NDArray[np.float64]:
     """(N,) [m] how far the corners of each member lie off the plane of its owner's triangle, of (F,)."""
     corners = hull.triangles[members].T
     if len(planes) == 1 and corners.size > len(hull.vertices):  # sooner of every corner of the hull once
@@ -395,7 +399,7 @@ def _plane_depth(hull, planes, members, owners):
     return np.maximum(np.maximum(a, b), c)
 
 
-def contact_outlines(vertices, corners, owners, normals):
+def contact_outlines(vertices, corners, owners, normals) -> list[NDArray[np.float64]]:
     """Return the convex outlines of points about planes.
 
     Source: own; docs/resting.md, "Barriers and the tipping graph".
@@ -426,7 +430,7 @@ def contact_outlines(vertices, corners, owners, normals):
     ]
 
 
-def _of_extreme_points(points, normal):
+def _of_extreme_points(points, normal) -> NDArray[np.float64]:
     """The same where some of the points lie within the outline or straight between others."""
     from scipy.spatial import ConvexHull, QhullError
 
@@ -438,14 +442,14 @@ def _of_extreme_points(points, normal):
     return _without_straight_corners(corners)
 
 
-def _plane_axes(normals):
+def _plane_axes(normals) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Unit vectors (..., 3) and (..., 3) in planes of normals (..., 3), the three right-handed."""
     first = np.eye(3)[np.abs(normals).argmin(axis=-1)]
     u = vectors.unit(vectors.cross(normals, first))
     return u, vectors.cross(normals, u)
 
 
-def _turn_at_every_corner(x, y, owners, count):
+def _turn_at_every_corner(x, y, owners, count) -> NDArray[np.bool_]:
     """(F,) whether polygons of corners (N,) and (N,) turn left at every one, none of them on a line."""
     first = groups.starts(owners, count)
     before = np.arange(len(x)) - 1
@@ -457,7 +461,7 @@ def _turn_at_every_corner(x, y, owners, count):
     return np.logical_and.reduceat(off > ON_A_LINE * np.hypot(width, depth)[owners], first)
 
 
-def _without_straight_corners(corners):
+def _without_straight_corners(corners) -> NDArray[np.float64]:
     """Corners (K, 3) of a polygon without those on a line between their neighbours.
 
     A finer triangulation of the same face brings such corners, and rules that average over the edges of a
@@ -475,7 +479,7 @@ def _without_straight_corners(corners):
     return corners
 
 
-def rolling_height(polygon, axis, flat):
+def rolling_height(polygon, axis, flat) -> float:
     """Return the height of the centre of mass over the line on which a round side rolls.
 
     Source: docs/resting.md, "Exact tumbling".
@@ -507,6 +511,6 @@ def rolling_height(polygon, axis, flat):
     return float((first * high - last * low) / np.hypot(high - low, last - first))
 
 
-def _on_one_circle(radii, near):
+def _on_one_circle(radii, near) -> bool:
     """Whether corners at (K,) radii show a circle: two and more of one radius, or a point on the axis."""
     return np.ptp(radii) <= near and (len(radii) > 1 or radii[0] <= near)

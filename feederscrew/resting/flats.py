@@ -1,6 +1,7 @@
 """Flats that are meant, on a side that is else of the facets of a tessellated curve."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.geometry.graphs import component_of
 from feederscrew.resting.basins.landscape import SMOOTH_ANGLE, angle
@@ -11,7 +12,7 @@ LONE_BEND_FACTOR = 1.2  # times the bend that 95 % of a side do not exceed: such
 MAJORITY_SHARE = 0.95  # of a side, by area
 
 
-def intended_flats(hull, basins):
+def intended_flats(hull, basins) -> NDArray[np.bool_]:
     """Return which sinks lie on facets much wider than the others of their smooth side.
 
     Parameters
@@ -40,7 +41,7 @@ def intended_flats(hull, basins):
     return (about > limit[sides])[basins.sinks] & np.isfinite(about[basins.sinks])
 
 
-def _quantiles(values, weights, owners, share):
+def _quantiles(values, weights, owners, share) -> NDArray[np.float64]:
     """(N,) quantiles of (T,) values by weight, of each owner."""
     order = np.lexsort((values, owners))
     mass = np.cumsum(weights[order])

@@ -21,7 +21,7 @@ ROCKING_REMARK = (
 )
 
 
-def forms(groups, hull):
+def forms(groups, hull) -> list[str]:
     """Return what each class is by its form.
 
     Parameters
@@ -41,7 +41,7 @@ def forms(groups, hull):
     return [_form(group[0], hull, flats) for group in groups]
 
 
-def _form(face, hull, flats):
+def _form(face, hull, flats) -> str:
     if face.kind == FLAT:
         return FLAT
     if np.isfinite(face.axis).all():
@@ -51,7 +51,7 @@ def _form(face, hull, flats):
     return WITH_A_FLAT if flats else OFF_CENTRE
 
 
-def postures(normals, contact_areas, kinds, hull):
+def postures(normals, contact_areas, kinds, hull) -> list[str]:
     """Return in words how a part lies on each class: its height there beside its least and greatest height.
 
     Parameters
@@ -77,7 +77,7 @@ def postures(normals, contact_areas, kinds, hull):
     ]
 
 
-def _posture(row, sizes, areas, normals, radius):
+def _posture(row, sizes, areas, normals, radius) -> str:
     """The words of one flat class."""
     if np.ptp(sizes) <= SAME_SIZE * sizes.max():
         words = "flat" if sizes[row] < radius else "on a face"
@@ -94,7 +94,7 @@ def _posture(row, sizes, areas, normals, radius):
     return words
 
 
-def form_remarks(forms_of_classes):
+def form_remarks(forms_of_classes) -> tuple[str, ...]:
     """Say of forms, (A,) str, what a user must know, a sentence each."""
     if list(forms_of_classes) == [BALL]:
         return (BALL_REMARK,)

@@ -11,7 +11,7 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.units import one_line
 
 
-def text(part, aspects):
+def text(part, aspects) -> str:
     """Return the names of a part's stable aspects as the text of the file that ``aspect_names.read`` takes.
 
     Parameters

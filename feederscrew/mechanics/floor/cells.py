@@ -1,5 +1,7 @@
 """The part on the floor for arrays of settings: what the maps of Figures 5-6 and 5-7 show."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew.mechanics import limits
@@ -9,7 +11,7 @@ from feederscrew.mechanics.floor.balance import HOP, MOTION_STATES
 FLOOR_REGIMES = MOTION_STATES  # a regime code is a place in this list
 
 
-def cells(posture, bowl, heading):
+def cells(posture, bowl, heading) -> dict[Any, Any]:
     """Return the upper reversal for arrays of bowl settings.
 
     Source: ``balance.motion``, cell by cell.

@@ -6,9 +6,12 @@ that the thesis gives to R3. At rest friction is not determined; see ``system.he
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.geometry.polygons import inset
 from feederscrew.mechanics import cycle
@@ -46,7 +49,7 @@ class TrackMotion:
     load: np.ndarray  # (..., 3) [N] weight, drive and centrifugal force
 
 
-def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=False):
+def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=False) -> TrackMotion:
     """Return what a part on the track does at one phase of the vibration.
 
     Source: ``system.sliding`` and ``system.held``; docs/mechanics.md, "The track".
@@ -81,7 +84,7 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
     sense = np.where(moving == 0.0, np.sign(still["mobilised"]), moving)
     free = _course(load, moving, sense)
 
-    def sliding_on(closed):
+    def sliding_on(closed) -> dict[Any, Any]:
         """Along the track while a wall contact is closed; a part off the wall goes where it is pushed."""
         course = sense[..., None] * system.ALONG_X if any(closed) else free
         use = sense * wall if any(closed) else 0.0 * sense * wall
@@ -95,7 +98,7 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
     return _motion(seat, solution, slides, needed, load)
 
 
-def needed_at_rest(seat, bowl, phase):
+def needed_at_rest(seat, bowl, phase) -> NDArray[np.float64]:
     """Return friction over normal force that holds a part at rest, (..., 3) [1]: floor and walls.
 
     Source: Coulomb's law for the reactions of ``system.held``; docs/mechanics.md, "The track".
@@ -110,7 +113,7 @@ def needed_at_rest(seat, bowl, phase):
     return np.where(still["normal"][..., None] > 0.0, needed, np.nan)
 
 
-def over_cycle(seat, bowl, samples=cycle.PERIOD_SAMPLES):
+def over_cycle(seat, bowl, samples=cycle.PERIOD_SAMPLES) -> tuple[TrackMotion, Any]:
     """Return the same over one settled period.
 
     Parameters
@@ -137,18 +140,18 @@ def over_cycle(seat, bowl, samples=cycle.PERIOD_SAMPLES):
     return motion(seat, bowl, cycle.phases(samples), np.sign(speed), speed), course
 
 
-def _coefficients(bowl):
+def _coefficients(bowl) -> tuple[NDArray[Any], ...]:
     """Static, kinetic and wall friction, of one shape."""
     friction = bowl.friction
     return np.broadcast_arrays(*map(np.asarray, (friction.static, friction.kinetic, friction.wall)))
 
 
-def _still(seat, bowl, axes, load):
+def _still(seat, bowl, axes, load) -> tuple[dict, NDArray[np.float64]]:
     """The part at rest as ``system.held`` has it, and the friction that holds it there."""
     static, _, wall = _coefficients(bowl)
     ratio = np.divide(wall, static, out=np.zeros(np.shape(static)), where=static > 0.0)
 
-    def holding(closed):
+    def holding(closed) -> dict[Any, Any]:
         solution = system.held(seat, axes, load, closed, ratio)
         return vars(solution) | {"wall_use": solution.mobilised * ratio}
 
@@ -156,7 +159,7 @@ def _still(seat, bowl, axes, load):
     return still, _needed(still, ratio)
 
 
-def _course(load, moving, sense):
+def _course(load, moving, sense) -> NDArray[np.float64]:
     """Direction of sliding of a part that no wall holds: along the push at rest, else as it moves."""
     push = load[..., :2]
     size = np.hypot(push[..., 0], push[..., 1])
@@ -164,7 +167,7 @@ def _course(load, moving, sense):
     return np.where((moving == 0.0)[..., None], along, sense[..., None] * system.ALONG_X)
 
 
-def _chosen(solve, gravity):
+def _chosen(solve, gravity) -> dict[Any, Any]:
     """At each instant the solution with most closed contacts of which none pulls and no gap closes."""
     least = -PULL_TOLERANCE * np.max(gravity)
     chosen: dict[str, np.ndarray] = {}
@@ -182,7 +185,7 @@ def _chosen(solve, gravity):
     return chosen
 
 
-def _needed(still, ratio):
+def _needed(still, ratio) -> NDArray[np.float64]:
     """Friction over normal force that holds the part, at the floor and at each wall contact."""
     size, normal = np.hypot(*np.moveaxis(still["friction"], -1, 0)), still["normal"]
     floor = np.divide(size, normal, out=np.full(size.shape, np.nan), where=normal > 0.0)
@@ -190,7 +193,7 @@ def _needed(still, ratio):
     return np.concatenate([floor[..., None], wall], axis=-1)
 
 
-def _motion(seat, solution, slides, needed, load):
+def _motion(seat, solution, slides, needed, load) -> TrackMotion:
     """The record, in newtons and metres, with what holds while there is no contact."""
     mass, height = seat.mass, seat.height
     contact = solution["normal"] > 0.0
@@ -224,13 +227,13 @@ def _motion(seat, solution, slides, needed, load):
     )
 
 
-def _where(condition, first, second):
+def _where(condition, first, second) -> Any:
     """np.where with the condition widened over trailing axes."""
     wide = condition.reshape(condition.shape + (1,) * (np.ndim(first) - condition.ndim))
     return np.where(wide, first, second)
 
 
-def sliding_acceleration(seat, bowl, axes, least):
+def sliding_acceleration(seat, bowl, axes, least) -> Callable[..., Any]:
     """Return the acceleration of a sliding part as a function of phase, speed and sense.
 
     Source: ``system.sliding``, which is linear in the load.
@@ -256,7 +259,7 @@ def sliding_acceleration(seat, bowl, axes, least):
     drive, up, radial = (vector.tolist() for vector in (axes.drive, axes.up, axes.radial))
     weight = [bowl.gravity * component for component in up]
 
-    def at(phase, speed, sense):
+    def at(phase, speed, sense) -> float:
         push = stroke * omega * math.sin(phase)
         outward = (drive[0] * stroke * math.cos(phase) + speed) ** 2 / radius
         x = push * drive[0] - weight[0] - outward * radial[0]
@@ -274,7 +277,7 @@ def sliding_acceleration(seat, bowl, axes, least):
     return at
 
 
-def loose_windows(rest, needed, static, samples=cycle.PERIOD_SAMPLES):
+def loose_windows(rest, needed, static, samples=cycle.PERIOD_SAMPLES) -> list[Any]:
     """Return the phases at which a part at rest breaks loose.
 
     Source: Coulomb's law on the reactions of ``system.held``; docs/mechanics.md, "The track".
@@ -305,14 +308,14 @@ def loose_windows(rest, needed, static, samples=cycle.PERIOD_SAMPLES):
     return _cut_windows(edges, sense[change])
 
 
-def _loose_edges(beyond, low, high, falls):
+def _loose_edges(beyond, low, high, falls) -> NDArray[np.float64]:
     """Phases at which a margin passes zero, each within a bracket; where it is not finite, it is positive.
 
     Brackets whose ends are both loose, one way and the other, close in on their lower end.
     """
     sign = np.where(falls, -1.0, 1.0)
 
-    def margin(at):
+    def margin(at) -> NDArray[np.float64]:
         return sign * np.nan_to_num(beyond(at), nan=UNBOUNDED_FRICTION, posinf=UNBOUNDED_FRICTION)
 
     left, right = margin(low), margin(high)
@@ -329,7 +332,7 @@ def _loose_edges(beyond, low, high, falls):
     return high
 
 
-def _cut_windows(starts, senses):
+def _cut_windows(starts, senses) -> list[tuple[float, float, float]]:
     """Windows within one period from where each begins; a state lasts to the next one's begin."""
     windows = []
     for start, end, sense in zip(starts, np.append(starts[1:], starts[0] + cycle.FULL_TURN), senses):
@@ -343,13 +346,13 @@ def _cut_windows(starts, senses):
     return sorted(windows)
 
 
-def _loose_sense(rest, static):
+def _loose_sense(rest, static) -> NDArray[np.float64]:
     """Way in which a part at rest breaks loose: +1, -1, or 0 where it is held."""
     loose = (rest.state == HOP) | ~(rest.needed[:, 0] <= static)
     return np.where(loose, np.where(rest.acceleration[:, 0] > 0.0, 1.0, -1.0), 0.0)
 
 
-def _sliding_rows(seat, bowl, axes, sense):
+def _sliding_rows(seat, bowl, axes, sense) -> list[tuple[list, list, list, list[Any]]]:
     """For each set of closed contacts the rows of acceleration, normal force and two margins.
 
     Each row is a list of three numbers: the value for a unit of load per mass along X, Y and Z.

@@ -1,5 +1,6 @@
 """The part on the track for arrays of bowl settings: what a map over two of them shows."""
 
+from collections.abc import Iterator
 from dataclasses import fields, replace
 from typing import Any
 
@@ -24,7 +25,7 @@ SECTIONS, SINGLE = ("drive", "friction", "track"), ("restitution", "gravity")  #
 TRACK_DECIMALS = 12  # decimals that tell two radii, widths or banks apart
 
 
-def seated(posture, bowl, heading=None):
+def seated(posture, bowl, heading=None) -> tuple[Any, ...]:
     """Return how a part lies against the wall of a bowl.
 
     Source: docs/mechanics.md, "Headings".
@@ -54,7 +55,7 @@ def seated(posture, bowl, heading=None):
     return seat(posture, float(stable.headings[row]), stable.touching[row], bowl.track.bank), stable, row
 
 
-def cells(posture, bowl, heading=None):
+def cells(posture, bowl, heading=None) -> dict[Any, Any]:
     """Return the upper reversal at every cell of a map.
 
     Source: ``balance.motion``, cell by cell.
@@ -85,7 +86,7 @@ def cells(posture, bowl, heading=None):
     return columns
 
 
-def _seats(posture, bowl, heading, shape):
+def _seats(posture, bowl, heading, shape) -> Iterator[Any]:
     """Each seat that occurs and the cells, (...) bool, where it does."""
     names = ("climb", "bank", "radius", "width")
     values = np.stack([np.broadcast_to(getattr(bowl.track, name), shape).ravel() for name in names])
@@ -100,7 +101,7 @@ def _seats(posture, bowl, heading, shape):
         yield seat_there, np.isin(place.reshape(shape), members)
 
 
-def _seat(posture, bowl, heading, there, cache):
+def _seat(posture, bowl, heading, there, cache) -> tuple[Any, ...]:
     """A name for the seat on one track, and the seat; None where the part does not fit."""
     if posture.corners is None:
         return "card", card_seat(posture)
@@ -118,7 +119,7 @@ def _seat(posture, bowl, heading, there, cache):
     return (there.radius, row, lean), seat(posture, float(stable.headings[row]), stable.touching[row], lean)
 
 
-def _answers(motion):
+def _answers(motion) -> dict[Any, Any]:
     leaves = ~motion.closed.any(axis=-1) & (motion.state != HOP) & (motion.acceleration[..., 1] > 0.0)
     along = np.where(motion.slides, motion.acceleration[..., 0], 0.0)
     along = np.where(motion.state == HOP, np.nan, along)
@@ -127,7 +128,7 @@ def _answers(motion):
     return dict(zip(MAP_COLUMNS, values)) | {"regime": np.where(leaves, LEAVES, motion.state)}
 
 
-def _fields(bowl):
+def _fields(bowl) -> Iterator[Any]:
     """Yield every field that acts on a part: its section or '', its name, its value."""
     for section in SECTIONS:
         record = getattr(bowl, section)
@@ -135,7 +136,7 @@ def _fields(bowl):
     yield from (("", name, getattr(bowl, name)) for name in SINGLE)
 
 
-def _picked(bowl, shape, here):
+def _picked(bowl, shape, here) -> Any:
     """The bowl at chosen cells, every field a (cells,) array."""
     changed: dict[str, dict[str, Any]] = {}
     for section, name, value in _fields(bowl):

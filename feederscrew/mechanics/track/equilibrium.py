@@ -8,6 +8,7 @@ Source: Coulomb's cones as a linear programme; docs/mechanics.md.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from feederscrew.mechanics.track.frame import frame, loads
@@ -16,7 +17,7 @@ CONE_SIDES = 64  # of the pyramid within a friction cone: its corners lie on it,
 CONE_MARGIN = 1e-6  # of every coefficient, so that an equilibrium on the very limit is none
 
 
-def exists(seat, bowl, phase=0.5 * np.pi):
+def exists(seat, bowl, phase=0.5 * np.pi) -> bool:
     """Return whether forces within the friction cones balance the load on a part at rest.
 
     Source: Coulomb's cones as a linear programme; docs/mechanics.md, "The track".
@@ -44,7 +45,7 @@ def exists(seat, bowl, phase=0.5 * np.pi):
     return linprog(np.zeros(len(rays)), A_eq=rays.T, b_eq=right, method="highs").status == 0
 
 
-def _rays(seat, bowl, axes):
+def _rays(seat, bowl, axes) -> NDArray[np.float64]:
     """Edges of the friction pyramids as wrenches about the centre of mass, its height the unit; (R, 6)."""
     angle = 2.0 * np.pi * np.arange(CONE_SIDES) / CONE_SIDES
     around = np.stack([np.cos(angle), np.sin(angle)], axis=1)

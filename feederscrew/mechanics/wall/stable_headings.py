@@ -5,8 +5,10 @@ counter-clockwise seen from above. For a bowl that climbs clockwise take the mir
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.errors import FeederError
@@ -48,7 +50,7 @@ class Headings(Shown):
     rounded: bool  # round in plan: it takes any heading
 
 
-def headings(posture, track):
+def headings(posture, track) -> Headings:
     """Return the stable headings of a part against the wall.
 
     Parameters
@@ -100,7 +102,7 @@ def headings(posture, track):
     return on_track(geometry, posture, track)
 
 
-def on_track(headings, posture, track, reaches=None):
+def on_track(headings, posture, track, reaches=None) -> Headings:
     """Return the same headings on a track of other width, climb or bank, but of the same radius.
 
     Source: own; docs/mechanics.md, "Headings".
@@ -124,7 +126,7 @@ def on_track(headings, posture, track, reaches=None):
     return replace(headings, overhangs=check.frozen(overhangs), falls_off=check.frozen(falls))
 
 
-def stable_row(headings, heading=None):
+def stable_row(headings, heading=None) -> int:
     """Return the row of the heading that a part ends in, laid on the track and pushed to the wall.
 
     Source: own; docs/mechanics.md, "Headings".
@@ -157,7 +159,7 @@ def stable_row(headings, heading=None):
     return row
 
 
-def settled(headings, heading):
+def settled(headings, heading) -> int:
     """Return the row whose range of headings [rad] holds one; on a border the one nearer in heading."""
     lowest, width = headings.ranges.T
     beyond = np.mod(heading - lowest, 2.0 * np.pi) - width
@@ -165,7 +167,7 @@ def settled(headings, heading):
     return int(headings.settles[np.lexsort((middle, beyond > 1e-9))[0]])
 
 
-def _distinct(posture, headings):
+def _distinct(posture, headings) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
     """Places of the rests that are each other's like under no turn, ranked; of each rest the like that
     stands for it; the shares of all its likes together, at its place."""
     order = _ranked(headings.share, headings.outward)
@@ -177,18 +179,18 @@ def _distinct(posture, headings):
     return rows[_ranked(shares[rows], headings.outward[rows])], first, shares
 
 
-def _summed(shares, first):
+def _summed(shares, first) -> NDArray[Any]:
     """Shares of all rests that one stands for, at its place."""
     return np.bincount(first, shares, minlength=len(shares))
 
 
-def _ranges(headings):
+def _ranges(headings) -> NDArray[np.float64]:
     """(N, 2) [rad] where the range of headings of each rest begins, and how wide it is."""
     width = 2.0 * np.pi * headings.share
     return np.column_stack([_heading(headings.start + width), width])
 
 
-def _ranked(share, outward):
+def _ranked(share, outward) -> NDArray[np.int64]:
     """Places of rests, the most frequent first; those of equal shares by their headings."""
     order = np.argsort(-share)
     ordered = share[order]
@@ -197,12 +199,12 @@ def _ranked(share, outward):
     return np.lexsort((_heading(outward), rank))
 
 
-def _angle_between(first, second):
+def _angle_between(first, second) -> NDArray[np.float64]:
     """Angle between headings, 0 to pi."""
     return np.abs(np.mod(first - second + np.pi, 2.0 * np.pi) - np.pi)
 
 
-def _check_fits(posture, track):
+def _check_fits(posture, track) -> None:
     if len(posture.outline) == 0:
         what = f"the card of aspect {posture.name} has no outline"
         raise FeederError("part card", what, "give the part as a mesh")
@@ -212,13 +214,13 @@ def _check_fits(posture, track):
         raise FeederError("track.radius", what, "give the radius of a bowl that holds the part")
 
 
-def _heading(outward):
+def _heading(outward) -> NDArray[np.float64]:
     """Turn that brings a body direction to the wall, at -Y; 0 to 2 pi, without the rounding of 0."""
     turn = np.mod(-0.5 * np.pi - outward, 2.0 * np.pi)
     return np.where(np.minimum(turn, 2.0 * np.pi - turn) < NO_TURN, 0.0, turn)
 
 
-def _at_straight(outward, straight):
+def _at_straight(outward, straight) -> NDArray[np.float64]:
     """Shares at a straight wall of the rests whose range holds these directions; NaN of a round outline."""
     if straight.rounded:
         return np.full(len(outward), np.nan)
@@ -226,7 +228,7 @@ def _at_straight(outward, straight):
     return straight.share[(into / (2.0 * np.pi * straight.share)).argmin(axis=1)]
 
 
-def _width(shape, to_wall, radius):
+def _width(shape, to_wall, radius) -> float:
     """Radial extent from the wall to the innermost point of an outline in track axes."""
     if np.isinf(radius):
         return to_wall + shape[:, 1].max()
@@ -237,7 +239,7 @@ def _width(shape, to_wall, radius):
     return float(radius - np.hypot(*nearest.T).min())
 
 
-def _partners(shapes, image, astray):
+def _partners(shapes, image, astray) -> NDArray[np.int64]:
     """For each outline the row that is its image, of several the least astray; -1 for none but itself."""
     partner = np.full(len(shapes), -1)
     for i, shape in enumerate(shapes):
@@ -246,7 +248,7 @@ def _partners(shapes, image, astray):
     return np.where(partner == np.arange(len(shapes)), -1, partner)
 
 
-def _same_corners(first, second):
+def _same_corners(first, second) -> bool:
     """Whether two outlines have the same corners."""
     if len(first) != len(second):
         return False

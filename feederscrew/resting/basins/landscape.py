@@ -6,8 +6,10 @@ cutting it at saddles that rise too little above the shallower side leaves one b
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.geometry import coordinates, vectors
 from feederscrew.geometry.compiled import fitting
@@ -39,7 +41,7 @@ class Landscape:
     lows: np.ndarray  # (L,) triangles from which no way leads down, before any were merged
 
 
-def edges(hull):
+def edges(hull) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return every edge of the hull once: its triangles (E, 2) and corners (E, 2), places in the hull [1]."""
     first, second = np.repeat(np.arange(len(hull.triangles)), 3), hull.neighbours.ravel()
     once = np.flatnonzero(first < second)
@@ -47,7 +49,7 @@ def edges(hull):
     return np.column_stack([first[once], second[once]]), np.column_stack([starts, ends])
 
 
-def passes(hull, pairs, ends):
+def passes(hull, pairs, ends) -> NDArray[np.float64]:
     """Return the height of the centre of mass at the highest point of the way over each edge.
 
     Tipping over an edge turns the part about it: the centre of mass climbs until it stands over the edge,
@@ -77,7 +79,7 @@ def passes(hull, pairs, ends):
     return np.where(between, np.maximum(np.sqrt(coordinates.dot(foot, foot)), higher), higher)
 
 
-def landscape(hull):
+def landscape(hull) -> Landscape:
     """Return the basins of the hull with ripples merged by persistence.
 
     Parameters
@@ -117,7 +119,7 @@ def landscape(hull):
     )
 
 
-def angle(u, v):
+def angle(u, v) -> Any:
     """Return angles between vectors (..., 3) [rad], true down to the smallest.
 
     Source: its sine and cosine are the cross and the scalar product over one and the same length.
@@ -126,7 +128,7 @@ def angle(u, v):
     return np.arctan2(vectors.norm(vectors.cross(u, v)), along)
 
 
-def gentle(normals, pairs):
+def gentle(normals, pairs) -> NDArray[np.bool_]:
     """Whether two planes meet in a bend so gentle that it may be part of a curve.
 
     Source: own; docs/resting.md, "The drop test": turns of less than 25 degrees.
@@ -144,7 +146,7 @@ def gentle(normals, pairs):
     return coordinates.dot(*coordinates.at(normals, pairs)) > GENTLE_COSINE
 
 
-def _downhill(hull, pairs, tops):
+def _downhill(hull, pairs, tops) -> NDArray[np.int64]:
     """(T,) neighbour each triangle rolls to when no step may climb; itself where there is none."""
     height = hull.heights
     steps = np.concatenate([pairs, pairs[:, ::-1]])
@@ -156,11 +158,11 @@ def _downhill(hull, pairs, tops):
     return below
 
 
-def _bend(hull, pairs):
+def _bend(hull, pairs) -> NDArray[np.float64]:
     return angle(hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]])
 
 
-def _broad_normals(hull, below):
+def _broad_normals(hull, below) -> NDArray[np.float64]:
     """(T, 3) normal of each triangle, of a sliver that of the first broad one on its way down.
 
     A corner moved by noise, or a chamfer too small to see, leads round a sharp edge by gentle bends.
@@ -179,7 +181,7 @@ def _broad_normals(hull, below):
     return hull.normals[out[end]]
 
 
-def _over_longest(end, thin, still, longest):
+def _over_longest(end, thin, still, longest) -> NDArray[np.int64]:
     """(T,) triangle for which each stands: slivers at the rim of a flat end lead over their longest sides.
 
     Two slivers that share their longest side, as those of a narrow chamfer, stand for themselves.
@@ -190,7 +192,7 @@ def _over_longest(end, thin, still, longest):
     return end
 
 
-def _joined(hull, basins, pairs, tops, limit):
+def _joined(hull, basins, pairs, tops, limit) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Basins (T,) joined where the way between them rises by no more than the shallower one's limit.
 
     Returns the new basins, and the edges (indices) of the lowest ways that rise by more.
@@ -218,6 +220,6 @@ def _joined(hull, basins, pairs, tops, limit):
     return sinks[forest.roots(basin)][place], crossings[standing]
 
 
-def _sinks(basins):
+def _sinks(basins) -> NDArray[np.int64]:
     """(B,) triangles at the bottom of their own basins."""
     return np.flatnonzero(basins == np.arange(len(basins)))

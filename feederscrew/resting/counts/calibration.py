@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import optimize, stats
 
 from feederscrew import check
@@ -29,7 +30,7 @@ class Calibration:
     chi_square: ChiSquare  # of the counts against them, as ``deviation.chi_square`` makes it
 
 
-def calibrate(counts, shares, heights, radius):
+def calibrate(counts, shares, heights, radius) -> Calibration:
     """Fit the exponent of surface_shares to counts by maximum likelihood.
 
     Parameters
@@ -61,10 +62,10 @@ def calibrate(counts, shares, heights, radius):
     counts, shares, heights = _aligned(counts, shares, heights)
     present = shares > 0.0
 
-    def fitted(exponent):
+    def fitted(exponent) -> NDArray[np.float64]:
         return surface_shares(shares, heights, radius, exponent)
 
-    def loss(exponent):
+    def loss(exponent) -> float:
         return -float((counts[present] * np.log(fitted(exponent)[present])).sum())
 
     return _likeliest(loss, fitted, lambda p: chi_square(counts, p, estimated=1))
@@ -126,7 +127,7 @@ def _telling(paths, shares):
     return ~equal
 
 
-def _likeliest(loss, fitted, test):
+def _likeliest(loss, fitted, test) -> Calibration:
     """The exponent of least loss, with its interval and a test of the shares fitted."""
     best = optimize.minimize_scalar(loss, bounds=(LOWEST, HIGHEST), method="bounded", options={"xatol": 1e-9})
     limit = best.fun + 0.5 * stats.chi2.ppf(CONFIDENCE, 1)
@@ -142,7 +143,7 @@ def _likeliest(loss, fitted, test):
     )
 
 
-def _aligned(counts, shares, heights):
+def _aligned(counts, shares, heights) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     counts = check.shaped("counts", counts, (-1,))
     shares = check.shaped("shares", shares, counts.shape)
     heights = check.shaped("heights", heights, counts.shape)
@@ -155,7 +156,7 @@ def _aligned(counts, shares, heights):
     return counts, shares, heights
 
 
-def _crossing(loss, limit, best, end):
+def _crossing(loss, limit, best, end) -> float:
     """Exponent between the best and one end of the range where the loss reaches its limit, or that end."""
     if loss(end) <= limit:
         return end

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.resting.counts.profiles import AspectProfile
@@ -35,7 +36,7 @@ class Comparison:
     chi_square: ChiSquare
 
 
-def deviation(first, second):
+def deviation(first, second) -> float:
     """Return the root mean square difference: the 'standard deviation' of eq. [Table 3-12] and Table 3-13.
 
     Parameters
@@ -51,7 +52,7 @@ def deviation(first, second):
     return float(np.sqrt(np.mean((first - second) ** 2)))
 
 
-def total_variation(first, second):
+def total_variation(first, second) -> float:
     """Return half the sum of absolute differences: the share of parts that would have to land elsewhere.
 
     Source: half the L1 distance of two distributions.
@@ -70,7 +71,7 @@ def total_variation(first, second):
     return float(0.5 * np.abs(first - second).sum())
 
 
-def chi_square(counts, fractions, estimated=0):
+def chi_square(counts, fractions, estimated=0) -> ChiSquare:
     """Test whether counts may come from given probabilities (goodness of fit).
 
     Parameters
@@ -113,7 +114,7 @@ def chi_square(counts, fractions, estimated=0):
     return _test(counts[None, expected_some], expected[None, expected_some], estimated)
 
 
-def chi_square_between(first, second):
+def chi_square_between(first, second) -> ChiSquare:
     """Test whether two sets of counts may come from the same probabilities (homogeneity).
 
     Parameters
@@ -167,7 +168,7 @@ def chi_square_passes(passed, rejected, expected, estimated=0):
     return _tested(float(away[enough].sum()), freedom, few)
 
 
-def compare(profiles):
+def compare(profiles) -> list[Comparison]:
     """Compute every measure between every two profiles.
 
     Parameters
@@ -192,7 +193,7 @@ def compare(profiles):
     ]
 
 
-def _counted(a, b):
+def _counted(a, b) -> ChiSquare:
     if a.counted and b.counted:
         return chi_square_between(a.values, b.values)
     if a.counted:
@@ -200,7 +201,7 @@ def _counted(a, b):
     return chi_square(b.values, a.fractions) if b.counted else NO_TEST
 
 
-def _test(observed, expected, estimated=0):
+def _test(observed, expected, estimated=0) -> ChiSquare:
     """Pearson's statistic over groups that expect enough."""
     observed, expected, joined = _joined(observed, expected)
     freedom = expected.shape[1] - 1 - estimated
@@ -209,13 +210,13 @@ def _test(observed, expected, estimated=0):
     return _tested(float(((observed - expected) ** 2 / expected).sum()), freedom, joined)
 
 
-def _tested(statistic, freedom, joined):
+def _tested(statistic, freedom, joined) -> ChiSquare:
     from scipy.special import gammaincc
 
     return ChiSquare(statistic, freedom, float(gammaincc(0.5 * freedom, 0.5 * statistic)), joined)
 
 
-def _joined(observed, expected):
+def _joined(observed, expected) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
     """The weakest columns added up until each expects ``MIN_EXPECTED_COUNT`` in every row."""
     order = np.argsort(expected.min(axis=0), kind="stable")
     observed, expected = observed[:, order], expected[:, order]
@@ -230,12 +231,12 @@ def _joined(observed, expected):
     return observed, expected, last
 
 
-def _pair(first, second):
+def _pair(first, second) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     first = check.shaped("first", first, (-1,))
     return first, check.shaped("second", second, first.shape)
 
 
-def _weights(values):
+def _weights(values) -> NDArray[np.float64]:
     if (values < 0.0).any() or values.sum() <= 0.0:
         raise ValueError("a profile has a negative entry or sums to zero")
     return values

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass, fields
+from typing import Any
 
 from feederscrew.documents import hint
 from feederscrew.errors import FeederError
@@ -34,7 +35,7 @@ class Head:
     note: str = ""
 
     @property
-    def reading(self):
+    def reading(self) -> dict[Any, Any]:
         """What the part file is read with, as keywords of ``feederscrew.part.load``."""
         values = {name: getattr(self, name) for name in ("units", "density", "centre_of_mass", "body")}
         return {name: value for name, value in values.items() if value}
@@ -44,7 +45,7 @@ NO_HEAD = Head()
 HEAD_KEYS = tuple(field.name for field in fields(Head))
 
 
-def parse(lines, where):
+def parse(lines, where) -> tuple[Any, ...]:
     """Read the head from the comment lines above a table.
 
     Parameters
@@ -78,12 +79,12 @@ def parse(lines, where):
     return Head(**values), faults
 
 
-def _cleaned(key, value):
+def _cleaned(key, value) -> str:
     digest = DIGEST.fullmatch(value) if key == "mesh" else None
     return value if digest is None else digest[1].lower()
 
 
-def _fault(where, key, value, choices):
+def _fault(where, key, value, choices) -> FeederError | None:
     """What is wrong with one line of the head, or None."""
     if key in choices:
         return FeederError(where, f"{key} is given twice", "keep one of them")

@@ -43,7 +43,7 @@ class DeviceCounts:
         return of_another_part(self.source, self.head, part)
 
 
-def by_device(table):
+def by_device(table) -> bool:
     """Return whether a CountSheet counts by device."""
     return table.header[0].lower() == DEVICE
 
@@ -94,7 +94,7 @@ def read(path):
     return device_counts(count_rows.parse(text, str(path)), str(path), sha256)
 
 
-def _judge(where, row, columns, lines, faults):
+def _judge(where, row, columns, lines, faults) -> None:
     """Add what is wrong with a row to ``faults``."""
     name, cells = row[0], row[1:]
     if name in lines:

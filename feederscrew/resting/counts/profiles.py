@@ -35,7 +35,7 @@ class AspectProfile:
     fractions: np.ndarray  # (A,) [1] of counts; else as given, not made to sum to 1
 
     @property
-    def counted(self):
+    def counted(self) -> bool:
         """Whether the values are counts, which a test needs."""
         return self.kind == "counts"
 
@@ -51,12 +51,12 @@ class Measured:
     lying: tuple[tuple[str, float], ...] = ()  # (M,) aspect and heading [rad] where it counts orientations
     by_orientation: np.ndarray | None = None  # (M, profiles) as given
 
-    def warnings(self, part):
+    def warnings(self, part) -> tuple[Any, ...]:
         """Say, a sentence each, where the head was not written for a part."""
         return of_another_part(self.source, self.head, part)
 
     @property
-    def notes(self):
+    def notes(self) -> tuple[str, ...]:
         """What the columns were taken for, a line a kind."""
         document = {kind: [_name_with_sum(p) for p in self.profiles if p.kind == kind] for kind in COLUMN_SUM}
         return tuple(
@@ -64,7 +64,7 @@ class Measured:
         )
 
 
-def of_another_part(source, head, part):
+def of_another_part(source, head, part) -> tuple[Any, ...]:
     """Say, a sentence each, where the head of a file was not written for a part."""
     digest = part.file_sha256 if head.body and part.file_sha256 else part.sha256
     if digest.startswith(head.mesh):
@@ -73,7 +73,7 @@ def of_another_part(source, head, part):
     return (f"{sentence}, that of {part.source} {part.sha256[:8]}",)
 
 
-def of_rules(aspects):
+def of_rules(aspects) -> tuple[Any, ...]:
     """Return the profile of every rule over the stable aspects.
 
     Parameters
@@ -90,12 +90,12 @@ def of_rules(aspects):
     return tuple(_profile(rule.upper(), "rule", p) for rule, p in chosen.items() if np.isfinite(p).all())
 
 
-def answer(shares):
+def answer(shares) -> AspectProfile:
     """Return the profile of the recommended answer, (A,) [1]."""
     return _profile("recommended", "rule", shares)
 
 
-def read(path, names, taken=()):
+def read(path, names, taken=()) -> Measured:
     """Read the profiles of a CSV file: first column the aspect, then one column a profile.
 
     Parameters
@@ -120,12 +120,12 @@ def read(path, names, taken=()):
     return measured(count_rows.parse(text, str(path)), str(path), sha256, names, taken)
 
 
-def parse(text, where, names, taken=()):
+def parse(text, where, names, taken=()) -> tuple[Any, ...]:
     """Read the profiles of a CSV text, as ``measured`` does."""
     return measured(count_rows.parse(text, where), where, "", names, taken).profiles
 
 
-def measured(table, where, sha256, names, taken=()):
+def measured(table, where, sha256, names, taken=()) -> Measured:
     """Understand the table of a file of counts.
 
     Parameters
@@ -175,20 +175,20 @@ def measured(table, where, sha256, names, taken=()):
     return Measured(where, sha256, together, table.head, tuple(lying), check.frozen(values))
 
 
-def _profiles(where, columns, texts):
+def _profiles(where, columns, texts) -> tuple[Any, ...]:
     columns_read = [_measured(where, name, column) for name, column in zip(columns, texts, strict=True)]
     if faults := [entry for entry in columns_read if isinstance(entry, FeederError)]:
         raise Faults(faults[: count_rows.TOLD])
     return tuple(columns_read)
 
 
-def _by_aspect(profile, rows, count):
+def _by_aspect(profile, rows, count) -> AspectProfile:
     """A profile over orientations, summed up over the headings of each aspect."""
     values, fractions = (np.bincount(rows, of, minlength=count) for of in (profile.values, profile.fractions))
     return AspectProfile(profile.name, profile.kind, check.frozen(values), check.frozen(fractions))
 
 
-def _counted(table):
+def _counted(table) -> tuple[Any, ...]:
     """Header and rows; of our own ``drop.csv`` its first column and its counts."""
     if table.header[1:3] != DROPPED:
         return table.header, table.rows
@@ -196,7 +196,7 @@ def _counted(table):
     return (table.header[0], *table.header[2:3]), rows
 
 
-def _columns(where, header, taken):
+def _columns(where, header, taken) -> list[str]:
     """The profiles' names."""
     first, *columns = header
     if ";" in first or "\t" in first:
@@ -217,7 +217,7 @@ def _columns(where, header, taken):
     return columns
 
 
-def _row(where, row, columns, cells, names, by, faults):
+def _row(where, row, columns, cells, names, by, faults) -> tuple[Any, ...] | None:
     """Aspect and heading of a row, None where it has none; what is wrong is added to ``faults``."""
     name, values = row[0], row[1:]
     key = (name, None) if by == ASPECT else _oriented(where, name, faults)
@@ -237,7 +237,7 @@ def _row(where, row, columns, cells, names, by, faults):
     return key
 
 
-def _oriented(where, name, faults):
+def _oriented(where, name, faults) -> tuple[str, float] | None:
     """Aspect and heading [rad] of 'A@180'; None where it is not of that form."""
     aspect, _, degrees = name.rpartition("@")
     if not aspect or not DECIMAL_PATTERN.fullmatch(degrees) or not abs(float(degrees)) <= FULL_TURN:
@@ -247,7 +247,7 @@ def _oriented(where, name, faults):
     return aspect, float(np.radians(float(degrees)))
 
 
-def _judge(where, column, value, faults):
+def _judge(where, column, value, faults) -> None:
     what = f"{column[:MAX_NAME_LETTERS]}: {shown(value)}"
     if not DECIMAL_PATTERN.fullmatch(value):
         faults.add(where, f"{what} is not a number", "write digits with a decimal point")
@@ -257,7 +257,7 @@ def _judge(where, column, value, faults):
         faults.add(where, f"{what} is too large", f"give a number up to {MAX_COUNT:g}")
 
 
-def _measured(where, name, texts):
+def _measured(where, name, texts) -> Any:
     """One column as a profile, or the fault that keeps it from being one."""
     values = np.array([float(text) for text in texts])
     total = values.sum()
@@ -272,7 +272,7 @@ def _measured(where, name, texts):
     return FeederError(where, what, "give whole counts, fractions that sum to 1 or percents that sum to 100")
 
 
-def _name_with_sum(profile):
+def _name_with_sum(profile) -> str:
     """A column's name, with its sum where that is not understood."""
     total = profile.values.sum()
     return (
@@ -280,5 +280,5 @@ def _name_with_sum(profile):
     )
 
 
-def _profile(name, kind, values, whole=1.0):
+def _profile(name, kind, values, whole=1.0) -> AspectProfile:
     return AspectProfile(name, kind, check.frozen(values), check.frozen(values / whole))

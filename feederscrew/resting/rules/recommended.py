@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.errors import ArgumentError
@@ -44,7 +45,7 @@ class Recommended(Shown):
     high: np.ndarray  # (A,) [1]
 
 
-def launch_named(name):
+def launch_named(name) -> str:
     """Return the launch of a name, or of a former one.
 
     Raises
@@ -58,7 +59,7 @@ def launch_named(name):
     return launch
 
 
-def closed_form(chances, stable, kinds, launch, own=None):
+def closed_form(chances, stable, kinds, launch, own=None) -> Recommended:
     """Return the answer of the closed form for a launch, with its calibrated interval.
 
     Source: own; docs/resting.md, "The recommended answer".
@@ -91,7 +92,7 @@ def closed_form(chances, stable, kinds, launch, own=None):
     return _within(f"{label}, launch {launch}", launch, p, half, stable)
 
 
-def tempered(chances, share):
+def tempered(chances, share) -> tuple[str, NDArray[np.float64]]:
     """Return exact tumbling and the cascade of hops as one: their weighted geometric mean.
 
     Source: own; docs/resting.md, "The recommended answer".
@@ -121,11 +122,11 @@ def tempered(chances, share):
     return "tempered hops", weights / weights.sum()
 
 
-def _labelled(rule, chances):
+def _labelled(rule, chances) -> tuple[str, NDArray[np.float64]]:
     return registry.RULE_OF[rule].label, chances[rule]
 
 
-def dropped(tally, launch):
+def dropped(tally, launch) -> Recommended:
     """Return the answer of a drop test, with its interval.
 
     Parameters
@@ -142,7 +143,7 @@ def dropped(tally, launch):
     return Recommended(f"drop test, launch {launch}", launch, tally.p, tally.low, tally.high)
 
 
-def launched(p, low, high, possible):
+def launched(p, low, high, possible) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the ends of an interval of simulated shares with what the name of a launch leaves open.
 
     Source: own; docs/resting.md, "The recommended answer".
@@ -164,7 +165,7 @@ def launched(p, low, high, possible):
     return np.clip(p - np.hypot(open_, p - low), 0.0, 1.0), np.clip(p + np.hypot(open_, high - p), 0.0, 1.0)
 
 
-def shape(p):
+def shape(p) -> NDArray[np.float64]:
     """Return how wide intervals are at shares p, relative to a share of a half: (A,) [1].
 
     It falls as the scatter of a count does, but for FLOOR.
@@ -174,7 +175,7 @@ def shape(p):
     return (2.0 * np.sqrt(np.clip(p * (1.0 - p), 0.0, None)) + WIDTH_FLOOR) / (1.0 + WIDTH_FLOOR)
 
 
-def _within(rule, launch, p, half, stable):
+def _within(rule, launch, p, half, stable) -> Recommended:
     """The answer with ends so far out, within 0 and 1; nothing is in doubt where only one class can be."""
     several = np.count_nonzero(stable) > 1
     down, up = np.broadcast_to(np.where(stable & several, half, 0.0), (2, len(p)))

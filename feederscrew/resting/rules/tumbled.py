@@ -3,7 +3,10 @@
 In the cascade a bouncing part loses energy until it can cross no saddle.
 """
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.resting.basins.barriers import critical_solid_angles
@@ -14,7 +17,7 @@ HOP_BLOCK_SIZE = 1 << 16  # ways times levels at a time
 ENERGY_LEVELS = 200  # of energy, between the part's highest way to stand and the lowest saddle
 
 
-def quasistatic(tips):
+def quasistatic(tips) -> NDArray[np.float64]:
     """Return the share of the attitudes from which a part let go without speed ends on each face.
 
     Source: docs/resting.md, "Exact tumbling".
@@ -30,7 +33,7 @@ def quasistatic(tips):
     return tips.shares
 
 
-def critical(faces):
+def critical(faces) -> NDArray[np.float64]:
     """Return the critical solid angle of each face over its height; of a rolling one, from its lowest strip.
 
     Parameters
@@ -53,7 +56,7 @@ def critical(faces):
     return shares * solid_angles / heights
 
 
-def hop_shares(tips, radius):
+def hop_shares(tips, radius) -> NDArray[np.float64]:
     """Return the shares in which hops of falling energy leave a part on its faces.
 
     Source: own; docs/resting.md, "The cascade of hops".
@@ -97,7 +100,7 @@ def hop_shares(tips, radius):
     return shares
 
 
-def _cascade(shares, heights, pairs, tops):
+def _cascade(shares, heights, pairs, tops) -> NDArray[np.float64]:
     """(F,) where the parts end; lengths in units of the radius."""
     if not len(tops):
         return shares
@@ -126,13 +129,13 @@ def _cascade(shares, heights, pairs, tops):
 class _Hops:
     """Which faces a hop can end on; W directed ways, those of each face to itself among them."""
 
-    def __init__(self, shares, heights, pairs, tops):
+    def __init__(self, shares, heights, pairs, tops) -> None:
         own = np.arange(len(shares))
         self.shares, self.heights, self.tops = shares, heights, np.concatenate([tops, tops])
         self.start = np.concatenate([pairs[:, 0], pairs[:, 1], own])
         self.end = np.concatenate([pairs[:, 1], pairs[:, 0], own])
 
-    def parts(self, energies):
+    def parts(self, energies) -> NDArray[np.float64]:
         """(K, W) part of the mass at its start that goes each way in a hop of each energy (K,)."""
         depth = np.maximum(energies[:, None] - self.heights, np.finfo(float).eps)
         rates, between = (self.shares * depth)[:, self.end], slice(0, len(self.tops))
@@ -142,6 +145,6 @@ class _Hops:
         total = np.bincount(starts.ravel(), rates.ravel(), minlength=depth.size)
         return rates / total[starts]
 
-    def moved(self, mass, parts):
+    def moved(self, mass, parts) -> NDArray[Any]:
         """(F,) mass after one hop."""
         return np.bincount(self.end, mass[self.start] * parts, minlength=len(mass))

@@ -8,9 +8,10 @@ corner between them), and planes of which some triangles are coplanar within the
 others are not.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.geometry import vectors
@@ -47,7 +48,7 @@ class Edges(NamedTuple):
     vertex_edges: np.ndarray  # (V,) a bordering half-edge leaving each corner, or one of a facet it lies on
 
 
-def half_edges(hull):
+def half_edges(hull) -> Edges:
     """Return half-edges of a hull with coplanar triangles merged into facets.
 
     Parameters
@@ -89,7 +90,7 @@ def half_edges(hull):
     return Edges(**{name: check.frozen(array) for name, array in arrays.items()})
 
 
-def _signs(vertices, normals, origins, borders):
+def _signs(vertices, normals, origins, borders) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(H,) and (H,) [m2] slopes and sides, as ``Edges`` has them, from each half-edge's corners and facet."""
     slopes, sides = np.empty((2, len(origins)))
     corners, facets = np.ascontiguousarray(vertices.T), np.ascontiguousarray(normals.T)
@@ -104,12 +105,12 @@ def _signs(vertices, normals, origins, borders):
     return slopes, sides
 
 
-def _blocks(count):
+def _blocks(count) -> list[Any]:
     """Slices of half-edges, as many at a time as a processor's cache holds."""
     return [slice(start, start + HALF_EDGE_BLOCK) for start in range(0, count, HALF_EDGE_BLOCK)]
 
 
-def _one_way_out(slopes, sides, borders):
+def _one_way_out(slopes, sides, borders) -> NDArray[np.float64]:
     """(H,) [m2] slopes with which every facet is left one way: over one edge, over one corner, or not at all.
 
     The foot of the centre of mass lies nearest to one place of a convex polygon. Where a corner of the
@@ -131,7 +132,7 @@ def _one_way_out(slopes, sides, borders):
     return slopes
 
 
-def _settle(slopes, sides, twins, before, over, leaving):
+def _settle(slopes, sides, twins, before, over, leaving) -> None:
     """Change signs of slopes (in place) so that a facet is left over the nearest of several places.
 
     ``over`` holds half-edges to be left over and half-edges leaving corners to be left over; ``leaving`` all
@@ -151,7 +152,7 @@ def _settle(slopes, sides, twins, before, over, leaving):
         slopes[end] = -np.finfo(float).tiny if corner else np.finfo(float).tiny
 
 
-def sinks(edges):
+def sinks(edges) -> NDArray[np.int64]:
     """Return (S,) facets that hold the foot of the centre of mass: the part rests on them."""
     leaves = edges.borders & (edges.sides < 0.0)
     stable = np.ones(len(edges.normals), bool)
@@ -159,7 +160,7 @@ def sinks(edges):
     return np.flatnonzero(stable)
 
 
-def saddles(edges):
+def saddles(edges) -> NDArray[np.int64]:
     """Return (E,) half-edges, one of each pair, over which the part can be balanced.
 
     The foot of the centre of mass lies between the two corners and neither facet rolls over the edge.
@@ -169,7 +170,7 @@ def saddles(edges):
     return np.flatnonzero(ahead & ahead[edges.twins] & one_of_two)
 
 
-def maxima(edges):
+def maxima(edges) -> NDArray[np.int64]:
     """Return (M,) corners on which the part can be balanced: no neighbour is further out along them."""
     origins = edges.origins[edges.borders]
     top = np.zeros(len(edges.vertices), bool)
@@ -178,13 +179,13 @@ def maxima(edges):
     return np.flatnonzero(top)
 
 
-def _twins(neighbours):
+def _twins(neighbours) -> NDArray[np.int64]:
     owners, beyond = np.repeat(np.arange(len(neighbours)), 3), neighbours.ravel().astype(int)
     first, second = (np.ascontiguousarray(column)[beyond] == owners for column in neighbours.T[:2])
     return 3 * beyond + np.where(first, 0, np.where(second, 1, 2))
 
 
-def _facets(hull, twins):
+def _facets(hull, twins) -> NDArray[np.int64]:
     """Facet of each triangle: triangles joined across flat edges."""
     owners = np.repeat(np.arange(len(hull.triangles)), 3)
     depths = _depths(hull, twins)
@@ -195,7 +196,7 @@ def _facets(hull, twins):
     return components(owners[flat], owners[twins[flat]], len(hull.triangles))[1]
 
 
-def _depths(hull, twins):
+def _depths(hull, twins) -> NDArray[np.float64]:
     """(H,) [m] how far the corner off each edge, of the neighbour, lies below the triangle's plane."""
     corners, depths = hull.triangles.ravel(), np.empty(len(twins))
     places, normals = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(hull.normals.T)
@@ -206,7 +207,7 @@ def _depths(hull, twins):
     return depths
 
 
-def _flat(hull, near, twins, depths):
+def _flat(hull, near, twins, depths) -> NDArray[np.bool_]:
     """Which of some half-edges lie inside a facet.
 
     Both triangles must lie in each other's plane as far as rounding lets that be known; a sliver joins the
@@ -227,7 +228,7 @@ def _flat(hull, near, twins, depths):
     return across | (inside & ~sliver)
 
 
-def _facet_normals(hull, facets):
+def _facet_normals(hull, facets) -> NDArray[np.float64]:
     """(M, 3) unit normals of the facets, by the areas of their triangles."""
     if len(hull.triangles) == facets.max() + 1:
         return hull.normals[np.argsort(facets)]
@@ -246,7 +247,7 @@ class Borders(NamedTuple):
     facets: np.ndarray  # (H,) facet of each half-edge
 
     @property
-    def around(self):
+    def around(self) -> NDArray[np.int64]:
         """(H,) next border half-edge leaving the same corner; the first half-edge off the borders."""
         edges = np.flatnonzero(self.part)
         around = np.zeros_like(self.ahead)
@@ -254,7 +255,7 @@ class Borders(NamedTuple):
         return around
 
 
-def facet_borders(hull, origins, targets, twins, facets):
+def facet_borders(hull, origins, targets, twins, facets) -> Borders:
     """Return the borders between facets, as a convex body has them.
 
     Parameters
@@ -283,12 +284,12 @@ def facet_borders(hull, origins, targets, twins, facets):
         facets = _joined(facets, facets[needles], facets[straightened.twins[needles]])
 
 
-def _bordered(targets, twins, facets):
+def _bordered(targets, twins, facets) -> Borders:
     part = facets != facets[twins]
     return Borders(targets, twins, part, _ahead(twins, part), facets)
 
 
-def _ahead(twins, part):
+def _ahead(twins, part) -> NDArray[np.int64]:
     """(H,) next border along each facet, over the edges within it; meaningless off the borders."""
     following = np.arange(len(twins)).reshape(-1, 3)[:, [1, 2, 0]].ravel()
     ahead = following.copy()
@@ -299,7 +300,7 @@ def _ahead(twins, part):
     return ahead
 
 
-def _convex(hull, origins, twins, facets):
+def _convex(hull, origins, twins, facets) -> NDArray[np.int64]:
     """(H,) facets, those with a reflex corner taken apart into their triangles."""
     targets, single = origins[twins], np.arange(len(facets)) // 3
     while True:
@@ -317,19 +318,19 @@ def _convex(hull, origins, twins, facets):
         facets = _numbered(np.where(split, facets.max() + 1 + single, facets))
 
 
-def _numbered(facets):
+def _numbered(facets) -> NDArray[np.int64]:
     """(H,) facets numbered without gaps."""
     return np.unique(facets, return_inverse=True)[1].ravel()
 
 
-def _normals(hull, facets):
+def _normals(hull, facets) -> NDArray[np.float64]:
     """(M, 3) unit normals of the facets, by the areas of their triangles."""
     weighted = hull.areas[:, None] * hull.normals
     sums = np.stack([np.bincount(facets[::3], column) for column in weighted.T], axis=1)
     return sums / np.maximum(np.sqrt((sums**2).sum(axis=1)), np.finfo(float).tiny)[:, None]
 
 
-def _straightened(origins, borders):
+def _straightened(origins, borders) -> Borders:
     """Borders with one edge where several met at corners of two facets."""
     valence = np.bincount(origins[borders.part], minlength=origins.max() + 1)
     passing = borders.part & (
@@ -349,12 +350,12 @@ def _straightened(origins, borders):
     return Borders(targets, twins, part, ahead, borders.facets)
 
 
-def _of_two_edges(borders):
+def _of_two_edges(borders) -> NDArray[np.int64]:
     """Half-edges of facets with two edges, one of the two."""
     edges = np.flatnonzero(borders.part)
     return edges[(borders.ahead[borders.ahead[edges]] == edges) & (edges < borders.ahead[edges])]
 
 
-def _joined(facets, first, second):
+def _joined(facets, first, second) -> NDArray[np.int64]:
     """(H,) facets, each of ``first`` joined with that of ``second``."""
     return components(first, second, facets.max() + 1)[1][facets]
