@@ -21,7 +21,7 @@ from bodies import MADE, ROOT, ROUND, Body, made, rounds, shapes
 
 from feederscrew.part import load
 from feederscrew.resting.counts.deviation import total_variation
-from feederscrew.resting.rules.recommended import LAUNCHES
+from feederscrew.resting.rules.recommended import LAUNCH_NAMES
 from feederscrew.studies.compare import compare_sets
 
 MORE = 10  # times the drops, on measured sets
@@ -69,7 +69,7 @@ def measured(series):
     print(f"{'sampling of the tosses':28}" + "".join(f"{error:16.4f}" for error in noise))
     first = next(iter(series.values()))[0].body
     told = {rule: lambda one, rule=rule: one.body.rules[rule] for rule in first.rules}
-    told |= {f"drop, {launch}": lambda one, launch=launch: one.body.drop(launch) for launch in LAUNCHES}
+    told |= {f"drop, {launch}": lambda one, launch=launch: one.body.drop(launch) for launch in LAUNCH_NAMES}
     told["drop, its own launch"] = lambda one: one.body.drop(one.launch)
     told["closed form"] = lambda one: one.body.closed(one.launch).p
     told["recommended"] = lambda one: one.body.answer(one.launch).p
@@ -97,12 +97,12 @@ def against_drops(groups):
     """Print how far each rule is from the drop tests of every launch, on the mean of each group of bodies."""
     for group, bodies in groups.items():
         print(f"\nMean total variation from drop tests: {group}, {len(bodies)} bodies")
-        print(f"{'':28}" + "".join(f"{launch:>8}" for launch in LAUNCHES))
+        print(f"{'':28}" + "".join(f"{launch:>8}" for launch in LAUNCH_NAMES))
         known = [body.rules for body in bodies]
         for rule in known[0] if known else ():
             away = [
                 np.mean([total_variation(one[rule], body.drop(launch)) for one, body in zip(known, bodies)])
-                for launch in LAUNCHES
+                for launch in LAUNCH_NAMES
             ]
             print(f"{rule:28}" + "".join(f"{mean:8.3f}" for mean in away))
 

@@ -2,10 +2,10 @@
 
 A share p of a closed form is off by its score times ``recommended.shape(p)``; the width that is printed is
 the score that 95 % of the shares keep below. Left out means: one part at a time has no say in the width it
-is judged by. The widths of ``recommended.WIDTHS`` are those printed here, rounded to a hundredth, and so is
-``recommended.LAUNCHED``, what was measured less what was simulated. Its shares are too few for a quantile: of
-ten the largest is passed by one new share in eleven. They are taken as normal about zero, with a standard
-deviation that all launches have in common and that is not known but for them (``reach``).
+is judged by. The widths of ``recommended.SHARE_WIDTHS`` are those printed here, rounded to a hundredth, and
+so is ``recommended.LAUNCH_WIDTH``, what was measured less what was simulated. Its shares are too few for a
+quantile: of ten the largest is passed by one new share in eleven. They are taken as normal about zero, with
+a standard deviation that all launches have in common and that is not known but for them (``reach``).
 """
 
 import numpy as np
@@ -72,7 +72,7 @@ def closed_forms(bodies):
     print("calibrated here and as it is; the share of those left out that it holds; mean width, and formerly")
     heads = ("fit", "is", "held", "left out", "of", "wide", "was", "held")
     print(f"{'':18}{'rule':>14}" + "".join(f"{head:>9}" for head in heads))
-    for launch in recommended.LAUNCHES:
+    for launch in recommended.LAUNCH_NAMES:
         for rolling in (False, True):
             chosen = [body for body in bodies if body.rolling == rolling]
             if chosen:
@@ -88,7 +88,7 @@ def _one(launch, rolling, bodies):
     held, wide = _coverage(bodies, launch, ends)
     former, was = _coverage(bodies, launch, [_former(body) for body in bodies])
     rule = bodies[0].closed(launch).rule.partition(",")[0]
-    fit, used = quantile(scores), recommended.WIDTHS[launch, rolling]
+    fit, used = quantile(scores), recommended.SHARE_WIDTHS[launch, rolling]
     name = launch + (", rolling" if rolling else "")
     print(
         f"{name:18}{rule:>14}{fit:9.3f}{used:9.2f}{held:9.1%}{np.mean(np.concatenate(outside)):9.1%}"
@@ -124,9 +124,9 @@ def weights_of_hops(bodies, series):
     )
     print("use; mean total variation there, and the error on the measured sets of that launch")
     flat = [body for body in bodies if not body.rolling]
-    for launch in recommended.LAUNCHES:
+    for launch in recommended.LAUNCH_NAMES:
         away = [_mean_apart(flat, weight, launch) for weight in WEIGHTS]
-        chosen, used = WEIGHTS[int(np.argmin(away))], recommended.SHARES[launch]
+        chosen, used = WEIGHTS[int(np.argmin(away))], recommended.HOP_SHARES[launch]
         for label, weight in (("chosen", chosen), ("in use", used)):
             told = f"  {launch:8}{label:>8}{weight:5.1f}{_mean_apart(flat, weight, launch):7.3f}"
             print(told + "".join(_missed(sets, weight, launch) for sets in series.values()))
@@ -166,7 +166,8 @@ def measured(series):
         print(f"  {name:20}{width:7.3f}   {_within(own, width)} of {own.shape[1]}   {answers}")
     every = np.concatenate(list(known.values()), axis=1)
     print(f"  {'all together':20}{reach(*every):7.3f}   left out {inside} of {total}: {inside / total:.1%}")
-    print(f"  {'as it is':20}{recommended.LAUNCHED:7.3f}   {_within(every, recommended.LAUNCHED)} of {total}")
+    width = recommended.LAUNCH_WIDTH
+    print(f"  {'as it is':20}{width:7.3f}   {_within(every, width)} of {total}")
 
 
 def _rows(body):

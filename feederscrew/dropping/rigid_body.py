@@ -12,7 +12,7 @@ from feederscrew import check
 from feederscrew.dropping.rims import AXIS, CENTRE, MIDDLE, RADIUS, rims_of, true_heights, true_tops
 from feederscrew.geometry import vectors
 from feederscrew.resting.basins import barriers
-from feederscrew.resting.basins.landscape import SMOOTH
+from feederscrew.resting.basins.landscape import SMOOTH_ANGLE
 from feederscrew.resting.tumbling.exact import tumble
 from feederscrew.resting.tumbling.half_edges import Edges, half_edges, saddles, sinks
 
@@ -132,7 +132,7 @@ def _solid(hull, edges, rims, inertia, principal, length):
         rims=check.frozen(table),
         inner=rims.inner,
         corners=int((~rims.inner).sum()),
-        sag=float(table[:, RADIUS].max() * (1.0 - np.cos(SMOOTH / 2))) if len(table) else 0.0,
+        sag=float(table[:, RADIUS].max() * (1.0 - np.cos(SMOOTH_ANGLE / 2))) if len(table) else 0.0,
     )
 
 

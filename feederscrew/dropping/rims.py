@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from feederscrew import check
-from feederscrew.resting.basins.landscape import SMOOTH
+from feederscrew.resting.basins.landscape import SMOOTH_ANGLE
 
 CENTRE, AXIS, RADIUS, MIDDLE, OPENING, RIM = slice(0, 3), slice(3, 6), 6, slice(7, 10), 10, 11
 FEWEST = 4  # edges of an arc
@@ -65,7 +65,7 @@ def _under(row, points):
     """(K,) bool: which of (K, 3) points in the plane of a rim lie on it, or on the chords it replaces."""
     away = points - row[CENTRE]
     size = np.sqrt((away**2).sum(axis=1))
-    near = np.abs(size / row[RADIUS] - 1.0) < 1.0 - np.cos(0.5 * SMOOTH)
+    near = np.abs(size / row[RADIUS] - 1.0) < 1.0 - np.cos(0.5 * SMOOTH_ANGLE)
     return near & (np.einsum("ki,i->k", away, row[MIDDLE]) >= size * row[OPENING] - ROUND * row[RADIUS])
 
 
@@ -123,7 +123,7 @@ def _even(lengths, turns):
     ``lengths`` (K,) of the edge from each corner to the next, ``turns`` (K,) at each corner.
     """
     before = np.roll(lengths, 1)
-    smooth = (np.abs(turns) < SMOOTH) & (turns > 0.0) & (np.abs(before - lengths) < EVEN * lengths)
+    smooth = (np.abs(turns) < SMOOTH_ANGLE) & (turns > 0.0) & (np.abs(before - lengths) < EVEN * lengths)
     count = len(lengths)
     if smooth.all():
         return [(np.arange(count), True)]

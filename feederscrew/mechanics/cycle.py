@@ -7,19 +7,21 @@ between them the velocity is integrated by steps of fourth order, halved whereve
 import itertools
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 
-SAMPLES = 360  # of one period
-TURN = 2.0 * math.pi
-PATIENCE = 8  # periods followed before the settled one is sought by its velocity at phase 0
-DOUBLINGS = 40  # of the step that brackets it
-CLOSE = 1e-12  # of the greatest speed gained in a period: a velocity this near is found
+PERIOD_SAMPLES = 360  # of one period
+FULL_TURN = 2.0 * math.pi
+PERIODS_FOLLOWED = 8  # periods followed before the settled one is sought by its velocity at phase 0
+MAX_STEP_DOUBLINGS = 40  # of the step that brackets it
+VELOCITY_TOLERANCE = 1e-12  # of the greatest speed gained in a period: a velocity this near is found
 KINK = 1e-11  # the same: halves of a step that differ by more are halved again
-HALVINGS = 14
-STEPS = 60
+ONSET_HALVINGS = 14
+MAX_BRACKETING_STEPS = 60
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,15 +33,15 @@ class Cycle:
     settled: bool  # whether the period repeats itself
 
 
-def phases(samples=SAMPLES):
+def phases(samples=PERIOD_SAMPLES) -> NDArray[np.float64]:
     """Return phases w t of one period, (samples,) [rad]; the upper reversal is at a quarter.
 
     Source: a harmonic drive; docs/mechanics.md, "Frames and signs".
     """
-    return TURN * np.arange(samples) / samples
+    return FULL_TURN * np.arange(samples) / samples
 
 
-def settle(acceleration, windows, period, samples=SAMPLES):
+def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
     """Follow a part from rest until its velocity repeats every period.
 
     Source: docs/mechanics.md, "The floor"; the mean agrees with the two-burst velocity of
@@ -65,20 +67,22 @@ def settle(acceleration, windows, period, samples=SAMPLES):
     The velocity after a period is a function of that before it which keeps their order, so from rest it tends
     to the first velocity that it leaves as it is.
     """
-    ride = _Ride(acceleration, tuple(windows), period / TURN, samples)
+    ride = _Ride(acceleration, tuple(windows), period / FULL_TURN, samples)
     speed, scale = 0.0, 0.0
-    for _ in range(PATIENCE):
+    for _ in range(PERIODS_FOLLOWED):
         velocity, mean = ride.over(speed)
         scale = max(scale, float(np.ptp(velocity)))
-        if abs(velocity[-1] - speed) <= CLOSE * scale:
+        if abs(velocity[-1] - speed) <= VELOCITY_TOLERANCE * scale:
             return Cycle(check.frozen(velocity[:-1]), mean, True)
         speed = float(velocity[-1])
-    start, settled = _steady(lambda speed: float(ride.over(speed)[0][-1]) - speed, speed, CLOSE * scale)
+    start, settled = _steady(
+        lambda speed: float(ride.over(speed)[0][-1]) - speed, speed, VELOCITY_TOLERANCE * scale
+    )
     velocity, mean = ride.over(start)
     return Cycle(check.frozen(velocity[:-1]), mean, settled)
 
 
-def swing(acceleration, period):
+def swing(acceleration, period) -> Cycle:
     """Return the velocity of a part that nothing brings to rest, as one that rolls: a swing about zero.
 
     Source: the integral of a harmonic acceleration; docs/mechanics.md, "The floor".
@@ -100,11 +104,11 @@ def swing(acceleration, period):
     return Cycle(velocity - np.mean(velocity, axis=0), 0.0, True)
 
 
-def _steady(gained, begun, close):
+def _steady(gained, begun, close) -> tuple[float, bool]:
     """The velocity that a period does not change, and whether there is one; ``gained`` is what it adds."""
     near, rise = begun, gained(begun)
     step, far, fall = rise, near, rise
-    for _ in range(DOUBLINGS):
+    for _ in range(MAX_STEP_DOUBLINGS):
         if fall * rise <= 0.0:
             return _closed_in(gained, (near, rise, far, fall), close), True
         near, rise = far, fall
@@ -113,41 +117,41 @@ def _steady(gained, begun, close):
     return begun, False
 
 
-def _closed_in(gained, bracket, close):
+def _closed_in(gained, bracket, close) -> float:
     """The root between two velocities, by the secant rule in its Illinois form."""
     near, rise, far, fall = bracket
     side = 0
-    for _ in range(STEPS):
+    for _ in range(MAX_BRACKETING_STEPS):
         if abs(far - near) <= close or fall == 0.0:
             break
         middle = far - fall * (far - near) / (fall - rise)
-        found = gained(middle)
-        if found * rise > 0.0:
-            near, rise, fall, side = middle, found, 0.5 * fall if side == 1 else fall, 1
+        gain = gained(middle)
+        if gain * rise > 0.0:
+            near, rise, fall, side = middle, gain, 0.5 * fall if side == 1 else fall, 1
         else:
-            far, fall, rise, side = middle, found, 0.5 * rise if side == -1 else rise, -1
+            far, fall, rise, side = middle, gain, 0.5 * rise if side == -1 else rise, -1
     return far
 
 
 class _Ride:
     """One period after another of a part under a given acceleration."""
 
-    def __init__(self, acceleration, windows, pace, samples):
+    def __init__(self, acceleration, windows, pace, samples) -> None:
         self.windows, self.samples = windows, samples
         self.gain = lambda phase, speed, sense: pace * acceleration(phase, speed, sense)  # a radian
-        self.kink = KINK * pace * max(abs(acceleration(0.25 * TURN * k, 0.0, 1.0)) for k in range(4))
+        self.kink = KINK * pace * max(abs(acceleration(0.25 * FULL_TURN * k, 0.0, 1.0)) for k in range(4))
 
-    def over(self, speed):
+    def over(self, speed) -> tuple[Any, ...]:
         """Return velocities at the samples and at the end of a period that begins with one, and the mean."""
-        grid = [TURN * k / self.samples for k in range(self.samples + 1)]
+        grid = [FULL_TURN * k / self.samples for k in range(self.samples + 1)]
         found, way = [speed], 0.0
         for start, end in itertools.pairwise(grid):
             speed, more = self._between(speed, start, end)
             way += more
             found.append(speed)
-        return np.array(found), way / TURN
+        return np.array(found), way / FULL_TURN
 
-    def _between(self, speed, start, end):
+    def _between(self, speed, start, end) -> tuple[Any, ...]:
         """Velocity at the end of a stretch, and the way made in it, times the pace of the phase."""
         way, now = 0.0, start
         while now < end:
@@ -161,14 +165,14 @@ class _Ride:
             way += more
         return speed, way
 
-    def _loose(self, now, end):
+    def _loose(self, now, end) -> tuple[float, float, float]:
         """Where a part at rest breaks loose within a stretch, how long it is loose there, and its sense."""
         for start, stop, sense in self.windows:
             if now < stop and start < end:
                 return max(now, start), min(stop, end), sense
         return end, end, 0.0
 
-    def _slip(self, speed, now, end, until, sense):
+    def _slip(self, speed, now, end, until, sense) -> tuple[float, float, float]:
         """Velocity, way and phase where a slip stops or the stretch ends."""
         span = end - now
         after, way = self._step(now, span, speed, sense)
@@ -183,20 +187,20 @@ class _Ride:
         span = self._stop(now, low, span, speed, sense)
         return 0.0, self._step(now, span, speed, sense)[1], now + span
 
-    def _slowest(self, now, span, speed, sense):
+    def _slowest(self, now, span, speed, sense) -> float:
         """Span after which a slip that slows down and then gets faster is slowest; else all of it."""
         if sense * self.gain(now, speed, sense) >= 0.0 or sense * self.gain(now + span, speed, sense) <= 0.0:
             return span
         low, high = 0.0, span
-        for _ in range(STEPS):
+        for _ in range(MAX_BRACKETING_STEPS):
             middle = 0.5 * (low + high)
             slows = sense * self.gain(now + middle, speed, sense) < 0.0
             low, high = (middle, high) if slows else (low, middle)
         return high
 
-    def _stop(self, now, low, high, speed, sense):
+    def _stop(self, now, low, high, speed, sense) -> float:
         """Span after which a slip stops, between one at which it slides and one at which it would not."""
-        for _ in range(STEPS):
+        for _ in range(MAX_BRACKETING_STEPS):
             middle = 0.5 * (low + high)
             if not low < middle < high:
                 break
@@ -204,18 +208,18 @@ class _Ride:
             low, high = (middle, high) if slides else (low, middle)
         return low
 
-    def _step(self, now, span, speed, sense, whole=None, depth=0):
+    def _step(self, now, span, speed, sense, whole=None, depth=0) -> tuple[Any, ...]:
         """Velocity and way after a span, by one step or, where two halves differ from it, by theirs."""
         half, begun = 0.5 * span, self.gain(now, speed, sense)
         whole = whole or self._once(now, span, speed, sense, begun)
         first = self._once(now, half, speed, sense, begun)
         last = self._once(now + half, half, first[0], sense)
-        if abs(last[0] - whole[0]) > self.kink * span and depth < HALVINGS:
+        if abs(last[0] - whole[0]) > self.kink * span and depth < ONSET_HALVINGS:
             first = self._step(now, half, speed, sense, first, depth + 1)
             last = self._step(now + half, half, first[0], sense, None, depth + 1)
         return last[0], first[1] + last[1]
 
-    def _once(self, now, span, speed, sense, begun=None):
+    def _once(self, now, span, speed, sense, begun=None) -> tuple[Any, ...]:
         """One step of the classical Runge-Kutta rule for the velocity and its integral."""
         half = 0.5 * span
         a = self.gain(now, speed, sense) if begun is None else begun

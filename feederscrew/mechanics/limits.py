@@ -16,7 +16,10 @@ The thesis, section 4.3, for [4.27] and [4.28]: a level floor at s = +1. The tra
 derived here from the two forces above.
 """
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.errors import ConfigError
 
@@ -25,10 +28,10 @@ RIDE, FORWARD, BACKWARD, BOTH, HOP = range(len(REGIMES))
 ROUNDING = 1e-9  # [1] a throw number this near 1 counts as hopping: there the forces hang on rounding
 
 USE = "leave it out, or use feeder convey"
-STRAIGHT = ("phase", "second_harmonic")  # of the drive: zero where it is straight and harmonic
+STRAIGHT_DRIVE_KEYS = ("phase", "second_harmonic")  # of the drive: zero where it is straight and harmonic
 
 
-def plain(bowl):
+def plain(bowl) -> Any:
     """Return the bowl itself once its drive is straight and harmonic, with friction the same both ways.
 
     Parameters
@@ -45,7 +48,7 @@ def plain(bowl):
     ConfigError
         If it does not: the formulas for one point of the cycle know no other.
     """
-    for word in STRAIGHT:
+    for word in STRAIGHT_DRIVE_KEYS:
         if np.any(getattr(bowl.drive, word) != 0.0):
             raise ConfigError(
                 f"drive.{word}", "is not 0, and this command knows a straight harmonic drive only", USE
@@ -58,7 +61,7 @@ def plain(bowl):
     return bowl
 
 
-def acceleration_ratio(amplitude, frequency, gravity):
+def acceleration_ratio(amplitude, frequency, gravity) -> Any:
     """Return G = A w^2 / g [1], from half stroke [m], frequency [Hz] and gravity [m/s2].
 
     Source: the thesis, section 4.3, in which it stands as A w^2 / g.
@@ -66,7 +69,7 @@ def acceleration_ratio(amplitude, frequency, gravity):
     return amplitude * (2.0 * np.pi * np.asarray(frequency)) ** 2 / gravity
 
 
-def published_limit(ratio, beta, alpha_minus_theta=0.0):
+def published_limit(ratio, beta, alpha_minus_theta=0.0) -> Any:
     """Return limiting friction of the thesis: the least that holds on a level floor at the upper reversal.
 
     Parameters
@@ -114,7 +117,7 @@ def published_ratio(friction, beta, alpha_minus_theta=0.0):
     return friction / slope  # eq. [4.27], solved for G
 
 
-def throw_number(ratio, beta, climb=0.0):
+def throw_number(ratio, beta, climb=0.0) -> Any:
     """Return k = G sin(beta) / cos(climb) [1], whatever the bank; the part hops where it is above 1.
 
     Source: the normal force of eq. [4.14] at the upper reversal, set to zero on a climbing track.
@@ -122,12 +125,12 @@ def throw_number(ratio, beta, climb=0.0):
     return ratio * np.sin(beta) / np.cos(climb)
 
 
-def hops(ratio, beta, climb=0.0):
+def hops(ratio, beta, climb=0.0) -> Any:
     """Return whether contact is lost within the cycle; at k = 1 [1] within rounding it counts as lost."""
     return throw_number(ratio, beta, climb) >= 1.0 - ROUNDING
 
 
-def hop_ratio(beta, climb=0.0):
+def hop_ratio(beta, climb=0.0) -> Any:
     """Return G [1] from which the part hops; infinite for beta = 0, where nothing lifts it.
 
     Source: the normal force of eq. [4.14] at the upper reversal, set to zero.
@@ -136,7 +139,7 @@ def hop_ratio(beta, climb=0.0):
         return np.cos(climb) / np.sin(beta)
 
 
-def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0):
+def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
     """Return the least static friction at which a part never slips forward, up the track.
 
     Source: Coulomb's law at the reversals; on a level floor eq. [4.28].
@@ -163,7 +166,7 @@ def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0):
     return _limit(push, np.sin(climb), ratio, beta, climb)
 
 
-def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0):
+def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
     """Return the least static friction at which a part never slips back, down the track.
 
     Source: Coulomb's law at the reversals, by the two forces of the module.
@@ -184,7 +187,7 @@ def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0):
     return _limit(-push, -np.sin(climb), ratio, beta, climb)
 
 
-def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0):
+def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
     """Return G from which a part of a given static friction slips forward.
 
     Source: ``forward_limit`` solved for G.
@@ -206,7 +209,7 @@ def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0):
     return _onset(friction, along, np.sin(climb), beta, climb)
 
 
-def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0):
+def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
     """Return G from which a part of a given static friction slips back.
 
     Source: ``backward_limit`` solved for G.
@@ -228,7 +231,7 @@ def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0):
     return _onset(friction, -along, -np.sin(climb), beta, climb)
 
 
-def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0):
+def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.int64]:
     """Return what a part does within one cycle.
 
     Source: the limits above; docs/mechanics.md, "The floor".
@@ -253,7 +256,7 @@ def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0):
     return np.where(hops(ratio, beta, climb), HOP, slips)
 
 
-def _limit(push, resist, ratio, beta, climb):
+def _limit(push, resist, ratio, beta, climb) -> NDArray[np.float64]:
     """Greatest (s push - resist) / (weight - s lift) while there is contact; NaN if unbounded."""
     weight, lift = np.cos(climb), ratio * np.sin(beta)
     rises = push * weight > lift * resist  # the sign of its derivative in s
@@ -262,7 +265,7 @@ def _limit(push, resist, ratio, beta, climb):
     return np.where(rises, light, (-push - resist) / (weight + lift))
 
 
-def _onset(friction, along, resist, beta, climb):
+def _onset(friction, along, resist, beta, climb) -> NDArray[np.float64]:
     """Least G with G s (along + friction sin b) > friction weight + resist at s = +1 or -1."""
     weight = np.cos(climb)
     gain = along + friction * np.sin(beta)

@@ -1,12 +1,14 @@
 """Which aspect a part stands on where none is asked for."""
 
+from typing import Any
+
 from feederscrew.resting import aspects
 from feederscrew.resting.posture import posture
 
 LIKELIEST, LISTED = "the likeliest ({})", "the first of the card"
 
 
-def standing(part, aspect, block, answered=aspects.find):
+def standing(part, aspect, block, answered=aspects.find) -> tuple[Any, ...]:
     """Return the part on an aspect.
 
     Parameters
@@ -34,7 +36,7 @@ def standing(part, aspect, block, answered=aspects.find):
     analysed = (part.printed or {}).get(block, {}).get("aspect")
     if analysed is not None:
         return posture(part, aspects.find(part), analysed), f"the one of the card's {block} block"
-    found = answered(part)
-    if found.recommended is None:
-        return posture(part, found, found.names[0]), LISTED
-    return posture(part, found, found.likeliest), LIKELIEST.format(found.recommended.rule)
+    answer = answered(part)
+    if answer.recommended is None:
+        return posture(part, answer, answer.names[0]), LISTED
+    return posture(part, answer, answer.likeliest), LIKELIEST.format(answer.recommended.rule)

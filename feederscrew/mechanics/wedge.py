@@ -9,13 +9,14 @@ Source: the balance of forces in a wedge with Coulomb's friction; docs/conveying
 """
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from feederscrew.bowl.record import Friction
 
 
-def effective(friction, wall, bank):
+def effective(friction, wall, bank) -> Any:
     """Return the friction of the level track that holds a part as floor and wall together do.
 
     Source: docs/conveying.md, "The model".
@@ -35,7 +36,7 @@ def effective(friction, wall, bank):
     return friction / np.cos(bank) + wall * np.tan(bank)
 
 
-def of_floor(friction, wall, bank):
+def of_floor(friction, wall, bank) -> Any:
     """Return the coefficient of the floor that makes, with the wall, an effective one: the inverse [1].
 
     Source: ``effective`` solved for the floor.
@@ -43,7 +44,7 @@ def of_floor(friction, wall, bank):
     return friction * np.cos(bank) - wall * np.sin(bank)
 
 
-def level(bowl):
+def level(bowl) -> Any:
     """Return a bowl without bank on which a part travels as in this one.
 
     Parameters
@@ -57,7 +58,7 @@ def level(bowl):
         With the effective friction, of rest and of sliding, up and down the track.
     """
     mu, bank = bowl.friction, bowl.track.bank
-    held = (effective(one, mu.wall, bank) for one in (mu.static, mu.kinetic, *mu.backward))
+    held = (effective(coefficient, mu.wall, bank) for coefficient in (mu.static, mu.kinetic, *mu.backward))
     static, kinetic, static_back, kinetic_back = held
     surfaces = Friction(static, kinetic, mu.wall, static_back, kinetic_back)
     return replace(bowl, friction=surfaces, track=replace(bowl.track, bank=0.0 * bank))

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.mechanics.floor.balance import STATES
+from feederscrew.mechanics.floor.balance import MOTION_STATES
 from feederscrew.units import DEGREE, MINUTE, MM, counted, listed
 
 UM, GRAM, PERCENT = 1e-6, 1e-3, 0.01  # [SI]
@@ -123,7 +123,7 @@ def _track(study: Any) -> str:
 
 def _states(codes: Any) -> str:
     """States of a part in the order of their codes: 'stick and slide'."""
-    return listed([STATES[code] for code in np.unique(codes)])
+    return listed([MOTION_STATES[code] for code in np.unique(codes)])
 
 
 def _headings(study: Any) -> str:

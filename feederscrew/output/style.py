@@ -153,7 +153,7 @@ def named_ticks(axes, places, names):
 
 def method(name, place=0):
     """Return label and colour of a rule or profile; ``place`` picks a spare colour for an unknown one."""
-    rule = registry.BY_NAME.get(name)
+    rule = registry.RULE_OF.get(name)
     return (rule.label, rule.colour) if rule else (name.replace("_", " "), SPARE[place % len(SPARE)])
 
 

@@ -231,7 +231,7 @@ def _is_abbreviation(name):
     """Whether a rule is written in capitals."""
     from feederscrew.resting.rules import registry
 
-    return name in registry.BY_NAME and registry.BY_NAME[name].is_abbreviation
+    return name in registry.RULE_OF and registry.RULE_OF[name].is_abbreviation
 
 
 def is_share(name):

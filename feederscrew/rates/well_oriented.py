@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew.conveying import answer, sensitivity
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError, FeederError
-from feederscrew.mechanics.wall.stable_headings import headings, laid
+from feederscrew.mechanics.wall.stable_headings import headings, stable_row
 from feederscrew.rates.shares_on_track import (
     RECOMMENDED,
     efficiency,
@@ -93,7 +93,7 @@ def wanted(part, aspects, track, name, heading=None):
     """
     lying = posture(part, aspects, name)
     found = headings(lying, track)
-    return lying.name, float(found.headings[laid(found, heading)])
+    return lying.name, float(found.headings[stable_row(found, heading)])
 
 
 def velocity(bowl):

@@ -8,6 +8,7 @@ with a deeper neighbour, change the published rules alone.
 import itertools
 from dataclasses import dataclass, field, replace
 from string import ascii_uppercase
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +20,10 @@ from feederscrew.geometry.graphs import component_of
 from feederscrew.part.hull import Hull, convex_hull
 from feederscrew.part.moments import Moments
 from feederscrew.records import Shown
-from feederscrew.resting.basins.landscape import SMOOTH, Landscape, angle, landscape
+from feederscrew.resting.basins.landscape import SMOOTH_ANGLE, Landscape, angle, landscape
 from feederscrew.resting.faces import Face, stable_faces, unstable_faces
 from feederscrew.resting.flats import ONE_PLANE
-from feederscrew.resting.forms import FLAT, LEVEL, forms, said
+from feederscrew.resting.forms import FLAT, LEVEL_SLOPE, form_remarks, forms
 from feederscrew.resting.rules import published, recommended, registry, surface
 from feederscrew.resting.rules.quantities import ClassQuantities
 from feederscrew.resting.rules.recommended import Recommended
@@ -30,7 +31,7 @@ from feederscrew.resting.tumbling import by_class, walk
 from feederscrew.units import MM
 
 CONVEX = 1e-6  # [1] of the hull's volume: a smaller difference breaks no symmetry
-TIE = 1e-4  # probabilities that differ by less of themselves are equal but for rounding
+CHANCE_TIE = 1e-4  # probabilities that differ by less of themselves are equal but for rounding
 NAMING_REACH = {"flat": np.radians(3.0), "rolling": np.radians(15.0)}  # off the direction of a name
 NAMING_TOLERANCE = np.radians(0.05)  # a direction closer than this to an aspect means that one
 SYMMETRY_ANGLE = np.radians(3.0)  # a turned face lies on another when their normals agree this well
@@ -70,37 +71,37 @@ class Aspects(Shown):
     warnings: tuple[str, ...] = ()
 
     @property
-    def chances(self):
+    def chances(self) -> dict[Any, Any]:
         """Probability of each aspect by every name a user may ask for: the rules, 'closed', 'recommended'."""
         answers = {"closed": self.closed, "recommended": self.recommended}
-        return self.probabilities | {name: one.p for name, one in answers.items() if one is not None}
+        return self.probabilities | {name: answer.p for name, answer in answers.items() if answer is not None}
 
     @property
-    def rolling_circles(self):
+    def rolling_circles(self) -> NDArray[np.float64]:
         """(A,) [m] radius of the circle in which the centre of mass rolls; infinite where straight, else NaN.
 
         The axis of a cone, or of a part on two circles, meets the floor at a point that stays where it is.
         """
         down = (self.axes * self.normals).sum(axis=1)
-        level, off = np.sqrt(np.maximum(1.0 - down**2, 0.0)), np.abs(down) > LEVEL
+        level, off = np.sqrt(np.maximum(1.0 - down**2, 0.0)), np.abs(down) > LEVEL_SLOPE
         return np.where(off, self.heights * level / np.where(off, np.abs(down), 1.0), np.inf + 0.0 * down)
 
     @property
-    def likeliest(self):
+    def likeliest(self) -> str:
         """Name of the aspect it rests on most often: by the recommended answer, of a card by CSA."""
         return self.names[int(np.argmax(np.nan_to_num(self.chances[self.ranking])))]
 
-    def source(self, rule):
+    def source(self, rule) -> str:
         """Say whose the probabilities of a rule are: 'csa', of an answer 'drop test, launch feed'."""
         return getattr({"closed": self.closed, "recommended": self.recommended}.get(rule), "rule", rule)
 
     @property
-    def ranking(self):
+    def ranking(self) -> str:
         """Name of the answer that ranks the aspects: 'recommended', of a card 'csa'."""
         return "csa" if self.recommended is None else "recommended"
 
 
-def find(part, *, as_published=False, unstable=False, exponent=None, launch=recommended.LAUNCH):
+def find(part, *, as_published=False, unstable=False, exponent=None, launch=recommended.LAUNCH) -> Aspects:
     """Find the resting aspects of a part, with their probability by every rule.
 
     Parameters
@@ -114,7 +115,7 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
     exponent : float [1], optional
         Of the surface-weighted closed form, which is then the recommended one; see `surface.EXPONENTS`.
     launch : str
-        What is done to the part, one of `recommended.LAUNCHES` or a former name: the recommended closed
+        What is done to the part, one of `recommended.LAUNCH_NAMES` or a former name: the recommended closed
         form depends on it.
 
     Returns
@@ -166,7 +167,7 @@ def waits(part):
     return compiled.due(walk.trace_saddles, 3 * len(part.hull.triangles))
 
 
-def _tumbled(named, ground, part, exponent):
+def _tumbled(named, ground, part, exponent) -> Aspects:
     """The record with all that exact tumbling adds to it."""
     more = by_class.exact(ground, part, named, exponent)
     doubts = tuple(f"exact tumbling is doubtful: {doubt}" for doubt in more.doubts)
@@ -181,70 +182,70 @@ def _tumbled(named, ground, part, exponent):
     )
 
 
-def _answered(known, launch, exponent):
+def _answered(aspects, launch, exponent) -> Aspects:
     """The record with the closed form that is recommended for a launch, or for the user's own surface."""
     own = None if exponent is None else surface.named(exponent)
-    form = recommended.closed_form(known.probabilities, known.stable, known.kinds, launch, own)
-    return replace(known, recommended=form, closed=form)
+    form = recommended.closed_form(aspects.probabilities, aspects.stable, aspects.kinds, launch, own)
+    return replace(aspects, recommended=form, closed=form)
 
 
-def _moments(part, hull):
+def _moments(part, hull) -> Moments:
     """Moments of the part; from its hull, of fewer triangles, where the volumes are the same."""
     if abs(hull.volume - part.volume) < CONVEX * hull.volume:
         return Moments(hull.vertices, hull.triangles, np.zeros(3))
     return Moments(part.vertices, part.faces, part.centre_of_mass)
 
 
-def _about(axes, inertia):
+def _about(axes, inertia) -> NDArray[np.float64]:
     """(N,) moments of inertia about unit axes (N, 3)."""
     return vectors.dot(vectors.product(axes, inertia), axes)
 
 
-def _direction(face):
+def _direction(face) -> tuple[float, float, np.float64]:
     """What orders the faces of a class: their direction in the file."""
     return tuple(np.round(face.normal, 6))
 
 
-def _geometry(groups, part):
+def _geometry(groups, part) -> dict[Any, Any]:
     """Columns of the table in the order of the groups; a class's numbers are its faces' means."""
 
     counts = np.array([len(group) for group in groups])
-    every = [face for group in groups for face in group]
+    all_faces = [face for group in groups for face in group]
 
-    def mean(values):
+    def mean(values) -> NDArray[np.float64]:
         return np.add.reduceat(values, np.cumsum(counts) - counts) / counts
 
-    shown = [max(group, key=_direction) if len(group) > 1 else group[0] for group in groups]
+    examples = [max(group, key=_direction) if len(group) > 1 else group[0] for group in groups]
     return {
         "kinds": [group[0].kind for group in groups],
         "faces": counts,
         "stable": np.array([group[0].stable for group in groups]),
-        "normals": _clean(np.array([face.normal for face in shown])),
-        "axes": _clean(np.array([face.axis for face in shown])),
-        "heights": mean([face.height for face in every]),
-        "contact_areas": mean([face.area for face in every]),
-        "solid_angles": mean([face.solid_angle for face in every]),
-        "polar_inertias": mean(_about(np.array([face.normal for face in every]), part.inertia)),
-        "polygons": [face.polygon for face in shown],
+        "normals": _clean(np.array([face.normal for face in examples])),
+        "axes": _clean(np.array([face.axis for face in examples])),
+        "heights": mean([face.height for face in all_faces]),
+        "contact_areas": mean([face.area for face in all_faces]),
+        "solid_angles": mean([face.solid_angle for face in all_faces]),
+        "polar_inertias": mean(_about(np.array([face.normal for face in all_faces]), part.inertia)),
+        "polygons": [face.polygon for face in examples],
     }
 
 
-def _clean(directions):
+def _clean(directions) -> NDArray[np.float64]:
     """Directions with rounding noise and minus zeros swept out."""
     return np.where(np.abs(directions) < 1e-9, 0.0, directions)
 
 
-def _probabilities(table, as_published):
+def _probabilities(table, as_published) -> dict[Any, Any]:
     """Probability of each class by every rule that weighs classes."""
     return _normalised(_quantities(table, as_published), table["stable"])
 
 
-def _in_order(chances, order):
+def _in_order(chances, order) -> dict[Any, Any]:
     """Probabilities by rule, rows in another order."""
     return {rule: chance[order] for rule, chance in chances.items()}
 
 
-def _quantities(table, as_published):
+def _quantities(table, as_published) -> ClassQuantities:
     """What the rules weigh of each class."""
     faces, heights = table["faces"], table["heights"]
     return ClassQuantities(
@@ -259,20 +260,20 @@ def _quantities(table, as_published):
     )
 
 
-def _normalised(quantities, stable):
+def _normalised(quantities, stable) -> dict[Any, Any]:
     """Probabilities by every rule that weighs classes."""
     weights = registry.weights(quantities)
     return {rule: published.normalised(weight, stable) for rule, weight in weights.items()}
 
 
-def _ranked(table, chance, part, moments):
+def _ranked(table, chance, part, moments) -> NDArray[np.int64]:
     """Order of the rows: by falling CSA probability, then by size, then by direction in the part.
 
     The last is taken in axes fixed in the part, so that a turned file keeps its names.
     """
     size = np.where(table["stable"], 1.0 + chance, table["faces"] * table["solid_angles"] / (4.0 * np.pi))
     order = np.argsort(-size, kind="stable")
-    tied = np.concatenate([[False], -np.diff(size[order]) < TIE * size[order][1:]])
+    tied = np.concatenate([[False], -np.diff(size[order]) < CHANCE_TIE * size[order][1:]])
     if not tied.any():
         return order
     rank = np.empty(len(order), dtype=int)
@@ -282,19 +283,19 @@ def _ranked(table, chance, part, moments):
     return np.lexsort((*-direction.T, height, rank))
 
 
-def _named(names, table, chances, order, told):
+def _named(names, table, chances, order, naming_warnings) -> Aspects:
     """The record, rows in their order."""
     columns: dict = {k: check.frozen(v[order]) for k, v in table.items() if isinstance(v, np.ndarray)}
     columns |= {name: tuple(table[name][k] for k in order) for name in ("kinds", "forms", "polygons")}
     return Aspects(
         names=names,
         probabilities={rule: check.frozen(chance[order]) for rule, chance in chances.items()},
-        warnings=(*said(table["forms"]), *told),
+        warnings=(*form_remarks(table["forms"]), *naming_warnings),
         **columns,
     )
 
 
-def _from_card(part):
+def _from_card(part) -> Aspects:
     """Aspects as the card's source gives them, by its own names and in its order."""
     rows = part.aspects
     quantities, stable = _printed(rows), check.frozen(np.ones(len(rows), dtype=bool))
@@ -317,7 +318,7 @@ def _from_card(part):
     )
 
 
-def _printed(rows):
+def _printed(rows) -> ClassQuantities:
     """What the rows of a part card print; NaN where they are silent."""
     faces, heights = check.frozen(np.array([row.faces for row in rows])), _column(rows, "height")
     return ClassQuantities(
@@ -332,17 +333,17 @@ def _printed(rows):
     )
 
 
-def _column(rows, quantity):
+def _column(rows, quantity) -> NDArray[np.float64]:
     values = [getattr(row, quantity) for row in rows]
     return check.frozen(np.array([np.nan if value is None else value for value in values], dtype=float))
 
 
-def _over(own, heights):
+def _over(own, heights) -> NDArray[np.float64]:
     """Heights that a rule's own table gives, else those of the aspects."""
     return check.frozen(np.where(np.isnan(own), heights, own))
 
 
-def name_classes(groups, normals, hull, given):
+def name_classes(groups, normals, hull, user_names) -> tuple[Any, ...]:
     """Name the classes of aspects.
 
     Source: own; docs/resting.md, "Names that stay".
@@ -354,14 +355,14 @@ def name_classes(groups, normals, hull, given):
     normals : (A, 3) float [1]
         What is down when the part rests on each.
     hull : Hull
-    given : AspectNames or None
+    user_names : AspectNames or None
         Names with the direction that is down on each; what has none takes the first letter that is free.
 
     Returns
     -------
     names : tuple of str
         One a class.
-    said : tuple of str
+    warnings : tuple of str
         Names that fit no aspect, and aspects that got none of the names; a sentence each.
 
     Raises
@@ -369,26 +370,28 @@ def name_classes(groups, normals, hull, given):
     ConfigError
         If a name fits two aspects and is of neither.
     """
-    if given is None:
+    if user_names is None:
         return tuple(letters_of(k) for k in range(len(groups))), ()
-    apart = np.column_stack([_angles_to_names(faces, hull, given) for faces in groups])
-    place = _match_names(apart)
-    _refuse_doubtful(given, apart, place)
-    names = {row: given.names[k] for k, row in place.items()}
-    taken = {name.casefold() for name in given.names}
+    angles = np.column_stack([_angles_to_names(faces, hull, user_names) for faces in groups])
+    place = _match_names(angles)
+    _refuse_doubtful(user_names, angles, place)
+    names = {row: user_names.names[k] for k, row in place.items()}
+    taken = {name.casefold() for name in user_names.names}
     free = (name for name in map(letters_of, itertools.count()) if name.casefold() not in taken)
-    every = tuple(names[row] if row in names else next(free) for row in range(len(groups)))
+    all_names = tuple(names[row] if row in names else next(free) for row in range(len(groups)))
     fresh = [row for row, faces in enumerate(groups) if row not in names and faces[0].stable]
-    said = [_unmatched(given, apart, place, k) for k in range(len(given.names)) if k not in place]
-    said += [
-        f"{given.source} has no name for the aspect with {_direction_text(normals[row])} down: it is called "
-        f"{every[row]}"
+    warnings = [
+        _unmatched(user_names, angles, place, k) for k in range(len(user_names.names)) if k not in place
+    ]
+    warnings += [
+        f"{user_names.source} has no name for the aspect with {_direction_text(normals[row])} down:"
+        f" it is called {all_names[row]}"
         for row in fresh
     ]
-    return every, tuple(said)
+    return all_names, tuple(warnings)
 
 
-def letters_of(k):
+def letters_of(k) -> str:
     """Return A, B ... Z, AA, AB ... for 0, 1 ..."""
     name = ""
     while k >= 0:
@@ -397,49 +400,49 @@ def letters_of(k):
     return name
 
 
-def _angles_to_names(faces, hull, given):
+def _angles_to_names(faces, hull, user_names) -> NDArray[np.float64]:
     """(names,) [rad] from each direction given to the nearest of a class; infinite out of reach."""
-    down = np.array([direction for _, direction in given.directions])
+    down = np.array([direction for _, direction in user_names.directions])
     own = [hull.normals[face.triangles] if face.kind == "rolling" else face.normal[None] for face in faces]
     nearest = angle(down[:, None], np.concatenate(own)[None]).min(axis=1)
     within = faces[0].stable & (nearest <= NAMING_REACH[faces[0].kind])
     return np.where(within, nearest, np.inf)
 
 
-def _match_names(apart):
+def _match_names(angles) -> dict[int, int]:
     """Class by name: the nearest two first, each once."""
     place: dict[int, int] = {}
-    for k, row in zip(*np.unravel_index(np.argsort(apart, axis=None, kind="stable"), apart.shape)):
-        if np.isfinite(apart[k, row]) and k not in place and row not in place.values():
+    for k, row in zip(*np.unravel_index(np.argsort(angles, axis=None, kind="stable"), angles.shape)):
+        if np.isfinite(angles[k, row]) and k not in place and row not in place.values():
             place[int(k)] = int(row)
     return place
 
 
-def _unmatched(given, apart, place, k):
+def _unmatched(user_names, angles, place, k) -> str:
     """What to say of a name that fits no aspect of its own."""
-    name, down = given.directions[k]
-    row = int(np.argmin(apart[k]))
-    if not np.isfinite(apart[k, row]):
-        return f"{given.source}: the part rests on no aspect {name!r} ({_direction_text(down)} down)"
-    other = next(given.names[m] for m, at in place.items() if at == row)
-    return f"{given.source}: {name!r} is one aspect with {other!r} and goes by that name"
+    name, down = user_names.directions[k]
+    row = int(np.argmin(angles[k]))
+    if not np.isfinite(angles[k, row]):
+        return f"{user_names.source}: the part rests on no aspect {name!r} ({_direction_text(down)} down)"
+    other = next(user_names.names[m] for m, at in place.items() if at == row)
+    return f"{user_names.source}: {name!r} is one aspect with {other!r} and goes by that name"
 
 
-def _refuse_doubtful(given, apart, place):
+def _refuse_doubtful(user_names, angles, place) -> None:
     """Refuse a name that is off its own aspect while another is within reach: either may be meant."""
     for k, row in place.items():
-        rest = np.delete(apart[k], row)
-        if apart[k, row] >= NAMING_TOLERANCE and np.isfinite(rest).any():
-            off = " and ".join(f"{np.degrees(one):.2g}" for one in (apart[k, row], rest.min()))
-            what = f"the direction of {given.names[k]!r} is {off} deg off two aspects of the part"
-            raise ConfigError(given.source, what, "write the direction of the one that is meant")
+        rest = np.delete(angles[k], row)
+        if angles[k, row] >= NAMING_TOLERANCE and np.isfinite(rest).any():
+            off = " and ".join(f"{np.degrees(off_by):.2g}" for off_by in (angles[k, row], rest.min()))
+            what = f"the direction of {user_names.names[k]!r} is {off} deg off two aspects of the part"
+            raise ConfigError(user_names.source, what, "write the direction of the one that is meant")
 
 
-def _direction_text(direction):
+def _direction_text(direction) -> str:
     return ", ".join(f"{x + 0.0:.3g}" for x in vectors.unit(np.asarray(direction)).round(4))
 
 
-def join_classes(faces, part, moments):
+def join_classes(faces, part, moments) -> NDArray[np.int64]:
     """Return labels of equal faces.
 
     Only rotations count: a feeder cannot reflect a part, so mirror images stay apart. The rotation must be
@@ -460,32 +463,32 @@ def join_classes(faces, part, moments):
     (N,) int [1]
         Class of each face, numbered in order of first appearance.
     """
-    middles, alike = np.array([face.middle for face in faces]), _are_equal(faces)
+    middles, equal = np.array([face.middle for face in faces]), _are_equal(faces)
     axes = np.array([face.axis for face in faces])
-    if alike.sum() == len(faces):
+    if equal.sum() == len(faces):
         return np.arange(len(faces))
-    carried = np.zeros_like(alike)
+    carried = np.zeros_like(equal)
     for rotation in symmetries(faces, part, moments):
         there = _are_parallel(vectors.product(axes, rotation.T), axes)
         carried |= there & _lie_on(vectors.product(middles, rotation.T), middles)
-    return component_of(np.argwhere(carried & alike), len(faces))
+    return component_of(np.argwhere(carried & equal), len(faces))
 
 
-def _lie_on(turned, middles):
+def _lie_on(turned, middles) -> NDArray[np.bool_]:
     """(N, N) bool: whether the mean normals of turned faces are those of others.
 
     Of a round side the lowest strip says nothing: it lies wherever the tessellation begins.
     """
-    apart = turned[:, None] - middles
-    return vectors.norm(apart) < 2.0 * np.sin(0.5 * SYMMETRY_ANGLE)
+    gaps = turned[:, None] - middles
+    return vectors.norm(gaps) < 2.0 * np.sin(0.5 * SYMMETRY_ANGLE)
 
 
-def _are_parallel(turned, axes):
+def _are_parallel(turned, axes) -> NDArray[np.bool_]:
     """(N, N) bool: whether turned axes are parallel to others; true where one has none."""
     return ~(np.abs(vectors.product(turned, axes.T)) < np.cos(SYMMETRY_ANGLE))
 
 
-def symmetries(faces, part, moments):
+def symmetries(faces, part, moments) -> NDArray[np.float64]:
     """Return rotations that leave the solid as it is, the identity left out.
 
     Source: own; docs/resting.md, "Exact tumbling".
@@ -504,15 +507,15 @@ def symmetries(faces, part, moments):
         Enough of them to carry every face onto all its equals.
     """
     tolerance = moments.error + 2.0 * max(face.roughness for face in faces) / moments.size
-    found = _by_landmarks(faces)
-    if found is None:
+    rotations = _by_landmarks(faces)
+    if rotations is None:
         flats = [face for face in faces if face.kind == "flat"]
-        found = _half_turns((flats or faces)[0].normal, moments)
-    found = np.concatenate([found, _principal(part)])
-    return found[moments.mismatch(found) < tolerance]
+        rotations = _half_turns((flats or faces)[0].normal, moments)
+    rotations = np.concatenate([rotations, _principal(part)])
+    return rotations[moments.mismatch(rotations) < tolerance]
 
 
-def body_frame(part, moments):
+def body_frame(part, moments) -> NDArray[np.float64]:
     """Return axes fixed in the part: principal axes of inertia, pointed by the solid's third moments.
 
     Source: the eigenvectors of the inertia matrix; own: their signs.
@@ -539,17 +542,17 @@ def body_frame(part, moments):
     return axes
 
 
-def _are_equal(faces):
+def _are_equal(faces) -> NDArray[np.bool_]:
     """(N, N) bool: of one kind and of one height, as far as the file's noise lets us tell."""
     heights = np.array([face.height for face in faces])
     kinds = np.array([face.kind for face in faces])
     noise = 2.0 * max(face.roughness for face in faces)
-    apart = np.abs(heights[:, None] - heights)
-    near = apart < SYMMETRY_HEIGHT_SHARE * np.minimum(heights[:, None], heights) + noise
+    gaps = np.abs(heights[:, None] - heights)
+    near = gaps < SYMMETRY_HEIGHT_SHARE * np.minimum(heights[:, None], heights) + noise
     return near & (kinds[:, None] == kinds)
 
 
-def _by_landmarks(faces):
+def _by_landmarks(faces) -> NDArray[np.float64] | None:
     """Rotations that carry one pair of unlike directions onto another; None where all are parallel."""
     normals = np.array([face.normal for face in faces])
     heights = np.array([face.height for face in faces])
@@ -563,22 +566,22 @@ def _by_landmarks(faces):
     return None
 
 
-def _carrying(normals, a, b, a_images, b_images):
+def _carrying(normals, a, b, a_images, b_images) -> NDArray[np.float64]:
     """(N, 3, 3) rotations taking normals a, b to every pair of images that keeps their angle."""
     c, d = (images.ravel() for images in np.meshgrid(a_images, b_images, indexing="ij"))
     between = angle(normals[a], normals[b])
-    kept = np.abs(angle(normals[c], normals[d]) - between) < SYMMETRY_ANGLE
-    kept = np.flatnonzero(kept & ((c != a) | (d != b)))[:MAX_ROTATIONS]
-    ends = _frames(normals[c[kept]], normals[d[kept]])
+    pairs = np.abs(angle(normals[c], normals[d]) - between) < SYMMETRY_ANGLE
+    pairs = np.flatnonzero(pairs & ((c != a) | (d != b)))[:MAX_ROTATIONS]
+    ends = _frames(normals[c[pairs]], normals[d[pairs]])
     return vectors.product(ends, _frames(normals[a], normals[b]).T)
 
 
-def _half_turns(axis, moments):
+def _half_turns(axis, moments) -> NDArray[np.float64]:
     """Half turns about axes across ``axis``: the likeliest, where the solid changes least."""
     u = vectors.unit(vectors.cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
     v = vectors.cross(axis, u)
 
-    def turns(phases):
+    def turns(phases) -> NDArray[np.float64]:
         across = np.cos(phases)[:, None] * u + np.sin(phases)[:, None] * v
         return 2.0 * across[:, :, None] * across[:, None, :] - np.eye(3)
 
@@ -591,13 +594,13 @@ def _half_turns(axis, moments):
     return np.concatenate([across, along[None], vectors.product(across, along)])
 
 
-def _principal(part):
+def _principal(part) -> NDArray[np.float64]:
     """Half turns about the principal axes: all there are where the principal moments differ."""
     axes = vectors.eigen(part.inertia)[1].T
     return 2.0 * axes[:, :, None] * axes[:, None, :] - np.eye(3)
 
 
-def _frames(first, second):
+def _frames(first, second) -> NDArray[np.float64]:
     """(..., 3, 3) right-handed axes as columns: along first (..., 3), and in the plane of both."""
     z = first
     y = vectors.unit(vectors.cross(first, second))
@@ -631,7 +634,7 @@ def shallow_facets(hull: Hull, basins: Landscape, faces: list[Face]) -> ShallowF
         None of a curved side that rolls: its facets are those of the tessellation.
     """
     bends = angle(*(hull.normals[basins.pairs[:, k]] for k in (0, 1)))
-    side = component_of(basins.pairs[bends < SMOOTH], len(hull.triangles))
+    side = component_of(basins.pairs[bends < SMOOTH_ANGLE], len(hull.triangles))
     free = np.ones(len(hull.triangles), dtype=bool)
     for face in faces:
         free[face.triangles] = False
@@ -646,9 +649,9 @@ def shallow_facets(hull: Hull, basins: Landscape, faces: list[Face]) -> ShallowF
     bounds = np.searchsorted(plane[order], [candidates, candidates + 1])
     facets = [order[start:end] for start, end in bounds.T]
     rows = [_described(hull, facet) for facet in facets]
-    kept = [row for row in rows if row[4] > MIN_INSIDE_SHARE * hull.radius]
-    kept = sorted(kept, key=lambda row: -row[4])[:MAX_SHALLOW]
-    normals, *columns = zip(*kept) if kept else (np.empty((0, 3)), *[np.empty(0)] * 4)
+    largest = [row for row in rows if row[4] > MIN_INSIDE_SHARE * hull.radius]
+    largest = sorted(largest, key=lambda row: -row[4])[:MAX_SHALLOW]
+    normals, *columns = zip(*largest) if largest else (np.empty((0, 3)), *[np.empty(0)] * 4)
     return ShallowFacets(np.array(normals), *(np.array(column) for column in columns))
 
 
@@ -738,7 +741,7 @@ def shallow_remark(
     )
 
 
-def _described(hull, facet):
+def _described(hull, facet) -> tuple[NDArray[np.float64], float, float, float, float]:
     """Normal, height, area, solid angle of the triangles of one plane; how far the foot is inside it."""
     areas, corners = hull.areas[facet], hull.triangles[facet]
     normal = vectors.unit(np.einsum("t,tx->x", areas, hull.normals[facet]))

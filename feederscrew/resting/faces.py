@@ -1,29 +1,40 @@
 """Hull triangles gathered into faces a part can rest on: flats, and curved sides it rolls on."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.geometry import groups, vectors
 from feederscrew.geometry.graphs import component_of, components
 from feederscrew.resting import flats
-from feederscrew.resting.basins.landscape import GENTLE, RIPPLE_OF_RADIUS, SMOOTH, angle, edges, gentle
+from feederscrew.resting.basins.landscape import (
+    GENTLE_COSINE,
+    RIPPLE_OF_RADIUS,
+    SMOOTH_ANGLE,
+    angle,
+    edges,
+    gentle,
+)
 
-COARSE = 1.0 / np.cos(0.5 * SMOOTH) - 1.0  # the ripple a smooth edge leaves at most, as a share of the height
+MAX_RIPPLE_SHARE = (
+    1.0 / np.cos(0.5 * SMOOTH_ANGLE) - 1.0
+)  # the ripple a smooth edge leaves at most, as a share of the height
 CURVED = np.sinc(np.radians(15.0) / np.pi)  # mean resultant of normals over an arc of 30 deg; below: no plane
 EQUAL = 5e-3  # of the height: strips of one curve about the centre of mass are as high as each other
-STRAIGHT = (
+MAX_CONE_VARIANCE = (
     1e-2  # of their variance along the curve: how far normals of a rocker may leave their plane or cone
 )
 DOUBLE = 2e-3  # of the same: normals off their plane or cone by more belong to a side curved both ways
 FEWEST_OF_A_BALL = 24  # facets that show a side curved both ways: a ball, or a cap of one
-ALIKE = np.radians(1.0)  # strips that lean by less apart are of one cone
+CONE_LEAN_TOLERANCE = np.radians(1.0)  # strips that lean by less apart are of one cone
 SLIVERS = 1e-2  # of their area: what a file's noise leaves between them
-BEND = 2.5  # strips, by their effective number: two planes that meet are a bend and no curve
-FEWEST = 6  # strips that show a curve whose middle is not the centre of mass
+MAX_BEND_STRIPS = 2.5  # strips, by their effective number: two planes that meet are a bend and no curve
+MIN_ROCKER_STRIPS = 6  # strips that show a curve whose middle is not the centre of mass
 SMALLEST_NORMAL = np.finfo(float).tiny
 MOST_PAIRED = 1000  # directions of which every pair is looked at
-ARC = np.radians(60.0)  # coarse strips that turn less may be meant as flats
+MIN_CURVE_ARC = np.radians(60.0)  # coarse strips that turn less may be meant as flats
 FLATNESS = 1e-2  # of the radius: how deep a corner may lie under the plane of its face
 TIGHTEST_FIRST = np.array([1e-6, 1e-5, 1e-4, 1e-3, FLATNESS])
 ON_A_LINE = 1e-6  # of the contact's size: a corner off the line between its neighbours by less is none
@@ -48,7 +59,7 @@ class Face:
     roughness: float  # [m] mean depth of the contact's corners off its plane: the file's noise
 
 
-def stable_faces(hull, basins):
+def stable_faces(hull, basins) -> list[Face]:
     """Faces the part rests on.
 
     Parameters
@@ -70,7 +81,7 @@ def stable_faces(hull, basins):
     return _described(hull, strips, lowest, stable=True)
 
 
-def unstable_faces(hull, taken):
+def unstable_faces(hull, taken) -> list[Face]:
     """Faces made of the triangles no stable face has taken: the part rolls off them.
 
     Parameters
@@ -89,7 +100,7 @@ def unstable_faces(hull, taken):
     pairs = pairs[free[pairs].all(axis=1)]
     bend = angle(*(hull.normals[pairs[:, k]] for k in (0, 1)))
     step = np.abs(np.diff(hull.heights[pairs], axis=1))[:, 0]
-    joined = (bend < np.radians(0.2)) | ((bend < SMOOTH) & (step < RIPPLE_OF_RADIUS * hull.radius))
+    joined = (bend < np.radians(0.2)) | ((bend < SMOOTH_ANGLE) & (step < RIPPLE_OF_RADIUS * hull.radius))
     labels = component_of(pairs[joined], len(free))
     order = np.flatnonzero(free)[np.argsort(labels[free], kind="stable")]
     parts = np.split(order, np.flatnonzero(np.diff(labels[order])) + 1) if len(order) else []
@@ -97,18 +108,23 @@ def unstable_faces(hull, taken):
     return _described(hull, parts, largest, stable=False)
 
 
-def _coarse_curves(hull, basins, members):
+def _coarse_curves(hull, basins, members) -> NDArray[np.int64]:
     """(B,) label of each sink; strips of one coarsely tessellated curve share it."""
     place, sinks = np.searchsorted(basins.sinks, basins.ripples), basins.ripples
     levels = hull.heights[sinks]
     step = np.abs(np.diff(levels, axis=1))[:, 0] / levels.max(axis=1, initial=0.0)  # whichever comes first
-    meant = flats.meant(hull, basins)[place].any(axis=1)
-    strips = ~meant & (basins.rises < COARSE) & (basins.bends < SMOOTH) & (step < EQUAL + basins.bends**2)
-    level = ~meant & (step < EQUAL)
+    flat_pairs = flats.intended_flats(hull, basins)[place].any(axis=1)
+    strips = (
+        ~flat_pairs
+        & (basins.rises < MAX_RIPPLE_SHARE)
+        & (basins.bends < SMOOTH_ANGLE)
+        & (step < EQUAL + basins.bends**2)
+    )
+    level = ~flat_pairs & (step < EQUAL)
     labels = component_of(place[level & strips], len(basins.sinks))
     for label in np.flatnonzero(np.bincount(labels) > 1):
         group = np.flatnonzero(labels == label)
-        if _spread(hull.normals[basins.sinks[group]]) < ARC:
+        if _spread(hull.normals[basins.sinks[group]]) < MIN_CURVE_ARC:
             labels[group] = labels.max() + 1 + np.arange(len(group))
     around = component_of(place[strips], len(basins.sinks))
     several = np.flatnonzero(np.bincount(around) > 1)
@@ -120,27 +136,33 @@ def _coarse_curves(hull, basins, members):
     return labels
 
 
-def _one_round(hull, sinks, members, sides):
+def _one_round(hull, sinks, members, sides) -> bool:
     """Whether the sinks lie on one round side: on many of its strips, or on a few of a rocker's."""
-    if len(sinks) >= FEWEST and _spread(hull.normals[sinks]) >= ARC and _round(hull, sinks):
+    if (
+        len(sinks) >= MIN_ROCKER_STRIPS
+        and _spread(hull.normals[sinks]) >= MIN_CURVE_ARC
+        and _round(hull, sinks)
+    ):
         return True
-    lowest, every = sinks[np.argmin(hull.heights[sinks])], np.concatenate(members)
-    side = every[sides[every] == sides[lowest]]
+    lowest, triangles = sinks[np.argmin(hull.heights[sinks])], np.concatenate(members)
+    side = triangles[sides[triangles] == sides[lowest]]
     return bool(_may_roll(hull, [side])[0]) and _rocks(hull, side, lowest)
 
 
-def _strips(hull, basins, group, sides):
+def _strips(hull, basins, group, sides) -> tuple[NDArray[np.int64], list[NDArray[np.int64]]]:
     """(F,) lowest sink and the triangles of each face, from the (B,) face of every sink."""
     count, sinks = group.max() + 1, basins.sinks
     at = np.searchsorted(sinks, basins.basins)
-    every = np.lexsort((at, group[at]))
-    owners, heights = group[at][every], hull.heights
+    triangles = np.lexsort((at, group[at]))
+    owners, heights = group[at][triangles], hull.heights
     lowest = sinks[np.lexsort((heights[sinks], group))[groups.starts(np.sort(group), count)]]
-    level = heights[every] <= heights[basins.basins[every]] * (1.0 + 1e-9) + FLATNESS * hull.radius / 2
-    beside = sides[every] == sides[lowest][owners]
-    strips = groups.split(every[level], owners[level], count)
-    aside = groups.split(every[beside], owners[beside], count)
-    rocking, own = _may_roll(hull, aside), groups.split(every, owners, count)
+    level = (
+        heights[triangles] <= heights[basins.basins[triangles]] * (1.0 + 1e-9) + FLATNESS * hull.radius / 2
+    )
+    on_side = sides[triangles] == sides[lowest][owners]
+    strips = groups.split(triangles[level], owners[level], count)
+    aside = groups.split(triangles[on_side], owners[on_side], count)
+    rocking, own = _may_roll(hull, aside), groups.split(triangles, owners, count)
     for k in np.flatnonzero(rocking):
         rocking[k] = _rocks(hull, aside[k], lowest[k])
         strips[k] = aside[k] if rocking[k] else strips[k]
@@ -151,36 +173,36 @@ def _strips(hull, basins, group, sides):
     return lowest, strips
 
 
-def _may_roll(hull, triangles):
+def _may_roll(hull, triangles) -> NDArray[np.bool_]:
     """(F,) whether there are enough triangles, in each of a list of F arrays, and so unlike, for a curve."""
-    return _curved(hull, triangles) & (np.array([len(each) for each in triangles]) >= FEWEST)
+    return _curved(hull, triangles) & (np.array([len(each) for each in triangles]) >= MIN_ROCKER_STRIPS)
 
 
-def _smooth_sides(hull, basins, group):
+def _smooth_sides(hull, basins, group) -> NDArray[np.int64]:
     """(T,) label of each triangle; gentle bends within its group lead to all others of the same.
 
     Where no group has the triangles of a curved side, each has a label of its own.
     """
     owner = group[np.searchsorted(basins.sinks, basins.basins)]
-    if np.bincount(owner).max() < FEWEST:
+    if np.bincount(owner).max() < MIN_ROCKER_STRIPS:
         return np.arange(len(owner))
     first, second = basins.pairs.T
     joined = (owner[first] == owner[second]) & gentle(hull.normals, basins.pairs)
     return np.zeros_like(owner) if joined.all() else components(first[joined], second[joined], len(owner))[1]
 
 
-def _rocks(hull, side, sink):
+def _rocks(hull, side, sink) -> bool:
     """Whether a side that may roll is of strips of a curve, whose axis may lie off the centre of mass."""
     normals, share = hull.normals[side], hull.areas[side] / hull.areas[side].sum()
     leans = angle(normals, hull.normals[sink])
-    if share[leans < 0.5 * SMOOTH].sum() > 0.5 or _ring(leans, share):
+    if share[leans < 0.5 * SMOOTH_ANGLE].sum() > 0.5 or _ring(leans, share):
         return False
     across = vectors.eigen(vectors.covariance(normals, share))[0]
-    fewest = FEWEST if across[0] < STRAIGHT * across[1] else FEWEST_OF_A_BALL
+    fewest = MIN_ROCKER_STRIPS if across[0] < MAX_CONE_VARIANCE * across[1] else FEWEST_OF_A_BALL
     return _even(normals, share) > fewest - 0.5 and _round(hull, side)
 
 
-def _even(normals, share):
+def _even(normals, share) -> float:
     """Effective number of strips, of (N, 3) normals and (N,) weights: 1 over the sum of squared shares."""
     places = vectors.product(np.round(100.0 * normals), np.array([1.0, 1e3, 1e6]))  # one number a direction
     strips = np.unique(places, return_inverse=True)[1]
@@ -188,14 +210,16 @@ def _even(normals, share):
     return weights.sum() ** 2 / (weights**2).sum()
 
 
-def _ring(leans, share):
+def _ring(leans, share) -> bool:
     """Whether the strips of a curved side that lean do so alike: a cone about a flat touches a ball, too."""
-    leaning = leans > ALIKE
+    leaning = leans > CONE_LEAN_TOLERANCE
     lean = np.average(leans[leaning], weights=share[leaning])
-    return bool(share[np.abs(leans - lean) < ALIKE].sum() > (1.0 - SLIVERS) * share[leaning].sum())
+    return bool(
+        share[np.abs(leans - lean) < CONE_LEAN_TOLERANCE].sum() > (1.0 - SLIVERS) * share[leaning].sum()
+    )
 
 
-def _round(hull, triangles):
+def _round(hull, triangles) -> bool:
     """Whether triangles touch one cylinder, cone or ball, wherever its middle is."""
     weights, height = np.sqrt(hull.areas[triangles]), hull.heights[triangles]
     around = np.column_stack([np.ones(len(triangles)), hull.normals[triangles]])
@@ -203,7 +227,7 @@ def _round(hull, triangles):
     return bool(vectors.length(off) < EQUAL * height.mean() * vectors.length(weights))
 
 
-def _described(hull, triangles, lowest, stable):
+def _described(hull, triangles, lowest, stable) -> list[Face]:
     """Records of the faces made of triangles, a list of F arrays, from the (F,) lowest of each."""
     if not len(triangles):
         return []
@@ -214,9 +238,11 @@ def _described(hull, triangles, lowest, stable):
     standing = groups.joined(feet)
     normals, heights, roughness = _seats(hull, *standing, count)
     polygons = contact_outlines(hull.vertices, *_corners(hull, *standing), normals)
-    every, owners = groups.joined(triangles)
-    middles = groups.sums(hull.areas[every] * np.ascontiguousarray(hull.normals.T)[:, every], owners, count)
-    areas, angles = (groups.sums(of[every], owners, count) for of in (hull.areas, hull.solid_angles))
+    members, owners = groups.joined(triangles)
+    middles = groups.sums(
+        hull.areas[members] * np.ascontiguousarray(hull.normals.T)[:, members], owners, count
+    )
+    areas, angles = (groups.sums(of[members], owners, count) for of in (hull.areas, hull.solid_angles))
     axes = np.full((count, 3), np.nan)
     for k in some:
         axes[k] = _axis(hull.normals[triangles[k]], hull.areas[triangles[k]], normals[k])
@@ -239,7 +265,9 @@ def _described(hull, triangles, lowest, stable):
     ]
 
 
-def _seats(hull, triangles, owners, count):
+def _seats(
+    hull, triangles, owners, count
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """(F, 3) normals, (F,) [m] heights and roughness of the triangles that F faces stand on."""
     weights = np.maximum(hull.areas[triangles], SMALLEST_NORMAL)
     whole = groups.sums(weights, owners, count)
@@ -261,7 +289,7 @@ def _corners(hull, triangles, owners) -> tuple[np.ndarray, np.ndarray]:
     return corners, owners
 
 
-def _axis(normals, weights, lowest):
+def _axis(normals, weights, lowest) -> NDArray[np.float64]:
     """Axis of the cylinder or cone with these normals: all make one angle with it; NaN for a ball.
 
     A cap of a ball has normals in two dimensions about the ``lowest`` one, which is no axis to roll about.
@@ -276,30 +304,30 @@ def _axis(normals, weights, lowest):
     return axis * np.sign(axis[np.argmax(np.abs(axis))])
 
 
-def _curved(hull, triangles):
+def _curved(hull, triangles) -> NDArray[np.bool_]:
     """(F,) whether the triangles of each face, a list of F arrays, are strips of a curve and not a plane."""
     if not len(triangles):
         return np.empty(0, dtype=bool)
-    (every, owners), count = groups.joined(triangles), len(triangles)
-    areas = hull.areas[every]
-    mean = groups.sums(areas * np.ascontiguousarray(hull.normals.T)[:, every], owners, count)
+    (members, owners), count = groups.joined(triangles), len(triangles)
+    areas = hull.areas[members]
+    mean = groups.sums(areas * np.ascontiguousarray(hull.normals.T)[:, members], owners, count)
     several = np.bincount(owners, minlength=count) > 2
     bent = several & (vectors.norm(mean) < CURVED * groups.sums(areas, owners, count))
     for k in np.flatnonzero(bent):
-        bent[k] = _even(hull.normals[triangles[k]], hull.areas[triangles[k]]) > BEND
+        bent[k] = _even(hull.normals[triangles[k]], hull.areas[triangles[k]]) > MAX_BEND_STRIPS
     return bent
 
 
-def _spread(normals):
+def _spread(normals) -> float:
     """Angle across a set of directions [rad]: between the two furthest apart, whatever their order."""
     if len(normals) > MOST_PAIRED:  # from the one furthest from their mean
         end = normals[np.argmax(angle(normals, normals.mean(axis=0)))]
         return angle(normals, end).max()
-    one, other = np.divmod(np.argmin(vectors.product(normals, normals.T)), len(normals))
-    return angle(normals[one], normals[other])
+    first, second = np.divmod(np.argmin(vectors.product(normals, normals.T)), len(normals))
+    return angle(normals[first], normals[second])
 
 
-def planes(hull, sinks, members, of_curves=False):
+def planes(hull, sinks, members, of_curves=False) -> list[Any]:
     """Return the members in the plane about each sink, and with them what lies in the sink's own.
 
     Parameters
@@ -326,18 +354,18 @@ def planes(hull, sinks, members, of_curves=False):
     if not len(sinks):
         return []
     fewest = [1 if of_curves and _is_fan(hull, each) else 2 for each in members]  # triangles of a strip
-    every, owners = groups.joined([np.sort(each) for each in members])
-    depth = _plane_depth(hull, sinks, every, owners)
-    lean = vectors.dot(hull.normals[every], hull.normals[sinks][owners])
-    near = (depth < FLATNESS * hull.radius) & (lean > GENTLE)
-    every, owners, tight = every[near], owners[near], depth[near] < TIGHTEST_FIRST[0] * hull.radius
+    triangles, owners = groups.joined([np.sort(each) for each in members])
+    depth = _plane_depth(hull, sinks, triangles, owners)
+    lean = vectors.dot(hull.normals[triangles], hull.normals[sinks][owners])
+    near = (depth < FLATNESS * hull.radius) & (lean > GENTLE_COSINE)
+    triangles, owners, tight = triangles[near], owners[near], depth[near] < TIGHTEST_FIRST[0] * hull.radius
     if not tight.all():
-        kept = tight | _in_the_tightest(hull, every, owners, tight, np.array(fewest), of_curves)
-        every, owners = every[kept], owners[kept]
-    return groups.split(every, owners, len(sinks))
+        in_plane = tight | _in_the_tightest(hull, triangles, owners, tight, np.array(fewest), of_curves)
+        triangles, owners = triangles[in_plane], owners[in_plane]
+    return groups.split(triangles, owners, len(sinks))
 
 
-def _in_the_tightest(hull, members, owners, tight, fewest, of_curves):
+def _in_the_tightest(hull, members, owners, tight, fewest, of_curves) -> NDArray[np.bool_]:
     """(N,) which members lie in the tightest plane that holds enough, about the largest triangle of each."""
     first, areas = groups.starts(owners, len(fewest)), hull.areas[members]
     own = np.where(tight, areas, -1.0) if of_curves else areas
@@ -351,16 +379,16 @@ def _in_the_tightest(hull, members, owners, tight, fewest, of_curves):
         enough |= count >= fewest
     good = enough[:-1] & (held[1:] <= 1.02 * held[:-1])
     chosen = np.where(good.any(axis=0), good.argmax(axis=0), len(TIGHTEST_FIRST))
-    every = np.ones((1, len(members)), dtype=bool)
-    return np.concatenate([inside, every])[chosen[owners], np.arange(len(members))]
+    all_members = np.ones((1, len(members)), dtype=bool)
+    return np.concatenate([inside, all_members])[chosen[owners], np.arange(len(members))]
 
 
-def _is_fan(hull, members):
+def _is_fan(hull, members) -> bool:
     """Whether most triangles meet at one corner, as the strips of a cone do at its tip."""
     return np.bincount(hull.triangles[members].ravel()).max() > 0.5 * len(members)
 
 
-def _plane_depth(hull, planes, members, owners):
+def _plane_depth(hull, planes, members, owners) -> NDArray[np.float64]:
     """(N,) [m] how far the corners of each member lie off the plane of its owner's triangle, of (F,)."""
     corners = hull.triangles[members].T
     if len(planes) == 1 and corners.size > len(hull.vertices):  # sooner of every corner of the hull once
@@ -371,7 +399,7 @@ def _plane_depth(hull, planes, members, owners):
     return np.maximum(np.maximum(a, b), c)
 
 
-def contact_outlines(vertices, corners, owners, normals):
+def contact_outlines(vertices, corners, owners, normals) -> list[NDArray[np.float64]]:
     """Return the convex outlines of points about planes.
 
     Source: own; docs/resting.md, "Barriers and the tipping graph".
@@ -392,7 +420,7 @@ def contact_outlines(vertices, corners, owners, normals):
     """
     points, count = vertices[corners], len(normals)
     x, y = (vectors.dot(points, axes[owners]) for axes in _plane_axes(normals))
-    u, v = (seen - (groups.sums(seen, owners, count) / np.bincount(owners))[owners] for seen in (x, y))
+    u, v = (along - (groups.sums(along, owners, count) / np.bincount(owners))[owners] for along in (x, y))
     around = np.lexsort((np.arctan2(v, u), owners))
     convex = _turn_at_every_corner(x[around], y[around], owners, count)
     turned, as_given = (groups.split(of, owners, count) for of in (points[around], points))
@@ -402,7 +430,7 @@ def contact_outlines(vertices, corners, owners, normals):
     ]
 
 
-def _of_extreme_points(points, normal):
+def _of_extreme_points(points, normal) -> NDArray[np.float64]:
     """The same where some of the points lie within the outline or straight between others."""
     from scipy.spatial import ConvexHull, QhullError
 
@@ -414,14 +442,14 @@ def _of_extreme_points(points, normal):
     return _without_straight_corners(corners)
 
 
-def _plane_axes(normals):
+def _plane_axes(normals) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Unit vectors (..., 3) and (..., 3) in planes of normals (..., 3), the three right-handed."""
     first = np.eye(3)[np.abs(normals).argmin(axis=-1)]
     u = vectors.unit(vectors.cross(normals, first))
     return u, vectors.cross(normals, u)
 
 
-def _turn_at_every_corner(x, y, owners, count):
+def _turn_at_every_corner(x, y, owners, count) -> NDArray[np.bool_]:
     """(F,) whether polygons of corners (N,) and (N,) turn left at every one, none of them on a line."""
     first = groups.starts(owners, count)
     before = np.arange(len(x)) - 1
@@ -433,7 +461,7 @@ def _turn_at_every_corner(x, y, owners, count):
     return np.logical_and.reduceat(off > ON_A_LINE * np.hypot(width, depth)[owners], first)
 
 
-def _without_straight_corners(corners):
+def _without_straight_corners(corners) -> NDArray[np.float64]:
     """Corners (K, 3) of a polygon without those on a line between their neighbours.
 
     A finer triangulation of the same face brings such corners, and rules that average over the edges of a
@@ -451,7 +479,7 @@ def _without_straight_corners(corners):
     return corners
 
 
-def rolling_height(polygon, axis, flat):
+def rolling_height(polygon, axis, flat) -> float:
     """Return the height of the centre of mass over the line on which a round side rolls.
 
     Source: docs/resting.md, "Exact tumbling".
@@ -483,6 +511,6 @@ def rolling_height(polygon, axis, flat):
     return float((first * high - last * low) / np.hypot(high - low, last - first))
 
 
-def _on_one_circle(radii, near):
+def _on_one_circle(radii, near) -> bool:
     """Whether corners at (K,) radii show a circle: two and more of one radius, or a point on the axis."""
     return np.ptp(radii) <= near and (len(radii) > 1 or radii[0] <= near)

@@ -7,19 +7,21 @@ from feederscrew.resting.faces import EQUAL
 
 FLAT, CYLINDER, CONE = "flat", "cylinder", "cone"
 BALL, OFF_CENTRE, WITH_A_FLAT = "ball", "off-centre ball", "ball with a flat"
-ROLLS = "on side (rolls)"
+ROLLING_POSTURE = "on side (rolls)"
 SAME_SIZE = 0.02  # share by which two sizes of a part may differ and count as one, for a posture's words
 OPPOSITE = -0.9999  # cosine between the normals of two faces that lie back to back
-LEVEL = 1e-3  # [1] slope of an axis that counts as level: a file's noise on a short cylinder
-ALONE = "the part is a ball: it rests on no aspect, its one class rolls in every direction"
-CENTRED = "a rolling class is the side of a ball about the centre of mass: it rolls in every direction"
-ROCKS = (
+LEVEL_SLOPE = 1e-3  # [1] slope of an axis that counts as level: a file's noise on a short cylinder
+BALL_REMARK = "the part is a ball: it rests on no aspect, its one class rolls in every direction"
+CENTRED_BALL_REMARK = (
+    "a rolling class is the side of a ball about the centre of mass: it rolls in every direction"
+)
+ROCKING_REMARK = (
     "a rolling class is the side of {}, whose middle is not the centre of mass: it rests on one point of it"
     " and rocks in every direction"
 )
 
 
-def forms(groups, hull):
+def forms(groups, hull) -> list[str]:
     """Return what each class is by its form.
 
     Parameters
@@ -39,17 +41,17 @@ def forms(groups, hull):
     return [_form(group[0], hull, flats) for group in groups]
 
 
-def _form(face, hull, flats):
+def _form(face, hull, flats) -> str:
     if face.kind == FLAT:
         return FLAT
     if np.isfinite(face.axis).all():
-        return CYLINDER if abs(vectors.dot(face.axis, face.normal)) < LEVEL else CONE
+        return CYLINDER if abs(vectors.dot(face.axis, face.normal)) < LEVEL_SLOPE else CONE
     if np.ptp(hull.heights[face.triangles]) < EQUAL * face.height:
         return BALL
     return WITH_A_FLAT if flats else OFF_CENTRE
 
 
-def postures(normals, contact_areas, kinds, hull):
+def postures(normals, contact_areas, kinds, hull) -> list[str]:
     """Return in words how a part lies on each class: its height there beside its least and greatest height.
 
     Parameters
@@ -70,12 +72,12 @@ def postures(normals, contact_areas, kinds, hull):
     reach = (hull.vertices[:, None, :] * normals[None, :, :]).sum(axis=-1)  # (V, A)
     sizes = np.ptp(reach, axis=0)
     return [
-        _posture(row, sizes, contact_areas, normals, hull.radius) if kinds[row] == FLAT else ROLLS
+        _posture(row, sizes, contact_areas, normals, hull.radius) if kinds[row] == FLAT else ROLLING_POSTURE
         for row in range(len(normals))
     ]
 
 
-def _posture(row, sizes, areas, normals, radius):
+def _posture(row, sizes, areas, normals, radius) -> str:
     """The words of one flat class."""
     if np.ptp(sizes) <= SAME_SIZE * sizes.max():
         words = "flat" if sizes[row] < radius else "on a face"
@@ -92,10 +94,12 @@ def _posture(row, sizes, areas, normals, radius):
     return words
 
 
-def said(found):
+def form_remarks(forms_of_classes) -> tuple[str, ...]:
     """Say of forms, (A,) str, what a user must know, a sentence each."""
-    if list(found) == [BALL]:
-        return (ALONE,)
-    rocks = dict.fromkeys(form for form in found if form in (OFF_CENTRE, WITH_A_FLAT))
-    listed = (CENTRED,) if BALL in found else ()
-    return listed + tuple(ROCKS.format(f"{'an' if form[0] == 'o' else 'a'} {form}") for form in rocks)
+    if list(forms_of_classes) == [BALL]:
+        return (BALL_REMARK,)
+    rocks = dict.fromkeys(form for form in forms_of_classes if form in (OFF_CENTRE, WITH_A_FLAT))
+    listed = (CENTRED_BALL_REMARK,) if BALL in forms_of_classes else ()
+    return listed + tuple(
+        ROCKING_REMARK.format(f"{'an' if form[0] == 'o' else 'a'} {form}") for form in rocks
+    )

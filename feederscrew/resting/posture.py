@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.errors import ArgumentError
@@ -16,7 +17,7 @@ from feederscrew.records import Shown
 
 COINCIDE = 1e-5  # of the part's size: a contact centroid nearer to the foot gives no direction
 TOUCHING = 2e-4  # of the part's size: what is lower than that over the floor touches it
-ALIKE = 1e-6  # of the part's size: sides whose lengths differ by less are equally long
+SIDE_TOLERANCE = 1e-6  # of the part's size: sides whose lengths differ by less are equally long
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +45,7 @@ class Posture(Shown):
     form: str = "flat"  # 'cylinder', 'cone', 'ball' and so on, as ``Aspects.forms``
 
     @property
-    def surface(self):
+    def surface(self) -> NDArray[np.float64]:
         """Every corner (V, 3) of the part's mesh as it stands [m], z from the floor."""
         solid = cast(Part, self.solid)
         body = solid.vertices - solid.centre_of_mass
@@ -56,7 +57,7 @@ class Posture(Shown):
         return cast(Part, self.solid).faces
 
     @cached_property
-    def on_floor(self):
+    def on_floor(self) -> NDArray[np.bool_]:
         """Which corners (V,) of its mesh touch the floor; none where those that are low do not carry it.
 
         So it is where the contact polygon is of facets not quite in one plane, or the file has noise: the
@@ -67,7 +68,7 @@ class Posture(Shown):
         return low & surrounds(points[low, :2])
 
     @cached_property
-    def feet(self):
+    def feet(self) -> NDArray[np.float64]:
         """Edges (E, 2, 2) of the mesh that lie on the floor [m]; single corners are edges of no length.
 
         Of a part that rolls, of a card and where no corners carry it the sides of the contact polygon.
@@ -77,17 +78,17 @@ class Posture(Shown):
         return self.surface[_borders(self.solid.faces, self.on_floor), :2]
 
     @property
-    def turning_inertia(self):
+    def turning_inertia(self) -> float:
         """Moment of inertia about the vertical through the centre of mass [kg m2]."""
         return float(self.inertia[2, 2])
 
 
-def _borders(faces, low):
+def _borders(faces, low) -> NDArray[np.int64]:
     """Ends (E, 2) of the edges between low corners but for those within low facets; lone corners twice."""
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     lying = np.tile(low[faces].all(axis=1), 3)
-    kept = low[ends].all(axis=1)
-    ends, lying = np.sort(ends[kept], axis=1), lying[kept]
+    low_edges = low[ends].all(axis=1)
+    ends, lying = np.sort(ends[low_edges], axis=1), lying[low_edges]
     _, first, place = np.unique(ends[:, 0] * len(low) + ends[:, 1], return_index=True, return_inverse=True)
     edges = ends[first[np.bincount(place, lying) < 2.0]]
     alone = low.copy()
@@ -95,7 +96,7 @@ def _borders(faces, low):
     return np.concatenate([edges, np.repeat(np.flatnonzero(alone)[:, None], 2, axis=1)])
 
 
-def posture(part, aspects, name):
+def posture(part, aspects, name) -> Any:
     """Return the part standing on one of its aspects.
 
     Parameters
@@ -120,18 +121,18 @@ def posture(part, aspects, name):
     return _of_card(part, aspects, row) if part.vertices is None else _of_mesh(part, aspects, row)
 
 
-def _row(part, aspects, name):
+def _row(part, aspects, name) -> int:
     check.kind("aspect", name, str, "give the name of an aspect, 'A'")
     wanted = name.strip().casefold()
-    found = [row for row, known in enumerate(aspects.names) if known.casefold() == wanted]
-    if not found:
-        known = ", ".join(aspects.names)
+    rows = [row for row, own in enumerate(aspects.names) if own.casefold() == wanted]
+    if not rows:
+        names = ", ".join(aspects.names)
         where = f"aspect of {part.source}"
-        raise ArgumentError(where, f"there is no aspect {name[:20]!r}", f"choose one of {known}")
-    return found[0]
+        raise ArgumentError(where, f"there is no aspect {name[:20]!r}", f"choose one of {names}")
+    return rows[0]
 
 
-def _of_mesh(part, aspects, row):
+def _of_mesh(part, aspects, row) -> Posture:
     hull = convex_hull(part.vertices, part.centre_of_mass, part.source)
     upright = _upright(-aspects.normals[row])
     height = float(aspects.heights[row])
@@ -163,26 +164,26 @@ def _of_mesh(part, aspects, row):
     )
 
 
-def _upright(up):
+def _upright(up) -> NDArray[np.float64]:
     """Rows x, y, z of some axes with z along ``up``."""
-    beside = np.eye(3)[np.argmin(np.abs(up))]
-    x = vectors.unit(vectors.cross(beside, up))
+    across = np.eye(3)[np.argmin(np.abs(up))]
+    x = vectors.unit(vectors.cross(across, up))
     return np.array([x, vectors.cross(up, x), up])
 
 
-def _forward(contact, shape, corners, size):
+def _forward(contact, shape, corners, size) -> NDArray[np.float64]:
     """Unit vector of heading 0 in the floor."""
     towards = centroid(contact)
     if np.hypot(*towards) > COINCIDE * size:
         return towards / np.hypot(*towards)
     edges = sides(shape)
     lengths = np.hypot(*edges.T)
-    longest = edges[lengths >= lengths.max() - ALIKE * size]
+    longest = edges[lengths >= lengths.max() - SIDE_TOLERANCE * size]
     unit = longest / np.hypot(*longest.T)[:, None]
     return max(unit, key=lambda along: _lopsidedness(along, corners / size))
 
 
-def _lopsidedness(along, corners):
+def _lopsidedness(along, corners) -> tuple[float, ...]:
     """Odd moments of the corners about one direction: tells equal sides apart however the file is turned."""
     x, y = vectors.product(corners[:, :2], np.column_stack([along, (-along[1], along[0])])).T
     z = corners[:, 2]
@@ -197,14 +198,14 @@ def _lopsidedness(along, corners):
     return tuple(np.round(moments, 5) + 0.0)
 
 
-def _rolling_axis(axes, direction):
+def _rolling_axis(axes, direction) -> NDArray[np.float64] | None:
     if not np.isfinite(direction).all():
         return None
     flat = vectors.product(axes, direction)[:2]
     return check.frozen(flat / np.hypot(*flat))
 
 
-def _of_card(part, aspects, row):
+def _of_card(part, aspects, row) -> Posture:
     """What the card prints; NaN where it is silent."""
     floor = _analysis(part, "floor", aspects.names[row])
     track = _analysis(part, "track", aspects.names[row])
@@ -228,7 +229,7 @@ def _of_card(part, aspects, row):
     )
 
 
-def _analysis(part, block, name):
+def _analysis(part, block, name) -> dict[Any, Any]:
     """A card's data of the floor or the track, if they are of this aspect."""
-    shown = (part.printed or {}).get(block, {})
-    return dict(shown) if shown.get("aspect") == name else {}
+    printed = (part.printed or {}).get(block, {})
+    return dict(printed) if printed.get("aspect") == name else {}

@@ -158,7 +158,7 @@ def with_drops(found: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:
     """
     tally = test.result.tally
     said: tuple[str, ...] = ()
-    answer = recommended.dropped(tally, launch)
+    answer: recommended.Recommended | None = recommended.dropped(tally, launch)
     if test.result.drops.partial:
         said = (f"partial: stopped after {test.drops} drops",)
     if not tally.counts.any():

@@ -46,6 +46,6 @@ def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
     if not passed.by_device(table):
         measured = profiles.measured(table, str(counts), sha256, found.names)
         return CalibrateStudy(part, found, measured, tuple(fit_counts(part, found, measured)))
-    tested = passed.understood(table, str(counts), sha256)
+    tested = passed.device_counts(table, str(counts), sha256)
     flow, _ = passages.counted_ways(part, found, passages.bowl_of(tested)[1], tested)
     return CalibrateStudy(part, found, tested, (fit_passes(part, found, tested, flow),))

@@ -146,7 +146,7 @@ def compare(
     text, sha256 = count_rows.content(counts)
     table = count_rows.parse(text, str(counts))
     if passed.by_device(table):
-        tested = passed.understood(table, str(counts), sha256)
+        tested = passed.device_counts(table, str(counts), sha256)
         return feeding(part, tested, launch=launch, progress=progress, before=before)
     found, rules = _answers(part, table.head, launch, as_published)
     names = [rule.name for rule in rules]
@@ -214,7 +214,7 @@ def _studies(
     part = load(str(beside), names=names, **table.head.reading)
     inputs |= {path: sha256} | part.inputs
     if passed.by_device(table):
-        fed = feeding(part, passed.understood(table, path, sha256), launch=launch)
+        fed = feeding(part, passed.device_counts(table, path, sha256), launch=launch)
         inputs |= fed.inputs
         return [fed]
     aspects, rules = _answers(part, table.head, launch, as_published)

@@ -77,7 +77,7 @@ class FloorStudy(Shown):
 
         angle = span("beta_deg", 0.0, TOP_ANGLE, count, np.pi / 180.0)
         friction = span("friction", 0.0, TOP_FRICTION, count)
-        return evaluate(angle, friction, function, cells.REGIMES)
+        return evaluate(angle, friction, function, cells.FLOOR_REGIMES)
 
     def over_frequency_and_amplitude(self, count: int) -> Grid:
         """Compute the upper reversal over frequency [Hz] and amplitude [mm], as Figure 5-7.
@@ -100,7 +100,7 @@ class FloorStudy(Shown):
         widest = max(TOP_AMPLITUDE, ROOM * self.bowl.drive.amplitude)
         frequency = span("frequency_Hz", LEAST_FREQUENCY, highest, count)
         amplitude = span("amplitude_mm", 0.0, widest, count, 1e-3)
-        return evaluate(frequency, amplitude, function, cells.REGIMES)
+        return evaluate(frequency, amplitude, function, cells.FLOOR_REGIMES)
 
     def alignment(self) -> tuple[np.ndarray, dict[str, np.ndarray]]:
         """Compute theta'' over every heading, a degree apart.

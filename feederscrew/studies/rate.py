@@ -21,7 +21,7 @@ from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH, launch_named
-from feederscrew.resting.rules.registry import RECOMMENDED, require_rule
+from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER, require_rule
 from feederscrew.running import CoresKeywords, OnCores
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.simulated import memory
@@ -53,7 +53,7 @@ def shares(
     *,
     launch: str | None = None,
     probabilities: str | PathLike[str] | None = None,
-    rule: str = RECOMMENDED,
+    rule: str = RECOMMENDED_ANSWER,
     fed: int | None = None,
     seed: int = SEED,
     **run: Unpack[CoresKeywords],
@@ -100,8 +100,8 @@ def shares(
         found = resting(part, drops=0).aspects
         measured = profiles.read(probabilities, found.names)
         return Shares(arrivals.counted(found, measured), measured)
-    if launch is not None or rule != RECOMMENDED or part.vertices is None:
-        drops = None if rule == RECOMMENDED else 0
+    if launch is not None or rule != RECOMMENDED_ANSWER or part.vertices is None:
+        drops = None if rule == RECOMMENDED_ANSWER else 0
         return Shares(resting(part, launch=launch_named(launch or LAUNCH), drops=drops, **run).aspects)
     found = resting(part, drops=0).aspects
     if not bowl.gravity > 0.0:
@@ -114,7 +114,7 @@ def shares(
     return Shares(arrived, fed=arrived.recommended is not found.recommended)
 
 
-def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED) -> Aspects:
+def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED_ANSWER) -> Aspects:
     """Return the aspects of a part with what arrives at the entry of a bowl's track as their answer."""
     return shares(part, bowl, rule=rule).aspects
 
@@ -215,7 +215,7 @@ def rate(
     aspect: str | None = None,
     *,
     heading: float | None = None,
-    rule: str = RECOMMENDED,
+    rule: str = RECOMMENDED_ANSWER,
     devices: Sequence[Device] | None = None,
     known: Shares | None = None,
     **options: Unpack[RateKeywords],

@@ -72,7 +72,7 @@ class TrackStudy(Shown):
             bowl = limits.plain(bowls.swept(settings, {first.key.name: x, second.key.name: y}))
             return cells.cells(self.posture, bowl, self.laid)
 
-        return grids.evaluate(grids.axis(first), grids.axis(second), function, cells.REGIMES)
+        return grids.evaluate(grids.axis(first), grids.axis(second), function, cells.TRACK_REGIMES)
 
 
 def track(part: Part, bowl: Bowl, aspect: str | None = None, heading: float | None = None) -> TrackStudy:

@@ -12,7 +12,7 @@ from feederscrew.mechanics import limits
 from feederscrew.resting.counts.deviation import deviation
 from feederscrew.thesis import parts
 from feederscrew.thesis.recompute import THINNER_RATIO
-from feederscrew.thesis.tables import DIFFERS, EXACT, EXPLAINED, table
+from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, table
 
 GRAVITY_OF_CHAPTER_5 = 9.8  # [m/s2]
 FREQUENCY_OF_5_6_HZ = 60.0
@@ -22,7 +22,7 @@ FRICTION_OF_5_7 = 0.5
 BETAS_OF_5_1 = (10.0, 20.0, 30.0, 40.0)  # [deg]
 BETA_OF = {"5-2": 10.0, "5-3": 20.0, "5-4": 40.0, "5-5": 10.0}  # [deg]
 DRIVE_RATIOS = np.linspace(0.0, 1.0, 51)  # G; the printed axis is lost, and nothing hops up to here
-TURNS = np.radians(np.linspace(-90.0, 90.0, 61))  # alpha - theta
+HEADING_TURNS = np.radians(np.linspace(-90.0, 90.0, 61))  # alpha - theta
 MEASURED = table("3-4").columns
 Array = NDArray[np.float64]
 
@@ -87,7 +87,7 @@ class Claim:
     def verdict(self) -> str:
         """As of a cell."""
         if self.holds:
-            return EXACT
+            return EXACT_TO_PRINT
         return EXPLAINED if self.finding and self.explained else DIFFERS
 
 
@@ -173,9 +173,9 @@ def limit_surface(number: str) -> FigureGrid:
         x is alpha - theta [rad], y is G.
     """
     beta = np.radians(BETA_OF[number])
-    values = limits.published_limit(DRIVE_RATIOS[:, None], beta, TURNS)
+    values = limits.published_limit(DRIVE_RATIOS[:, None], beta, HEADING_TURNS)
     throw = limits.throw_number(DRIVE_RATIOS[:, None], beta)
-    return _grid(TURNS, DRIVE_RATIOS, values, throw)
+    return _grid(HEADING_TURNS, DRIVE_RATIOS, values, throw)
 
 
 def sliding_acceleration(
@@ -348,7 +348,7 @@ def _compared(number: str, part: str, names: tuple[str, ...], caption: str) -> F
     return Figure(number, caption, lambda: compared_with_pmi(part, *names), lambda: claims(names[0]))
 
 
-FIGURES = (
+THESIS_FIGURES = (
     Figure(
         "3-6", "Probability comparison for the T shape, aspect ratio 0.6", t_shape_profiles, _t_shape_claims
     ),
@@ -367,4 +367,4 @@ FIGURES = (
     Figure("5-6", "Acceleration along Z over β and μ, f = 60 Hz, A = 0.5 mm", figure_5_6, _beta_claims),
     Figure("5-7", "Acceleration along Z over f and A, β = 20°, μ = 0.5", figure_5_7, _amplitude_claims),
 )
-FIGURE_OF = {figure.number: figure for figure in FIGURES}
+FIGURE_OF = {figure.number: figure for figure in THESIS_FIGURES}

@@ -14,10 +14,10 @@ from feederscrew.output.page.blocks import Chapter, Heading, Links, MarkedCell, 
 from feederscrew.output.tables import Frame, data_frame, frame, text
 from feederscrew.records import Shown
 from feederscrew.thesis import drawing
-from feederscrew.thesis.figures import FIGURE_OF, FIGURES, Claim
+from feederscrew.thesis.figures import FIGURE_OF, THESIS_FIGURES, Claim
 from feederscrew.thesis.findings import FINDING_OF, FINDINGS, Finding
 from feederscrew.thesis.recompute import cells
-from feederscrew.thesis.tables import DIFFERS, EXACT, EXPLAINED, GIVEN, TABLES, Cell, table
+from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, NOT_CHECKED, TABLES, Cell, table
 from feederscrew.units import listed
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ BEARS_ON = {  # findings that no single cell carries
     "figure 3-7": ("figure-references",),
     "figure 3-8": ("drawings-lost", "csa-ratio"),
 }
-MARK_OF = {EXACT: "exact", EXPLAINED: "explained", DIFFERS: "differs", GIVEN: "given"}
+MARK_OF = {EXACT_TO_PRINT: "exact", EXPLAINED: "explained", DIFFERS: "differs", NOT_CHECKED: "given"}
 COUNTS = ("cells", "exact", "explained", "differs", "given")
 CELL_COLUMNS = ("row", "column", "published", "recomputed", "deviation", "verdict", "explaining", "finding")
 CLAIM_COLUMNS = ("statement", "published", "recomputed", "verdict", "finding")
@@ -91,7 +91,7 @@ class Item:
     def counts(self) -> dict[str, int]:
         """Cells that can be checked, by verdict, and those that are data."""
         counts = self.verdicts
-        return {"cells": len(self.entries) - counts[GIVEN]} | {
+        return {"cells": len(self.entries) - counts[NOT_CHECKED]} | {
             mark: counts[verdict] for verdict, mark in MARK_OF.items()
         }
 
@@ -118,7 +118,7 @@ class Reproduction(Shown):
 
     def plot(self, name: str | None = None) -> "DrawnFigure":
         """Return a figure of the thesis as ``Shown.plot``: the first, or '5-6'."""
-        name = FIGURES[0].number if name is None else name
+        name = THESIS_FIGURES[0].number if name is None else name
         _require(name, FIGURE_OF, "figure")
         return drawing.draw(FIGURE_OF[name])
 
@@ -131,7 +131,7 @@ def reproduced() -> Reproduction:
     Reproduction
     """
     tables = [Item(number, "table", table(number).caption, cells(number)) for number in TABLES]
-    figures = [Item(figure.number, "figure", figure.caption, figure.claims) for figure in FIGURES]
+    figures = [Item(figure.number, "figure", figure.caption, figure.claims) for figure in THESIS_FIGURES]
     return Reproduction((*tables, *figures))
 
 
@@ -257,7 +257,7 @@ def page(items: Sequence[Item], pictures: Mapping[str, bytes]) -> Page:
 
 def print_and_ours(entry: Cell) -> str:
     """Return print and ours in one cell, as the page's opening describes."""
-    if entry.verdict in (EXACT, GIVEN):
+    if entry.verdict in (EXACT_TO_PRINT, NOT_CHECKED):
         return entry.published
     ours, result = digits(entry, entry.recomputed), digits(entry, entry.explaining)
     if entry.verdict == DIFFERS:
@@ -286,8 +286,8 @@ def _summary(items: Sequence[Item]) -> Matrix:
 def _totals(items: Sequence[Item]) -> str:
     counts: Counter[str] = sum((item.verdicts for item in items), Counter())
     return (
-        f"{counts[EXACT]} cells are exact to print, {counts[EXPLAINED]} are explained, "
-        f"{counts[DIFFERS]} differ; {counts[GIVEN]} are given."
+        f"{counts[EXACT_TO_PRINT]} cells are exact to print, {counts[EXPLAINED]} are explained, "
+        f"{counts[DIFFERS]} differ; {counts[NOT_CHECKED]} are given."
     )
 
 

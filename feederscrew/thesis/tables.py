@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 TABLES = tuple(f"3-{n}" for n in range(1, 14))
 ROW_NAME_COLUMNS = ("aspect", "quantity", "first", "second")
 TOTAL = "total"
-EXACT = "exact to print"
+EXACT_TO_PRINT = "exact to print"
 EXPLAINED = "explained"
 DIFFERS = "differs"
-GIVEN = "given"  # measured, or read off a drawing that is lost: nothing to compute it from
+NOT_CHECKED = "given"  # measured, or read off a drawing that is lost: nothing to compute it from
 PRINT_SLACK = 1e-9  # of the last digit: a half of it is not exact in binary
 
 
@@ -99,13 +99,13 @@ class Cell:
 
     @property
     def verdict(self) -> str:
-        """``EXACT``, ``EXPLAINED``, ``DIFFERS`` or ``GIVEN``."""
+        """``EXACT_TO_PRINT``, ``EXPLAINED``, ``DIFFERS`` or ``NOT_CHECKED``."""
         if math.isnan(self.recomputed):
-            return GIVEN
+            return NOT_CHECKED
         if math.isnan(self.printed):
             fits = is_slip(self.recomputed, self.published)
         elif prints_as(self.recomputed, self.published, self.cut):
-            return EXACT
+            return EXACT_TO_PRINT
         else:
             near = abs(self.explaining - self.printed) <= self.within
             fits = near or prints_as(self.explaining, self.published, self.cut)

@@ -21,7 +21,7 @@ def named(found):
     for i in range(len(found)):
         for j in range(len(found)):
             near = abs(found[i].length - found[j].length) < 1e-2 * found[i].length
-            if i != j and near and sameness.alike(looks[i], looks[j], mirrored=True):
+            if i != j and near and sameness.looks_alike(looks[i], looks[j], mirrored=True):
                 pairs[i] = found[j].name
     return tuple(replace(one, mirror=pairs.get(k, "")) for k, one in enumerate(found))
 

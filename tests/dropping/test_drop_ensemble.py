@@ -146,8 +146,8 @@ def test_the_interval_holds_the_numerical_error_beside_the_sampling():
     faces = np.tile([0, 2], 200_000)
     counted = tally(Drops(faces, *np.zeros((3, len(faces))), False), ROWS, 3)
     known = np.hypot(ensemble.NUMERICAL, counted.widest)
-    assert counted.high[0] - 0.5 == pytest.approx(np.hypot(known, recommended.LAUNCHED), rel=1e-3)
-    rare = recommended.LAUNCHED * recommended.shape(0.0)
+    assert counted.high[0] - 0.5 == pytest.approx(np.hypot(known, recommended.LAUNCH_WIDTH), rel=1e-3)
+    rare = recommended.LAUNCH_WIDTH * recommended.shape(0.0)
     assert counted.low[2] == 0.0 and counted.high[2] == pytest.approx(rare, abs=1e-4)
 
 

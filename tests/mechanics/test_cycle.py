@@ -69,7 +69,9 @@ def test_it_follows_the_accelerations_of_the_balance():
     """The rows of three numbers give what the wrench equations give, at any phase, speed and sense."""
     for seed in range(4):
         part, settings = random_seat(np.random.default_rng(seed)), random_bowl(np.random.default_rng(seed))
-        slips = track.sliding_acceleration(part, settings, frame(settings, part.walls), -track.PULL * 9.81)
+        slips = track.sliding_acceleration(
+            part, settings, frame(settings, part.walls), -track.PULL_TOLERANCE * 9.81
+        )
         for phase, speed, sense in (
             (0.3, 0.02, 1.0),
             (1.6, 0.01, 1.0),
@@ -92,7 +94,7 @@ def test_a_slip_shorter_than_a_sample_is_not_missed():
 
 
 def test_a_part_that_gets_faster_with_every_period_has_not_settled():
-    windows = [(0.0, cycle.TURN, 1.0)]
+    windows = [(0.0, cycle.FULL_TURN, 1.0)]
     assert not cycle.settle(lambda phase, speed, sense: 1.0, windows, 0.02).settled
     braked = cycle.settle(lambda phase, speed, sense: 1.0 - speed, windows, 0.02)  # slowly, to a speed of 1
     assert braked.settled

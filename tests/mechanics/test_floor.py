@@ -33,7 +33,7 @@ def test_sliding_against_kinetic_friction():
     settings = bowl(static=0.4, kinetic=0.25)
     push, lift = (drive_acceleration(settings) * f(20 * DEG) for f in (np.cos, np.sin))
     found = balance.motion(box_posture(), settings, 0.0)
-    assert balance.STATES[found.state] == "slide"
+    assert balance.MOTION_STATES[found.state] == "slide"
     assert found.acceleration == pytest.approx([push - 0.25 * (G - lift), 0.0])
     assert found.limiting_friction == pytest.approx(push / (G - lift))
 
@@ -43,7 +43,7 @@ def test_static_friction_holds_up_to_the_limit():
     limit = float(balance.motion(posture, bowl(), 0.0).limiting_friction)
     for static, state in ((limit * (1 + 1e-9), "stick"), (limit * (1 - 1e-9), "slide")):
         found = balance.motion(posture, bowl(static=static, kinetic=0.1), 0.0)
-        assert balance.STATES[found.state] == state
+        assert balance.MOTION_STATES[found.state] == state
     held = balance.motion(posture, bowl(static=2.0), 0.7)
     assert held.acceleration == pytest.approx([0.0, 0.0], abs=1e-15)
     assert held.turning == 0.0
@@ -114,7 +114,7 @@ def test_a_tall_part_tips_before_it_slides():
     """Tips where h R / N leaves the contact polygon: mu > half length / h."""
     tall = box_posture(length=0.004, width=0.004, height=0.02)
     state = balance.motion(tall, bowl(static=0.9, kinetic=np.array([0.19, 0.21])), 0.0).state
-    assert [balance.STATES[code] for code in state] == ["slide", "tip"]
+    assert [balance.MOTION_STATES[code] for code in state] == ["slide", "tip"]
     found = balance.motion(tall, bowl(static=0.9, kinetic=0.15), 0.0)
     assert found.offset[0] == pytest.approx(0.01 * 0.15)
     assert found.inside == pytest.approx(0.002 - 0.0015)
@@ -122,7 +122,7 @@ def test_a_tall_part_tips_before_it_slides():
 
 def test_past_the_hop_there_is_no_contact():
     found = balance.motion(box_posture(), bowl(amplitude=0.5e-3), 0.0)
-    assert balance.STATES[found.state] == "hop"
+    assert balance.MOTION_STATES[found.state] == "hop"
     assert found.normal_force == 0.0
     assert np.isnan(found.limiting_friction)
     over, _ = balance.over_cycle(box_posture(), bowl(amplitude=0.5e-3), 0.0)
@@ -136,7 +136,7 @@ def test_a_rolling_cylinder_needs_a_third_of_the_drive():
     assert found.friction == pytest.approx([0.0, -push / 3], abs=1e-15)
     assert found.acceleration == pytest.approx([0.0, push / posture.mass * 2 / 3], abs=1e-12)
     assert found.limiting_friction == pytest.approx(push / 3 / found.normal_force)
-    assert balance.STATES[found.state] == "stick"
+    assert balance.MOTION_STATES[found.state] == "stick"
     assert np.abs(found.friction).max() < 0.4 * found.normal_force
 
 
@@ -147,7 +147,7 @@ def test_a_rolling_part_slips_beyond_its_limit_without_a_jump():
         balance.motion(posture, bowl(direction=60 * DEG, static=mu, kinetic=mu), 0.0)
         for mu in (limit * (1 + 1e-9), limit * (1 - 1e-9))
     )
-    assert [balance.STATES[f.state] for f in (above, below)] == ["stick", "slide"]
+    assert [balance.MOTION_STATES[f.state] for f in (above, below)] == ["stick", "slide"]
     np.testing.assert_allclose(above.friction, below.friction, rtol=1e-6)
 
 
@@ -227,4 +227,4 @@ def test_a_map_past_the_hop_is_empty():
     settings = bowl(amplitude=0.5e-3, gravity=9.8, vibration_angle=np.radians([7.8, 8.0]))
     cells = floor_cells.cells(box_posture(), settings, 0.0)
     assert np.isnan(cells["acceleration_z_m_s2"]).tolist() == [False, True]
-    assert [balance.STATES[code] for code in cells["regime"]][1] == "hop"
+    assert [balance.MOTION_STATES[code] for code in cells["regime"]][1] == "hop"

@@ -13,7 +13,7 @@ from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import outline, turned
 from feederscrew.mechanics.wall.outline import rests
-from feederscrew.mechanics.wall.stable_headings import headings, laid
+from feederscrew.mechanics.wall.stable_headings import headings, stable_row
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.posture import Posture, posture
@@ -216,10 +216,10 @@ def test_overhang_is_what_the_track_lacks():
 def test_laid_anywhere_it_settles_in_its_range():
     found = headings(box_posture(), TRACK)
     border = np.degrees(np.arctan(3.0))
-    assert np.degrees(found.headings[laid(found, (border - 1) * DEG)]) == pytest.approx(0)
-    assert np.degrees(found.headings[laid(found, (border + 1) * DEG)]) == pytest.approx(90)
-    assert np.degrees(found.headings[laid(found, -170 * DEG)]) == pytest.approx(0)
-    assert laid(found) == 0
+    assert np.degrees(found.headings[stable_row(found, (border - 1) * DEG)]) == pytest.approx(0)
+    assert np.degrees(found.headings[stable_row(found, (border + 1) * DEG)]) == pytest.approx(90)
+    assert np.degrees(found.headings[stable_row(found, -170 * DEG)]) == pytest.approx(0)
+    assert stable_row(found) == 0
 
 
 def test_faults():
@@ -231,13 +231,13 @@ def test_faults():
     )
     narrow = headings(box_posture(), Track(0.0, 0.0, 0.15, 0.008))
     with pytest.raises(FeederError) as falls:
-        laid(narrow, 90 * DEG)
+        stable_row(narrow, 90 * DEG)
     assert str(falls.value) == (
         "aspect A, heading 90 deg: the part needs 30.08 mm of track and falls off - "
         "give a wider track, or another heading"
     )
     with pytest.raises(FeederError) as every:
-        laid(headings(box_posture(), Track(0.0, 0.0, 0.15, 0.002)))
+        stable_row(headings(box_posture(), Track(0.0, 0.0, 0.15, 0.002)))
     assert str(every.value) == (
         "aspect A: the part falls off the track in every heading - give a wider track, or another aspect"
     )

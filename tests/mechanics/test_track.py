@@ -120,7 +120,7 @@ def test_rest_goes_over_into_sliding_without_a_jump():
         track.motion(part, bowl(static=mu, kinetic=mu, wall=mu))
         for mu in (limit * (1 + 1e-7), limit * (1 - 1e-7))
     )
-    assert [balance.STATES[f.state] for f in (above, below)] == ["stick", "slide"]
+    assert [balance.MOTION_STATES[f.state] for f in (above, below)] == ["stick", "slide"]
     for name in ("normal_force", "walls", "traction", "wall_friction", "offset"):
         np.testing.assert_allclose(getattr(above, name), getattr(below, name), rtol=1e-5)
 
@@ -129,7 +129,7 @@ def test_friction_at_rest_uses_one_share_of_every_limit():
     found = track.motion(
         seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0), bowl(static=1.5, kinetic=1.0, wall=0.6)
     )
-    assert balance.STATES[found.state] == "stick"
+    assert balance.MOTION_STATES[found.state] == "stick"
     used = found.wall_friction / found.walls
     assert used == pytest.approx(found.needed[1:])
     assert used / 0.6 == pytest.approx([found.needed[0] / 1.5] * 2)
@@ -254,13 +254,13 @@ def test_a_map_cell_is_the_single_answer():
     one = track.motion(part, bowl(bank=15 * DEG, climb=4 * DEG))
     assert cells["acceleration_x_m_s2"][1, 2] == pytest.approx(float(one.acceleration[0]), rel=1e-9)
     assert cells["wall_2_N"][1, 2] == pytest.approx(float(one.walls[1]), rel=1e-9)
-    assert track_cells.REGIMES[cells["regime"][1, 2]] == "slide"
+    assert track_cells.TRACK_REGIMES[cells["regime"][1, 2]] == "slide"
 
 
 def test_a_map_says_where_the_part_does_not_fit():
     width = np.array([0.002, 0.025])
     cells = track_cells.cells(box_posture(), replace(BOWL, track=replace(BOWL.track, width=width)))
-    assert [track_cells.REGIMES[code] for code in cells["regime"]] == ["does not fit", "slide"]
+    assert [track_cells.TRACK_REGIMES[code] for code in cells["regime"]] == ["does not fit", "slide"]
     assert np.isnan(cells["acceleration_x_m_s2"]).tolist() == [True, False]
 
 

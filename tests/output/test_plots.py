@@ -50,7 +50,9 @@ def test_the_recommended_answer_is_a_bar_with_its_interval_and_comes_first():
 def test_the_answered_chart_keeps_everything_on_its_page(count):
     names = [chr(65 + k) for k in range(count)]
     share = np.full(count, 0.123)
-    figure = bars.answered(names, [share, 0.5 * share, 2.0 * share], dict.fromkeys(registry.NAMES, share))
+    figure = bars.answered(
+        names, [share, 0.5 * share, 2.0 * share], dict.fromkeys(registry.RULE_NAMES, share)
+    )
     figure.draw_without_rendering()
     legend = figure.legends[0].get_window_extent()
     assert 0.0 <= legend.x0 < legend.x1 <= figure.bbox.width
@@ -67,7 +69,7 @@ def test_bars_of_one_aspect_stand_side_by_side():
 
 def test_many_bars_keep_their_numbers_apart():
     names = [chr(65 + k) for k in range(20)]
-    figure = bars.probabilities(names, {rule: np.full(20, 0.05) for rule in registry.NAMES})
+    figure = bars.probabilities(names, {rule: np.full(20, 0.05) for rule in registry.RULE_NAMES})
     assert figure.get_figwidth() <= bars.WIDE
     figure.draw_without_rendering()
     boxes = [text.get_window_extent() for text in figure.axes[0].texts]
@@ -129,7 +131,7 @@ def test_the_rules_are_told_apart_without_their_colours():
     axes = bars.answered(NAMES, ANSWER, PROFILES).axes[0]
     marks = [line.get_marker() for line in axes.lines if line.get_label() in map(rule_label, PROFILES)]
     assert len(set(marks)) == len(PROFILES) > 1
-    assert len(bars.MARKS) >= len(registry.NAMES)
+    assert len(bars.MARKS) >= len(registry.RULE_NAMES)
 
 
 def rule_label(name):

@@ -23,7 +23,7 @@ KNOWN = SimpleNamespace(
 
 def counted(*rows):
     text = "\n".join(["device,passed,rejected", *rows])
-    return passed.understood(count_rows.parse(text, "c.csv"), "c.csv", "")
+    return passed.device_counts(count_rows.parse(text, "c.csv"), "c.csv", "")
 
 
 def test_parts_are_followed_from_device_to_device():

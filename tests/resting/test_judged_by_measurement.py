@@ -35,7 +35,7 @@ def dropped():
 
 def test_the_share_of_hops_of_drop_is_nearest_to_what_was_measured(dropped):
     """No share a twentieth away is nearer to any of the sets."""
-    chosen = recommended.SHARES["drop"]
+    chosen = recommended.HOP_SHARES["drop"]
     for chances, shares in dropped:
         error = {
             share: total_variation(recommended.tempered(chances, share)[1], shares)
@@ -82,7 +82,7 @@ def test_what_a_launchs_name_leaves_open_is_what_the_measured_sets_are_off_by():
     reaches = np.linspace(0.05, 0.2, 1501)
     held = (density * (2.0 * stats.norm.cdf(reaches[:, None] / spread[:, 0]) - 1.0)).sum(axis=1)
     width = reaches[np.argmax(held >= 0.95 * density.sum())]
-    assert width == pytest.approx(recommended.LAUNCHED, abs=0.006)
+    assert width == pytest.approx(recommended.LAUNCH_WIDTH, abs=0.006)
 
 
 @pytest.mark.parametrize("name", ["t_shape", "short_cube"])

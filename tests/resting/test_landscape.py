@@ -5,7 +5,7 @@ import pytest
 import shapes
 
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.basins.landscape import BARE, RIPPLE_OF_RADIUS, edges, landscape, passes
+from feederscrew.resting.basins.landscape import MIN_BARRIER_SHARE, RIPPLE_OF_RADIUS, edges, landscape, passes
 
 
 def hull_of(mesh, centre=None):
@@ -69,7 +69,7 @@ def keel(chamfer=0.0):
 def stands_on_its_keel(mesh):
     hull = convex_hull(mesh.vertices, np.zeros(3))
     rise = np.hypot(0.3, 5.0) - 5.0
-    assert BARE * hull.radius < rise < RIPPLE_OF_RADIUS * hull.radius
+    assert MIN_BARRIER_SHARE * hull.radius < rise < RIPPLE_OF_RADIUS * hull.radius
     found = landscape(hull)
     assert len(found.sinks) == 8
     return hull.normals[found.sinks, 1].min() < -0.999

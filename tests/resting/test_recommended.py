@@ -28,11 +28,11 @@ FLAT = ("flat", "flat")
 
 def chances(p, **others):
     """Probabilities by every rule: p, but for those given."""
-    return dict.fromkeys(registry.NAMES, np.array(p)) | {k: np.array(q) for k, q in others.items()}
+    return dict.fromkeys(registry.RULE_NAMES, np.array(p)) | {k: np.array(q) for k, q in others.items()}
 
 
 def test_the_launches_are_those_that_can_be_simulated():
-    assert tuple(PRESETS) == recommended.LAUNCHES
+    assert tuple(PRESETS) == recommended.LAUNCH_NAMES
     assert recommended.launch_named("tumble") == "roll"
     with pytest.raises(ArgumentError, match="launch: is 'thrown' - give one of place, drop"):
         recommended.launch_named("thrown")
@@ -53,12 +53,12 @@ def test_tempered_hops_lead_from_dead_landings_to_hops():
     assert recommended.tempered(known, 1.0)[1].tolist() == [0.8, 0.2, 0.0]
 
 
-@pytest.mark.parametrize("launch", recommended.LAUNCHES)
+@pytest.mark.parametrize("launch", recommended.LAUNCH_NAMES)
 @pytest.mark.parametrize("kinds", [FLAT, ("flat", "rolling")])
 def test_every_launch_has_an_interval_that_is_widest_at_a_half(launch, kinds):
     found = recommended.closed_form(chances([0.5, 0.5]), BOTH, kinds, launch)
     small = recommended.closed_form(chances([0.05, 0.95]), BOTH, kinds, launch)
-    width = recommended.WIDTHS[launch, "rolling" in kinds]
+    width = recommended.SHARE_WIDTHS[launch, "rolling" in kinds]
     assert found.high - found.p == pytest.approx(np.minimum(width, 0.5))
     assert (small.high - small.low < found.high - found.low).all()
 
@@ -92,7 +92,7 @@ def test_a_drop_test_holds_its_sampling():
     assert found.p == pytest.approx([0.5, 0.5])
     sampling, _ = ensemble.wilson(np.array([450, 450]), 900)
     assert found.low == pytest.approx(
-        0.5 - np.sqrt((0.5 - sampling) ** 2 + ensemble.NUMERICAL**2 + recommended.LAUNCHED**2)
+        0.5 - np.sqrt((0.5 - sampling) ** 2 + ensemble.NUMERICAL**2 + recommended.LAUNCH_WIDTH**2)
     )
     assert found.high == pytest.approx(1.0 - found.low)
 

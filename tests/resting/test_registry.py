@@ -18,7 +18,9 @@ BRACKET = ROOT / "parts/lbracket_30x20x15.stl"
 
 
 def test_names_and_colours_are_each_of_one_rule():
-    assert len(set(registry.NAMES)) == len({rule.colour for rule in registry.RULES}) == len(registry.RULES)
+    assert (
+        len(set(registry.RULE_NAMES)) == len({rule.colour for rule in registry.RULES}) == len(registry.RULES)
+    )
 
 
 @pytest.mark.parametrize("rule", registry.RULES, ids=lambda rule: rule.name)
@@ -31,9 +33,9 @@ def test_a_rule_needs_quantities_of_its_kind_and_names_its_source(rule):
 
 def test_a_part_has_a_probability_by_every_rule_in_the_order_of_the_registry():
     found = find(load(BRACKET))
-    assert tuple(found.probabilities) == registry.NAMES
+    assert tuple(found.probabilities) == registry.RULE_NAMES
     assert tuple(found.chances) == registry.CHOICES
-    assert [profile.name.lower() for profile in profiles.of_rules(found)] == list(registry.NAMES)
+    assert [profile.name.lower() for profile in profiles.of_rules(found)] == list(registry.RULE_NAMES)
 
 
 def test_one_entry_adds_a_rule_everywhere(monkeypatch):
@@ -42,7 +44,7 @@ def test_one_entry_adds_a_rule_everywhere(monkeypatch):
         weights=lambda heights: 1.0 / heights,
     )  # fmt: skip
     monkeypatch.setattr(registry, "RULES", (*registry.RULES, lowest))
-    monkeypatch.setitem(registry.BY_NAME, "low", lowest)
+    monkeypatch.setitem(registry.RULE_OF, "low", lowest)
     found = find(load(BRACKET))
     weights = 1.0 / found.heights
     np.testing.assert_allclose(found.probabilities["low"], weights / weights.sum(), rtol=1e-12)

@@ -203,4 +203,4 @@ def test_a_ball_on_the_floor_rolls_with_two_sevenths_of_the_friction_of_sliding(
         push = balance.drive_force(posture(part, found, "A"), settings, heading)
         sliding = np.hypot(push[0], push[1]) / float(now.normal_force)
         assert float(now.limiting_friction) == pytest.approx(2.0 / 7.0 * sliding, rel=2e-3)
-        assert balance.STATES[int(now.state)] != "tip"
+        assert balance.MOTION_STATES[int(now.state)] != "tip"

@@ -12,9 +12,9 @@ from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Chapter, Heading, Links, MarkedCell, Matrix, Page
 from feederscrew.thesis import drawing, figures, reproduction
-from feederscrew.thesis.figures import FIGURE_OF, FIGURES, Claim
+from feederscrew.thesis.figures import FIGURE_OF, THESIS_FIGURES, Claim
 from feederscrew.thesis.findings import FINDING_OF, FINDINGS
-from feederscrew.thesis.tables import DIFFERS, EXACT, EXPLAINED, TABLES, Cell, table
+from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, TABLES, Cell, table
 
 NUMBERS = [f"3-{n}" for n in range(6, 14)] + [f"5-{n}" for n in range(1, 8)]
 
@@ -58,7 +58,12 @@ def test_findings_bear_on_items_or_on_chapter_4(items):
 
 
 def test_statements_in_print_hold_but_for_three_that_are_explained():
-    odd = {(f.number, c.finding, c.verdict) for f in FIGURES for c in f.claims if c.verdict != EXACT}
+    odd = {
+        (f.number, c.finding, c.verdict)
+        for f in THESIS_FIGURES
+        for c in f.claims
+        if c.verdict != EXACT_TO_PRINT
+    }
     findings = {"3-10": "dominant-aspect", "3-12": "magnet-csa-mixed", "5-1": "beta-sliding"}
     assert odd == {(number, finding, EXPLAINED) for number, finding in findings.items()}
     assert Claim("x", "1", 2.0, False, "hop", False).verdict == DIFFERS
@@ -157,7 +162,7 @@ def test_where_the_part_hops_and_sticks_is_marked():
 
 
 def test_numbers_of_a_figure_are_a_table():
-    for figure in FIGURES:
+    for figure in THESIS_FIGURES:
         frame = drawing.numbers(figure)
         assert len(frame.rows()) >= 3
         assert not any(cell is None or cell != cell for row in frame.rows() for cell in row.values())

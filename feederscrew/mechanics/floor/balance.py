@@ -9,16 +9,19 @@ Every field of the Bowl may be an array; the results broadcast.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import inset
 from feederscrew.mechanics import cycle
 
-STATES = ("stick", "slide", "hop", "tip")  # a state code is a place in this list
-STICK, SLIDE, HOP, TIP = range(len(STATES))
+MOTION_STATES = ("stick", "slide", "hop", "tip")  # a state code is a place in this list
+STICK, SLIDE, HOP, TIP = range(len(MOTION_STATES))
 UPPER_REVERSAL = 0.5 * np.pi
 ON_THE_LINE = 1e-9  # [m] a normal force this near the contact polygon's border does not tip the part
 SLIP_HALVINGS = 90  # of the interval of slip accelerations: down to rounding
@@ -38,7 +41,7 @@ class FloorMotion:
     limiting_friction: np.ndarray  # (...) [1] least static friction that holds the part; NaN without contact
 
 
-def drive_force(posture, bowl, heading, phase=UPPER_REVERSAL):
+def drive_force(posture, bowl, heading, phase=UPPER_REVERSAL) -> NDArray[np.float64]:
     """Return the inertial force of the vibration on a part, as (..., 3) [N] along x', y', z.
 
     Source: d'Alembert's force of the harmonic motion, in the thesis's floor wrench, eq. [4.13].
@@ -59,7 +62,7 @@ def drive_force(posture, bowl, heading, phase=UPPER_REVERSAL):
     return np.stack(np.broadcast_arrays(*along), axis=-1)
 
 
-def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0):
+def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0) -> FloorMotion:
     """Return what a part on the level bowl floor does at one phase of the vibration.
 
     Parameters
@@ -113,7 +116,7 @@ def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0):
     )
 
 
-def over_cycle(posture, bowl, heading, samples=cycle.SAMPLES):
+def over_cycle(posture, bowl, heading, samples=cycle.PERIOD_SAMPLES) -> tuple[FloorMotion, Any]:
     """Return the same over one settled period.
 
     Parameters
@@ -139,47 +142,47 @@ def over_cycle(posture, bowl, heading, samples=cycle.SAMPLES):
     return motion(posture, bowl, heading, phase, np.sign(course.velocity)), course
 
 
-def _slips(bowl):
+def _slips(bowl) -> Callable[..., Any]:
     """Acceleration [m/s2] of a sliding flat part as a function of phase, speed and sense."""
     push, lift = _reversal(bowl)
 
-    def acceleration(phase, speed, sense):
+    def acceleration(phase, speed, sense) -> float:
         s = math.sin(phase)
         return push * s - sense * bowl.friction.kinetic * max(bowl.gravity - lift * s, 0.0)
 
     return acceleration
 
 
-def _loose(bowl):
+def _loose(bowl) -> list[Any]:
     """Phases within which a flat part at rest breaks loose, as ``cycle.settle`` takes them; eq. [4.28]."""
-    (push, lift), mu, found = _reversal(bowl), bowl.friction.static, []
+    (push, lift), mu, windows = _reversal(bowl), bowl.friction.static, []
     for sense, start in ((1.0, 0.0), (-1.0, math.pi)):
         gain = push + sense * mu * lift
         onset = math.asin(mu * bowl.gravity / gain) if gain > mu * bowl.gravity else math.inf
         if onset < math.inf:
-            found.append((start + onset, start + math.pi - onset, sense))
-    return found
+            windows.append((start + onset, start + math.pi - onset, sense))
+    return windows
 
 
-def _reversal(bowl):
+def _reversal(bowl) -> tuple[float, float]:
     """Acceleration [m/s2] of the drive at its reversal, along the floor and up."""
     drive = bowl.drive
     size = drive.amplitude * (2.0 * math.pi * drive.frequency) ** 2
     return size * math.cos(drive.vibration_angle), size * math.sin(drive.vibration_angle)
 
 
-def rolls(posture):
+def rolls(posture) -> bool:
     """Return whether the part stands on a rolling aspect: about an axis, or as a ball about any."""
     return posture.kind == "rolling" and (posture.axis is not None or posture.corners is not None)
 
 
-def regime(states):
+def regime(states) -> str:
     """Return the state that names a whole cycle: contact lost, else tipping, else sliding, else sticking."""
     present = set(np.ravel(states).tolist())
-    return next(STATES[code] for code in (HOP, TIP, SLIDE, STICK) if code in present)
+    return next(MOTION_STATES[code] for code in (HOP, TIP, SLIDE, STICK) if code in present)
 
 
-def stable_heading(posture, bowl):
+def stable_heading(posture, bowl) -> Any:
     """Return the heading [rad] to which the drive turns the part at the upper reversal; NaN for none.
 
     Source: the sign of the alignment acceleration, eq. [4.17].
@@ -189,12 +192,12 @@ def stable_heading(posture, bowl):
     return bowl.drive.direction + (0.0 if posture.offset > 0.0 else np.pi)
 
 
-def with_friction(bowl, friction):
+def with_friction(bowl, friction) -> Any:
     """Return the bowl with one coefficient [1] for sticking and sliding; the wall keeps its own."""
     return replace(bowl, friction=replace(bowl.friction, static=friction, kinetic=friction))
 
 
-def _flat(posture, bowl, heading, push, normal, moving):
+def _flat(posture, bowl, heading, push, normal, moving) -> tuple[Any, ...]:
     """Coulomb friction under a flat part: force, acceleration, whether it slides, friction needed."""
     turn = np.asarray(bowl.drive.direction - heading)
     along = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
@@ -209,13 +212,13 @@ def _flat(posture, bowl, heading, push, normal, moving):
     return friction, (push + friction) / posture.mass, slides, needed  # eqs. [4.15], [4.16]
 
 
-def _rolling(posture, bowl, heading, push, normal, moving):
+def _rolling(posture, bowl, heading, push, normal, moving) -> tuple[Any, ...]:
     """The same for a part that rolls; it is taken from rest and its axes do not depend on the heading."""
     forces = solve_rolling(posture, bowl.friction, push, normal)
     return forces.friction, forces.acceleration, forces.slips, forces.limiting_friction
 
 
-def _offset(posture, friction, normal, turning):
+def _offset(posture, friction, normal, turning) -> NDArray[np.float64]:
     """Where the normal force acts: moments about x' and y' through the centre of mass balance."""
     products = np.where(np.isfinite(posture.inertia[2, :2]), posture.inertia[2, :2], 0.0)
     across = np.array([-products[1], products[0]])
@@ -240,7 +243,7 @@ class Rolling:
     limiting_friction: np.ndarray  # (...) [1] least static friction with which it only rolls
 
 
-def solve_rolling(posture, coefficients, push, normal):
+def solve_rolling(posture, coefficients, push, normal) -> Rolling:
     """Return a part on a rolling aspect, from rest.
 
     Parameters
@@ -296,12 +299,12 @@ def solve_rolling(posture, coefficients, push, normal):
     )
 
 
-def _moment_about(axis, inertia):
+def _moment_about(axis, inertia) -> float:
     """Moment of inertia about a line in the floor."""
     return float(vectors.dot(vectors.product(axis, inertia), axis))
 
 
-def _slip_resistance(drive, ease, strength):
+def _slip_resistance(drive, ease, strength) -> NDArray[np.float64]:
     """Resistance of a given strength along the slip that remains under it, (..., 2) across and along."""
     drive = np.broadcast_to(drive, (*np.broadcast_shapes(drive.shape[:-1], np.shape(strength)), 2))
     low, high = np.zeros(drive.shape[:-1]), np.hypot(drive[..., 0], drive[..., 1])
@@ -313,7 +316,7 @@ def _slip_resistance(drive, ease, strength):
     return np.asarray(strength)[..., None] * _slip_direction(drive, ease, strength, high)
 
 
-def _slip_direction(drive, ease, strength, slip):
+def _slip_direction(drive, ease, strength, slip) -> NDArray[np.float64]:
     """Direction of a slip of given acceleration; of length 1 for the one that happens."""
     stiffness = slip[..., None] + np.asarray(strength)[..., None] * ease
     return np.divide(drive, stiffness, out=np.zeros(drive.shape), where=stiffness > 0.0)

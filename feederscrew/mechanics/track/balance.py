@@ -6,9 +6,12 @@ that the thesis gives to R3. At rest friction is not determined; see ``system.he
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.geometry.polygons import inset
 from feederscrew.mechanics import cycle
@@ -16,8 +19,8 @@ from feederscrew.mechanics.floor.balance import HOP, ON_THE_LINE, SLIDE, STICK, 
 from feederscrew.mechanics.track import system
 from feederscrew.mechanics.track.frame import frame, loads
 
-PULL = 1e-9  # of the weight: a reaction more negative than this would be a pull
-NOISE = 1e-12  # of the weight: less than this is rounding
+PULL_TOLERANCE = 1e-9  # of the weight: a reaction more negative than this would be a pull
+FORCE_NOISE = 1e-12  # of the weight: less than this is rounding
 PHASE_TOLERANCE = 1e-13  # [rad] width of the bracket in which a part breaks loose
 BRACKETING_STEPS = 60
 UNBOUNDED_FRICTION = 1e9  # [1] friction in place of one that is not finite
@@ -46,7 +49,7 @@ class TrackMotion:
     load: np.ndarray  # (..., 3) [N] weight, drive and centrifugal force
 
 
-def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=False):
+def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=False) -> TrackMotion:
     """Return what a part on the track does at one phase of the vibration.
 
     Source: ``system.sliding`` and ``system.held``; docs/mechanics.md, "The track".
@@ -81,9 +84,9 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
     sense = np.where(moving == 0.0, np.sign(still["mobilised"]), moving)
     free = _course(load, moving, sense)
 
-    def sliding_on(closed):
+    def sliding_on(closed) -> dict[Any, Any]:
         """Along the track while a wall contact is closed; a part off the wall goes where it is pushed."""
-        course = sense[..., None] * system.AHEAD if any(closed) else free
+        course = sense[..., None] * system.ALONG_X if any(closed) else free
         use = sense * wall if any(closed) else 0.0 * sense * wall
         turns = (moving == 0.0) & (sum(closed) == 1)
         if turns.any():
@@ -91,11 +94,11 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
         return vars(system.sliding(seat, axes, load, closed, kinetic, use, course)) | {"wall_use": use}
 
     slipping = _chosen(sliding_on, bowl.gravity) if slides.any() else still
-    found = {name: _where(slides, slipping[name], still[name]) for name in still}
-    return _motion(seat, found, slides, needed, load)
+    solution = {name: _where(slides, slipping[name], still[name]) for name in still}
+    return _motion(seat, solution, slides, needed, load)
 
 
-def needed_at_rest(seat, bowl, phase):
+def needed_at_rest(seat, bowl, phase) -> NDArray[np.float64]:
     """Return friction over normal force that holds a part at rest, (..., 3) [1]: floor and walls.
 
     Source: Coulomb's law for the reactions of ``system.held``; docs/mechanics.md, "The track".
@@ -110,7 +113,7 @@ def needed_at_rest(seat, bowl, phase):
     return np.where(still["normal"][..., None] > 0.0, needed, np.nan)
 
 
-def over_cycle(seat, bowl, samples=cycle.SAMPLES):
+def over_cycle(seat, bowl, samples=cycle.PERIOD_SAMPLES) -> tuple[TrackMotion, Any]:
     """Return the same over one settled period.
 
     Parameters
@@ -126,7 +129,7 @@ def over_cycle(seat, bowl, samples=cycle.SAMPLES):
         Flights are not followed: past the hop the state says ``hop`` and the velocity is that of a part that
         keeps to the track.
     """
-    slips = sliding_acceleration(seat, bowl, frame(bowl, seat.walls), -PULL * bowl.gravity)
+    slips = sliding_acceleration(seat, bowl, frame(bowl, seat.walls), -PULL_TOLERANCE * bowl.gravity)
     loose = loose_windows(
         lambda phase: motion(seat, bowl, phase),
         lambda phase: needed_at_rest(seat, bowl, phase)[..., 0],
@@ -137,52 +140,52 @@ def over_cycle(seat, bowl, samples=cycle.SAMPLES):
     return motion(seat, bowl, cycle.phases(samples), np.sign(speed), speed), course
 
 
-def _coefficients(bowl):
+def _coefficients(bowl) -> tuple[NDArray[Any], ...]:
     """Static, kinetic and wall friction, of one shape."""
     friction = bowl.friction
     return np.broadcast_arrays(*map(np.asarray, (friction.static, friction.kinetic, friction.wall)))
 
 
-def _still(seat, bowl, axes, load):
+def _still(seat, bowl, axes, load) -> tuple[dict, NDArray[np.float64]]:
     """The part at rest as ``system.held`` has it, and the friction that holds it there."""
     static, _, wall = _coefficients(bowl)
     ratio = np.divide(wall, static, out=np.zeros(np.shape(static)), where=static > 0.0)
 
-    def holding(closed):
-        found = system.held(seat, axes, load, closed, ratio)
-        return vars(found) | {"wall_use": found.mobilised * ratio}
+    def holding(closed) -> dict[Any, Any]:
+        solution = system.held(seat, axes, load, closed, ratio)
+        return vars(solution) | {"wall_use": solution.mobilised * ratio}
 
     still = _chosen(holding, bowl.gravity)
     return still, _needed(still, ratio)
 
 
-def _course(load, moving, sense):
+def _course(load, moving, sense) -> NDArray[np.float64]:
     """Direction of sliding of a part that no wall holds: along the push at rest, else as it moves."""
     push = load[..., :2]
     size = np.hypot(push[..., 0], push[..., 1])
     along = np.divide(push, size[..., None], out=np.zeros(push.shape), where=size[..., None] > 0.0)
-    return np.where((moving == 0.0)[..., None], along, sense[..., None] * system.AHEAD)
+    return np.where((moving == 0.0)[..., None], along, sense[..., None] * system.ALONG_X)
 
 
-def _chosen(solve, gravity):
+def _chosen(solve, gravity) -> dict[Any, Any]:
     """At each instant the solution with most closed contacts of which none pulls and no gap closes."""
-    least = -PULL * np.max(gravity)
+    least = -PULL_TOLERANCE * np.max(gravity)
     chosen: dict[str, np.ndarray] = {}
     for closed in system.SETS:
-        found = solve(closed)
-        found = found | {"closed": np.broadcast_to(closed, found["walls"].shape)}
-        fits = (found["walls"] >= least).all(axis=-1) & (found["parting"] >= least).all(axis=-1)
+        solution = solve(closed)
+        solution = solution | {"closed": np.broadcast_to(closed, solution["walls"].shape)}
+        fits = (solution["walls"] >= least).all(axis=-1) & (solution["parting"] >= least).all(axis=-1)
         if not chosen:
-            chosen, decided = found, fits
+            chosen, decided = solution, fits
             continue
-        chosen = {name: _where(decided, chosen[name], found[name]) for name in found}
+        chosen = {name: _where(decided, chosen[name], solution[name]) for name in solution}
         decided = decided | fits
         if decided.all():
             break
     return chosen
 
 
-def _needed(still, ratio):
+def _needed(still, ratio) -> NDArray[np.float64]:
     """Friction over normal force that holds the part, at the floor and at each wall contact."""
     size, normal = np.hypot(*np.moveaxis(still["friction"], -1, 0)), still["normal"]
     floor = np.divide(size, normal, out=np.full(size.shape, np.nan), where=normal > 0.0)
@@ -190,32 +193,32 @@ def _needed(still, ratio):
     return np.concatenate([floor[..., None], wall], axis=-1)
 
 
-def _motion(seat, found, slides, needed, load):
+def _motion(seat, solution, slides, needed, load) -> TrackMotion:
     """The record, in newtons and metres, with what holds while there is no contact."""
     mass, height = seat.mass, seat.height
-    contact = found["normal"] > 0.0
-    normal = np.where(contact, found["normal"], 0.0)
+    contact = solution["normal"] > 0.0
+    normal = np.where(contact, solution["normal"], 0.0)
     offset = np.divide(
-        height * found["moments"], normal[..., None],
-        out=np.full(found["moments"].shape, np.nan), where=contact[..., None],
+        height * solution["moments"], normal[..., None],
+        out=np.full(solution["moments"].shape, np.nan), where=contact[..., None],
     )  # fmt: skip
     inside = inset(seat.contact, offset)
-    walls = np.where(found["closed"] & contact[..., None], np.maximum(found["walls"], 0.0), 0.0)
+    walls = np.where(solution["closed"] & contact[..., None], np.maximum(solution["walls"], 0.0), 0.0)
     state = np.where(inside < -ON_THE_LINE, TIP, np.where(slides, SLIDE, STICK))
-    friction = np.where(contact[..., None], found["friction"], 0.0)
-    noise = NOISE * np.linalg.norm(load, axis=-1)[..., None] / mass
+    friction = np.where(contact[..., None], solution["friction"], 0.0)
+    noise = FORCE_NOISE * np.linalg.norm(load, axis=-1)[..., None] / mass
     walls, friction = (mass * np.where(np.abs(force) < noise, 0.0, force) for force in (walls, friction))
     return TrackMotion(
         state=np.where(contact, state, HOP),
         normal_force=mass * normal,
         walls=walls,
-        closed=found["closed"],
+        closed=solution["closed"],
         radial_friction=friction[..., 1],
         traction=0.0 - friction[..., 0],
-        wall_friction=found["wall_use"][..., None] * walls,
-        couple=mass * height * found["couple"] * contact,
-        acceleration=np.where(contact[..., None], found["acceleration"], load[..., :2] / mass),
-        turning=found["turning"] / height * contact,
+        wall_friction=solution["wall_use"][..., None] * walls,
+        couple=mass * height * solution["couple"] * contact,
+        acceleration=np.where(contact[..., None], solution["acceleration"], load[..., :2] / mass),
+        turning=solution["turning"] / height * contact,
         offset=offset,
         inside=inside,
         needed=np.where(contact[..., None], needed, np.nan),
@@ -224,13 +227,13 @@ def _motion(seat, found, slides, needed, load):
     )
 
 
-def _where(condition, first, second):
+def _where(condition, first, second) -> Any:
     """np.where with the condition widened over trailing axes."""
     wide = condition.reshape(condition.shape + (1,) * (np.ndim(first) - condition.ndim))
     return np.where(wide, first, second)
 
 
-def sliding_acceleration(seat, bowl, axes, least):
+def sliding_acceleration(seat, bowl, axes, least) -> Callable[..., Any]:
     """Return the acceleration of a sliding part as a function of phase, speed and sense.
 
     Source: ``system.sliding``, which is linear in the load.
@@ -256,7 +259,7 @@ def sliding_acceleration(seat, bowl, axes, least):
     drive, up, radial = (vector.tolist() for vector in (axes.drive, axes.up, axes.radial))
     weight = [bowl.gravity * component for component in up]
 
-    def at(phase, speed, sense):
+    def at(phase, speed, sense) -> float:
         push = stroke * omega * math.sin(phase)
         outward = (drive[0] * stroke * math.cos(phase) + speed) ** 2 / radius
         x = push * drive[0] - weight[0] - outward * radial[0]
@@ -274,7 +277,7 @@ def sliding_acceleration(seat, bowl, axes, least):
     return at
 
 
-def loose_windows(rest, needed, static, samples=cycle.SAMPLES):
+def loose_windows(rest, needed, static, samples=cycle.PERIOD_SAMPLES) -> list[Any]:
     """Return the phases at which a part at rest breaks loose.
 
     Source: Coulomb's law on the reactions of ``system.held``; docs/mechanics.md, "The track".
@@ -298,21 +301,21 @@ def loose_windows(rest, needed, static, samples=cycle.SAMPLES):
     sense = _loose_sense(rest(phase), static)
     change = np.flatnonzero(sense != np.roll(sense, 1))
     if len(change) == 0:
-        return [(0.0, cycle.TURN, float(sense[0]))] if sense[0] else []
-    before, step = sense[change - 1], cycle.TURN / samples
+        return [(0.0, cycle.FULL_TURN, float(sense[0]))] if sense[0] else []
+    before, step = sense[change - 1], cycle.FULL_TURN / samples
     low, high = phase[change] - step, phase[change].copy()
     edges = _loose_edges(lambda at: needed(at) - static, low, high, (before != 0.0) & (sense[change] == 0.0))
     return _cut_windows(edges, sense[change])
 
 
-def _loose_edges(beyond, low, high, falls):
+def _loose_edges(beyond, low, high, falls) -> NDArray[np.float64]:
     """Phases at which a margin passes zero, each within a bracket; where it is not finite, it is positive.
 
     Brackets whose ends are both loose, one way and the other, close in on their lower end.
     """
     sign = np.where(falls, -1.0, 1.0)
 
-    def margin(at):
+    def margin(at) -> NDArray[np.float64]:
         return sign * np.nan_to_num(beyond(at), nan=UNBOUNDED_FRICTION, posinf=UNBOUNDED_FRICTION)
 
     left, right = margin(low), margin(high)
@@ -322,43 +325,51 @@ def _loose_edges(beyond, low, high, falls):
         share = np.where((left < 0.0) & (right > 0.0) & (count % 3 < 2), left / (left - right), 0.5)
         middle = low + (high - low) * share
         now = margin(middle)
-        below, met = now <= 0.0, np.abs(now) <= PHASE_TOLERANCE
+        below, exact = now <= 0.0, np.abs(now) <= PHASE_TOLERANCE
         low, left = np.where(below, middle, low), np.where(below, now, left)
         high, right = np.where(below, high, middle), np.where(below, right, now)
-        low, high = np.where(met, middle, low), np.where(met, middle, high)
+        low, high = np.where(exact, middle, low), np.where(exact, middle, high)
     return high
 
 
-def _cut_windows(starts, senses):
+def _cut_windows(starts, senses) -> list[tuple[float, float, float]]:
     """Windows within one period from where each begins; a state lasts to the next one's begin."""
-    found = []
-    for start, end, sense in zip(starts, np.append(starts[1:], starts[0] + cycle.TURN), senses):
-        if sense and end > cycle.TURN:
-            found += [(0.0, float(end - cycle.TURN), float(sense)), (float(start), cycle.TURN, float(sense))]
+    windows = []
+    for start, end, sense in zip(starts, np.append(starts[1:], starts[0] + cycle.FULL_TURN), senses):
+        if sense and end > cycle.FULL_TURN:
+            windows += [
+                (0.0, float(end - cycle.FULL_TURN), float(sense)),
+                (float(start), cycle.FULL_TURN, float(sense)),
+            ]
         elif sense:
-            found.append((float(start), float(end), float(sense)))
-    return sorted(found)
+            windows.append((float(start), float(end), float(sense)))
+    return sorted(windows)
 
 
-def _loose_sense(rest, static):
+def _loose_sense(rest, static) -> NDArray[np.float64]:
     """Way in which a part at rest breaks loose: +1, -1, or 0 where it is held."""
     loose = (rest.state == HOP) | ~(rest.needed[:, 0] <= static)
     return np.where(loose, np.where(rest.acceleration[:, 0] > 0.0, 1.0, -1.0), 0.0)
 
 
-def _sliding_rows(seat, bowl, axes, sense):
+def _sliding_rows(seat, bowl, axes, sense) -> list[tuple[list, list, list, list[Any]]]:
     """For each set of closed contacts the rows of acceleration, normal force and two margins.
 
     Each row is a list of three numbers: the value for a unit of load per mass along X, Y and Z.
     """
     unit = seat.mass * np.eye(3)
-    course = np.tile(sense * system.AHEAD, (3, 1))
-    wall, found = sense * bowl.friction.wall, []
+    course = np.tile(sense * system.ALONG_X, (3, 1))
+    wall, sets = sense * bowl.friction.wall, []
     for closed in system.SETS:
         use = np.full(3, wall if any(closed) else 0.0)
-        one = system.sliding(seat, axes, unit, closed, np.full(3, bowl.friction.kinetic), use, course)
-        conditions = [one.walls[:, k] if shut else one.parting[:, k] for k, shut in enumerate(closed)]
-        rows = (one.acceleration[:, 0], one.normal, *conditions)
+        motion_of_set = system.sliding(
+            seat, axes, unit, closed, np.full(3, bowl.friction.kinetic), use, course
+        )
+        conditions = [
+            motion_of_set.walls[:, k] if shut else motion_of_set.parting[:, k]
+            for k, shut in enumerate(closed)
+        ]
+        rows = (motion_of_set.acceleration[:, 0], motion_of_set.normal, *conditions)
         along, normal, *conditions = (row.tolist() for row in rows)
-        found.append((along, normal, *conditions))
-    return found
+        sets.append((along, normal, *conditions))
+    return sets

@@ -1,5 +1,6 @@
 """The part on the track for arrays of bowl settings: what a map over two of them shows."""
 
+from collections.abc import Iterator
 from dataclasses import fields, replace
 from typing import Any
 
@@ -8,23 +9,23 @@ import numpy as np
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.mechanics import limits
-from feederscrew.mechanics.floor.balance import HOP, STATES
+from feederscrew.mechanics.floor.balance import HOP, MOTION_STATES
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import card_seat, seat
 from feederscrew.mechanics.wall import support
-from feederscrew.mechanics.wall.stable_headings import headings, laid, on_track
+from feederscrew.mechanics.wall.stable_headings import headings, on_track, stable_row
 
-REGIMES = (*STATES, "leaves the wall", "does not fit")  # a code is a place in this list
-LEAVES, UNFIT = len(STATES), len(STATES) + 1
-COLUMNS = (
+TRACK_REGIMES = (*MOTION_STATES, "leaves the wall", "does not fit")  # a code is a place in this list
+LEAVES, UNFIT = len(MOTION_STATES), len(MOTION_STATES) + 1
+MAP_COLUMNS = (
     "acceleration_x_m_s2", "normal_force_N", "wall_1_N", "wall_2_N",
     "radial_friction_N", "traction_N", "normal_line_offset_m", "normal_line_offset_across_m",
 )  # fmt: skip
 SECTIONS, SINGLE = ("drive", "friction", "track"), ("restitution", "gravity")  # of a bowl, that act on a part
-ROUNDED = 12  # decimals that tell two radii, widths or banks apart
+TRACK_DECIMALS = 12  # decimals that tell two radii, widths or banks apart
 
 
-def seated(posture, bowl, heading=None):
+def seated(posture, bowl, heading=None) -> tuple[Any, ...]:
     """Return how a part lies against the wall of a bowl.
 
     Source: docs/mechanics.md, "Headings".
@@ -49,12 +50,12 @@ def seated(posture, bowl, heading=None):
     """
     if posture.corners is None:
         return card_seat(posture), None, 0
-    found = headings(posture, bowl.track)
-    row = laid(found, heading)
-    return seat(posture, float(found.headings[row]), found.touching[row], bowl.track.bank), found, row
+    stable = headings(posture, bowl.track)
+    row = stable_row(stable, heading)
+    return seat(posture, float(stable.headings[row]), stable.touching[row], bowl.track.bank), stable, row
 
 
-def cells(posture, bowl, heading=None):
+def cells(posture, bowl, heading=None) -> dict[Any, Any]:
     """Return the upper reversal at every cell of a map.
 
     Source: ``balance.motion``, cell by cell.
@@ -70,72 +71,72 @@ def cells(posture, bowl, heading=None):
     Returns
     -------
     dict of str to array [SI, as each column's name says]
-        Columns of the map, ``throw_number``, above 1 where it hops, and 'regime', places in ``REGIMES``; NaN
-        where the part does not fit; no acceleration where it hops.
+        Columns of the map, ``throw_number``, above 1 where it hops, and 'regime', places in
+        ``TRACK_REGIMES``; NaN where the part does not fit; no acceleration where it hops.
     """
     shape = np.broadcast_shapes(*(np.shape(value) for _, _, value in _fields(bowl)))
-    found = {name: np.full(shape, np.nan) for name in COLUMNS} | {"regime": np.full(shape, UNFIT)}
+    columns = {name: np.full(shape, np.nan) for name in MAP_COLUMNS} | {"regime": np.full(shape, UNFIT)}
     for place, here in _seats(posture, bowl, heading, shape):
         there = _answers(balance.motion(place, _picked(bowl, shape, here)))
         for name, values in there.items():
-            found[name][here] = values
+            columns[name][here] = values
     drive, track = bowl.drive, bowl.track
     ratio = limits.acceleration_ratio(drive.amplitude, drive.frequency, bowl.gravity)
-    found["throw_number"] = limits.throw_number(ratio, drive.vibration_angle, track.climb)
-    return found
+    columns["throw_number"] = limits.throw_number(ratio, drive.vibration_angle, track.climb)
+    return columns
 
 
-def _seats(posture, bowl, heading, shape):
+def _seats(posture, bowl, heading, shape) -> Iterator[Any]:
     """Each seat that occurs and the cells, (...) bool, where it does."""
     names = ("climb", "bank", "radius", "width")
     values = np.stack([np.broadcast_to(getattr(bowl.track, name), shape).ravel() for name in names])
-    kinds, place = np.unique(np.round(values, ROUNDED), axis=1, return_inverse=True)
+    kinds, place = np.unique(np.round(values, TRACK_DECIMALS), axis=1, return_inverse=True)
     groups: dict[Any, tuple[Any, list[int]]] = {}  # by the name of a seat: itself, and its tracks
-    known: dict[Any, Any] = {}
+    cache: dict[Any, Any] = {}
     for k, kind in enumerate(kinds.T):
-        key, seat_there = _seat(posture, bowl, heading, Track(*kind), known)
+        key, seat_there = _seat(posture, bowl, heading, Track(*kind), cache)
         if seat_there is not None:
             groups.setdefault(key, (seat_there, []))[1].append(k)
     for seat_there, members in groups.values():
         yield seat_there, np.isin(place.reshape(shape), members)
 
 
-def _seat(posture, bowl, heading, there, known):
+def _seat(posture, bowl, heading, there, cache) -> tuple[Any, ...]:
     """A name for the seat on one track, and the seat; None where the part does not fit."""
     if posture.corners is None:
         return "card", card_seat(posture)
     try:
-        if there.radius not in known:
-            known[there.radius] = headings(posture, there)
-        one = known[there.radius]
-        if (there.radius, there.width) not in known:
-            known[there.radius, there.width] = support.reaches(one, posture, there)
-        found = on_track(one, posture, there, known[there.radius, there.width])
-        row = laid(found, heading)
+        if there.radius not in cache:
+            cache[there.radius] = headings(posture, there)
+        free = cache[there.radius]
+        if (there.radius, there.width) not in cache:
+            cache[there.radius, there.width] = support.reaches(free, posture, there)
+        stable = on_track(free, posture, there, cache[there.radius, there.width])
+        row = stable_row(stable, heading)
     except FeederError:
         return None, None
     lean = float(np.sign(there.bank))
-    return (there.radius, row, lean), seat(posture, float(found.headings[row]), found.touching[row], lean)
+    return (there.radius, row, lean), seat(posture, float(stable.headings[row]), stable.touching[row], lean)
 
 
-def _answers(found):
-    leaves = ~found.closed.any(axis=-1) & (found.state != HOP) & (found.acceleration[..., 1] > 0.0)
-    along = np.where(found.slides, found.acceleration[..., 0], 0.0)
-    along = np.where(found.state == HOP, np.nan, along)
-    walls, offsets = np.moveaxis(found.walls, -1, 0), np.moveaxis(found.offset, -1, 0)
-    values = (along, found.normal_force, *walls, found.radial_friction, found.traction, *offsets)
-    return dict(zip(COLUMNS, values)) | {"regime": np.where(leaves, LEAVES, found.state)}
+def _answers(motion) -> dict[Any, Any]:
+    leaves = ~motion.closed.any(axis=-1) & (motion.state != HOP) & (motion.acceleration[..., 1] > 0.0)
+    along = np.where(motion.slides, motion.acceleration[..., 0], 0.0)
+    along = np.where(motion.state == HOP, np.nan, along)
+    walls, offsets = np.moveaxis(motion.walls, -1, 0), np.moveaxis(motion.offset, -1, 0)
+    values = (along, motion.normal_force, *walls, motion.radial_friction, motion.traction, *offsets)
+    return dict(zip(MAP_COLUMNS, values)) | {"regime": np.where(leaves, LEAVES, motion.state)}
 
 
-def _fields(bowl):
+def _fields(bowl) -> Iterator[Any]:
     """Yield every field that acts on a part: its section or '', its name, its value."""
     for section in SECTIONS:
         record = getattr(bowl, section)
-        yield from ((section, one.name, getattr(record, one.name)) for one in fields(record))
+        yield from ((section, field.name, getattr(record, field.name)) for field in fields(record))
     yield from (("", name, getattr(bowl, name)) for name in SINGLE)
 
 
-def _picked(bowl, shape, here):
+def _picked(bowl, shape, here) -> Any:
     """The bowl at chosen cells, every field a (cells,) array."""
     changed: dict[str, dict[str, Any]] = {}
     for section, name, value in _fields(bowl):

@@ -8,15 +8,16 @@ Source: Coulomb's cones as a linear programme; docs/mechanics.md.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from feederscrew.mechanics.track.frame import frame, loads
 
-SIDES = 64  # of the pyramid within a friction cone: its corners lie on it, its sides 0.12 % within
-MARGIN = 1e-6  # of every coefficient, so that an equilibrium on the very limit is none
+CONE_SIDES = 64  # of the pyramid within a friction cone: its corners lie on it, its sides 0.12 % within
+CONE_MARGIN = 1e-6  # of every coefficient, so that an equilibrium on the very limit is none
 
 
-def exists(seat, bowl, phase=0.5 * np.pi):
+def exists(seat, bowl, phase=0.5 * np.pi) -> bool:
     """Return whether forces within the friction cones balance the load on a part at rest.
 
     Source: Coulomb's cones as a linear programme; docs/mechanics.md, "The track".
@@ -44,18 +45,18 @@ def exists(seat, bowl, phase=0.5 * np.pi):
     return linprog(np.zeros(len(rays)), A_eq=rays.T, b_eq=right, method="highs").status == 0
 
 
-def _rays(seat, bowl, axes):
+def _rays(seat, bowl, axes) -> NDArray[np.float64]:
     """Edges of the friction pyramids as wrenches about the centre of mass, its height the unit; (R, 6)."""
-    angle = 2.0 * np.pi * np.arange(SIDES) / SIDES
+    angle = 2.0 * np.pi * np.arange(CONE_SIDES) / CONE_SIDES
     around = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    static, wall = (mu * (1.0 - MARGIN) for mu in (bowl.friction.static, bowl.friction.wall))
-    floor = np.column_stack([static * around, np.ones(SIDES)])
+    static, wall = (mu * (1.0 - CONE_MARGIN) for mu in (bowl.friction.static, bowl.friction.wall))
+    floor = np.column_stack([static * around, np.ones(CONE_SIDES)])
     feet = np.column_stack([seat.contact, np.full(len(seat.contact), -seat.height)])
-    places, forces = [np.repeat(feet, SIDES, axis=0)], [np.tile(floor, (len(feet), 1))]
+    places, forces = [np.repeat(feet, CONE_SIDES, axis=0)], [np.tile(floor, (len(feet), 1))]
     for place, normal, course in zip(seat.walls, axes.normals, axes.courses):
         upward = np.cross(course, normal)
         tangents = around[:, :1] * course + around[:, 1:] * upward
-        places.append(np.tile(place, (SIDES, 1)))
+        places.append(np.tile(place, (CONE_SIDES, 1)))
         forces.append(normal + wall * tangents)
     place, force = np.concatenate(places) / seat.height, np.concatenate(forces)
     return np.concatenate([force, np.cross(place, force)], axis=1)

@@ -9,12 +9,13 @@ centre of mass.
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned
 
-SAME = 1e-5  # of the part's size: corners above one another within this are one edge of its side
+EDGE_DEPTH_SHARE = 1e-5  # of the part's size: corners above one another within this are one edge of its side
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +29,7 @@ class Seat:
     walls: np.ndarray  # (2, 3) [m] wall contacts, the trailing one first
     contact: np.ndarray  # (K, 2) [m] contact polygon in track axes; (0, 2) of a card
 
-    def twist(self, bank):
+    def twist(self, bank) -> float:
         """Return how far [rad] a bank turns the part, its higher wall contact leaning beyond the lower."""
         (x_1, _, z_1), (x_2, _, z_2) = self.walls
         return float(np.arctan2((z_1 - z_2) * np.tan(bank), x_2 - x_1))
@@ -45,7 +46,7 @@ class TrackAxes:
     courses: np.ndarray  # (..., 2, 3) in which each wall contact slides when the part moves on
 
 
-def seat(posture, heading, touching, lean):
+def seat(posture, heading, touching, lean) -> Seat:
     """Return a mesh part in a heading against the wall.
 
     Source: docs/mechanics.md, "Headings"; the height of the contacts is own.
@@ -77,7 +78,7 @@ def seat(posture, heading, touching, lean):
     )
 
 
-def card_seat(posture):
+def card_seat(posture) -> Seat:
     """Return the one seat that a part card prints, at heading 0.
 
     Parameters
@@ -96,25 +97,25 @@ def card_seat(posture):
     FeederError
         If the card has no such data.
     """
-    shown = (posture.printed or {}).get("track") or {}
-    missing = [word for word in ("wall_lever", "wall_lever_angle", "wall_x") if word not in shown]
+    block = (posture.printed or {}).get("track") or {}
+    missing = [word for word in ("wall_lever", "wall_lever_angle", "wall_x") if word not in block]
     if missing:
         what = f"the card has no {missing[0]} for this aspect in its track block"
         mend = "choose the aspect that its track block names, or give the part as a mesh"
         raise FeederError(f"part card, aspect {posture.name}", what, mend)
-    lever, angle, (behind, ahead) = shown["wall_lever"], shown["wall_lever_angle"], shown["wall_x"]
-    beside, level = -lever * np.cos(angle), lever * np.sin(angle)
+    lever, angle, (behind, ahead) = block["wall_lever"], block["wall_lever_angle"], block["wall_x"]
+    side, level = -lever * np.cos(angle), lever * np.sin(angle)
     return Seat(
         mass=posture.mass,
         height=posture.height,
         heading=0.0,
         inertia=posture.inertia[2],
-        walls=check.frozen(np.array([[-behind, beside, level], [ahead, beside, level]])),
+        walls=check.frozen(np.array([[-behind, side, level], [ahead, side, level]])),
         contact=posture.contact,
     )
 
 
-def frame(bowl, walls):
+def frame(bowl, walls) -> TrackAxes:
     """Return the directions on the track of a bowl.
 
     Source: docs/mechanics.md, "Frames and signs".
@@ -134,7 +135,7 @@ def frame(bowl, walls):
         bowl.track.climb, bowl.track.bank, bowl.drive.vibration_angle, bowl.drive.direction, bowl.track.radius
     )
 
-    def banked(x, y, z):
+    def banked(x, y, z) -> NDArray[np.float64]:
         """Track axes of a vector given along X, level towards the bowl's axis, and square to both."""
         along = x, y * np.cos(delta) + z * np.sin(delta), z * np.cos(delta) - y * np.sin(delta)
         return np.stack(np.broadcast_arrays(*along), axis=-1)
@@ -152,7 +153,7 @@ def frame(bowl, walls):
     return TrackAxes(up, radial, drive, normals, courses)
 
 
-def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False):
+def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False) -> NDArray[np.float64]:
     """Return weight, drive and centrifugal force on the part, all at its centre of mass.
 
     Source: the loads of eq. [4.29], with the centrifugal force of docs/mechanics.md, "The track".
@@ -181,7 +182,7 @@ def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False):
     return seat.mass * (push - np.asarray(bowl.gravity)[..., None] * axes.up - outward)
 
 
-def bank_without_radial_friction(seat):
+def bank_without_radial_friction(seat) -> float:
     """Return the bank [rad] at which the wall's reaction passes through the centre of mass: R3 is zero.
 
     Source: eqs. [4.33] and [4.35] with R3 = 0; docs/mechanics.md, "The track".
@@ -189,10 +190,10 @@ def bank_without_radial_friction(seat):
     return float(np.mean(np.arctan2(seat.walls[:, 2], -seat.walls[:, 1])))
 
 
-def _level(plan, levels, point, lean):
+def _level(plan, levels, point, lean) -> float:
     """Height at which the edge of a side above ``point`` touches the wall."""
     size = np.ptp(plan, axis=0).max()
-    there = levels[np.hypot(*(plan - point).T) <= SAME * size]
+    there = levels[np.hypot(*(plan - point).T) <= EDGE_DEPTH_SHARE * size]
     if lean == 0.0:
         return 0.5 * (there.max() + there.min())
     return there.max() if lean > 0.0 else there.min()

@@ -1,8 +1,10 @@
 """Which contact of a part on the track opens first as the drive grows, and the axis it then tips about."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.geometry.polygons import cross, sides
 from feederscrew.mechanics.floor.balance import HOP
@@ -29,7 +31,7 @@ class Opening:
     pitch: float  # [m] slide along the axis per radian; infinite where the part only slides
 
 
-def contact_wrenches(seat, axes, points, *, floor=0.0, wall=(0.0, 0.0), traction=(0.0, 0.0, 0.0)):
+def contact_wrenches(seat, axes, points, *, floor=0.0, wall=(0.0, 0.0), traction=(0.0, 0.0, 0.0)) -> Wrench:
     """Return unit wrenches of six contacts about the centre of mass: three floor points, two walls, traction.
 
     Source: screws of unit forces; docs/method/screws.md, "Contacts: reciprocal screws".
@@ -57,7 +59,7 @@ def contact_wrenches(seat, axes, points, *, floor=0.0, wall=(0.0, 0.0), traction
     return Wrench(forces, np.cross(places, forces), Point("C", np.zeros(3)))
 
 
-def first_to_open(seat, bowl):
+def first_to_open(seat, bowl) -> Opening:
     """Return the contact that a growing drive opens first, at either reversal.
 
     Parameters
@@ -73,16 +75,18 @@ def first_to_open(seat, bowl):
         reciprocal to the five other wrenches. The axis is that of the twist reciprocal to the normals of
         the other four contacts and to the traction: the part tips or turns about it without sliding.
     """
-    candidates = [found for name, phase in REVERSALS.items() for found in _openings(seat, bowl, name, phase)]
-    return min(candidates, key=lambda found: found.drive_factor, default=_none())
+    candidates = [
+        opening for name, phase in REVERSALS.items() for opening in _openings(seat, bowl, name, phase)
+    ]
+    return min(candidates, key=lambda opening: opening.drive_factor, default=_none())
 
 
-def _openings(seat, bowl, reversal, phase):
+def _openings(seat, bowl, reversal, phase) -> list[Any]:
     """Every contact that would open at one reversal."""
     now, axes = balance.motion(seat, bowl, phase), frame(bowl, seat.walls)
     driven = loads(seat, bowl, axes, phase)
     resting = loads(seat, bowl, axes, phase, without_drive=True)
-    weight, at_work, found = seat.mass * bowl.gravity, _at_work(now, seat.height), []
+    weight, at_work, openings = seat.mass * bowl.gravity, _at_work(now, seat.height), []
     on_floor = np.array([0.0, np.nan_to_num(now.offset[1]), -seat.height])
     for place, points in enumerate(_triangles(seat.contact)):
         six = contact_wrenches(seat, axes, points, **at_work)
@@ -90,18 +94,18 @@ def _openings(seat, bowl, reversal, phase):
         twists = tipping_twists(contact_wrenches(seat, axes, points, traction=on_floor))
         for name, k in _watched(seat, place).items():
             factor = _factor(still[k], moving[k])
-            found.append(_opening(name, factor, reversal, twists[k], seat.height))
-    return [one for one in found if np.isfinite(one.drive_factor)]
+            openings.append(_opening(name, factor, reversal, twists[k], seat.height))
+    return [opening for opening in openings if np.isfinite(opening.drive_factor)]
 
 
-def _watched(seat, place):
+def _watched(seat, place) -> dict[Any, Any]:
     """Contacts to look at with one floor triangle: its third point, and with the first the walls."""
     floor = {"floor": THIRD} if len(seat.contact) else {}
     walls = {} if place else {name: WALL_1 + k for k, name in enumerate(WALLS)}
     return floor | walls
 
 
-def _at_work(now, height):
+def _at_work(now, height) -> dict[Any, Any]:
     """Friction over normal force and the line of the traction, as the part slides or sticks."""
     wall = np.divide(now.wall_friction, now.walls, out=np.zeros(2), where=now.walls > 0.0)
     if now.state == HOP:
@@ -111,7 +115,7 @@ def _at_work(now, height):
     return {"wall": wall, "traction": (0.0, float(now.offset[1]), -height)}
 
 
-def _triangles(contact):
+def _triangles(contact) -> list[NDArray[np.float64]]:
     """For each side of the contact polygon its two corners and the one farthest from it."""
     if len(contact) == 0:  # of a card: the walls' share does not depend on where the floor is touched
         return [np.array([[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]]) * 1e-3]
@@ -120,7 +124,7 @@ def _triangles(contact):
     return [np.array([a, b, contact[k]]) for a, b, k in zip(contact, after, across.argmax(axis=1))]
 
 
-def _factor(still, driven):
+def _factor(still, driven) -> float:
     """Return the multiple of the drive at which a reaction is zero, from it without and with the drive."""
     if still < -IDLE:
         return 0.0
@@ -129,11 +133,11 @@ def _factor(still, driven):
     return max(still, 0.0) / (still - driven)
 
 
-def _force(load):
+def _force(load) -> Wrench:
     return Wrench(load, np.zeros(3), Point("C", np.zeros(3)))
 
 
-def _opening(name, factor, reversal, twist, height):
+def _opening(name, factor, reversal, twist, height) -> Opening:
     return Opening(
         contact=name,
         drive_factor=float(factor),
@@ -144,6 +148,6 @@ def _opening(name, factor, reversal, twist, height):
     )
 
 
-def _none():
+def _none() -> Opening:
     nowhere = np.full(3, np.nan)
     return Opening("none", np.inf, "upper", nowhere, nowhere, np.nan)

@@ -8,11 +8,11 @@ from feederscrew.geometry import vectors
 from feederscrew.mechanics.wall.sameness import directions
 
 FIRST, LAST = np.radians(6.0), np.radians(0.02)  # [rad] steps of the way down, the largest and the smallest
-AXES = 24  # about which a step may turn it, either way
+STEP_AXES = 24  # about which a step may turn it, either way
 YAW = np.radians(5.0)  # [rad] askew to either side, as it comes
-ASKEW = np.radians(np.linspace(-10.0, 10.0, 11))  # by which one may lie turned and be known
+HEADING_OFFSETS = np.radians(np.linspace(-10.0, 10.0, 11))  # by which one may lie turned and be known
 SEEN = 160  # directions in which reaches are compared
-ALIKE = 0.05  # of the part's size, by which they may differ
+REACH_TOLERANCE = 0.05  # of the part's size, by which they may differ
 
 
 def height(points, angle):
@@ -45,11 +45,11 @@ def settled(points, angle):
     """
     step, here = FIRST, float(height(points, angle))
     while step > LAST:
-        ways = vectors.product(points, _turns(step))
-        found = height(ways, angle)
-        best = int(np.argmin(found))
-        if found[best] < here * (1.0 - 1e-9):
-            points, here = ways[best], float(found[best])
+        turned = vectors.product(points, _turns(step))
+        heights = height(turned, angle)
+        best = int(np.argmin(heights))
+        if heights[best] < here * (1.0 - 1e-9):
+            points, here = turned[best], float(heights[best])
         else:
             step *= 0.5
     return points
@@ -58,13 +58,13 @@ def settled(points, angle):
 @functools.lru_cache(maxsize=32)
 def _turns(step):
     """Matrices (2 AXES, 3, 3) that turn rows by a step [rad] about axes spread over the sphere."""
-    axes = directions()[:: len(directions()) // AXES][:AXES]
+    axes = directions()[:: len(directions()) // STEP_AXES][:STEP_AXES]
     s, c = np.sin(step), np.cos(step)
-    made = []
+    rotations = []
     for x, y, z in np.concatenate([axes, -axes]):
         across = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
-        made.append(c * np.eye(3) + s * across + (1.0 - c) * np.outer([x, y, z], [x, y, z]))
-    return np.array(made)
+        rotations.append(c * np.eye(3) + s * across + (1.0 - c) * np.outer([x, y, z], [x, y, z]))
+    return np.array(rotations)
 
 
 @functools.lru_cache(maxsize=2048)
@@ -81,42 +81,48 @@ def _standing(posture, heading):
 
 
 def _reach(points):
-    seen = directions()[:: len(directions()) // SEEN][:SEEN]
-    return vectors.product(points, seen.T).max(axis=-2)
+    sample = directions()[:: len(directions()) // SEEN][:SEEN]
+    return vectors.product(points, sample.T).max(axis=-2)
 
 
 @functools.lru_cache(maxsize=2048)
-def _known(posture, heading):
+def _reach_of_orientation(posture, heading):
     """What an orientation reaches (N, SEEN) [m], turned a little."""
-    return np.array([_reach(_standing(posture, heading + by)) for by in ASKEW])
+    return np.array([_reach(_standing(posture, heading + by)) for by in HEADING_OFFSETS])
 
 
-def becomes(one, every, angle):
+def becomes(orientation, orientations, angle):
     """Return what an orientation becomes in a groove, ((place, share) ...); place -1 is none of the known.
 
     Source: own; docs/tooling.md, "A groove".
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
         It comes a little askew, one way as often as the other.
-    every : sequence of Orientation
+    orientations : sequence of Orientation
         Of the part.
     angle : float [rad]
         Of both faces from level.
     """
     shares: dict[int, float] = {}
     for turn in (-YAW, YAW):
-        reach = _comes_to_lie(one.posture, one.heading, angle, turn)
-        place = _like(reach, one, every)
+        reach = _comes_to_lie(orientation.posture, orientation.heading, angle, turn)
+        place = _like(reach, orientation, orientations)
         shares[place] = shares.get(place, 0.0) + 0.5
     return tuple(shares.items())
 
 
-def _like(reach, one, every):
-    """Place of the orientation that reaches so, that of ``one`` first; -1 where none does."""
-    off = [float(np.abs(_known(k.posture, k.heading) - reach).max(axis=1).min()) for k in every]
-    size = ALIKE * float(reach.max())
-    own = [other.posture is one.posture and other.heading == one.heading for other in every].index(True)
+def _like(reach, orientation, orientations):
+    """Place of the orientation that reaches so, that of ``orientation`` first; -1 where none does."""
+    off = [
+        float(np.abs(_reach_of_orientation(k.posture, k.heading) - reach).max(axis=1).min())
+        for k in orientations
+    ]
+    size = REACH_TOLERANCE * float(reach.max())
+    own = [
+        other.posture is orientation.posture and other.heading == orientation.heading
+        for other in orientations
+    ].index(True)
     best = own if off[own] < size else int(np.argmin(off))
     return best if off[best] < size else -1

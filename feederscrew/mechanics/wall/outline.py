@@ -6,14 +6,16 @@ this region, where two corners of the outline touch the wall. The radius may be 
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.geometry.polygons import cross, inset
 
-LEVEL = 0.1  # of that depth: tops of a curved end that differ by less are one, and halved
-ROUND = 1e-2  # of the outline's size: dips between headings shallower than this are facets of a curve
+SAME_TOP_SHARE = 0.1  # of that depth: tops of a curved end that differ by less are one, and halved
+MIN_DIP_SHARE = 1e-2  # of the outline's size: dips between headings shallower than this are facets of a curve
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +30,7 @@ class Rests:
     rounded: bool = False  # the outline is round as far as is known: every direction is as good
 
 
-def rests(outline, radius, merge=ROUND):
+def rests(outline, radius, merge=MIN_DIP_SHARE) -> Rests:
     """Return how an outline can lie against a wall.
 
     Source: own; docs/mechanics.md, "Headings".
@@ -65,10 +67,10 @@ def rests(outline, radius, merge=ROUND):
     balanced = (_ahead(np.roll(outward, 1), towards) > 0.0) & (_ahead(towards, outward) > 0.0)
     lowest, highest = np.flatnonzero(stable), np.flatnonzero(balanced)
     tops = highest[np.searchsorted(highest, lowest, side="right") - 1]  # the corner it tips over backwards
-    kept, start, share, rounded = _merged(
+    merged, start, share, rounded = _merged(
         distance[lowest], np.hypot(*corners[tops].T), towards[tops], merge * np.hypot(*corners.T).max()
     )
-    chosen = lowest[kept]
+    chosen = lowest[merged]
     return Rests(
         outward=check.frozen(outward[chosen]),
         touching=check.frozen(np.stack([corners[chosen], after[chosen]], axis=1)),
@@ -79,7 +81,7 @@ def rests(outline, radius, merge=ROUND):
     )
 
 
-def _chord(first, second):
+def _chord(first, second) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Middle of two corners, unit vector into the outline, half their distance."""
     along = second - first
     length = np.hypot(along[..., 0], along[..., 1])
@@ -87,7 +89,7 @@ def _chord(first, second):
     return 0.5 * (first + second), inward, 0.5 * length
 
 
-def _touching_corners(corners, radius):
+def _touching_corners(corners, radius) -> NDArray[np.float64]:
     """The corners that can reach the wall: those its curve does not bridge."""
     while len(corners) > 2 and np.isfinite(radius):
         before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
@@ -101,7 +103,7 @@ def _touching_corners(corners, radius):
     return corners
 
 
-def _pushed(first, second, radius):
+def _pushed(first, second, radius) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Direction to the wall through the foot, and the foot's distance from it, two corners touching."""
     middle, inward, half = _chord(first, second)
     in_line = np.einsum("ki,ki->k", middle, inward)
@@ -114,12 +116,12 @@ def _pushed(first, second, radius):
     return np.arctan2(-centre[:, 1], -centre[:, 0]), gap / (radius + far)
 
 
-def _ahead(start, end):
+def _ahead(start, end) -> NDArray[np.float64]:
     """Angle from one direction on to another, -pi to pi."""
     return np.mod(end - start + np.pi, 2.0 * np.pi) - np.pi
 
 
-def _merged(lows, tops, borders, least):
+def _merged(lows, tops, borders, least) -> tuple[Any, ...]:
     """Join dips with their neighbour over borders that rise less than ``least`` above them.
 
     Parameters are per dip: its depth, the height of the border before it and where that border lies.
@@ -133,19 +135,21 @@ def _merged(lows, tops, borders, least):
             break
         _join(dips, edges, i)
     rounded = bool(max(tops) - min(lows) < 2.0 * least)
-    starts = np.array([_border(tops, borders, dips[i - 1], k, LEVEL * least) for i, k in enumerate(dips)])
+    starts = np.array(
+        [_border(tops, borders, dips[i - 1], k, SAME_TOP_SHARE * least) for i, k in enumerate(dips)]
+    )
     share = np.mod(np.roll(starts, -1) - starts, 2.0 * np.pi) / (2.0 * np.pi)
     return np.array(dips), starts, np.where(share > 0.0, share, 1.0), rounded
 
 
-def _join(dips, edges, i):
+def _join(dips, edges, i) -> None:
     """Give dip i to the neighbour behind the lower of its two borders."""
     here, following = dips[i], dips[(i + 1) % len(dips)]
     edges[following] = max(edges[here], edges[following])
     dips.pop(i)
 
 
-def _border(tops, borders, before, after, level):
+def _border(tops, borders, before, after, level) -> float:
     """Middle of the highest tops between two dips that are left, so that an even end is shared evenly."""
     between = (before + 1 + np.arange((after - before - 1) % len(tops) + 1)) % len(tops)
     highest = borders[between[tops[between] >= tops[between].max() - level]]

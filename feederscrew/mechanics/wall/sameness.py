@@ -5,17 +5,19 @@ directions all around, and carries the solid onto itself, seen by its moments, w
 """
 
 import functools
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.part.moments import Moments
 
 SAME_SURFACE = 1e-3  # of the part's size: support functions that differ by less are equal
 SAME_SOLID = 5e-4  # [1] mismatch of moments; a tessellated turn leaves 1e-6, another shape 1e-2
-DIRECTIONS = 750  # on half the sphere; their images by mirroring are the other half
+LOOK_DIRECTIONS = 750  # on half the sphere; their images by mirroring are the other half
 
 
-def looks(posture, headings):
+def looks(posture, headings) -> tuple[Any, ...]:
     """Compute what a part looks like in each of some headings.
 
     Source: own; docs/mechanics.md, "Headings".
@@ -43,7 +45,7 @@ def looks(posture, headings):
     return np.array(supports), np.array([_moments_of(solid, posture.axes, turn) for turn in headings])
 
 
-def alike(first, second, mirrored=False):
+def looks_alike(first, second, mirrored=False) -> bool:
     """Return whether two looks are one and the same, or each other's mirror image.
 
     Parameters
@@ -63,7 +65,7 @@ def alike(first, second, mirrored=False):
     return bool(change.max() < SAME_SOLID)
 
 
-def firsts(posture, headings):
+def firsts(posture, headings) -> NDArray[np.int64]:
     """Return for each of the headings (M,) [rad] the first, (M,) [1], that is the same orientation.
 
     Source: own; what counts as one is in docs/tooling.md, "1. The method".
@@ -74,12 +76,12 @@ def firsts(posture, headings):
     rows = [(supports[k], None if moments is None else moments[k]) for k in range(len(headings))]
     first = np.arange(len(headings))
     for row in range(len(headings)):
-        known = (k for k in np.unique(first[:row]) if alike(rows[row], rows[k]))
-        first[row] = next(known, row)
+        earlier = (k for k in np.unique(first[:row]) if looks_alike(rows[row], rows[k]))
+        first[row] = next(earlier, row)
     return first
 
 
-def _supports(corners, turn):
+def _supports(corners, turn) -> NDArray[np.float64]:
     """(2, N) greatest extent of corners, turned about the vertical, along directions and their images."""
     there = directions()
     both = np.stack([there, there * [-1.0, 1.0, 1.0]])
@@ -90,14 +92,14 @@ def _supports(corners, turn):
     return greatest
 
 
-def _moments_of(solid, axes, turn):
+def _moments_of(solid, axes, turn) -> NDArray[np.float64]:
     """(2, n, 6) directional moments along some directions of the track and their images."""
-    there = directions()[:: DIRECTIONS // 24]
+    there = directions()[:: LOOK_DIRECTIONS // 24]
     both = np.stack([there, there * [-1.0, 1.0, 1.0]])
     return solid.directional(np.einsum("ji,...j->...i", axes, _turned_back(both, turn)))
 
 
-def _turned_back(vectors, turn):
+def _turned_back(vectors, turn) -> NDArray[np.float64]:
     """Vectors of the track's axes in those of the posture that was turned."""
     c, s = np.cos(turn), np.sin(turn)
     x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
@@ -105,18 +107,18 @@ def _turned_back(vectors, turn):
 
 
 @functools.lru_cache(maxsize=1)
-def directions():
+def directions() -> NDArray[np.float64]:
     """Return unit vectors (N, 3) [1] spread over the sphere.
 
     Source: R. Swinbank, R. J. Purser, "Fibonacci grids: a novel approach to global modelling", Q. J. R.
     Meteorol. Soc. 132(619), 1769-1793, 2006.
     """
-    k = np.arange(DIRECTIONS) + 0.5
-    z, turn = 1.0 - 2.0 * k / DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * k
+    k = np.arange(LOOK_DIRECTIONS) + 0.5
+    z, turn = 1.0 - 2.0 * k / LOOK_DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * k
     r = np.sqrt(1.0 - z * z)
     return np.column_stack([r * np.cos(turn), r * np.sin(turn), z])
 
 
 @functools.lru_cache(maxsize=4)
-def _moments(part):
+def _moments(part) -> Moments:
     return Moments(part.vertices, part.faces, part.centre_of_mass)

@@ -1,20 +1,21 @@
 """Whether the track holds the weight of a part on the side of its free edge."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import cross, turned
 
-NOISE = 1e-12  # [m] places along the track nearer than this are one
-SAME = 1e-6  # of the outline's size: nearer than this to the edge is on it
+PLACE_TOLERANCE_M = 1e-12  # [m] places along the track nearer than this are one
+EDGE_TOLERANCE = 1e-6  # of the outline's size: nearer than this to the edge is on it
 
 
-def reaches(found, posture, track):
+def reaches(headings, posture, track) -> list[NDArray[np.float64]]:
     """Return how far from the wall a track of some radius and width supports a part in each of its headings.
 
     Parameters
     ----------
-    found : Headings
+    headings : Headings
     posture : Posture
     track : Track
 
@@ -24,11 +25,11 @@ def reaches(found, posture, track):
         Places along the track and how far it reaches there, as seen from the centre of mass; none where it
         supports nothing.
     """
-    where = zip(found.headings, found.distances)
+    where = zip(headings.headings, headings.distances)
     return [_reach(_on_track(turned(posture.feet, angle), wall, track)) for angle, wall in where]
 
 
-def falls(posture, reach, track):
+def falls(posture, reach, track) -> bool:
     """Return whether the weight's line meets the surface beyond what the track supports, at its free edge.
 
     Source: own; docs/mechanics.md, "Headings".
@@ -54,14 +55,14 @@ def falls(posture, reach, track):
     size = np.ptp(posture.outline, axis=0).max()
     most = reach[:, 1].max()
     if posture.kind == "rolling":
-        return bool(inward > most + SAME * size)
+        return bool(inward > most + EDGE_TOLERANCE * size)
     along, off = reach.T
-    return bool(inward > np.interp(ahead, along, off, left=most, right=most) + SAME * size)
+    return bool(inward > np.interp(ahead, along, off, left=most, right=most) + EDGE_TOLERANCE * size)
 
 
-def _reach(points):
+def _reach(points) -> NDArray[np.float64]:
     """(K, 2) the side of the hull of points that is away from the wall, along the track."""
-    places = np.column_stack([NOISE * np.round(points[:, 0] / NOISE), points[:, 1]])
+    places = np.column_stack([PLACE_TOLERANCE_M * np.round(points[:, 0] / PLACE_TOLERANCE_M), points[:, 1]])
     chain: list[np.ndarray] = []
     for point in places[np.lexsort((-places[:, 1], places[:, 0]))]:
         if chain and point[0] == chain[-1][0]:
@@ -72,7 +73,7 @@ def _reach(points):
     return np.array(chain).reshape(-1, 2)
 
 
-def _on_track(edges, to_wall, track):
+def _on_track(edges, to_wall, track) -> NDArray[np.float64]:
     """Ends (K, 2) of what lies over the track of edges (E, 2, 2) that touch it."""
     corners, edge = edges.reshape(-1, 2), track.radius - track.width
     if edge <= 0.0:
@@ -82,7 +83,7 @@ def _on_track(edges, to_wall, track):
     return np.concatenate([on, centre + _crossings(edges[:, 0] - centre, edges[:, 1] - centre, edge)])
 
 
-def _crossings(start, end, radius):
+def _crossings(start, end, radius) -> NDArray[np.float64]:
     """Points (K, 2) where edges cross a circle about the origin."""
     along = end - start
     a, b, c = vectors.dot(along, along), vectors.dot(start, along), vectors.dot(start, start) - radius**2

@@ -43,7 +43,7 @@ def look(name, place=0):
         return f"{series} {amplitude} %", RAMPS[series][("78", "80", "82").index(amplitude)]
     if name in FIXED:
         return FIXED[name]
-    if name.lower() in registry.BY_NAME:
+    if name.lower() in registry.RULE_OF:
         return style.method(name.lower())
     return name.replace("_", " "), OWN[place % len(OWN)]
 

@@ -5,7 +5,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon
 
 from feederscrew.geometry.polygons import centroid, turned
-from feederscrew.mechanics.floor.balance import STATES
+from feederscrew.mechanics.floor.balance import MOTION_STATES
 from feederscrew.output import style as plots
 from feederscrew.output.floor.map_figures import phase_axis, state_band, state_legend
 from feederscrew.output.solid import marks
@@ -45,7 +45,7 @@ def plan(posture, heading, found):
         place = turned(found.offset, heading) / MM
         axes.plot(*place, "x", color=NORMAL, markersize=8, markeredgewidth=2, zorder=7)
         _note(axes, place, f"N = {newtons(found.normal_force)}", NORMAL, (8, -12))
-    state = STATES[int(found.state)]
+    state = MOTION_STATES[int(found.state)]
     axes.set_title(
         f"{_aspect(posture)}, heading {np.degrees(heading):.4g}° at the upper reversal: {state}",
         loc="left", fontsize=10, color=plots.INK, fontweight="bold",
@@ -90,8 +90,8 @@ def cycle(found, course, title):
     )  # fmt: skip
     for axes in (upper, lower):
         phase_axis(axes)
-    state_band(upper, phase, found.state, STATES)
-    state_legend(figure, found.state, STATES)
+    state_band(upper, phase, found.state, MOTION_STATES)
+    state_legend(figure, found.state, MOTION_STATES)
     return figure
 
 

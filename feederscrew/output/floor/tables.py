@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.mechanics.floor.balance import HOP, ON_THE_LINE, STATES, regime, rolls, stable_heading
+from feederscrew.mechanics.floor.balance import HOP, MOTION_STATES, ON_THE_LINE, regime, rolls, stable_heading
 from feederscrew.output import tables
 from feederscrew.studies.floor import FloorStudy
 from feederscrew.units import MM, factor
@@ -55,7 +55,7 @@ def instant(found, posture, bowl):
         **_offsets(found),
         **_friction(found, bowl),
         "tips": tips(getattr(found, "inside", np.nan)),
-        "state": STATES[int(found.state)],
+        "state": MOTION_STATES[int(found.state)],
     }
 
 
@@ -74,7 +74,7 @@ def over_cycle(found, course):
     shown = slice(None, None, EVERY)
     return {
         "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[shown],
-        "state": [STATES[code] for code in found.state[shown]],
+        "state": [MOTION_STATES[code] for code in found.state[shown]],
         "normal_force_N": found.normal_force[shown],
         "friction_z_N": found.friction[shown, 0],
         "friction_y_N": found.friction[shown, 1],
@@ -214,7 +214,7 @@ def map_remarks(study):
 
 def map_notes(kind, grid):
     """Return a sentence where nothing slides on a map."""
-    if STATES.index("slide") in grid.codes:
+    if MOTION_STATES.index("slide") in grid.codes:
         return []
     return [f"{kind.replace('_', ' and ')}: {none_slides(grid)}."]
 

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.patches import Polygon
 
 from feederscrew.geometry.polygons import outline, turned
-from feederscrew.mechanics.floor.balance import STATES
+from feederscrew.mechanics.floor.balance import MOTION_STATES
 from feederscrew.mechanics.track.frame import frame
 from feederscrew.output import style as plots
 from feederscrew.output.floor.figures import CONTACT, DRIVE, FRICTION, NORMAL, PART, arrow, newtons
@@ -33,7 +33,7 @@ def part(found, title):
     """
     figure = plots.figure(11.0, 5.4)
     above, behind = figure.subplots(1, 2)
-    state = STATES[int(found.now.state)]
+    state = MOTION_STATES[int(found.now.state)]
     figure.suptitle(
         f"{title}, upper reversal: {state}; arrow length ∝ √force",
         x=0.01,
@@ -83,8 +83,8 @@ def cycle(found, course, title):
         axes.legend(
             fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), labelcolor=plots.INK
         )
-    state_band(upper, phase, found.state, STATES)
-    state_legend(figure, found.state, STATES)
+    state_band(upper, phase, found.state, MOTION_STATES)
+    state_legend(figure, found.state, MOTION_STATES)
     return figure
 
 

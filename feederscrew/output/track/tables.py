@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.mechanics.floor.balance import HOP, STATES, regime
+from feederscrew.mechanics.floor.balance import HOP, MOTION_STATES, regime
 from feederscrew.output import tables
 from feederscrew.output.floor.tables import (
     EVERY,
@@ -68,7 +68,7 @@ def instant(found):
         "floor_couple_N_mm": float(found.couple) / MM,
         "opened": [] if found.state == HOP else opened(found.closed),
         "tips": tips(found.inside),
-        "state": STATES[int(found.state)],
+        "state": MOTION_STATES[int(found.state)],
     }
 
 
@@ -93,7 +93,7 @@ def over_cycle(found, course):
     pairs = {"": found.walls, "_friction": found.wall_friction}
     return {
         "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[shown],
-        "state": [STATES[code] for code in found.state[shown]],
+        "state": [MOTION_STATES[code] for code in found.state[shown]],
         "normal_force_N": found.normal_force[shown],
         **{f"wall_{k + 1}{name}_N": pair[shown, k] for name, pair in pairs.items() for k in (0, 1)},
         "radial_friction_N": found.radial_friction[shown] + 0.0,

@@ -1,8 +1,10 @@
 """Barriers between resting faces: how high a part must be lifted to tip, and into what it tips."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.geometry import vectors
@@ -26,7 +28,7 @@ class Tipping:
     doubts: tuple[str, ...]  # of the tumbling
 
 
-def tipping(tumbling, labels):
+def tipping(tumbling, labels) -> Tipping:
     """Return basins and saddles of exact tumbling, gathered by face.
 
     Parameters
@@ -67,18 +69,18 @@ def tipping(tumbling, labels):
     )
 
 
-def _between(basins, pairs):
+def _between(basins, pairs) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """(N,) saddles and (N, 2) faces on both sides, smaller first: each way from a face to a face."""
     many = np.diff(basins.indptr)[pairs]
-    ways = many[:, 0] * many[:, 1]
-    saddles = np.repeat(np.arange(len(pairs)), ways)
-    step = np.arange(len(saddles)) - np.repeat(np.cumsum(ways) - ways, ways)
+    paths = many[:, 0] * many[:, 1]
+    saddles = np.repeat(np.arange(len(pairs)), paths)
+    step = np.arange(len(saddles)) - np.repeat(np.cumsum(paths) - paths, paths)
     turn = np.column_stack(np.divmod(step, many[saddles, 1]))
-    one, other = basins.indices[basins.indptr[pairs[saddles]] + turn].T
-    return saddles, np.column_stack([np.minimum(one, other), np.maximum(one, other)])
+    first, other = basins.indices[basins.indptr[pairs[saddles]] + turn].T
+    return saddles, np.column_stack([np.minimum(first, other), np.maximum(first, other)])
 
 
-def rises(tips):
+def rises(tips) -> NDArray[np.float64]:
     """Return the lift (B, 2) [m] of the centre of mass on the way from the first face and from the second.
 
     Source: docs/resting.md, "Barriers and the tipping graph".
@@ -86,14 +88,14 @@ def rises(tips):
     return np.maximum(tips.tops[:, None] - tips.heights[tips.pairs], 0.0)
 
 
-def barriers(tips):
+def barriers(tips) -> NDArray[np.float64]:
     """Return the lowest lift (F,) [m] that tips each face into another; infinite where nothing does."""
     lowest = np.full(len(tips.shares), np.inf)
     np.minimum.at(lowest, tips.pairs.ravel(), rises(tips).ravel())
     return lowest
 
 
-def tip_angles(polygons, heights):
+def tip_angles(polygons, heights) -> NDArray[np.float64]:
     """Return the tilt of the floor at which a part that does not slide tips over an edge of its contact.
 
     Source: docs/resting.md, "Barriers and the tipping graph".
@@ -114,7 +116,7 @@ def tip_angles(polygons, heights):
     return np.minimum.reduceat(np.arctan2(across, np.repeat(heights, counts)), first)
 
 
-def line_tip_angle(polygon, normal, axis, height):
+def line_tip_angle(polygon, normal, axis, height) -> float:
     """Return the tilt of the floor at which a rolling part tips over an end of its line of contact.
 
     Source: docs/resting.md, "Barriers and the tipping graph".
@@ -139,7 +141,7 @@ def line_tip_angle(polygon, normal, axis, height):
     return float(np.arctan2(min(reach.max(), -reach.min()), height))
 
 
-def tilt_over(height, top):
+def tilt_over(height, top) -> float:
     """Return the tilt [rad] that brings a centre of mass at ``height`` [m] over a saddle at ``top`` [m].
 
     Source: docs/resting.md, "Barriers and the tipping graph".
@@ -147,7 +149,7 @@ def tilt_over(height, top):
     return np.arctan2(np.sqrt(np.maximum(top**2 - height**2, 0.0)), height)
 
 
-def critical_solid_angles(polygons, heights):
+def critical_solid_angles(polygons, heights) -> NDArray[np.float64]:
     """Return the share of each face's solid angle left when the mean critical one is taken off.
 
     Parameters
@@ -174,24 +176,24 @@ def critical_solid_angles(polygons, heights):
     heights, corners = np.repeat(heights, counts), np.concatenate(polygons)
     lifts, shares = np.hypot(across, heights) - heights, np.empty(len(polygons))
     for size in np.unique(counts):
-        alike = np.flatnonzero(counts == size)
-        edges = first[alike, None] + np.arange(size)
-        seen = _lifted_angles(corners[edges], normals[alike], lifts[edges])
-        critical, whole = seen[:, 1:].mean(axis=1), seen[:, 0]
-        shares[alike] = 1.0 - np.divide(critical, whole, out=np.ones(len(whole)), where=whole > 0.0)
+        same_size = np.flatnonzero(counts == size)
+        edges = first[same_size, None] + np.arange(size)
+        angles = _lifted_angles(corners[edges], normals[same_size], lifts[edges])
+        critical, whole = angles[:, 1:].mean(axis=1), angles[:, 0]
+        shares[same_size] = 1.0 - np.divide(critical, whole, out=np.ones(len(whole)), where=whole > 0.0)
     return shares
 
 
-def _lifted_angles(polygons, normals, lifts):
+def _lifted_angles(polygons, normals, lifts) -> NDArray[np.float64]:
     """(F, K + 1) [sr] polygons (F, K, 3) seen from the centre of mass as it is and from each lift of it."""
-    apex, one, other = polygons[:, :1], polygons[:, 1:-1], polygons[:, 2:]
-    fan = np.stack([np.broadcast_to(apex, one.shape), one, other], axis=2)
+    apex, first, second = polygons[:, :1], polygons[:, 1:-1], polygons[:, 2:]
+    fan = np.stack([np.broadcast_to(apex, first.shape), first, second], axis=2)
     down = np.insert(lifts, 0, 0.0, axis=1)[..., None] * normals[:, None]
     triangles = fan[:, None] + down[:, :, None, None]
     return solid_angles(np.zeros(3), triangles.reshape(-1, 3, 3)).reshape(triangles.shape[:3]).sum(axis=-1)
 
 
-def balance(tips):
+def balance(tips) -> NDArray[np.float64]:
     """Return the shares that stay the same when every face keeps tipping into its neighbours.
 
     Parameters
@@ -225,7 +227,7 @@ def balance(tips):
     return shares
 
 
-def _stationary(rates):
+def _stationary(rates) -> NDArray[np.float64]:
     """Shares (N,), sum 1, that stay the same under rates (N, N) from the row's state to the column's.
 
     States are taken out one by one and their traffic led past them; no difference is taken, so that rates
@@ -242,7 +244,7 @@ def _stationary(rates):
     return shares / shares.sum()
 
 
-def _edge_levers(polygons):
+def _edge_levers(polygons) -> tuple[NDArray[Any], ...]:
     """(F, 3) normals of polygons, (N,) [m] how far inside each edge the foot is; (F,) first edges, counts."""
     counts = np.array([len(polygon) for polygon in polygons])
     first = np.cumsum(counts) - counts
@@ -255,7 +257,7 @@ def _edge_levers(polygons):
     return normals, np.einsum("ki,ki->k", corners, outward) / vectors.norm(edges), first, counts
 
 
-def named(tumbling, labels):
+def named(tumbling, labels) -> NDArray[np.int64]:
     """Return the label (S,) of each sink from its own; an unnamed one takes that of the face it joins.
 
     The first of the faces that share it, where they do.
@@ -263,7 +265,7 @@ def named(tumbling, labels):
     return adopted_shares(tumbling, labels, labels.max() + 1).argmax(axis=1)
 
 
-def adopted_shares(tumbling, labels, count):
+def adopted_shares(tumbling, labels, count) -> Any:
     """Parts of every sink's basin that belong to each face.
 
     Parameters
@@ -305,19 +307,19 @@ def adopted_shares(tumbling, labels, count):
     return faces[members]
 
 
-def _claims(tumbling, labels):
+def _claims(tumbling, labels) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """(S,) the sink that stands for each, with which it is claimed; (C, 2) claimed and claiming ones."""
     order = np.argsort(tumbling.saddle_heights, kind="stable")
     pairs, tops = tumbling.pairs[order], tumbling.saddle_heights[order]
     parent, claims = np.arange(len(labels)), np.empty_like(pairs)
     adopt = fitting(forest.adopt, len(order))
-    made = adopt(pairs, tops, SADDLE_TIE * tops.max(initial=0.0), labels.copy(), parent, claims)
-    claimed, by = claims[:made].T
+    count = adopt(pairs, tops, SADDLE_TIE * tops.max(initial=0.0), labels.copy(), parent, claims)
+    claimed, by = claims[:count].T
     pairs = np.divmod(np.unique(claimed * len(labels) + by), len(labels))
     return forest.roots(parent), np.column_stack(pairs)
 
 
-def _links(start, end, shape):
+def _links(start, end, shape) -> Any:
     """Sparse matrix of equal parts, rows summing to 1, from each start to its ends."""
     from scipy.sparse import csr_array  # the names of rules, of which this room is a part, need no SciPy
 

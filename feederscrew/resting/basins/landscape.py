@@ -6,20 +6,26 @@ cutting it at saddles that rise too little above the shallower side leaves one b
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.geometry import coordinates, vectors
 from feederscrew.geometry.compiled import fitting
 from feederscrew.resting.basins import forest
 
-SMOOTH = np.radians(25.0)  # a sharper edge is meant: a bar of 12 sides (30 deg) has flats, one of 16 rolls
-GENTLE = np.cos(SMOOTH)  # of two normals, their product
+SMOOTH_ANGLE = np.radians(
+    25.0
+)  # a sharper edge is meant: a bar of 12 sides (30 deg) has flats, one of 16 rolls
+GENTLE_COSINE = np.cos(SMOOTH_ANGLE)  # of two normals, their product
 RIPPLE_OF_RADIUS = 2e-3  # noise and tessellation leave barriers below this share of the part's radius ...
 RIPPLE_OF_HEIGHT = 2e-2  # ... and below this share of the height, or slender parts would lose their sides
-BARE = 1e-4  # of the radius, 1 um on a small part: a lower barrier holds nothing, however sharp its edge
-FLAT = 1e-6  # [rad] between halves of one strip
-SLIVER = 1e-3  # of the radius: a narrower triangle has no direction of its own
+MIN_BARRIER_SHARE = (
+    1e-4  # of the radius, 1 um on a small part: a lower barrier holds nothing, however sharp its edge
+)
+STRIP_ANGLE = 1e-6  # [rad] between halves of one strip
+MIN_TRIANGLE_WIDTH = 1e-3  # of the radius: a narrower triangle has no direction of its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +41,7 @@ class Landscape:
     lows: np.ndarray  # (L,) triangles from which no way leads down, before any were merged
 
 
-def edges(hull):
+def edges(hull) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return every edge of the hull once: its triangles (E, 2) and corners (E, 2), places in the hull [1]."""
     first, second = np.repeat(np.arange(len(hull.triangles)), 3), hull.neighbours.ravel()
     once = np.flatnonzero(first < second)
@@ -43,7 +49,7 @@ def edges(hull):
     return np.column_stack([first[once], second[once]]), np.column_stack([starts, ends])
 
 
-def passes(hull, pairs, ends):
+def passes(hull, pairs, ends) -> NDArray[np.float64]:
     """Return the height of the centre of mass at the highest point of the way over each edge.
 
     Tipping over an edge turns the part about it: the centre of mass climbs until it stands over the edge,
@@ -66,14 +72,14 @@ def passes(hull, pairs, ends):
     along = q - p
     square = np.maximum(coordinates.dot(along, along), np.finfo(float).tiny)
     foot = p - along * (coordinates.dot(p, along) / square)  # of the centre
-    ways = ((n1, n2), (n1, foot), (foot, n2))
-    turn, before, after = (coordinates.dot(coordinates.cross(*way), along) for way in ways)
+    sides = ((n1, n2), (n1, foot), (foot, n2))
+    turn, before, after = (coordinates.dot(coordinates.cross(*side), along) for side in sides)
     between = (before * turn > 0.0) & (after * turn > 0.0)
     higher = np.maximum(*hull.heights[pairs.T])
     return np.where(between, np.maximum(np.sqrt(coordinates.dot(foot, foot)), higher), higher)
 
 
-def landscape(hull):
+def landscape(hull) -> Landscape:
     """Return the basins of the hull with ripples merged by persistence.
 
     Parameters
@@ -95,7 +101,7 @@ def landscape(hull):
     pairs, ends = edges(hull)
     tops = passes(hull, pairs, ends)
     ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * hull.heights)
-    nothing = np.full(len(hull.heights), BARE * hull.radius)
+    nothing = np.full(len(hull.heights), MIN_BARRIER_SHARE * hull.radius)
     below = _downhill(hull, pairs, tops)
     smooth = gentle(_broad_normals(hull, below), pairs)
     local = forest.roots(below)
@@ -113,7 +119,7 @@ def landscape(hull):
     )
 
 
-def angle(u, v):
+def angle(u, v) -> Any:
     """Return angles between vectors (..., 3) [rad], true down to the smallest.
 
     Source: its sine and cosine are the cross and the scalar product over one and the same length.
@@ -122,7 +128,7 @@ def angle(u, v):
     return np.arctan2(vectors.norm(vectors.cross(u, v)), along)
 
 
-def gentle(normals, pairs):
+def gentle(normals, pairs) -> NDArray[np.bool_]:
     """Whether two planes meet in a bend so gentle that it may be part of a curve.
 
     Source: own; docs/resting.md, "The drop test": turns of less than 25 degrees.
@@ -137,10 +143,10 @@ def gentle(normals, pairs):
     -------
     (E,) bool
     """
-    return coordinates.dot(*coordinates.at(normals, pairs)) > GENTLE
+    return coordinates.dot(*coordinates.at(normals, pairs)) > GENTLE_COSINE
 
 
-def _downhill(hull, pairs, tops):
+def _downhill(hull, pairs, tops) -> NDArray[np.int64]:
     """(T,) neighbour each triangle rolls to when no step may climb; itself where there is none."""
     height = hull.heights
     steps = np.concatenate([pairs, pairs[:, ::-1]])
@@ -152,41 +158,41 @@ def _downhill(hull, pairs, tops):
     return below
 
 
-def _bend(hull, pairs):
+def _bend(hull, pairs) -> NDArray[np.float64]:
     return angle(hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]])
 
 
-def _broad_normals(hull, below):
+def _broad_normals(hull, below) -> NDArray[np.float64]:
     """(T, 3) normal of each triangle, of a sliver that of the first broad one on its way down.
 
     A corner moved by noise, or a chamfer too small to see, leads round a sharp edge by gentle bends.
     """
     a, b, c = coordinates.at(hull.vertices, hull.triangles)
     sides = [np.sqrt(coordinates.dot(side, side)) for side in (b - c, c - a, a - b)]  # opposite each corner
-    thin = 2.0 * hull.areas < SLIVER * hull.radius * np.maximum(np.maximum(*sides[:2]), sides[2])
+    thin = 2.0 * hull.areas < MIN_TRIANGLE_WIDTH * hull.radius * np.maximum(np.maximum(*sides[:2]), sides[2])
     end = forest.roots(np.where(thin, below, np.arange(len(thin))))
     still = np.flatnonzero(thin & (end == np.arange(len(thin))))  # no way down, or half of a flat strip
-    lengths, beside = np.column_stack(sides)[still], hull.neighbours[still]
-    end = _over_longest(end, thin, still, beside[np.arange(len(still)), lengths.argmax(axis=1)])
-    level = angle(hull.normals[still, None], hull.normals[beside]) < FLAT
-    best = np.where(thin[end[beside]], 0.0, np.where(level, np.inf, lengths)).argmax(axis=1)
+    lengths, neighbours = np.column_stack(sides)[still], hull.neighbours[still]
+    end = _over_longest(end, thin, still, neighbours[np.arange(len(still)), lengths.argmax(axis=1)])
+    level = angle(hull.normals[still, None], hull.normals[neighbours]) < STRIP_ANGLE
+    best = np.where(thin[end[neighbours]], 0.0, np.where(level, np.inf, lengths)).argmax(axis=1)
     out = np.arange(len(thin))
     out[still] = np.where(thin[end[still]], end[hull.neighbours[still, best]], end[still])
     return hull.normals[out[end]]
 
 
-def _over_longest(end, thin, still, longest):
+def _over_longest(end, thin, still, longest) -> NDArray[np.int64]:
     """(T,) triangle for which each stands: slivers at the rim of a flat end lead over their longest sides.
 
     Two slivers that share their longest side, as those of a narrow chamfer, stand for themselves.
     """
     end = end.copy()
-    while (found := thin[end[still]] & ~thin[end[longest]]).any():
-        end[still[found]] = end[longest[found]]
+    while (still_thin := thin[end[still]] & ~thin[end[longest]]).any():
+        end[still[still_thin]] = end[longest[still_thin]]
     return end
 
 
-def _joined(hull, basins, pairs, tops, limit):
+def _joined(hull, basins, pairs, tops, limit) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Basins (T,) joined where the way between them rises by no more than the shallower one's limit.
 
     Returns the new basins, and the edges (indices) of the lowest ways that rise by more.
@@ -195,16 +201,25 @@ def _joined(hull, basins, pairs, tops, limit):
     place = np.empty(len(basins), dtype=int)
     place[sinks] = np.arange(len(sinks))
     place = place[basins]
-    ones, others = place[pairs].T
-    ways = np.flatnonzero(ones != others)
-    ways = ways[np.argsort(tops[ways], kind="stable")]
+    firsts, seconds = place[pairs].T
+    crossings = np.flatnonzero(firsts != seconds)
+    crossings = crossings[np.argsort(tops[crossings], kind="stable")]
     region, basin = np.arange(len(sinks)), np.arange(len(sinks))
-    standing = np.zeros(len(ways), dtype=bool)
+    standing = np.zeros(len(crossings), dtype=bool)
     join = fitting(forest.join, 3 * len(basins), forest.on_lists(forest.join))
-    join(hull.heights[sinks], limit[sinks], ones[ways], others[ways], tops[ways], region, basin, standing)
-    return sinks[forest.roots(basin)][place], ways[standing]
+    join(
+        hull.heights[sinks],
+        limit[sinks],
+        firsts[crossings],
+        seconds[crossings],
+        tops[crossings],
+        region,
+        basin,
+        standing,
+    )
+    return sinks[forest.roots(basin)][place], crossings[standing]
 
 
-def _sinks(basins):
+def _sinks(basins) -> NDArray[np.int64]:
     """(B,) triangles at the bottom of their own basins."""
     return np.flatnonzero(basins == np.arange(len(basins)))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import optimize, stats
 
 from feederscrew import check
@@ -13,7 +14,7 @@ from feederscrew.resting.tumbling.by_class import ground
 
 LOWEST, HIGHEST = -2.0, 8.0  # [1] exponents tried
 CONFIDENCE = 0.95
-SAME = 1e-9  # [1] so near two heights or shares are the same
+EQUAL_SHARE_TOLERANCE = 1e-9  # [1] so near two heights or shares are the same
 DEVICES_FIT = "devices"  # the name of the fit to a feeding test
 
 
@@ -29,7 +30,7 @@ class Calibration:
     chi_square: ChiSquare  # of the counts against them, as ``deviation.chi_square`` makes it
 
 
-def calibrate(counts, shares, heights, radius):
+def calibrate(counts, shares, heights, radius) -> Calibration:
     """Fit the exponent of surface_shares to counts by maximum likelihood.
 
     Parameters
@@ -59,18 +60,18 @@ def calibrate(counts, shares, heights, radius):
     Ann. Math. Statist. 9(1), 60-62, 1938.
     """
     counts, shares, heights = _aligned(counts, shares, heights)
-    known = shares > 0.0
+    present = shares > 0.0
 
-    def fitted(exponent):
+    def fitted(exponent) -> NDArray[np.float64]:
         return surface_shares(shares, heights, radius, exponent)
 
-    def loss(exponent):
-        return -float((counts[known] * np.log(fitted(exponent)[known])).sum())
+    def loss(exponent) -> float:
+        return -float((counts[present] * np.log(fitted(exponent)[present])).sum())
 
     return _likeliest(loss, fitted, lambda p: chi_square(counts, p, estimated=1))
 
 
-def calibrate_passes(passed, rejected, ways, shares, heights, radius):
+def calibrate_passes(passed, rejected, paths, shares, heights, radius):
     """Fit the exponent of surface_shares to what passed the devices of a bowl, by maximum likelihood.
 
     Source: maximum likelihood with a profile interval; docs/resting.md, "Surface-weighted tumbling".
@@ -79,7 +80,7 @@ def calibrate_passes(passed, rejected, ways, shares, heights, radius):
     ----------
     passed, rejected : (D,) float [1]
         Parts, by device.
-    ways : (2, D, A) float [1]
+    paths : (2, D, A) float [1]
         Share of each aspect's parts that comes to each device, and that goes on from it.
     shares, heights, radius
         As for ``calibrate``.
@@ -97,10 +98,10 @@ def calibrate_passes(passed, rejected, ways, shares, heights, radius):
     -----
     A device that all aspects pass alike says nothing of the exponent and is left out.
     """
-    shown = _telling(ways, shares)
-    passed, rejected = (np.asarray(counts, float)[shown] for counts in (passed, rejected))
-    came, on = np.asarray(ways)[:, shown]
-    if not shown.any() or np.ptp(heights[shares > 0.0]) <= SAME * heights.max():
+    telling = _telling(paths, shares)
+    passed, rejected = (np.asarray(counts, float)[telling] for counts in (passed, rejected))
+    came, on = np.asarray(paths)[:, telling]
+    if not telling.any() or np.ptp(heights[shares > 0.0]) <= EQUAL_SHARE_TOLERANCE * heights.max():
         raise ValueError("the devices pass all aspects alike: the counts say nothing about the exponent")
 
     def fitted(exponent):
@@ -116,15 +117,17 @@ def calibrate_passes(passed, rejected, ways, shares, heights, radius):
     return _likeliest(loss, fitted, lambda p: chi_square_passes(passed, rejected, expected(p), estimated=1))
 
 
-def _telling(ways, shares):
+def _telling(paths, shares):
     """(D,) bool, the devices of which aspects pass unlike shares."""
-    came, on = np.asarray(ways)[:, :, shares > 0.0]
+    came, on = np.asarray(paths)[:, :, shares > 0.0]
     each = np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), np.nan)
-    alike = np.nanmax(each, axis=1, initial=0.0) - np.nanmin(each, axis=1, initial=1.0) <= SAME
-    return ~alike
+    equal = (
+        np.nanmax(each, axis=1, initial=0.0) - np.nanmin(each, axis=1, initial=1.0) <= EQUAL_SHARE_TOLERANCE
+    )
+    return ~equal
 
 
-def _likeliest(loss, fitted, test):
+def _likeliest(loss, fitted, test) -> Calibration:
     """The exponent of least loss, with its interval and a test of the shares fitted."""
     best = optimize.minimize_scalar(loss, bounds=(LOWEST, HIGHEST), method="bounded", options={"xatol": 1e-9})
     limit = best.fun + 0.5 * stats.chi2.ppf(CONFIDENCE, 1)
@@ -140,7 +143,7 @@ def _likeliest(loss, fitted, test):
     )
 
 
-def _aligned(counts, shares, heights):
+def _aligned(counts, shares, heights) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     counts = check.shaped("counts", counts, (-1,))
     shares = check.shaped("shares", shares, counts.shape)
     heights = check.shaped("heights", heights, counts.shape)
@@ -148,12 +151,12 @@ def _aligned(counts, shares, heights):
         raise ValueError("counts must not be negative, nor all zero")
     if (counts[shares <= 0.0] > 0.0).any():
         raise ValueError("counts has parts on an aspect that no direction rolls to")
-    if np.ptp(heights[shares > 0.0]) <= SAME * heights.max():
+    if np.ptp(heights[shares > 0.0]) <= EQUAL_SHARE_TOLERANCE * heights.max():
         raise ValueError("heights are all the same: the counts say nothing about the exponent")
     return counts, shares, heights
 
 
-def _crossing(loss, limit, best, end):
+def _crossing(loss, limit, best, end) -> float:
     """Exponent between the best and one end of the range where the loss reaches its limit, or that end."""
     if loss(end) <= limit:
         return end
@@ -190,16 +193,16 @@ def fit_counts(part, aspects, measured):
     FeederError
         If the part has no shape, no column holds counts, or they do not tell an exponent.
     """
-    known = _tumbled_by_aspect(part, aspects)
+    tumbled = _tumbled_by_aspect(part, aspects)
     columns = [profile for profile in measured.profiles if profile.counted]
     if not columns:
         raise FeederError(
             measured.source, "has no column of counts", "give whole numbers of parts, not shares"
         )
-    return [_fit_column(measured.source, column, known) for column in columns]
+    return [_fit_column(measured.source, column, tumbled) for column in columns]
 
 
-def fit_passes(part, aspects, counts, ways):
+def fit_passes(part, aspects, counts, paths):
     """Fit the surface exponent to what passed the devices of a bowl.
 
     Source: maximum likelihood; docs/resting.md, "Surface-weighted tumbling".
@@ -211,7 +214,7 @@ def fit_passes(part, aspects, counts, ways):
     aspects : Aspects
         Of that part.
     counts : DeviceCounts
-    ways : (2, D, A) float [1]
+    paths : (2, D, A) float [1]
         Share of each aspect's parts that comes to each counted device, and that goes on from it.
 
     Returns
@@ -223,25 +226,25 @@ def fit_passes(part, aspects, counts, ways):
     FeederError
         If the part has no shape, or the devices do not tell an exponent.
     """
-    known = _tumbled_by_aspect(part, aspects)
+    tumbled = _tumbled_by_aspect(part, aspects)
     try:
-        found = calibrate_passes(counts.passed, counts.rejected, ways, *known)
+        calibration = calibrate_passes(counts.passed, counts.rejected, paths, *tumbled)
     except ValueError as fault:
         raise FeederError(counts.source, str(fault), "count on the aspects themselves") from fault
-    return Fit(DEVICES_FIT, float((counts.passed + counts.rejected).max()), found)
+    return Fit(DEVICES_FIT, float((counts.passed + counts.rejected).max()), calibration)
 
 
 def _tumbled_by_aspect(part, aspects):
     """Exact tumbling by aspect: (A,) shares [1], (A,) heights [m], and the part's radius [m]."""
-    found = ground(part, aspects)
+    basis = ground(part, aspects)
     rows = len(aspects.names)
-    shares = np.bincount(found.rows, found.tips.shares, minlength=rows)
-    weighted = np.bincount(found.rows, found.tips.shares * np.nan_to_num(found.tips.heights), minlength=rows)
-    return shares, weighted / np.where(shares > 0.0, shares, 1.0), found.hull.radius
+    shares = np.bincount(basis.rows, basis.tips.shares, minlength=rows)
+    weighted = np.bincount(basis.rows, basis.tips.shares * np.nan_to_num(basis.tips.heights), minlength=rows)
+    return shares, weighted / np.where(shares > 0.0, shares, 1.0), basis.hull.radius
 
 
-def _fit_column(source, column, known):
+def _fit_column(source, column, tumbled):
     try:
-        return Fit(column.name, float(column.values.sum()), calibrate(column.values, *known))
+        return Fit(column.name, float(column.values.sum()), calibrate(column.values, *tumbled))
     except ValueError as fault:
         raise FeederError(f"{source}: {column.name}", str(fault), "count on at least two aspects") from fault

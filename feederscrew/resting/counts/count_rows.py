@@ -4,32 +4,34 @@ import csv
 import hashlib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from feederscrew import documents
 from feederscrew.errors import Faults, FeederError
 from feederscrew.resting.counts import head as heads
 from feederscrew.resting.counts.head import Head
 
-LARGEST = 1_000_000  # [bytes] a thousand aspects in a hundred columns
+MAX_FILE_BYTES = 1_000_000  # [bytes] a thousand aspects in a hundred columns
 ROWS, COLUMNS = 10_000, 200
 TOLD = 20  # faults of one file that are shown
-EXAMPLE = "give a header 'aspect,counts' and one row an aspect"
+COUNTS_EXAMPLE = "give a header 'aspect,counts' and one row an aspect"
 
 
 class Few:
     """The first faults of a file, and how many more there are."""
 
-    def __init__(self, where):
-        self.where, self.kept, self.more = where, [], 0
+    def __init__(self, where) -> None:
+        self.where, self.more = where, 0
+        self.kept: list[Any] = []
 
-    def add(self, where, what, mend):
+    def add(self, where, what, mend) -> None:
         """Keep a fault; ``mend`` may be a function, asked only where the fault is kept."""
         if len(self.kept) < TOLD:
             self.kept.append(FeederError(where, what, mend() if callable(mend) else mend))
         else:
             self.more += 1
 
-    def raise_any(self):
+    def raise_any(self) -> None:
         """Raise what was found in one go; return if that is nothing."""
         if self.more:
             self.kept.append(FeederError(self.where, f"and {self.more} more faults", "mend these first"))
@@ -47,7 +49,7 @@ class CountSheet:
     rows: tuple[tuple[int, list[str]], ...]  # number of the line, and its cells
 
 
-def content(path):
+def content(path) -> tuple[str, ...]:
     """Read the text of a file of counts.
 
     Parameters
@@ -66,14 +68,14 @@ def content(path):
     """
     if documents.found_as(Path.is_dir, path):
         raise FeederError(path, "cannot be read (Is a directory)", "name a CSV file of counts in it")
-    data = documents.content(path, LARGEST, "a CSV file of counts", FeederError)
-    if len(data) > LARGEST:
-        what = f"has more than {LARGEST // 1_000_000} MB"
+    data = documents.content(path, MAX_FILE_BYTES, "a CSV file of counts", FeederError)
+    if len(data) > MAX_FILE_BYTES:
+        what = f"has more than {MAX_FILE_BYTES // 1_000_000} MB"
         raise FeederError(path, what, "name a CSV file with one row an aspect")
     return documents.decoded(data, str(path)), hashlib.sha256(data).hexdigest()
 
 
-def parse(text, where):
+def parse(text, where) -> CountSheet:
     """Split the text of a file of counts into its head and its rows.
 
     Parameters
@@ -98,7 +100,7 @@ def parse(text, where):
     if len(table) > ROWS:
         raise FeederError(where, f"has more than {ROWS} rows", "give one row an aspect")
     if not table:
-        raise FeederError(where, "is empty", EXAMPLE)
+        raise FeederError(where, "is empty", COUNTS_EXAMPLE)
     first, header = table[0]
     names = cells(where, first, header)
     if len(names) > COLUMNS:
@@ -109,7 +111,7 @@ def parse(text, where):
     return CountSheet(head, first, tuple(names), tuple((k, cells(where, k, line)) for k, line in table[1:]))
 
 
-def cells(where, number, line, mend=EXAMPLE):
+def cells(where, number, line, mend=COUNTS_EXAMPLE) -> list[str]:
     """Return the cells of one line of CSV; raises a FeederError that ends in ``mend`` if it is none."""
     try:
         return [cell.strip() for cell in next(csv.reader([line]), [])]

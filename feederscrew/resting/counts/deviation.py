@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.resting.counts.profiles import AspectProfile
 
-LEAST = 5.0  # expected count below which the chi-square distribution is no longer trusted
+MIN_EXPECTED_COUNT = 5.0  # expected count below which the chi-square distribution is no longer trusted
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,7 @@ class ChiSquare:
     statistic: float
     degrees_of_freedom: int  # 0 where there is no test
     p_value: float
-    joined: int = 0  # aspects counted as one because fewer than ``LEAST`` were expected
+    joined: int = 0  # aspects counted as one because fewer than ``MIN_EXPECTED_COUNT`` were expected
 
 
 NO_TEST = ChiSquare(np.nan, 0, np.nan)
@@ -35,7 +36,7 @@ class Comparison:
     chi_square: ChiSquare
 
 
-def deviation(first, second):
+def deviation(first, second) -> float:
     """Return the root mean square difference: the 'standard deviation' of eq. [Table 3-12] and Table 3-13.
 
     Parameters
@@ -51,7 +52,7 @@ def deviation(first, second):
     return float(np.sqrt(np.mean((first - second) ** 2)))
 
 
-def total_variation(first, second):
+def total_variation(first, second) -> float:
     """Return half the sum of absolute differences: the share of parts that would have to land elsewhere.
 
     Source: half the L1 distance of two distributions.
@@ -70,7 +71,7 @@ def total_variation(first, second):
     return float(0.5 * np.abs(first - second).sum())
 
 
-def chi_square(counts, fractions, estimated=0):
+def chi_square(counts, fractions, estimated=0) -> ChiSquare:
     """Test whether counts may come from given probabilities (goodness of fit).
 
     Parameters
@@ -95,7 +96,7 @@ def chi_square(counts, fractions, estimated=0):
 
     Notes
     -----
-    Aspects of which fewer than ``LEAST`` are expected are joined, the weakest first, until the
+    Aspects of which fewer than ``MIN_EXPECTED_COUNT`` are expected are joined, the weakest first, until the
     group expects enough; ``joined`` says how many. There is no test without a degree of freedom: groups
     less one, less the parameters that were estimated.
 
@@ -109,11 +110,11 @@ def chi_square(counts, fractions, estimated=0):
     expected = counts.sum() * fractions / fractions.sum()
     if counts[expected == 0.0].any():
         return ChiSquare(np.inf, max(int(np.count_nonzero(counts + expected)) - 1 - estimated, 1), 0.0)
-    seen = expected > 0.0
-    return _test(counts[None, seen], expected[None, seen], estimated)
+    expected_some = expected > 0.0
+    return _test(counts[None, expected_some], expected[None, expected_some], estimated)
 
 
-def chi_square_between(first, second):
+def chi_square_between(first, second) -> ChiSquare:
     """Test whether two sets of counts may come from the same probabilities (homogeneity).
 
     Parameters
@@ -154,12 +155,12 @@ def chi_square_passes(passed, rejected, expected, estimated=0):
     Returns
     -------
     ChiSquare
-        Devices at which fewer than ``LEAST`` are expected to pass or to be rejected are left out, and
-        counted in ``joined``.
+        Devices at which fewer than ``MIN_EXPECTED_COUNT`` are expected to pass or to be rejected are left
+        out, and counted in ``joined``.
     """
     passed, rejected = (_weights(values) for values in _pair(passed, rejected))
     came, expected = passed + rejected, check.shaped("expected", expected, passed.shape)
-    enough = came * np.minimum(expected, 1.0 - expected) >= LEAST
+    enough = came * np.minimum(expected, 1.0 - expected) >= MIN_EXPECTED_COUNT
     freedom, few = int(enough.sum()) - estimated, int((~enough).sum())
     if freedom <= 0:
         return ChiSquare(np.nan, 0, np.nan, few)
@@ -167,7 +168,7 @@ def chi_square_passes(passed, rejected, expected, estimated=0):
     return _tested(float(away[enough].sum()), freedom, few)
 
 
-def compare(profiles):
+def compare(profiles) -> list[Comparison]:
     """Compute every measure between every two profiles.
 
     Parameters
@@ -192,7 +193,7 @@ def compare(profiles):
     ]
 
 
-def _counted(a, b):
+def _counted(a, b) -> ChiSquare:
     if a.counted and b.counted:
         return chi_square_between(a.values, b.values)
     if a.counted:
@@ -200,7 +201,7 @@ def _counted(a, b):
     return chi_square(b.values, a.fractions) if b.counted else NO_TEST
 
 
-def _test(observed, expected, estimated=0):
+def _test(observed, expected, estimated=0) -> ChiSquare:
     """Pearson's statistic over groups that expect enough."""
     observed, expected, joined = _joined(observed, expected)
     freedom = expected.shape[1] - 1 - estimated
@@ -209,20 +210,20 @@ def _test(observed, expected, estimated=0):
     return _tested(float(((observed - expected) ** 2 / expected).sum()), freedom, joined)
 
 
-def _tested(statistic, freedom, joined):
+def _tested(statistic, freedom, joined) -> ChiSquare:
     from scipy.special import gammaincc
 
     return ChiSquare(statistic, freedom, float(gammaincc(0.5 * freedom, 0.5 * statistic)), joined)
 
 
-def _joined(observed, expected):
-    """The weakest columns added up until each expects ``LEAST`` in every row."""
+def _joined(observed, expected) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
+    """The weakest columns added up until each expects ``MIN_EXPECTED_COUNT`` in every row."""
     order = np.argsort(expected.min(axis=0), kind="stable")
     observed, expected = observed[:, order], expected[:, order]
-    weak = int((expected.min(axis=0) < LEAST).sum())
+    weak = int((expected.min(axis=0) < MIN_EXPECTED_COUNT).sum())
     if weak == 0:
         return observed, expected, 0
-    enough = np.flatnonzero(expected.cumsum(axis=1).min(axis=0) >= LEAST)
+    enough = np.flatnonzero(expected.cumsum(axis=1).min(axis=0) >= MIN_EXPECTED_COUNT)
     last = max(weak, 1 + int(enough[0])) if len(enough) else expected.shape[1]
     observed, expected = (
         np.column_stack([table[:, :last].sum(axis=1), table[:, last:]]) for table in (observed, expected)
@@ -230,12 +231,12 @@ def _joined(observed, expected):
     return observed, expected, last
 
 
-def _pair(first, second):
+def _pair(first, second) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     first = check.shaped("first", first, (-1,))
     return first, check.shaped("second", second, first.shape)
 
 
-def _weights(values):
+def _weights(values) -> NDArray[np.float64]:
     if (values < 0.0).any() or values.sum() <= 0.0:
         raise ValueError("a profile has a negative entry or sums to zero")
     return values

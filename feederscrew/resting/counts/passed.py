@@ -9,11 +9,11 @@ from feederscrew.errors import FeederError
 from feederscrew.resting.counts import count_rows
 from feederscrew.resting.counts.count_rows import Few
 from feederscrew.resting.counts.head import NO_HEAD, Head
-from feederscrew.resting.counts.profiles import DEVICE, INTEGER, MOST, of_another_part
+from feederscrew.resting.counts.profiles import DEVICE, INTEGER, MAX_COUNT, of_another_part
 from feederscrew.units import shown
 
 PASSED, REJECTED = "passed", "rejected"  # the columns after the device, in either order
-EXAMPLE = "give a header 'device,passed,rejected' and one row a device"
+PASSED_EXAMPLE = "give a header 'device,passed,rejected' and one row a device"
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,12 +43,12 @@ class DeviceCounts:
         return of_another_part(self.source, self.head, part)
 
 
-def by_device(table):
+def by_device(table) -> bool:
     """Return whether a CountSheet counts by device."""
     return table.header[0].lower() == DEVICE
 
 
-def understood(table, where, sha256):
+def device_counts(table, where, sha256):
     """Understand the table of a feeding test.
 
     Parameters
@@ -72,14 +72,16 @@ def understood(table, where, sha256):
     columns = tuple(name.lower() for name in table.header[1:])
     if sorted(columns) != [PASSED, REJECTED]:
         result = ", ".join(table.header[1:]) or "missing"
-        raise FeederError(f"{where}:{table.first}", f"the columns after device are {result:.60}", EXAMPLE)
+        raise FeederError(
+            f"{where}:{table.first}", f"the columns after device are {result:.60}", PASSED_EXAMPLE
+        )
     lines: dict[str, int] = {}
     faults = Few(where)
     for number, row in table.rows:
         _judge(f"{where}:{number}", row, columns, lines, faults)
         lines.setdefault(row[0], number)
     if not table.rows:
-        faults.add(where, "has no device", EXAMPLE)
+        faults.add(where, "has no device", PASSED_EXAMPLE)
     faults.raise_any()
     counts = np.array([[float(cell) for cell in row[1:]] for _, row in table.rows])
     passed, rejected = (check.frozen(counts[:, columns.index(name)]) for name in (PASSED, REJECTED))
@@ -87,12 +89,12 @@ def understood(table, where, sha256):
 
 
 def read(path):
-    """Read the counts by device of a CSV file, as ``understood`` does."""
+    """Read the counts by device of a CSV file, as ``device_counts`` does."""
     text, sha256 = count_rows.content(path)
-    return understood(count_rows.parse(text, str(path)), str(path), sha256)
+    return device_counts(count_rows.parse(text, str(path)), str(path), sha256)
 
 
-def _judge(where, row, columns, lines, faults):
+def _judge(where, row, columns, lines, faults) -> None:
     """Add what is wrong with a row to ``faults``."""
     name, cells = row[0], row[1:]
     if name in lines:
@@ -101,10 +103,10 @@ def _judge(where, row, columns, lines, faults):
         what = f"has {len(cells)} value{'s' * (len(cells) != 1)} after the device"
         faults.add(where, what, "give the parts that passed and those that were rejected")
     elif odd := [f"{column}: {shown(cell)}" for column, cell in zip(columns, cells) if not _whole(cell)]:
-        faults.add(where, f"{odd[0]} is not a number of parts", f"give a whole number up to {MOST:g}")
+        faults.add(where, f"{odd[0]} is not a number of parts", f"give a whole number up to {MAX_COUNT:g}")
     elif not any(float(cell) for cell in cells):
         faults.add(where, f"no part came to device {shown(name)}", "remove the row")
 
 
 def _whole(cell):
-    return INTEGER.fullmatch(cell) is not None and float(cell) <= MOST
+    return INTEGER.fullmatch(cell) is not None and float(cell) <= MAX_COUNT

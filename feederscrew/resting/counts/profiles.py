@@ -10,19 +10,19 @@ from feederscrew import check
 from feederscrew.documents import hint
 from feederscrew.errors import Faults, FeederError
 from feederscrew.resting.counts import count_rows
-from feederscrew.resting.counts.count_rows import EXAMPLE, Few
+from feederscrew.resting.counts.count_rows import COUNTS_EXAMPLE, Few
 from feederscrew.resting.counts.head import NO_HEAD, Head
 from feederscrew.units import shown
 
-ROUNDING = 0.005  # of the whole: how far printed fractions may miss their sum
-WHOLE = {"counts": 0.0, "fractions": 1.0, "percent": 100.0}  # what a column sums to; counts, to anything
+SUM_TOLERANCE = 0.005  # of the whole: how far printed fractions may miss their sum
+COLUMN_SUM = {"counts": 0.0, "fractions": 1.0, "percent": 100.0}  # what a column sums to; counts, to anything
 DROPPED = ("height_mm", "count")  # columns by which a table of ``feeder drop`` is known
 ASPECT, ORIENTATION, DEVICE = "aspect", "orientation", "device"  # what a file counts by: its first column
 INTEGER = re.compile(r"\+?\d+", re.ASCII)
 FULL_TURN = 360.0  # [deg]
-MOST = 1e12  # of a count
-LETTERS = 40  # of a column's name in a message
-DECIMAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+MAX_COUNT = 1e12  # of a count
+MAX_NAME_LETTERS = 40  # of a column's name in a message
+DECIMAL_PATTERN = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +35,7 @@ class AspectProfile:
     fractions: np.ndarray  # (A,) [1] of counts; else as given, not made to sum to 1
 
     @property
-    def counted(self):
+    def counted(self) -> bool:
         """Whether the values are counts, which a test needs."""
         return self.kind == "counts"
 
@@ -51,20 +51,20 @@ class Measured:
     lying: tuple[tuple[str, float], ...] = ()  # (M,) aspect and heading [rad] where it counts orientations
     by_orientation: np.ndarray | None = None  # (M, profiles) as given
 
-    def warnings(self, part):
+    def warnings(self, part) -> tuple[Any, ...]:
         """Say, a sentence each, where the head was not written for a part."""
         return of_another_part(self.source, self.head, part)
 
     @property
-    def notes(self):
+    def notes(self) -> tuple[str, ...]:
         """What the columns were taken for, a line a kind."""
-        document = {kind: [_told(p) for p in self.profiles if p.kind == kind] for kind in WHOLE}
+        document = {kind: [_name_with_sum(p) for p in self.profiles if p.kind == kind] for kind in COLUMN_SUM}
         return tuple(
             f"{self.source}: {kind}: {', '.join(names)}" for kind, names in document.items() if names
         )
 
 
-def of_another_part(source, head, part):
+def of_another_part(source, head, part) -> tuple[Any, ...]:
     """Say, a sentence each, where the head of a file was not written for a part."""
     digest = part.file_sha256 if head.body and part.file_sha256 else part.sha256
     if digest.startswith(head.mesh):
@@ -73,7 +73,7 @@ def of_another_part(source, head, part):
     return (f"{sentence}, that of {part.source} {part.sha256[:8]}",)
 
 
-def of_rules(aspects):
+def of_rules(aspects) -> tuple[Any, ...]:
     """Return the profile of every rule over the stable aspects.
 
     Parameters
@@ -90,12 +90,12 @@ def of_rules(aspects):
     return tuple(_profile(rule.upper(), "rule", p) for rule, p in chosen.items() if np.isfinite(p).all())
 
 
-def answer(shares):
+def answer(shares) -> AspectProfile:
     """Return the profile of the recommended answer, (A,) [1]."""
     return _profile("recommended", "rule", shares)
 
 
-def read(path, names, taken=()):
+def read(path, names, taken=()) -> Measured:
     """Read the profiles of a CSV file: first column the aspect, then one column a profile.
 
     Parameters
@@ -120,18 +120,18 @@ def read(path, names, taken=()):
     return measured(count_rows.parse(text, str(path)), str(path), sha256, names, taken)
 
 
-def parse(text, where, names, taken=()):
+def parse(text, where, names, taken=()) -> tuple[Any, ...]:
     """Read the profiles of a CSV text, as ``measured`` does."""
     return measured(count_rows.parse(text, where), where, "", names, taken).profiles
 
 
-def measured(table, where, sha256, names, taken=()):
+def measured(table, where, sha256, names, taken=()) -> Measured:
     """Understand the table of a file of counts.
 
     Parameters
     ----------
     table : CountSheet
-        Whole numbers are counts; fractions sum to 1 and percents to 100, both within ``ROUNDING`` of the
+        Whole numbers are counts; fractions sum to 1 and percents to 100, both within ``SUM_TOLERANCE`` of the
         whole. Of a table of ``feeder drop`` only the counts are taken. Rows are aspects or, where the first
         column is 'orientation', aspects at a heading in degrees: 'A@180'.
     where : str
@@ -164,39 +164,39 @@ def measured(table, where, sha256, names, taken=()):
     if missing := [name for name in names if name not in {key[0] for key in cells if key}]:
         faults.add(where, f"has no row for aspect {', '.join(missing)}", "add it, 0 if never seen")
     faults.raise_any()
-    lying = [(name, turn) for name in names for known, turn in cells if known == name]
+    lying = [(name, turn) for name in names for aspect, turn in cells if aspect == name]
     texts = list(zip(*(cells[key][1] for key in lying), strict=True))
-    every = _profiles(line, columns, texts)
+    profiles = _profiles(line, columns, texts)
     if by == ASPECT:
-        return Measured(where, sha256, every, table.head)
+        return Measured(where, sha256, profiles, table.head)
     rows = np.array([names.index(name) for name, _ in lying])
-    values = np.column_stack([profile.values for profile in every])
-    together = tuple(_by_aspect(profile, rows, len(names)) for profile in every)
+    values = np.column_stack([profile.values for profile in profiles])
+    together = tuple(_by_aspect(profile, rows, len(names)) for profile in profiles)
     return Measured(where, sha256, together, table.head, tuple(lying), check.frozen(values))
 
 
-def _profiles(where, columns, texts):
-    made = [_measured(where, name, column) for name, column in zip(columns, texts, strict=True)]
-    if faults := [entry for entry in made if isinstance(entry, FeederError)]:
+def _profiles(where, columns, texts) -> tuple[Any, ...]:
+    columns_read = [_measured(where, name, column) for name, column in zip(columns, texts, strict=True)]
+    if faults := [entry for entry in columns_read if isinstance(entry, FeederError)]:
         raise Faults(faults[: count_rows.TOLD])
-    return tuple(made)
+    return tuple(columns_read)
 
 
-def _by_aspect(profile, rows, count):
+def _by_aspect(profile, rows, count) -> AspectProfile:
     """A profile over orientations, summed up over the headings of each aspect."""
     values, fractions = (np.bincount(rows, of, minlength=count) for of in (profile.values, profile.fractions))
     return AspectProfile(profile.name, profile.kind, check.frozen(values), check.frozen(fractions))
 
 
-def _counted(table):
+def _counted(table) -> tuple[Any, ...]:
     """Header and rows; of our own ``drop.csv`` its first column and its counts."""
     if table.header[1:3] != DROPPED:
         return table.header, table.rows
-    kept = [(number, [row[0], *row[2:3]]) for number, row in table.rows]
-    return (table.header[0], *table.header[2:3]), kept
+    rows = [(number, [row[0], *row[2:3]]) for number, row in table.rows]
+    return (table.header[0], *table.header[2:3]), rows
 
 
-def _columns(where, header, taken):
+def _columns(where, header, taken) -> list[str]:
     """The profiles' names."""
     first, *columns = header
     if ";" in first or "\t" in first:
@@ -205,9 +205,9 @@ def _columns(where, header, taken):
         what = "counts by device, which does not say how often the part lies on each aspect"
         raise FeederError(where, what, "give counts by aspect or by orientation")
     if first.lower() not in (ASPECT, ORIENTATION):
-        raise FeederError(where, f"the first column is {shown(first)}, not aspect", EXAMPLE)
+        raise FeederError(where, f"the first column is {shown(first)}, not aspect", COUNTS_EXAMPLE)
     if not columns:
-        raise FeederError(where, "has no profile", EXAMPLE)
+        raise FeederError(where, "has no profile", COUNTS_EXAMPLE)
     if "" in columns:
         raise FeederError(where, "a column has no name", "give each its own name")
     if double := next((name for name in columns if columns.count(name) > 1), None):
@@ -217,7 +217,7 @@ def _columns(where, header, taken):
     return columns
 
 
-def _row(where, row, columns, cells, names, by, faults):
+def _row(where, row, columns, cells, names, by, faults) -> tuple[Any, ...] | None:
     """Aspect and heading of a row, None where it has none; what is wrong is added to ``faults``."""
     name, values = row[0], row[1:]
     key = (name, None) if by == ASPECT else _oriented(where, name, faults)
@@ -237,27 +237,27 @@ def _row(where, row, columns, cells, names, by, faults):
     return key
 
 
-def _oriented(where, name, faults):
+def _oriented(where, name, faults) -> tuple[str, float] | None:
     """Aspect and heading [rad] of 'A@180'; None where it is not of that form."""
     aspect, _, degrees = name.rpartition("@")
-    if not aspect or not DECIMAL.fullmatch(degrees) or not abs(float(degrees)) <= FULL_TURN:
+    if not aspect or not DECIMAL_PATTERN.fullmatch(degrees) or not abs(float(degrees)) <= FULL_TURN:
         what = f"{shown(name)} is not an aspect at a heading"
         faults.add(where, what, "write it as feeder tooling does: A@180")
         return None
     return aspect, float(np.radians(float(degrees)))
 
 
-def _judge(where, column, value, faults):
-    what = f"{column[:LETTERS]}: {shown(value)}"
-    if not DECIMAL.fullmatch(value):
+def _judge(where, column, value, faults) -> None:
+    what = f"{column[:MAX_NAME_LETTERS]}: {shown(value)}"
+    if not DECIMAL_PATTERN.fullmatch(value):
         faults.add(where, f"{what} is not a number", "write digits with a decimal point")
     elif float(value) < 0.0:
         faults.add(where, f"{what} is negative", "give a number from 0")
-    elif float(value) > MOST:
-        faults.add(where, f"{what} is too large", f"give a number up to {MOST:g}")
+    elif float(value) > MAX_COUNT:
+        faults.add(where, f"{what} is too large", f"give a number up to {MAX_COUNT:g}")
 
 
-def _measured(where, name, texts):
+def _measured(where, name, texts) -> Any:
     """One column as a profile, or the fault that keeps it from being one."""
     values = np.array([float(text) for text in texts])
     total = values.sum()
@@ -265,18 +265,20 @@ def _measured(where, name, texts):
         return FeederError(where, f"column {shown(name)} holds only zeros", "give at least one count above 0")
     if all(INTEGER.fullmatch(text) for text in texts) and total != 1.0:
         return _profile(name, "counts", values, total)
-    for kind, whole in WHOLE.items():
-        if abs(total - whole) <= ROUNDING * whole:
+    for kind, whole in COLUMN_SUM.items():
+        if abs(total - whole) <= SUM_TOLERANCE * whole:
             return _profile(name, kind, values, whole)
     what = f"column {shown(name)} sums to {total:.6g}"
     return FeederError(where, what, "give whole counts, fractions that sum to 1 or percents that sum to 100")
 
 
-def _told(profile):
+def _name_with_sum(profile) -> str:
     """A column's name, with its sum where that is not understood."""
     total = profile.values.sum()
-    return profile.name if abs(total - WHOLE[profile.kind]) < 1e-9 else f"{profile.name} (sum {total:.6g})"
+    return (
+        profile.name if abs(total - COLUMN_SUM[profile.kind]) < 1e-9 else f"{profile.name} (sum {total:.6g})"
+    )
 
 
-def _profile(name, kind, values, whole=1.0):
+def _profile(name, kind, values, whole=1.0) -> AspectProfile:
     return AspectProfile(name, kind, check.frozen(values), check.frozen(values / whole))

@@ -4,9 +4,10 @@ Each gives the weight of a class of ``faces`` equal aspects; `normalised` makes 
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 
-def pmi(faces, polar_inertia, height):
+def pmi(faces, polar_inertia, height) -> NDArray[np.float64]:
     """Return polar moment of inertia over height: the thesis's rule, eq. [section 3.1].
 
     Parameters
@@ -25,7 +26,7 @@ def pmi(faces, polar_inertia, height):
     return faces * polar_inertia / height
 
 
-def csa(faces, solid_angle, height):
+def csa(faces, solid_angle, height) -> NDArray[np.float64]:
     """Return centroid solid angle over height, eq. [Table 3-2].
 
     Parameters
@@ -46,7 +47,7 @@ def csa(faces, solid_angle, height):
     return faces * solid_angle / height
 
 
-def stability(faces, contact_area, height):
+def stability(faces, contact_area, height) -> NDArray[np.float64]:
     """Return contact area over height, eq. [Table 3-3].
 
     Parameters
@@ -68,7 +69,7 @@ def stability(faces, contact_area, height):
     return faces * contact_area / height
 
 
-def normalised(weights, stable):
+def normalised(weights, stable) -> NDArray[np.float64]:
     """Return the probabilities of the stable aspects from their weights; the unstable ones have none.
 
     Source: docs/resting.md, "How were the parts launched?".

@@ -3,21 +3,22 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.errors import ArgumentError
 from feederscrew.records import Shown
 from feederscrew.resting.rules import registry
 
-LAUNCHES = ("place", "drop", "flip", "roll", "feed")
+LAUNCH_NAMES = ("place", "drop", "flip", "roll", "feed")
 LAUNCH = "feed"  # what is taken where nobody says how the parts are launched
 FORMER = {"tumble": "roll"}  # what launches were called before
-SHARES = {"place": 0.0, "drop": 0.4, "flip": 1.0, "roll": 1.0, "feed": 0.5}
+HOP_SHARES = {"place": 0.0, "drop": 0.4, "flip": 1.0, "roll": 1.0, "feed": 0.5}
 """[1] By launch, how far parts come from where they fall dead (0) to where hops leave them (1); chosen on
 drop tests of made bodies, and for drop and feed with measured sets in view: docs/resting.md."""
-ROLLING = {"drop": "csa"}  # the closed form nearest to drop tests of parts with a rolling class
+ROLLING_RULES = {"drop": "csa"}  # the closed form nearest to drop tests of parts with a rolling class
 ROLL = "quasistatic"  # ... under the other launches
-WIDTHS = {
+SHARE_WIDTHS = {
     ("place", False): 0.15, ("place", True): 0.14,
     ("drop", False): 0.12, ("drop", True): 0.26,
     ("flip", False): 0.09, ("flip", True): 0.26,
@@ -27,10 +28,10 @@ WIDTHS = {
 """[1] Half the 95 % interval of the closed form on a share of a half, by launch and whether the part has a
 rolling class: such that it holds 95 % of the shares in drop tests of made bodies and real parts
 (``benchmarks/accuracy.py`` prints it, with its coverage of bodies and sets left out)."""
-LAUNCHED = 0.11  # [1]
+LAUNCH_WIDTH = 0.11  # [1]
 """... of a drop test beside its sampling: what a new share, measured under a launch of that name, keeps
 within of what is simulated (from 16 shares of four series; the same benchmark)."""
-FLOOR = 0.1  # [1] of that width that does not fall towards shares of 0 and 1
+WIDTH_FLOOR = 0.1  # [1] of that width that does not fall towards shares of 0 and 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +45,7 @@ class Recommended(Shown):
     high: np.ndarray  # (A,) [1]
 
 
-def launch_named(name):
+def launch_named(name) -> str:
     """Return the launch of a name, or of a former one.
 
     Raises
@@ -53,12 +54,12 @@ def launch_named(name):
         If there is no such launch.
     """
     launch = FORMER.get(name, name)
-    if launch not in LAUNCHES:
-        raise ArgumentError("launch", f"is {name!r:.30}", f"give one of {', '.join(LAUNCHES)}")
+    if launch not in LAUNCH_NAMES:
+        raise ArgumentError("launch", f"is {name!r:.30}", f"give one of {', '.join(LAUNCH_NAMES)}")
     return launch
 
 
-def closed_form(chances, stable, kinds, launch, own=None):
+def closed_form(chances, stable, kinds, launch, own=None) -> Recommended:
     """Return the answer of the closed form for a launch, with its calibrated interval.
 
     Source: own; docs/resting.md, "The recommended answer".
@@ -84,14 +85,14 @@ def closed_form(chances, stable, kinds, launch, own=None):
     if own:
         label, p = f"surface, {own}", chances["surface"]
     elif rolling:
-        label, p = _labelled(ROLLING.get(launch, ROLL), chances)
+        label, p = _labelled(ROLLING_RULES.get(launch, ROLL), chances)
     else:
-        label, p = tempered(chances, SHARES[launch])
-    half = WIDTHS[launch, rolling] * shape(p)
+        label, p = tempered(chances, HOP_SHARES[launch])
+    half = SHARE_WIDTHS[launch, rolling] * shape(p)
     return _within(f"{label}, launch {launch}", launch, p, half, stable)
 
 
-def tempered(chances, share):
+def tempered(chances, share) -> tuple[str, NDArray[np.float64]]:
     """Return exact tumbling and the cascade of hops as one: their weighted geometric mean.
 
     Source: own; docs/resting.md, "The recommended answer".
@@ -121,11 +122,11 @@ def tempered(chances, share):
     return "tempered hops", weights / weights.sum()
 
 
-def _labelled(rule, chances):
-    return registry.BY_NAME[rule].label, chances[rule]
+def _labelled(rule, chances) -> tuple[str, NDArray[np.float64]]:
+    return registry.RULE_OF[rule].label, chances[rule]
 
 
-def dropped(tally, launch):
+def dropped(tally, launch) -> Recommended:
     """Return the answer of a drop test, with its interval.
 
     Parameters
@@ -142,7 +143,7 @@ def dropped(tally, launch):
     return Recommended(f"drop test, launch {launch}", launch, tally.p, tally.low, tally.high)
 
 
-def launched(p, low, high, possible):
+def launched(p, low, high, possible) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the ends of an interval of simulated shares with what the name of a launch leaves open.
 
     Source: own; docs/resting.md, "The recommended answer".
@@ -160,21 +161,21 @@ def launched(p, low, high, possible):
     low, high : (A,) float [1]
         Both errors taken as independent, within 0 and 1.
     """
-    open_ = np.where(possible & (np.count_nonzero(possible) > 1), LAUNCHED * shape(p), 0.0)
+    open_ = np.where(possible & (np.count_nonzero(possible) > 1), LAUNCH_WIDTH * shape(p), 0.0)
     return np.clip(p - np.hypot(open_, p - low), 0.0, 1.0), np.clip(p + np.hypot(open_, high - p), 0.0, 1.0)
 
 
-def shape(p):
+def shape(p) -> NDArray[np.float64]:
     """Return how wide intervals are at shares p, relative to a share of a half: (A,) [1].
 
     It falls as the scatter of a count does, but for FLOOR.
 
     Source: own; docs/resting.md, "The recommended answer".
     """
-    return (2.0 * np.sqrt(np.clip(p * (1.0 - p), 0.0, None)) + FLOOR) / (1.0 + FLOOR)
+    return (2.0 * np.sqrt(np.clip(p * (1.0 - p), 0.0, None)) + WIDTH_FLOOR) / (1.0 + WIDTH_FLOOR)
 
 
-def _within(rule, launch, p, half, stable):
+def _within(rule, launch, p, half, stable) -> Recommended:
     """The answer with ends so far out, within 0 and 1; nothing is in doubt where only one class can be."""
     several = np.count_nonzero(stable) > 1
     down, up = np.broadcast_to(np.where(stable & several, half, 0.0), (2, len(p)))

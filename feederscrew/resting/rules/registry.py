@@ -6,6 +6,10 @@ names of rules and the table in ``docs/resting.md`` are made from these entries,
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
@@ -14,7 +18,7 @@ from feederscrew.resting.rules import published, surface, tumbled
 from feederscrew.resting.rules.quantities import ClassQuantities, FaceQuantities
 from feederscrew.units import shown
 
-RECOMMENDED = "recommended"  # the answer that is made from the rules; a name beside theirs
+RECOMMENDED_ANSWER = "recommended"  # the answer that is made from the rules; a name beside theirs
 
 
 @dataclass(frozen=True)
@@ -37,11 +41,11 @@ class Rule:
         return f"p_{self.name}"
 
     @property
-    def is_abbreviation(self):
+    def is_abbreviation(self) -> bool:
         """Whether its label is its name in capitals."""
         return self.label == self.name.upper()
 
-    def weigh(self, quantities):
+    def weigh(self, quantities) -> NDArray[np.float64]:
         """Return the weights of the classes or of the faces.
 
         Parameters
@@ -102,19 +106,19 @@ RULES = (
         "own: see below",
     ),
 )  # fmt: skip
-BY_NAME = {rule.name: rule for rule in RULES}
-NAMES = tuple(BY_NAME)
+RULE_OF = {rule.name: rule for rule in RULES}
+RULE_NAMES = tuple(RULE_OF)
 CLOSED = "closed"  # of the rules the one that is nearest to the recommended answer: the quick look
-CHOICES = (*NAMES, CLOSED, RECOMMENDED)  # what a user may ask for
+CHOICES = (*RULE_NAMES, CLOSED, RECOMMENDED_ANSWER)  # what a user may ask for
 
 
-def require_rule(rule):
+def require_rule(rule) -> None:
     """Raise an ArgumentError where a user asks for a rule that there is not; it names the nearest one."""
     if rule not in CHOICES:
         raise ArgumentError("rule", f"unknown rule {shown(str(rule))}", hint(str(rule), CHOICES))
 
 
-def weights(quantities):
+def weights(quantities) -> dict[Any, Any]:
     """Return the weights of every rule that weighs these quantities.
 
     Parameters

@@ -1,6 +1,7 @@
 """Surface-weighted tumbling: a closed form between dead landings and violent ones."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 
@@ -9,13 +10,13 @@ EXPONENTS = {"soft": 0.0, "medium": 1.2, "hard": 2.0}  # [1] by what the part la
 0.5 and of tumbling launches on a hard plane follow; 2 was chosen with measured cuboids in view."""
 
 
-def named(exponent):
+def named(exponent) -> str:
     """Return the surface of an exponent, 'hard'; 'exponent 1.5' where it has no name."""
     names = {value: name for name, value in EXPONENTS.items()}
     return names.get(exponent, f"exponent {exponent:g}")
 
 
-def surface_weights(shares, heights, radius, exponent):
+def surface_weights(shares, heights, radius, exponent) -> NDArray[np.float64]:
     """Return the shares of a part that bounces before it settles, not normalised.
 
     Source: own; docs/resting.md, "Surface-weighted tumbling".
@@ -52,7 +53,7 @@ def surface_weights(shares, heights, radius, exponent):
     return np.where(np.asarray(shares) > 0.0, shares * depth**exponent, 0.0)
 
 
-def surface_shares(shares, heights, radius, exponent):
+def surface_shares(shares, heights, radius, exponent) -> NDArray[np.float64]:
     """Return ``surface_weights`` (F,) [1] that sum to 1.
 
     Source: own; docs/resting.md, "Surface-weighted tumbling".

@@ -3,7 +3,10 @@
 In the cascade a bouncing part loses energy until it can cross no saddle.
 """
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.resting.basins.barriers import critical_solid_angles
@@ -14,7 +17,7 @@ HOP_BLOCK_SIZE = 1 << 16  # ways times levels at a time
 ENERGY_LEVELS = 200  # of energy, between the part's highest way to stand and the lowest saddle
 
 
-def quasistatic(tips):
+def quasistatic(tips) -> NDArray[np.float64]:
     """Return the share of the attitudes from which a part let go without speed ends on each face.
 
     Source: docs/resting.md, "Exact tumbling".
@@ -30,7 +33,7 @@ def quasistatic(tips):
     return tips.shares
 
 
-def critical(faces):
+def critical(faces) -> NDArray[np.float64]:
     """Return the critical solid angle of each face over its height; of a rolling one, from its lowest strip.
 
     Parameters
@@ -53,7 +56,7 @@ def critical(faces):
     return shares * solid_angles / heights
 
 
-def hop_shares(tips, radius):
+def hop_shares(tips, radius) -> NDArray[np.float64]:
     """Return the shares in which hops of falling energy leave a part on its faces.
 
     Source: own; docs/resting.md, "The cascade of hops".
@@ -88,51 +91,51 @@ def hop_shares(tips, radius):
     ``benchmarks/accuracy.py`` compares.
     """
     present = np.flatnonzero(np.isfinite(tips.heights) & (tips.shares > 0.0))
-    ways = np.isin(tips.pairs, present).all(axis=1)
-    pairs = np.searchsorted(present, tips.pairs[ways])
-    tops, radius = tips.tops[ways], check.positive("radius", radius)
+    between = np.isin(tips.pairs, present).all(axis=1)
+    pairs = np.searchsorted(present, tips.pairs[between])
+    tops, radius = tips.tops[between], check.positive("radius", radius)
     ended = _cascade(tips.shares[present], tips.heights[present] / radius, pairs, tops / radius)
     shares = np.zeros(len(tips.shares))
     shares[present] = ended / ended.sum() if ended.any() else tips.shares[present]  # a ball has no room
     return shares
 
 
-def _cascade(shares, heights, pairs, tops):
+def _cascade(shares, heights, pairs, tops) -> NDArray[np.float64]:
     """(F,) where the parts end; lengths in units of the radius."""
     if not len(tops):
         return shares
     levels = np.linspace(1.0, tops.min(), ENERGY_LEVELS + 1)
     lowest = np.full(len(shares), np.inf)
     np.minimum.at(lowest, pairs.ravel(), np.repeat(tops, 2))
-    ways = _Hops(shares, heights, pairs, tops)
+    hops = _Hops(shares, heights, pairs, tops)
     below = (
         np.maximum(levels[:, None] - heights, 0.0) ** KEPT_ENERGY_EXPONENT
     )  # of what is kept, up to each level
-    energies, kept, sinking = 0.5 * (levels[:-1] + levels[1:]), below[:-1] - below[1:], below[1:] > 0.0
+    energies, retained, sinking = 0.5 * (levels[:-1] + levels[1:]), below[:-1] - below[1:], below[1:] > 0.0
     reach, moves = np.where(sinking, below[1:], np.inf), energies[:, None] > lowest
-    density = ways.moved(shares, ways.parts(np.ones(1))[0]) / np.maximum(below[0], np.finfo(float).tiny)
-    before, sunk = np.empty(kept.shape), np.zeros(len(shares))
-    step = max(1, HOP_BLOCK_SIZE // len(ways.start))
+    density = hops.moved(shares, hops.parts(np.ones(1))[0]) / np.maximum(below[0], np.finfo(float).tiny)
+    before, sunk = np.empty(retained.shape), np.zeros(len(shares))
+    step = max(1, HOP_BLOCK_SIZE // len(hops.start))
     for some in (slice(k, k + step) for k in range(0, ENERGY_LEVELS, step)):
-        parts = ways.parts(energies[some]) * (kept * moves)[some, ways.start]
-        for k, part in enumerate(parts / reach[some, ways.end], some.start):
+        parts = hops.parts(energies[some]) * (retained * moves)[some, hops.start]
+        for k, part in enumerate(parts / reach[some, hops.end], some.start):
             before[k] = density
-            density = density + ways.moved(density, part)
-        lost = before[some, ways.start] * parts * ~sinking[some, ways.end]
-        sunk += np.bincount(ways.end, lost.sum(axis=0), minlength=len(shares))
-    return (before * kept * ~moves).sum(axis=0) + sunk + density * below[-1]
+            density = density + hops.moved(density, part)
+        lost = before[some, hops.start] * parts * ~sinking[some, hops.end]
+        sunk += np.bincount(hops.end, lost.sum(axis=0), minlength=len(shares))
+    return (before * retained * ~moves).sum(axis=0) + sunk + density * below[-1]
 
 
 class _Hops:
     """Which faces a hop can end on; W directed ways, those of each face to itself among them."""
 
-    def __init__(self, shares, heights, pairs, tops):
+    def __init__(self, shares, heights, pairs, tops) -> None:
         own = np.arange(len(shares))
         self.shares, self.heights, self.tops = shares, heights, np.concatenate([tops, tops])
         self.start = np.concatenate([pairs[:, 0], pairs[:, 1], own])
         self.end = np.concatenate([pairs[:, 1], pairs[:, 0], own])
 
-    def parts(self, energies):
+    def parts(self, energies) -> NDArray[np.float64]:
         """(K, W) part of the mass at its start that goes each way in a hop of each energy (K,)."""
         depth = np.maximum(energies[:, None] - self.heights, np.finfo(float).eps)
         rates, between = (self.shares * depth)[:, self.end], slice(0, len(self.tops))
@@ -142,6 +145,6 @@ class _Hops:
         total = np.bincount(starts.ravel(), rates.ravel(), minlength=depth.size)
         return rates / total[starts]
 
-    def moved(self, mass, parts):
+    def moved(self, mass, parts) -> NDArray[Any]:
         """(F,) mass after one hop."""
         return np.bincount(self.end, mass[self.start] * parts, minlength=len(mass))

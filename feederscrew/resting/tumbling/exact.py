@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.geometry import compiled, vectors
@@ -10,8 +11,10 @@ from feederscrew.resting.tumbling import abreast, walk
 from feederscrew.resting.tumbling import half_edges as tumbling_edges
 
 SPHERE = 4.0 * np.pi  # [sr]
-ROUNDING = 1e-6  # [1] what the shares may miss 1 by before the result is called doubtful
-UNEVEN = 1e-7  # [1] of the radius: what the corners of a facet merged from needles may lie off its plane
+SHARE_SUM_TOLERANCE = 1e-6  # [1] what the shares may miss 1 by before the result is called doubtful
+FACET_UNEVENNESS = (
+    1e-7  # [1] of the radius: what the corners of a facet merged from needles may lie off its plane
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,12 +37,12 @@ class Tumbling:
     doubts: tuple[str, ...]  # self-checks that failed; empty for a result to trust
 
     @property
-    def shares(self):
+    def shares(self) -> NDArray[np.float64]:
         """(S,) [1] probability of each sink when every direction is equally likely."""
         return self.areas / SPHERE
 
 
-def tumble(hull):
+def tumble(hull) -> Tumbling:
     """Return basins, saddles and maxima of the quasi-static flow on a convex hull.
 
     Parameters
@@ -68,7 +71,7 @@ def tumble(hull):
     directions = feet / saddle_heights[:, None]
     pairs, raw, arrived = _basins(edges, sinks, saddles, maxima, directions)
     areas = _areas(raw)
-    falls = (pairs >= 0) & (heights[pairs] <= saddle_heights[:, None] + UNEVEN * hull.radius)
+    falls = (pairs >= 0) & (heights[pairs] <= saddle_heights[:, None] + FACET_UNEVENNESS * hull.radius)
     doubts = _doubts(areas, len(sinks) - len(saddles) + len(maxima), arrived and falls.all())
     axes = edges.vertices[edges.targets[saddles]] - edges.vertices[edges.origins[saddles]]
     return Tumbling(
@@ -85,7 +88,7 @@ def tumble(hull):
     )
 
 
-def _basins(edges, sinks, saddles, maxima, directions):
+def _basins(edges, sinks, saddles, maxima, directions) -> tuple[NDArray[np.int64], NDArray[np.float64], bool]:
     """(E, 2) sinks each saddle joins, (S,) boundary integrals of their basins, whether every walk arrived."""
     tops = np.zeros(len(edges.vertices), bool)
     tops[maxima] = True
@@ -98,25 +101,25 @@ def _basins(edges, sinks, saddles, maxima, directions):
     return rank[pairs], raw[sinks], bool((pairs >= 0).all() and (peaks >= 0).all())
 
 
-def _gauges(normals):
+def _gauges(normals) -> NDArray[np.float64]:
     """(M, 3) unit vectors near the normals, off every symmetry plane a part may have."""
     near = normals + 1e-3 * np.array([0.5377, -0.8339, 0.1246])
     return near / vectors.norm(near)[:, None]
 
 
-def _feet(edges, saddles):
+def _feet(edges, saddles) -> NDArray[np.float64]:
     """(E, 3) [m] feet of the centre of mass on the saddles' edges."""
     u = edges.vertices[edges.origins[saddles]]
     along = edges.vertices[edges.targets[saddles]] - u
     return u - along * (edges.slopes[saddles] / np.einsum("ei,ei->e", along, along))[:, None]
 
 
-def _facet_heights(edges, facets):
+def _facet_heights(edges, facets) -> NDArray[np.float64]:
     corners = edges.vertices[edges.origins[edges.facet_edges[facets]]]
     return np.einsum("si,si->s", edges.normals[facets], corners)
 
 
-def _areas(raw):
+def _areas(raw) -> NDArray[np.float64]:
     """Basin areas from boundary integrals: those that hold the point opposite their gauge lack 4 pi."""
     if len(raw) == 1:
         return np.array([SPHERE])
@@ -124,15 +127,15 @@ def _areas(raw):
     areas = raw.copy()
     if missing:
         areas[np.argsort(raw, kind="stable")[:missing]] += SPHERE
-    return np.where((areas < 0.0) & (areas > -ROUNDING), 0.0, areas)
+    return np.where((areas < 0.0) & (areas > -SHARE_SUM_TOLERANCE), 0.0, areas)
 
 
-def _doubts(areas, euler, arrived):
+def _doubts(areas, euler, arrived) -> tuple[str, ...]:
     total = areas.sum() / SPHERE
-    found = {
-        f"the basins fill {total:.6g} of the sphere": abs(total - 1.0) > ROUNDING,
+    doubts = {
+        f"the basins fill {total:.6g} of the sphere": abs(total - 1.0) > SHARE_SUM_TOLERANCE,
         "a basin has a negative area": (areas < 0.0).any(),
         f"sinks - saddles + maxima is {euler}, not 2": euler != 2,
         "a walk from a saddle does not fall to a sink and rise to a maximum": not arrived,
     }
-    return tuple(text for text, wrong in found.items() if wrong)
+    return tuple(text for text, wrong in doubts.items() if wrong)

@@ -8,9 +8,10 @@ corner between them), and planes of which some triangles are coplanar within the
 others are not.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.geometry import vectors
@@ -18,8 +19,8 @@ from feederscrew.geometry.graphs import components
 from feederscrew.resting.tumbling import walk
 
 COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
-SLIVER = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own
-BLOCK = 1 << 12  # half-edges at a time
+NEEDLE_WIDTH = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own
+HALF_EDGE_BLOCK = 1 << 12  # half-edges at a time
 PLANE = 1e-14  # [1] error of a triangle's plane at the far end of the part, times its width over the radius
 MIN_FACETS_AT_CORNER = 3  # facets at a corner
 STRAIGHTNESS_TOLERANCE = 1e-9  # [1] of the radius: of a corner behind the line of its neighbours
@@ -47,7 +48,7 @@ class Edges(NamedTuple):
     vertex_edges: np.ndarray  # (V,) a bordering half-edge leaving each corner, or one of a facet it lies on
 
 
-def half_edges(hull):
+def half_edges(hull) -> Edges:
     """Return half-edges of a hull with coplanar triangles merged into facets.
 
     Parameters
@@ -62,24 +63,24 @@ def half_edges(hull):
     origins = hull.triangles[:, [1, 2, 0]].ravel().astype(int)
     targets = hull.triangles[:, [2, 0, 1]].ravel().astype(int)
     twins = _twins(hull.neighbours)
-    found = facet_borders(hull, origins, targets, twins, np.repeat(_facets(hull, twins), 3))
-    facets, edges = found.facets[::3], np.flatnonzero(found.part)
+    borders = facet_borders(hull, origins, targets, twins, np.repeat(_facets(hull, twins), 3))
+    facets, edges = borders.facets[::3], np.flatnonzero(borders.part)
     normals = _facet_normals(hull, facets)
-    slopes, sides = _signs(hull.vertices, normals, origins, found)
-    slopes = _one_way_out(slopes, sides, found)
+    slopes, sides = _signs(hull.vertices, normals, origins, borders)
+    slopes = _one_way_out(slopes, sides, borders)
     by_facet, by_vertex = np.zeros(len(normals), int), np.zeros(len(hull.vertices), int)
-    by_facet[found.facets[edges]] = edges
-    by_vertex[origins] = by_facet[found.facets]
+    by_facet[borders.facets[edges]] = edges
+    by_vertex[origins] = by_facet[borders.facets]
     by_vertex[origins[edges]] = edges
     arrays = {
         "vertices": hull.vertices,
         "origins": origins,
-        "targets": found.targets,
-        "twins": found.twins,
+        "targets": borders.targets,
+        "twins": borders.twins,
         "facets": facets,
-        "borders": found.part,
-        "ahead": found.ahead,
-        "around": found.around,
+        "borders": borders.part,
+        "ahead": borders.ahead,
+        "around": borders.around,
         "slopes": slopes,
         "sides": sides,
         "normals": normals,
@@ -89,45 +90,49 @@ def half_edges(hull):
     return Edges(**{name: check.frozen(array) for name, array in arrays.items()})
 
 
-def _signs(vertices, normals, origins, found):
+def _signs(vertices, normals, origins, borders) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(H,) and (H,) [m2] slopes and sides, as ``Edges`` has them, from each half-edge's corners and facet."""
     slopes, sides = np.empty((2, len(origins)))
     corners, facets = np.ascontiguousarray(vertices.T), np.ascontiguousarray(normals.T)
     for some in _blocks(len(origins)):
-        u, w, n = corners[:, origins[some]], corners[:, found.targets[some]], facets[:, found.facets[some]]
+        u, w, n = (
+            corners[:, origins[some]],
+            corners[:, borders.targets[some]],
+            facets[:, borders.facets[some]],
+        )
         slopes[some] = walk.dot(u, w - u)
         sides[some] = walk.triple(n, u, w)
     return slopes, sides
 
 
-def _blocks(count):
+def _blocks(count) -> list[Any]:
     """Slices of half-edges, as many at a time as a processor's cache holds."""
-    return [slice(start, start + BLOCK) for start in range(0, count, BLOCK)]
+    return [slice(start, start + HALF_EDGE_BLOCK) for start in range(0, count, HALF_EDGE_BLOCK)]
 
 
-def _one_way_out(slopes, sides, found):
+def _one_way_out(slopes, sides, borders) -> NDArray[np.float64]:
     """(H,) [m2] slopes with which every facet is left one way: over one edge, over one corner, or not at all.
 
     The foot of the centre of mass lies nearest to one place of a convex polygon. Where a corner of the
     border lies on or, by rounding, behind the line between its neighbours, the signs may name two places or
     none: the nearest is taken, and at the others the foot is past the corner on the other side of it.
     """
-    edges = np.flatnonzero(found.part)
-    before = np.zeros_like(found.ahead)
-    before[found.ahead[edges]] = edges
+    edges = np.flatnonzero(borders.part)
+    before = np.zeros_like(borders.ahead)
+    before[borders.ahead[edges]] = edges
     slopes, leaves = slopes.copy(), sides[edges] < 0.0
-    over_edge = leaves & (slopes[edges] <= 0.0) & (slopes[found.twins[edges]] <= 0.0)
-    over_corner = (slopes[edges] > 0.0) & (slopes[found.twins[before[edges]]] > 0.0)
-    facet = found.facets[edges]
-    ways, unstable = np.bincount(facet, over_edge * 1 + over_corner), np.bincount(facet, leaves) > 0
-    for doubtful in np.flatnonzero(ways != unstable):
+    over_edge = leaves & (slopes[edges] <= 0.0) & (slopes[borders.twins[edges]] <= 0.0)
+    over_corner = (slopes[edges] > 0.0) & (slopes[borders.twins[before[edges]]] > 0.0)
+    facet = borders.facets[edges]
+    exits, unstable = np.bincount(facet, over_edge * 1 + over_corner), np.bincount(facet, leaves) > 0
+    for doubtful in np.flatnonzero(exits != unstable):
         own = facet == doubtful
         over = edges[own & over_edge].tolist(), edges[own & over_corner].tolist()
-        _settle(slopes, sides, found.twins, before, over, edges[own & leaves].tolist())
+        _settle(slopes, sides, borders.twins, before, over, edges[own & leaves].tolist())
     return slopes
 
 
-def _settle(slopes, sides, twins, before, over, leaving):
+def _settle(slopes, sides, twins, before, over, leaving) -> None:
     """Change signs of slopes (in place) so that a facet is left over the nearest of several places.
 
     ``over`` holds half-edges to be left over and half-edges leaving corners to be left over; ``leaving`` all
@@ -147,7 +152,7 @@ def _settle(slopes, sides, twins, before, over, leaving):
         slopes[end] = -np.finfo(float).tiny if corner else np.finfo(float).tiny
 
 
-def sinks(edges):
+def sinks(edges) -> NDArray[np.int64]:
     """Return (S,) facets that hold the foot of the centre of mass: the part rests on them."""
     leaves = edges.borders & (edges.sides < 0.0)
     stable = np.ones(len(edges.normals), bool)
@@ -155,7 +160,7 @@ def sinks(edges):
     return np.flatnonzero(stable)
 
 
-def saddles(edges):
+def saddles(edges) -> NDArray[np.int64]:
     """Return (E,) half-edges, one of each pair, over which the part can be balanced.
 
     The foot of the centre of mass lies between the two corners and neither facet rolls over the edge.
@@ -165,7 +170,7 @@ def saddles(edges):
     return np.flatnonzero(ahead & ahead[edges.twins] & one_of_two)
 
 
-def maxima(edges):
+def maxima(edges) -> NDArray[np.int64]:
     """Return (M,) corners on which the part can be balanced: no neighbour is further out along them."""
     origins = edges.origins[edges.borders]
     top = np.zeros(len(edges.vertices), bool)
@@ -174,13 +179,13 @@ def maxima(edges):
     return np.flatnonzero(top)
 
 
-def _twins(neighbours):
+def _twins(neighbours) -> NDArray[np.int64]:
     owners, beyond = np.repeat(np.arange(len(neighbours)), 3), neighbours.ravel().astype(int)
     first, second = (np.ascontiguousarray(column)[beyond] == owners for column in neighbours.T[:2])
     return 3 * beyond + np.where(first, 0, np.where(second, 1, 2))
 
 
-def _facets(hull, twins):
+def _facets(hull, twins) -> NDArray[np.int64]:
     """Facet of each triangle: triangles joined across flat edges."""
     owners = np.repeat(np.arange(len(hull.triangles)), 3)
     depths = _depths(hull, twins)
@@ -191,7 +196,7 @@ def _facets(hull, twins):
     return components(owners[flat], owners[twins[flat]], len(hull.triangles))[1]
 
 
-def _depths(hull, twins):
+def _depths(hull, twins) -> NDArray[np.float64]:
     """(H,) [m] how far the corner off each edge, of the neighbour, lies below the triangle's plane."""
     corners, depths = hull.triangles.ravel(), np.empty(len(twins))
     places, normals = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(hull.normals.T)
@@ -202,7 +207,7 @@ def _depths(hull, twins):
     return depths
 
 
-def _flat(hull, near, twins, depths):
+def _flat(hull, near, twins, depths) -> NDArray[np.bool_]:
     """Which of some half-edges lie inside a facet.
 
     Both triangles must lie in each other's plane as far as rounding lets that be known; a sliver joins the
@@ -216,14 +221,14 @@ def _flat(hull, near, twins, depths):
         corners = hull.vertices[hull.triangles[triangle]]
         lengths = vectors.norm(corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]])  # opposite each corner
         width = 2.0 * hull.areas[triangle] / lengths.max(axis=1) / hull.radius
-        narrow = width < SLIVER
-        inside &= depth <= hull.radius * (COPLANAR + PLANE / np.maximum(width, SLIVER))
+        narrow = width < NEEDLE_WIDTH
+        inside &= depth <= hull.radius * (COPLANAR + PLANE / np.maximum(width, NEEDLE_WIDTH))
         across |= narrow & (edge == lengths.argmax(axis=1))
         sliver |= narrow
     return across | (inside & ~sliver)
 
 
-def _facet_normals(hull, facets):
+def _facet_normals(hull, facets) -> NDArray[np.float64]:
     """(M, 3) unit normals of the facets, by the areas of their triangles."""
     if len(hull.triangles) == facets.max() + 1:
         return hull.normals[np.argsort(facets)]
@@ -242,7 +247,7 @@ class Borders(NamedTuple):
     facets: np.ndarray  # (H,) facet of each half-edge
 
     @property
-    def around(self):
+    def around(self) -> NDArray[np.int64]:
         """(H,) next border half-edge leaving the same corner; the first half-edge off the borders."""
         edges = np.flatnonzero(self.part)
         around = np.zeros_like(self.ahead)
@@ -250,7 +255,7 @@ class Borders(NamedTuple):
         return around
 
 
-def facet_borders(hull, origins, targets, twins, facets):
+def facet_borders(hull, origins, targets, twins, facets) -> Borders:
     """Return the borders between facets, as a convex body has them.
 
     Parameters
@@ -270,19 +275,21 @@ def facet_borders(hull, origins, targets, twins, facets):
     """
     facets = _convex(hull, origins, twins, facets)
     while True:
-        found = _straightened(origins, _bordered(targets, twins, facets))
-        needles = _of_two_edges(found)
+        straightened = _straightened(origins, _bordered(targets, twins, facets))
+        needles = _of_two_edges(straightened)
         if not len(needles):
-            return found if np.bincount(facets).all() else found._replace(facets=_numbered(facets))
-        facets = _joined(facets, facets[needles], facets[found.twins[needles]])
+            return (
+                straightened if np.bincount(facets).all() else straightened._replace(facets=_numbered(facets))
+            )
+        facets = _joined(facets, facets[needles], facets[straightened.twins[needles]])
 
 
-def _bordered(targets, twins, facets):
+def _bordered(targets, twins, facets) -> Borders:
     part = facets != facets[twins]
     return Borders(targets, twins, part, _ahead(twins, part), facets)
 
 
-def _ahead(twins, part):
+def _ahead(twins, part) -> NDArray[np.int64]:
     """(H,) next border along each facet, over the edges within it; meaningless off the borders."""
     following = np.arange(len(twins)).reshape(-1, 3)[:, [1, 2, 0]].ravel()
     ahead = following.copy()
@@ -293,60 +300,62 @@ def _ahead(twins, part):
     return ahead
 
 
-def _convex(hull, origins, twins, facets):
+def _convex(hull, origins, twins, facets) -> NDArray[np.int64]:
     """(H,) facets, those with a reflex corner taken apart into their triangles."""
     targets, single = origins[twins], np.arange(len(facets)) // 3
     while True:
-        found = _bordered(targets, twins, facets)
+        bordered = _bordered(targets, twins, facets)
         merged = np.bincount(facets[::3])[facets] > 1
-        edges = np.flatnonzero(found.part & merged)
+        edges = np.flatnonzero(bordered.part & merged)
         corner = hull.vertices[targets[edges]]
-        before, after = hull.vertices[origins[edges]], hull.vertices[targets[found.ahead[edges]]]
+        before, after = hull.vertices[origins[edges]], hull.vertices[targets[bordered.ahead[edges]]]
         across = vectors.cross(corner - before, after - corner)
         turn = (across * _normals(hull, facets)[facets[edges]]).sum(axis=1)
         reflex = turn < -STRAIGHTNESS_TOLERANCE * hull.radius * np.sqrt(((after - before) ** 2).sum(axis=1))
         if not reflex.any():
             return facets
-        apart = np.isin(facets, facets[edges[reflex]])
-        facets = _numbered(np.where(apart, facets.max() + 1 + single, facets))
+        split = np.isin(facets, facets[edges[reflex]])
+        facets = _numbered(np.where(split, facets.max() + 1 + single, facets))
 
 
-def _numbered(facets):
+def _numbered(facets) -> NDArray[np.int64]:
     """(H,) facets numbered without gaps."""
     return np.unique(facets, return_inverse=True)[1].ravel()
 
 
-def _normals(hull, facets):
+def _normals(hull, facets) -> NDArray[np.float64]:
     """(M, 3) unit normals of the facets, by the areas of their triangles."""
     weighted = hull.areas[:, None] * hull.normals
     sums = np.stack([np.bincount(facets[::3], column) for column in weighted.T], axis=1)
     return sums / np.maximum(np.sqrt((sums**2).sum(axis=1)), np.finfo(float).tiny)[:, None]
 
 
-def _straightened(origins, found):
+def _straightened(origins, borders) -> Borders:
     """Borders with one edge where several met at corners of two facets."""
-    valence = np.bincount(origins[found.part], minlength=origins.max() + 1)
-    passing = found.part & (valence[found.targets] < MIN_FACETS_AT_CORNER)  # ends at a corner of two facets
+    valence = np.bincount(origins[borders.part], minlength=origins.max() + 1)
+    passing = borders.part & (
+        valence[borders.targets] < MIN_FACETS_AT_CORNER
+    )  # ends at a corner of two facets
     if not passing.any():
-        return found
-    starts = np.flatnonzero(found.part & ~passing[found.twins])
+        return borders
+    starts = np.flatnonzero(borders.part & ~passing[borders.twins])
     last, going = starts.copy(), np.flatnonzero(passing[starts])
     while len(going):
-        last[going] = found.ahead[last[going]]
+        last[going] = borders.ahead[last[going]]
         going = going[passing[last[going]]]
-    targets, twins, ahead = (array.copy() for array in (found.targets, found.twins, found.ahead))
+    targets, twins, ahead = (array.copy() for array in (borders.targets, borders.twins, borders.ahead))
     targets[starts], twins[starts], ahead[starts] = targets[last], twins[last], ahead[last]
-    part = np.zeros_like(found.part)
+    part = np.zeros_like(borders.part)
     part[starts] = True
-    return Borders(targets, twins, part, ahead, found.facets)
+    return Borders(targets, twins, part, ahead, borders.facets)
 
 
-def _of_two_edges(found):
+def _of_two_edges(borders) -> NDArray[np.int64]:
     """Half-edges of facets with two edges, one of the two."""
-    edges = np.flatnonzero(found.part)
-    return edges[(found.ahead[found.ahead[edges]] == edges) & (edges < found.ahead[edges])]
+    edges = np.flatnonzero(borders.part)
+    return edges[(borders.ahead[borders.ahead[edges]] == edges) & (edges < borders.ahead[edges])]
 
 
-def _joined(facets, first, second):
+def _joined(facets, first, second) -> NDArray[np.int64]:
     """(H,) facets, each of ``first`` joined with that of ``second``."""
     return components(first, second, facets.max() + 1)[1][facets]

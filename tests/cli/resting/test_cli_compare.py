@@ -155,5 +155,5 @@ def test_a_profile_has_one_colour_everywhere():
     colours = [figures.look(f"MDBT_{amplitude}")[1] for amplitude in (78, 80, 82)]
     assert len(set(colours)) == 3
     assert figures.look("my_test", 1)[0] == "my test"
-    rules = {figures.look(name)[1] for name in registry.BY_NAME}
+    rules = {figures.look(name)[1] for name in registry.RULE_OF}
     assert figures.look("recommended", 9) == ("recommended", style.ANSWER) and style.ANSWER not in rules
