@@ -63,10 +63,9 @@ def _rows(command, context):
 def _options(rows, shared):
     """The options of one command as a table, and the names of those that the page says once."""
     own, others = [row for row in rows if row not in shared], [row for row in rows if row in shared]
-    text = COLUMNS + "".join(_line(*row) for row in own) if own else ""
     names = ", ".join(f"`{names.split(', ')[-1].split()[0]}`" for names, _ in others)
-    also = f"Also: {names}.\n" if others else ""
-    return "\n".join(filter(None, (text, also)))
+    also = f"| [of several commands](#options-of-several-commands) | {names} |\n" if others else ""
+    return COLUMNS + "".join(_line(*row) for row in own) + also
 
 
 def _line(names, text):
