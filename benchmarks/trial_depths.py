@@ -1,4 +1,4 @@
-"""Speed and depth of the trial: every real part on six chains of devices, a table for docs/trial.md.
+"""Speed and depth of the trial: every real part on six chains of devices, a table for docs/method/trial.md.
 
 Example: python benchmarks/trial_depths.py ../shared/real_parts --parts pan_m4x10 washer_m6
          python benchmarks/trial_depths.py ../shared/real_parts --write
@@ -22,7 +22,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.trial import course
 
-PAGE = Path(__file__).parent.parent / "docs/trial.md"
+PAGE = Path(__file__).parent.parent / "docs/method/trial.md"
 BEGIN, END = "<!-- depths -->\n", "<!-- end of depths -->"
 CHAINS = {
     "canyon 6, gap 9": ("canyon: 6 mm", "gap: 9 mm"),

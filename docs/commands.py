@@ -36,12 +36,17 @@ def _section(command, context, shared, level="##"):
     """Usage, help and options of a command, then of the commands below it."""
     usage = " ".join(command.collect_usage_pieces(context))
     example, _, prose = command.help.partition("\n")
-    text = f"\n{level} `{context.command_path}`\n\n{command.short_help}\n\n"
+    text = f"\n{level} `{context.command_path}`: {_within(command.short_help)}\n\n"
     text += f"```sh\n{context.command_path} {usage}\n{example.removeprefix('Example:').strip()}\n```\n\n"
     text += _prose(prose) + _options(_rows(command, context), shared)
     for name, below in getattr(command, "commands", {}).items():
         text += _section(below, click.Context(below, info_name=name, parent=context), shared, f"{level}#")
     return text
+
+
+def _within(sentence):
+    """A sentence as it goes on in a heading: a small letter first, no stop."""
+    return sentence[:1].lower() + sentence[1:].removesuffix(".")
 
 
 def _prose(text):
@@ -58,10 +63,9 @@ def _rows(command, context):
 def _options(rows, shared):
     """The options of one command as a table, and the names of those that the page says once."""
     own, others = [row for row in rows if row not in shared], [row for row in rows if row in shared]
-    text = COLUMNS + "".join(_line(*row) for row in own) if own else ""
     names = ", ".join(f"`{names.split(', ')[-1].split()[0]}`" for names, _ in others)
-    also = f"Also: {names}.\n" if others else ""
-    return "\n".join(filter(None, (text, also)))
+    also = f"| [of several commands](#options-of-several-commands) | {names} |\n" if others else ""
+    return COLUMNS + "".join(_line(*row) for row in own) + also
 
 
 def _line(names, text):

@@ -234,7 +234,7 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading,
         free = {lying[matched(one, lying)].aspect for one in known.lying if one.aspect in any_heading}
         ways = stream.along(bare.lying, aspects, driven.devices, bowl=driven, rows={*rows, *alike})
         even = np.full(len(ways.lying), 1.0 / len(ways.lying))
-        own = {"aspects": aspects, "any_heading": tuple(sorted(free))}
+        own: dict[str, Any] = {"aspects": aspects, "any_heading": tuple(sorted(free))}
         wanted_rows = [rows[0], *alike]
         tried = trying.single(
             other, driven, ways, even, wanted_rows, rows=list(dict.fromkeys(rows)), each=1,

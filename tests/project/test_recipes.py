@@ -91,7 +91,8 @@ def test_after_a_recipe_types_and_docstrings_hold(copy, name):
     tests = [
         "tests/project/test_docstrings.py",
         "tests/test_layers.py",
-        "tests/bowl",
+        "tests/bowl/test_bowl.py",
+        "tests/bowl/test_json_schema.py",
         "tests/test_api_settings.py",
     ]
     run(copy, sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *tests)
