@@ -19,6 +19,7 @@ from feederscrew.designing import (
 )
 from feederscrew.designing.alternatives import merit
 from feederscrew.designing.hazards import risks
+from feederscrew.designing.long_rides import LongRide, long_ride
 from feederscrew.designing.record import (
     DRAWS_HELD,
     HOLDS,
@@ -262,14 +263,15 @@ def proved(
         All draws of that candidate, where they were made: they would come out the same.
     """
     known, candidate = exploring.at_its_drive(search, candidate)
+    ride, candidate = _at_the_tooling(search, candidate)
     bowl, ways, row = candidate.bowl, candidate.ways, candidate.proposal.row
-    study = _unproved(search, candidate, known)
-    tested = drawn or _drawn(search, candidate)
+    study = replace(_unproved(search, candidate, known), long_ride=ride)
+    tested = drawn or _drawn(search, candidate, ride.either)
     study = replace(study, robust=tested, partial=tested.partial)
     if tested.partial or not (whole or tested.share >= DRAWS_HELD):
         return study
     try:
-        study = _in_queues(search, study, candidate, known, whole=whole)
+        study = _in_queues(search, study, candidate, known, ride.entering, whole=whole)
     except KeyboardInterrupt:
         return replace(study, partial=True)
     every = [ways.lying[k] for k in trying.often(candidate.weights)]
@@ -277,27 +279,46 @@ def proved(
     return replace(study, risks=found)
 
 
-def _drawn(search: Search, candidate: Candidate) -> RobustRun:
-    """The draws of a design."""
+def _at_the_tooling(search: Search, candidate: Candidate) -> tuple[LongRide, Candidate]:
+    """A ride along the track to the tooling, and the candidate with the mix that arrives there."""
+    search.told(f"ride along the track: {candidate.attempt.wanted}")
+    ways, weights = candidate.ways, candidate.weights
+    wanted = trying.wanted_rows(ways, candidate.tried.states)
+    ride = long_ride(search.part, candidate.bowl, ways.lying, weights, wanted, search.request.run)
+    return ride, replace(candidate, weights=ride.arriving)
+
+
+def _drawn(search: Search, candidate: Candidate, shares: np.ndarray) -> RobustRun:
+    """The draws of a design, of parts that come in some shares (M,) [1]."""
     request = search.request
     text = f"{request.draws} of part, friction, drive and cuts"
     search.begin_proof(f"draws: {candidate.attempt.wanted}, {text}")
     return robust_run(
-        search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.rows,
+        search.part, candidate.bowl, candidate.ways, shares, candidate.proposal.rows,
         draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
         any_heading=candidate.proposal.any_heading, spared=trying.spared_rows(candidate.tried),
     )  # fmt: skip
 
 
 def _in_queues(
-    search: Search, study: DesignStudy, candidate: Candidate, known: Shares, *, whole: bool
+    search: Search,
+    study: DesignStudy,
+    candidate: Candidate,
+    known: Shares,
+    entering: np.ndarray,
+    *,
+    whole: bool,
 ) -> DesignStudy:
-    """The design with its queues, as far as it holds unless ``whole``, and with the slowest for longer."""
+    """The design with its queues, as far as it holds unless ``whole``, and with the slowest for longer.
+
+    Parts that touch on their way come as they enter the track, in shares (M,) [1]: they ride otherwise than
+    alone.
+    """
     search.told(f"queue: {candidate.attempt.wanted}, {candidate.proposal.told}")
     line = queues.FollowedRow(
         search.part, candidate.bowl, known.aspects, candidate.ways, candidate.weights,
         candidate.tried.states, search.request.seed, search.told, RATE_KEPT * search.request.target,
-        candidate.proposal.any_heading, search.run("queue").progress,
+        candidate.proposal.any_heading, search.run("queue").progress, entering,
     )  # fmt: skip
     study = _queued(study, queues.filled(line, whole=whole))
     return _queued(study, queues.longer(line, study))

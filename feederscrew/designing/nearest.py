@@ -144,8 +144,7 @@ def nearest(
 
 def whole(study: DesignStudy) -> bool:
     """Return whether a design was proved to the end, holding or not: all draws, a queue at each fill."""
-    followed = sum(one.seconds > 0.99 * queues.SECONDS for one in study.queues)
-    return study.robust.draws >= study.request.draws and followed == len(queues.FILLS)
+    return study.robust.draws >= study.request.draws and queues.is_complete(study.queues)
 
 
 def tried_nearest(

@@ -18,6 +18,7 @@ from feederscrew.tooling.devices.kinds import KINDS, names
 from feederscrew.tooling.isolating.proposal import Design
 
 EACH = 2  # parts of each orientation
+MORE = 20  # parts beside those where the trial denies nothing, by the shares of the orientations
 BEST = 3  # designs of a table that are tried
 TRIES = 5  # designs of one orientation that are tried where the first ones are denied
 SEARCHES = 8  # designs that are looked for after a denied one
@@ -160,12 +161,23 @@ def _tried(study: ToolingStudy, one: Design, run: RunSettings) -> TriedDesign:
     name, total = ways.lying[one.wanted].name, study.shares.sum()
     shares = study.shares / total if total > 0.0 else np.full(len(study.shares), 1.0 / len(study.shares))
     rows = _rows_tried(ways, shares, one.wanted)
-    try:
-        tried = trying.single(
-            study.part, bowl, ways, shares, (one.wanted, *alike(ways.lying, one.wanted, study.up)), rows=rows,
-            each=EACH, run=run, aspects=study.aspects,
-            any_heading=trying.aspects_at_any_heading(ways.lying, one.wanted, study.up),
+    wanted = (one.wanted, *alike(ways.lying, one.wanted, study.up))
+    free = trying.aspects_at_any_heading(ways.lying, one.wanted, study.up)
+
+    def single(tried_rows: Any, each: Any, how: RunSettings) -> trying.Tried:
+        return trying.single(
+            study.part, bowl, ways, shares, wanted, rows=tried_rows, each=each, run=how,
+            aspects=study.aspects, any_heading=free,
         )  # fmt: skip
+
+    try:
+        tried = single(rows, EACH, run)
+        further = further_parts(shares[rows])
+        if not list(denied(tried)) and further.any():
+            again = replace(run, seed=run.seed + 1, before=None)
+            more = [row for row, count in zip(rows, further) if count]
+            counts = further[further > 0]
+            tried = tried.joined(single(more, counts, again))
     except FeederError as fault:  # the bowl does not convey
         return TriedDesign(name, one.wanted, _devices(one), one.efficiency, 0.0, np.nan, 0, (fault.what,))
     efficiency, purity = shares_leaving(tried)
@@ -196,6 +208,25 @@ def _rows_tried(ways: stream.Orientations, shares: np.ndarray, wanted: int) -> l
     may = (ways.may_leave > 0.0) & (shares >= RARE * shares[wanted]) & (shares > 0.0)
     further = [k for k in np.argsort(-shares, kind="stable") if may[k] and k not in often]
     return [int(k) for k in (*often, *further[:FURTHER])]
+
+
+def further_parts(shares: np.ndarray) -> np.ndarray:
+    """Return how many of MORE parts are of each orientation: as the interval of a sum of shares asks for.
+
+    Its width is the root of the sum of the squares of share times proportion's interval, which is least where
+    parts go with the shares (J. Neyman, J. R. Statist. Soc. 97, 558-625, 1934, for even spreads).
+
+    Parameters
+    ----------
+    shares : (R,) float [1]
+        Of those that are tried.
+
+    Returns
+    -------
+    (R,) int
+    """
+    total = float(shares.sum())
+    return np.floor(MORE * shares / total + 0.5).astype(int) if total > 0.0 else np.zeros(len(shares), int)
 
 
 def shares_leaving(tried: trying.Tried) -> tuple[tuple[float, float, float], tuple[float, float, float]]:

@@ -11,6 +11,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import DRAWS_HELD, FALLS_SHORT, HOLDS, PURE, RATE_KEPT
 from feederscrew.designing.calm_drive import DRIVES, LEAF_SPRING
 from feederscrew.designing.hazards.risks import Risk
+from feederscrew.designing.long_rides import LongRide
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import ArgumentError
 from feederscrew.machine.feasibility import DriveMismatch, is_two_axis
@@ -231,6 +232,7 @@ class DesignStudy(Shown):
     machine_warnings: tuple[str, ...] = ()  # what of its drawn machine is out of limits
     machine_lacks: tuple[str, ...] = ()  # of the drive that was tried: why it does not hold
     alternatives: tuple[Alternative, ...] = ()  # the best of each cost class, the cheapest first
+    long_ride: LongRide | None = None  # from the track's entry to the tooling; None of what was not proved
 
     @property
     def devices(self) -> tuple[Device, ...]:
@@ -249,7 +251,9 @@ class DesignStudy(Shown):
         allowances = {"margin": MARGIN, "tolerance": self.request.tolerance}
         width = None if self.bowl is None else self.bowl.track.width
         remarks = small_part_remarks(self.part, allowances, width)
-        return (*self.part.warnings, *remarks, *self._other_drive, *self.machine_warnings)
+        turning = "" if self.long_ride is None else self.long_ride.warning
+        own = (*self._other_drive, *self.machine_warnings, *((turning,) if turning else ()))
+        return (*self.part.warnings, *remarks, *own)
 
     @property
     def _other_drive(self) -> tuple[str, ...]:

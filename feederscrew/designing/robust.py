@@ -223,7 +223,7 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading,
     rng = np.random.default_rng(seed)
     other = drawn_part(part, tolerance, rng)
     driven = drawn_bowl(bowl, known.lying, rng)
-    chosen = _rows(known, shares, wanted, rng, spared)
+    chosen = drawn_rows(known, shares, wanted, rng, spared)
     try:
         aspects = find(other)
         bare = stream.orientations(other, aspects, bowl.track, (), bowl=driven)
@@ -251,8 +251,25 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading,
     return faults(tried, {matched(known.lying[k], lying) for k in spared}), tried.velocity
 
 
-def _rows(known, shares, rows, rng, spared=()):
-    """The wanted orientation, and parts as they come."""
+def drawn_rows(known, shares, rows, rng, spared=()):
+    """Return the orientations that one draw tries: a wanted one, then OTHERS parts as they come.
+
+    Parameters
+    ----------
+    known : Orientations
+        M of them.
+    shares : (M,) float [1]
+    rows : sequence of int
+        The wanted orientation, and others that count as it.
+    rng : numpy Generator
+    spared : sequence of int
+        Of the wanted ones those that may be returned.
+
+    Returns
+    -------
+    list of int
+        No orientation twice.
+    """
     wanted = trying.wanted_rows(known, trying.wanted_states(known, rows)[:1]) or [rows[0]]
     wanted = [k for k in wanted if k not in spared] or wanted
     likely = np.where([k in wanted for k in range(len(shares))], shares + 1e-12, 0.0)

@@ -16,10 +16,9 @@ from feederscrew.studies.rate import Shares
 from feederscrew.trial import runs
 
 Progress = Callable[[str, int, int, float, float], None]
-USUAL_S = {"trial": 4.0, "draws": 1.0, "queue": 30.0}  # [s] a trial, a draw, a queue, before any was timed
+USUAL_S = {"trial": 4.0, "draws": 1.0, "queue": 60.0}  # [s] a trial, a draw, all queues, before any was timed
 USUAL_SLOWNESS_S = 10.0  # [s] of stages that count as having taken as long as usual
 USUAL_TRIALS = 5  # of a design: the mean of those of docs/design.md is 5.4
-QUEUES = 3  # of a design, one at each fill
 TELL_EVERY_S = 0.5  # [s] between two calls of progress in a queue
 RESERVE = 1.6  # of the target, for which a bowl is driven: queues bring less than rows, counts scatter
 
@@ -213,7 +212,7 @@ class Clock:
 
     @staticmethod
     def _units(stage: str, done: int, total: int) -> float:
-        """Draws, or queues, that are done."""
+        """Draws that are done, or how much of the queues at all fills."""
         return float(done) if stage == "draws" else done / max(total, 1)
 
     def each(self, stage: str) -> float:
@@ -231,11 +230,10 @@ class Clock:
     def rest(self, trials: int, limit: int, draws: int) -> float:
         """Return a guess of the seconds to go: as if a usual number of trials led to one proof."""
         running = self._units(self.stage, self.done, self.total) if self.stage else 0.0
-        proof = draws * self.each("draws") + QUEUES * self.each("queue")
+        proof = draws * self.each("draws") + self.each("queue")
         if self.stage == "draws":
-            return max(draws - running, 0.0) * self.each("draws") + QUEUES * self.each("queue")
+            return max(draws - running, 0.0) * self.each("draws") + self.each("queue")
         if self.stage == "queue":
-            queued = self.spent.get("queue", (0.0, 0.0))[1] % QUEUES + running
-            return max(QUEUES - queued, 0.2) * self.each("queue")
+            return max(1.0 - running, 0.1) * self.each("queue")
         left = min(max(USUAL_TRIALS - trials, 1), max(limit - trials, 1))
         return left * self.each("trial") + proof

@@ -1,5 +1,6 @@
 """Short trials of a chain: what of each orientation leaves, how, and what names its device."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -20,6 +21,7 @@ from feederscrew.trial.looks import AspectsBelow
 
 SELDOM = 5e-3  # [1] orientations that come less often are left out
 HELD = (course.HANGING, course.STOPPED)  # what is stuck on the bare track is pushed on by a queue
+COUNTED = ("parts", "right", "wrong", "held")  # of each orientation tried
 FEW = 8  # so many other orientations are tried more than once
 LOW = 0.5  # mean free way between parts at low fill, over their length: a third of the row is empty
 GAP = 1.0 + LOW  # pitch of parts that come in a row at low fill, over their length
@@ -73,15 +75,26 @@ class Tried:
         return self.efficiency / total if total > 0.0 else np.nan
 
     def joined(self, other: "Tried") -> "Tried":
-        """Return what both trials of one bowl show, of different orientations."""
-        names = ("rows", "parts", "right", "wrong", "held")
-        both: dict = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in names}
+        """Return what both trials of one bowl show, of other orientations or of more parts of the same."""
+        rows = list(dict.fromkeys([*self.rows.tolist(), *other.rows.tolist()]))
+        place = {row: n for n, row in enumerate(rows)}
+        counts: dict[str, Any] = {name: np.zeros(len(rows), int) for name in COUNTED}
+        places: list[Counter[str]] = [Counter() for _ in rows]
+        turns: list[Counter[str]] = [Counter() for _ in rows]
+        for one in (self, other):
+            own = [place[row] for row in one.rows.tolist()]
+            for name in COUNTED:
+                np.add.at(counts[name], own, getattr(one, name))
+            for n, k in enumerate(own):
+                places[k].update(one.places[n])
+                turns[k].update(one.turns[n] if one.turns else {})
         speeds = [one.velocity for one in (self, other) if one.velocity > 0.0]
         return replace(
             self,
-            **both,
-            places=(*self.places, *other.places),
-            turns=(*self.turns, *other.turns),
+            **counts,
+            rows=np.array(rows, int),
+            places=tuple(dict(one) for one in places),
+            turns=tuple(dict(one) for one in turns),
             velocity=float(np.mean(speeds)) if speeds else 0.0,
             deepest=max(self.deepest, other.deepest),
             seen=(*self.seen, *other.seen),
@@ -185,7 +198,7 @@ def single(
     wanted: int | Sequence[int] | np.ndarray,
     *,
     rows: Any,
-    each: int,
+    each: int | Sequence[int] | np.ndarray,
     run: RunSettings,
     aspects: Aspects | None = None,
     any_heading: Sequence[str] = (),
@@ -204,7 +217,7 @@ def single(
         The wanted orientation, and others that count as it.
     rows : sequence of int
         Those to be tried.
-    each : int
+    each : int or (R,) int
         Parts of each.
     run : RunSettings
     aspects : Aspects, optional
@@ -222,8 +235,9 @@ def single(
         If the user stops it before all parts are through.
     """
     rows, states = np.asarray(rows, int), wanted_states(known, np.atleast_1d(wanted))
+    sent = np.tile(rows, each) if isinstance(each, int) else np.repeat(rows, each)
     seen = course.course(
-        part, bowl, known.lying, course.Sending(rows, each * len(rows)), bowl.devices,
+        part, bowl, known.lying, course.Sending(sent.tolist(), len(sent)), bowl.devices,
         poses=counted(known, states, any_heading), leaves=course.rightly(known.leaving), run=run,
     )  # fmt: skip
     if seen.partial:  # fewer parts than were to be tried decide nothing

@@ -85,6 +85,7 @@ class PartsOnTrack:
 
     def __init__(self, known, track, count):
         self.known, self.solid, self.stage = known, known.solid, track.stage
+        self.hull = known.solid.corners[known.solid.outer]
         self.windows, self.levels = track.windows, track.levels
         self.surface = runs.surface_of(known, track.stage)
         self.arrays, self.on = crowd_of(known.solid, self.surface, count), np.zeros(count, bool)
@@ -148,7 +149,7 @@ class PartsOnTrack:
 
     def near(self, n, lying, resolution):
         """Return the parts of a row that are one with part n for a sensor of some resolution [m]."""
-        reach = {m: self.extents(m) for m in lying}
+        reach = self.reaches(lying)
         found, rear, front = [], reach[n][0], reach[n][1]
         wide = resolution / self.known.length
         for m in sorted(lying, key=lambda m: abs(reach[m][0] - reach[n][0])):
@@ -166,6 +167,11 @@ class PartsOnTrack:
         """Return (N, 2) mean forces of others in the last period, from behind and below, over the weight."""
         return self.arrays.strains / self.period
 
+    def reaches(self, rows):
+        """Return, by part, how far it reaches along the wall, rear and front, and its lowest point."""
+        states = self.arrays.states[list(rows)]
+        return dict(zip(rows, whereabouts.reaches(states, self.hull, self.known.radius).tolist()))
+
     def extents(self, n):
         """Return how far part n reaches along the wall, rear and front, and its lowest point."""
-        return whereabouts.extents(self.arrays.states[n], self.solid.corners, self.known.radius)
+        return self.reaches([n])[n]

@@ -62,6 +62,17 @@ class Looks:
         """Return (N,) orientation of each state, OTHER where it is none of the known."""
         return np.array([self._of(state) for state in states], int)
 
+    def nearest(self, states):
+        """Return (N,) the orientation that is nearest as each comes to lie, however far off it is."""
+        return np.array([self._nearest(state) for state in states], int)
+
+    def _nearest(self, state):
+        place = np.arctan2(state[0], self.radius - state[1])
+        turn = whereabouts.matrix(whereabouts.moved(state[None], -place * self.radius, self.radius)[0])
+        at_rest = self._at_rest(turn)
+        reach = self._reach(turn if at_rest is None else at_rest)
+        return int(np.argmin(np.abs(self.known - reach).max(axis=2).min(axis=1)))
+
     def _of(self, state):
         place = np.arctan2(state[0], self.radius - state[1])
         level = whereabouts.moved(state[None], -place * self.radius, self.radius)[0]

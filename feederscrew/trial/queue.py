@@ -1,7 +1,7 @@
 """A queue of parts through a chain of devices: in a row or poured, touching and pushing each other."""
 
 import itertools
-from collections.abc import Callable
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,11 +18,11 @@ from feederscrew.trial.shape import solid_of
 
 GAPS = 0.2  # of a part's length: mean free way between parts as they come in a row
 HOLD = 1.0  # [s] a part that stands at a device with nothing before it is taken out by hand after so long
-LOOKS = 10.0  # [s] after which a queue that may be ended is looked at, each time
 MOVED = 0.05  # of the unit of length: a part that has come no further stands
 PART_OF_TURN = 0.5  # of the bowl's circumference, less two lengths: more parts than fit there wait to enter
 CARRIED = 0.1  # of its weight that other parts carry, and ...
 LIFTED = 0.02  # ... as high over the track: a part has climbed on others
+WHOLE = 1e-6  # of a period: a time that is so little longer than whole periods is that of them
 POURED = 1.05  # of the part's radius: apart along the track, and over it, where parts are poured
 
 
@@ -74,8 +74,6 @@ class QueuePlan:
     # [1] mean free way between parts as they come in a row, over their length, beside the room that devices
     # need; 0 where they come touching. None: they fall onto the track in any attitude, not in a row
     gaps: float | None = GAPS
-    # given what was seen so far, QueuedParts, each LOOKS seconds: whether to end
-    enough: Callable | None = None
 
 
 def queue_of(part, bowl, aspects, every, poses, shares, plan, run):
@@ -109,22 +107,26 @@ def queue_of(part, bowl, aspects, every, poses, shares, plan, run):
         If the user stops it before the first period is done.
     """
     run.begin()
-    queue = _Queue(part, bowl, aspects, (every, shares), poses, plan, run.seed)
-    count, look = (max(round(span * bowl.drive.frequency), 1) for span in (plan.seconds, LOOKS))
+    queue = PartsQueue(part, bowl, aspects, (every, shares), poses, plan, run.seed)
     try:
-        for turn in range(count):
-            queue.ride(turn)
-            run.tell(turn + 1, count)
-            if plan.enough and (turn + 1) % look == 0 and plan.enough(queue.told(partial=False)):
-                return queue.told(partial=False)
+        queue.follow(plan.seconds, run.tell)
     except KeyboardInterrupt:
         if not queue.periods:
             raise
-    return queue.told(partial=queue.periods < count)
+    return queue.seen(partial=queue.periods < queue.periods_in(plan.seconds))
 
 
-class _Queue:
-    """The queue while it moves; lengths in units of the part's, times in seconds."""
+class PartsQueue:
+    """A queue that is followed bit by bit; lengths in units of the part's, times in seconds.
+
+    Parameters
+    ----------
+    part, bowl, aspects, poses, plan
+        As of ``queue_of``; the plan's seconds are not looked at.
+    offered : (sequence of Orientation, (M,) float [1])
+        How parts come, and in which shares.
+    seed : int
+    """
 
     def __init__(self, part, bowl, aspects, offered, poses, plan, seed):
         self.part, self.bowl, (every, shares), parts = part, bowl, offered, plan.parts
@@ -156,14 +158,40 @@ class _Queue:
         """Followed so far [s]."""
         return self.periods / self.bowl.drive.frequency
 
+    def periods_in(self, seconds):
+        """Return how many periods of the drive are followed in a time [s]: no less than the time, and one."""
+        return max(math.ceil(seconds * self.bowl.drive.frequency - WHOLE), 1)
+
+    def follow(self, seconds, tell=None):
+        """Go on until a time [s] since the queue began; what was followed before is not followed again.
+
+        Parameters
+        ----------
+        seconds : float [s]
+        tell : function, optional
+            Told after each period how many are done, of how many.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            If the user stops it: ``seen`` has the periods until then.
+        """
+        count = self.periods_in(seconds)
+        while self.periods < count:
+            self.ride(self.periods)
+            if tell:
+                tell(self.periods, count)
+
     def enter(self):
         """Let waiting parts in at the end of the row, as long as there is room.
 
         What has no room yet is the next one to come: were another drawn for it, short ones would come more
         often than they do.
         """
-        lying = np.flatnonzero(self.crowd.on)
-        end = min((self.crowd.extents(n)[0] for n in lying), default=0.0)
+        if not self.waiting:
+            return
+        reach = self.crowd.reaches(np.flatnonzero(self.crowd.on))
+        end = min((rear for rear, _, _ in reach.values()), default=0.0)
         while self.waiting:
             self.coming = self.coming or self.fresh()
             state, gap = self.coming
@@ -207,7 +235,7 @@ class _Queue:
         on = [n for n in lying if not self.crowd.blown_off(n)]
         if on:
             self.way.append((ways - before)[on].mean())
-        reach = {n: self.crowd.extents(n) for n in lying}
+        reach = self.crowd.reaches(lying)
         order = sorted(lying, key=lambda n: -ways[n])
         self.free += [max(reach[a][0] - reach[b][1], 0.0) for a, b in itertools.pairwise(order)]
         self.touch.append((self.crowd.forces[lying, BEHIND] > 0.0).mean())
@@ -283,11 +311,11 @@ class _Queue:
         """How much of a part has left [1]."""
         return float(np.clip((front - self.outlet) / (front - rear), 0.0, 1.0))
 
-    def told(self, partial):
-        """What they did, in SI units."""
+    def seen(self, partial=False):
+        """Return what the parts did so far, QueuedParts; ``partial`` where the user stopped it."""
         length, seconds = self.known.length, self.time
-        reach = [self.crowd.extents(n) for n in np.flatnonzero(self.crowd.on)]  # none of them has fallen
-        part = sum(self.outside(rear, front) for rear, front, _ in reach)
+        reach = self.crowd.reaches(np.flatnonzero(self.crowd.on))  # none of them has fallen
+        part = sum(self.outside(rear, front) for rear, front, _ in reach.values())
         counted = 0.0 if self.first is None else seconds - self.first
         return QueuedParts(
             parts=self.parts,

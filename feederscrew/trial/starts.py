@@ -13,11 +13,11 @@ TILT = np.radians(0.2)  # [rad] out of level: standard deviation, about any axis
 CLEAR = 1.02  # of the part's radius: as near to the wall as its centre of mass may come down
 
 
-def laid_down(bowl, every, entered, solid, principal, length, seed):
-    """Return parts laid on the track, up to PLAY from the wall and TURN askew, at any phase of the drive.
+def laid_down(bowl, every, entered, solid, principal, length, seed, *, play=PLAY, turn=TURN, tilt=TILT):
+    """Return parts laid on the track, a little from the wall, askew and tilted, at any phase of the drive.
 
-    Each lies out of level by TILT, drawn from a normal distribution, about an axis in any direction along the
-    track's surface. What is exactly level keeps a steady state that the least tilt ends: see docs/trial.md.
+    Each lies out of level by ``tilt``, drawn from a normal distribution, about an axis in any direction along
+    the track's surface. What is exactly level keeps a steady state that the least tilt ends: docs/trial.md.
 
     Parameters
     ----------
@@ -32,6 +32,12 @@ def laid_down(bowl, every, entered, solid, principal, length, seed):
         Both from ``solid_of``.
     seed : int
         Each part draws its own numbers.
+    play : float [m]
+        From the wall, at most.
+    turn : float [rad]
+        Of its heading, at most to either side.
+    tilt : float [rad]
+        Standard deviation.
 
     Returns
     -------
@@ -42,20 +48,19 @@ def laid_down(bowl, every, entered, solid, principal, length, seed):
     states, times = np.zeros((len(entered), body.STATE)), np.zeros(len(entered))
     for n, k in enumerate(entered):
         rng = np.random.default_rng((seed, n))
-        play, turn, phase = rng.random(3)
-        lean = TURN * (2.0 * turn - 1.0)
+        away, askew, phase = rng.random(3)
         states[n] = whereabouts.laid(
             every[k], principal, length, bowl.track, place=0.0,
-            turn=lean,
+            turn=turn * (2.0 * askew - 1.0),
         )  # fmt: skip
-        states[n] = tilted(states[n], solid.corners, rng)
-        states[n] = clear(states[n], solid, every[k].track, length, PLAY * play, every[k].wall_leans)
+        states[n] = tilted(states[n], solid.corners, rng, tilt)
+        states[n] = clear(states[n], solid, every[k].track, length, play * away, every[k].wall_leans)
         times[n] = phase / bowl.drive.frequency
     return states, times
 
 
-def tilted(state, corners, rng):
-    """Return a part's state (13,) out of level by TILT about a level axis, its lowest corner on the track.
+def tilted(state, corners, rng, spread=TILT):
+    """Return a part's state (13,) out of level about a level axis, its lowest corner on the track.
 
     Parameters
     ----------
@@ -63,8 +68,10 @@ def tilted(state, corners, rng):
     corners : (C, 3) float [L]
     rng : numpy.random.Generator
         Two numbers of it are drawn.
+    spread : float [rad]
+        Standard deviation of how far it is out of level.
     """
-    angle, way = TILT * rng.standard_normal(), 2.0 * np.pi * rng.random()
+    angle, way = spread * rng.standard_normal(), 2.0 * np.pi * rng.random()
     x, y, c, s = np.cos(way), np.sin(way), np.cos(angle), np.sin(angle)
     turn = np.array(
         [

@@ -79,9 +79,24 @@ def ways(states, radius):
 
 def extents(state, corners, radius):
     """Return how far a part reaches along the wall, rear and front, and its lowest point [any]."""
-    spots = state[:3] + vectors.product(corners, matrix(state).T)
-    along = radius * np.arctan2(spots[:, 0], radius - spots[:, 1])
-    return along.min(), along.max(), spots[:, 2].min()
+    return tuple(reaches(state[None], corners, radius)[0])
+
+
+def reaches(states, corners, radius):
+    """Return how far parts reach along the wall, rear and front, and their lowest points, (N, 3) [L].
+
+    Parameters
+    ----------
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+    corners : (C, 3) float [L]
+        Of the part; those of its hull reach as far as all.
+    radius : float [L]
+        Of the wall.
+    """
+    turns = np.array([matrix(state) for state in states]).reshape(-1, 3, 3)
+    x, y, z = states[:, :3].T[:, :, None] + np.einsum("nij,cj->inc", turns, corners)
+    along = radius * np.arctan2(x, radius - y)
+    return np.stack([along.min(axis=1), along.max(axis=1), z.min(axis=1)], axis=1)
 
 
 def moved(states, by, radius):

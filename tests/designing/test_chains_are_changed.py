@@ -113,6 +113,29 @@ def test_trials_of_different_orientations_are_joined(block):
     assert joined.places == whole.places
 
 
+def test_more_parts_of_one_orientation_count_with_the_first(block):
+    _, ways, _ = block
+    first = tried(ways, {0, 1}, {2}, {3}, 0)
+    second = replace(
+        first, rows=np.array([2, 0]), parts=np.array([5, 3]), right=np.array([1, 3]), wrong=np.array([4, 0]),
+        held=np.array([0, 0]), places=({"stopped at gap": 1}, {}), turns=({"turned at gap": 2}, {}),
+    )  # fmt: skip
+    both = first.joined(second)
+    assert both.rows.tolist() == first.rows.tolist() and both.places[2] == {"stopped at gap": 1}
+    assert both.parts[[0, 1, 2]].tolist() == [5, 2, 7] and both.right[[0, 2]].tolist() == [5, 1]
+    assert both.wrong[2] == 6 and both.held[3] == 2 and both.turns[2] == {"turned at gap": 2}
+    even = 1.0 / len(ways.lying)
+    assert both.efficiency == pytest.approx(even * (1.0 + 1.0 + 1.0 / 7.0))
+
+
+def test_as_many_parts_of_each_are_sent_as_is_said(block):
+    part, ways, names = block
+    rows, shares = (names["A@0"], names["A@90"]), np.full(len(ways.lying), 1.0 / len(ways.lying))
+    own = {"rows": rows, "run": RunSettings(1)}
+    seen = trying.single(part, bowls.default(), ways, shares, rows[0], each=np.array([3, 1]), **own)
+    assert seen.parts.tolist() == [3, 1] and seen.right.tolist() == [3, 0]
+
+
 def test_a_sensor_is_drawn_with_other_play_and_the_drawn_part_s_name(block):
     _, ways, names = block
     one = ways.lying[names["A@0"]]

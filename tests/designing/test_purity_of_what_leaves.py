@@ -79,6 +79,43 @@ def test_the_interval_holds_the_true_shares_in_most_trials(ways):
     assert np.mean(held) >= 0.95
 
 
+def test_further_parts_go_with_the_shares_and_make_the_interval_narrower(ways):
+    """Of 60, 30 and 10 %; with two of each the interval of a clean trial is 0.60 wide, then 0.24."""
+    counts = own_trial.further_parts(np.array([0.6, 0.3, 0.1]))
+    assert counts.tolist() == [12, 6, 2] and own_trial.further_parts(np.zeros(3)).tolist() == [0, 0, 0]
+    shares = np.zeros(len(ways.lying))
+    shares[:3] = 0.6, 0.3, 0.1
+    widths = []
+    for parts in (np.full(3, 2), 2 + counts):
+        one = tried(ways, shares, [0, 1, 2], parts, [parts[0], 0, 0], [0, 0, 0])
+        (_, low, high), _ = own_trial.shares_leaving(one)
+        widths.append(high - low)
+    assert widths == pytest.approx([0.60, 0.24], abs=0.01)
+
+
+def test_only_what_the_trial_does_not_deny_is_tried_with_more_parts(monkeypatch):
+    study = tooling(PART, bowls.read(None, []), "A", rule="csa", verdicts=1)
+    calls = []
+
+    def single(part, bowl, ways, shares, wanted, *, rows, each, run, **_):
+        rows, each = np.array(rows), np.broadcast_to(each, len(rows))
+        calls.append((run.seed, int(each.sum())))
+        none = np.zeros(len(rows), int)
+        right = np.where(rows == study.wanted, each, 0)
+        state = int(ways.leaves_as[study.wanted])
+        places = tuple({} for _ in rows)
+        return trying.Tried(ways, shares, rows, each, right, none, none, places, 0.05, state, (state,), 0.0)
+
+    monkeypatch.setattr(trying, "single", single)
+    (one,) = own_trial.own_trials(study, seed=3).trials
+    assert [seed for seed, _ in calls] == [3, 4] and 18 <= calls[1][1] <= 22
+    assert one.parts == calls[0][1] + calls[1][1]
+    calls.clear()
+    monkeypatch.setattr(own_trial, "denied", lambda _: ("nothing leaves as wanted",))
+    own_trial.own_trials(study, seed=3)
+    assert [seed for seed, _ in calls] == [3]
+
+
 def test_what_is_printed_is_the_trials_and_a_least_without_one():
     study = tooling(PART, bowls.read(None, []), "A", rule="csa", verdicts=1)
     found, place = study.design, study.wanted

@@ -156,21 +156,24 @@ def test_a_queue_is_followed_for_longer_only_where_that_decides():
     ],
 )
 def test_what_surely_does_not_hold_is_followed_no_further(counts, followed):
-    seen = []
+    least, seen = 36.0 / 60.0, []
+    for (right, left), (fill, gaps) in zip(counts, queues.FILLS):
+        one = FilledQueue(fill, gaps, 12, 60.0, 60.0, float(left), right, left, 180, 0, 0)
+        nothing = replace(one, right=0, left=0, seconds=10.0, counted=0.0)
+        assert not queues.is_denied((*seen, nothing), nothing, least)
+        jammed = replace(one, jams=1)
+        assert queues.is_denied((*seen, jammed), jammed, least)
+        seen.append(one)
+        if queues.is_denied(tuple(seen), one, least):
+            break
+    assert [one.fill for one in seen] == followed
 
-    class Known(queues.FollowedRow):
-        def followed(self, fill, gaps, seed, denied=None):
-            right, left = counts[len(seen)]
-            seen.append(fill)
-            one = FilledQueue(fill, gaps, 12, 60.0, 60.0, float(left), right, left, 180, 0, 0)
-            assert denied is None or not denied(replace(one, right=0, left=0, seconds=10.0, counted=0.0))
-            assert denied is None or denied(replace(one, jams=1))
-            return one
 
-    row = Known(PART, None, None, None, None, (0,), seed=7, least=36.0 / 60.0)
-    assert [one.fill for one in queues.filled(row, whole=False)] == followed == seen
-    seen.clear()
-    assert len(queues.filled(row)) == 3
+def test_of_a_short_time_as_many_may_be_wrong_as_the_whole_minutes_may_have():
+    """After 20 s, 45 parts: 405 in the three minutes, of which 8 may be wrong."""
+    for wrong, denied in ((8, False), (9, True)):
+        one = FilledQueue("low", 0.5, 12, 20.0, 20.0, 45.0, 45 - wrong, 45, 10, 0, 0)
+        assert queues.is_denied((one,), one, 0.1) is denied
 
 
 def test_what_is_followed_for_longer_is_one_queue_of_other_seeds():

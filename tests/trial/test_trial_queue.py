@@ -120,7 +120,7 @@ def test_a_row_that_reaches_round_the_bowl_stays_on_the_track():
 def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is_asked_for(gaps):
     """In a row they are even from 0 to twice the mean; parts that are poured or come touching have none."""
     shares = np.array([one is FLAT for one in EVERY], float)
-    made = queue._Queue(PART, STILL, ASPECTS, (EVERY, shares), EVERY, queue.QueuePlan(300, 1.0, gaps), 3)
+    made = queue.PartsQueue(PART, STILL, ASPECTS, (EVERY, shares), EVERY, queue.QueuePlan(300, 1.0, gaps), 3)
     ends = np.array([made.crowd.extents(n)[:2] for n in range(300)])
     free = (ends[:-1, 0] - ends[1:, 1]) * LENGTH / FLAT.length
     assert not made.waiting and ends[0, 1] <= 1e-9 and made.most == 300
@@ -134,7 +134,7 @@ def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is
 def test_parts_wait_where_the_track_before_the_first_device_is_full():
     tight = replace(STILL, track=replace(STILL.track, radius=0.08, width=0.04))
     shares = np.array([one is FLAT for one in EVERY], float)
-    made = queue._Queue(PART, tight, ASPECTS, (EVERY, shares), EVERY, queue.QueuePlan(40, 1.0), 3)
+    made = queue.PartsQueue(PART, tight, ASPECTS, (EVERY, shares), EVERY, queue.QueuePlan(40, 1.0), 3)
     lying = np.flatnonzero(made.crowd.on)
     rears = [made.crowd.extents(n)[0] * LENGTH for n in lying]
     room = 0.5 * 2.0 * np.pi * 0.08 - 2.0 * max(one.length for one in EVERY)
@@ -217,7 +217,7 @@ def test_a_part_lies_on_its_aspect_at_any_heading():
 def test_what_has_no_room_yet_comes_next_however_long_it_is():
     even = np.full(len(EVERY), 1.0 / len(EVERY))
     small = replace(BOWL, track=replace(BOWL.track, radius=0.15))
-    row = queue._Queue(PART, small, ASPECTS, (EVERY, even), EVERY, queue.QueuePlan(40, 1.0, 0.0), 5)
+    row = queue.PartsQueue(PART, small, ASPECTS, (EVERY, even), EVERY, queue.QueuePlan(40, 1.0, 0.0), 5)
     waits, came = row.coming, list(row.waiting)
     assert waits is not None and came  # the row reaches back to where the track begins
     for _ in range(20):
@@ -231,20 +231,28 @@ def test_what_has_no_room_yet_comes_next_however_long_it_is():
     assert len(row.waiting) < len(came)
 
 
-def test_a_queue_of_which_enough_is_seen_ends_there(monkeypatch):
-    """It is looked at after each fifth of a second; what was seen until then is that of a shorter queue."""
-    monkeypatch.setattr(queue, "LOOKS", 0.2)
-    two, seen = queue.QueuePlan(2, 1.0), []
+def test_a_queue_that_is_followed_bit_by_bit_is_that_of_one_go():
+    """It goes on where it was, and its times are no shorter than was asked for."""
+    shares, told = np.array([one is FLAT for one in EVERY], float), []
+    bits = queue.PartsQueue(PART, BOWL, ASPECTS, (EVERY, shares), EVERY, queue.QueuePlan(2, 9.0), 3)
+    for seconds in (0.2, 0.2, 0.41):
+        bits.follow(seconds, lambda *row: told.append(row))
+    first, whole = bits.seen(), queued(BOWL, 2, 0.41, run=RunSettings(3))
+    assert first.seconds == whole.seconds == pytest.approx(25 / 60) and not first.partial
+    assert (first.velocity, first.gap, first.depth) == (whole.velocity, whole.gap, whole.depth)
+    assert told == [(k, 12) for k in range(1, 13)] + [(k, 25) for k in range(13, 26)]
+    bits.follow(1.0)
+    assert first.seconds < bits.seen().seconds == pytest.approx(1.0)
 
-    def enough(found):
-        seen.append(found)
-        return len(seen) == 2
 
-    def followed(plan):
-        return queued(BOWL, **vars(plan), run=RunSettings(3))
-
-    ended = followed(replace(two, enough=enough))
-    short = followed(replace(two, seconds=0.4))
-    assert [one.seconds for one in seen] == pytest.approx([0.2, 0.4]) and not ended.partial
-    assert (ended.seconds, ended.velocity, ended.gap) == (short.seconds, short.velocity, short.gap)
-    assert seen[0].whole is not ended.whole and followed(replace(two, seconds=0.1)).seconds == 0.1
+def test_parts_reach_as_far_together_as_alone_all_round_the_bowl():
+    """A block in closed form: half its length before and behind it at the wall's angle, its foot at 0."""
+    places = np.radians([10.0, 100.0, -150.0]) * 50.0
+    on = parts_on(STILL, *places)
+    reach = on.reaches([2, 0, 1])
+    assert list(reach) == [2, 0, 1]
+    for n, place in enumerate(places):
+        off = 50.0 - 1e-3 - 12e-3  # [m] from the bowl's axis to the block's inner side
+        half = 50.0 * np.arctan2(10e-3, off)
+        assert np.array(reach[n]) * LENGTH == pytest.approx([place - half, place + half, 0.0], abs=1e-7)
+        assert on.extents(n) == reach[n]

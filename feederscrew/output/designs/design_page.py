@@ -141,6 +141,13 @@ def _proof(study, d):
     )
     from feederscrew.output.tables import frame
 
+    if d["long_ride"]:
+        yield Text(
+            "Parts of each orientation that comes often first ride along the bare track to the tooling. They "
+            f"begin a little off and ride {1e3 * study.long_ride.distance:.3g} mm. What turns, leaves the "
+            "track or rolls back changes the mix that arrives."
+        )
+        yield Table(tables.long_ride(d["long_ride"]))
     rows = d["queues"]
     yield Table(frame({name: [row[name] for row in rows] for name in rows[0]}))
     worst = f"; most often: {study.robust.worst}" if study.robust.worst else ""

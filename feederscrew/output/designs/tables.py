@@ -63,6 +63,7 @@ def document(study):
         "proved_so_far": [] if proved else list(study.proved_so_far),
         "machine": machine(study),
         "bowl": bowl(study),
+        "long_ride": [] if study.long_ride is None else study.long_ride.rows(),
         "queues": [queue(one) for one in study.queues],
         "attempts": attempts(study).rows(),
     }
@@ -136,6 +137,19 @@ def _proof(study):
     rates = (end / PER_MINUTE for end in (*study.delivered, study.worst))
     values = (*rates, None if np.isnan(purity) else purity, purity_low, study.jams)
     return dict(zip(PROOF, (*values, high if np.isfinite(high) else None), strict=True))
+
+
+def long_ride(rows):
+    """Return the rows of a long ride as a table."""
+    if not rows:
+        return None
+    others = [", ".join(f"{name}: {count}" for name, count in row["becomes"].items()) or "-" for row in rows]
+    percent = {
+        f"{name} [%]": [round(100.0 * row[f"share_{name}"], 1) for row in rows]
+        for name in ("entering", "arriving")
+    }
+    counts = {name: [row[name] for row in rows] for name in ("orientation", "parts", "stays")}
+    return tables.frame({**counts, "becomes": others, "left": [row["left"] for row in rows], **percent})
 
 
 def nearest(study):

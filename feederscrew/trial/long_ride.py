@@ -1,0 +1,176 @@
+"""A ride along bare track before the tooling: which orientations last, which turn, roll back or fall off."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew import check
+from feederscrew.bowl.record import Bowl
+from feederscrew.conveying import answer
+from feederscrew.part.record import Part
+from feederscrew.running import USUAL_RUN, RunSettings
+from feederscrew.tooling.orientations import Orientation
+from feederscrew.trial import course, runs, starts, stations, whereabouts
+from feederscrew.trial.looks import OTHER, Looks
+from feederscrew.trial.rounding import rounded
+from feederscrew.trial.shape import solid_of
+
+RIDE_M = 0.6  # a turn of a small bowl: what has not turned by then seldom does
+RIDE_S = 24.0  # [s] after which a slow part is looked at wherever it is
+SEGMENT_M = 0.1  # ridden at a time: a way along the wall is known within half a turn only
+STANDING_S = 1.0  # a part that has not come on in that time stands, until others push it
+OFF_WALL_M = 1e-3  # from the wall, at most, where a part begins
+OFF_HEADING = np.radians(3.0)  # [rad] of its heading, at most to either side
+OFF_LEVEL = np.radians(1.0)  # [rad] standard deviation of its tilt
+LEFT = -2  # of a part that has left the track or rolled back
+
+
+@dataclass(frozen=True, eq=False)
+class RideOfTrack:
+    """What became of N parts on bare track; M orientations."""
+
+    names: tuple[str, ...]  # (M,) of the orientations
+    entered: NDArray[np.int64]  # (N,) the orientation in which each began
+    ended: NDArray[np.int64]  # (N,) in which it arrives at the tooling; LEFT of one that does not
+    askew: NDArray[np.bool_]  # (N,) whether it lies so only nearly, away from the wall for instance
+    ways: NDArray[np.float64]  # (N,) [m] along the wall
+    seconds: NDArray[np.float64]  # (N,) [s]
+
+    @property
+    def rows(self) -> list[int]:
+        """The orientations that were ridden, in the order in which they were begun."""
+        return list(dict.fromkeys(self.entered.tolist()))
+
+    @property
+    def counts(self) -> NDArray[np.int64]:
+        """(M, M + 1) parts by the orientation in which they began and ended; the last column has left."""
+        found = np.zeros((len(self.names), len(self.names) + 1), int)
+        np.add.at(found, (self.entered, np.where(self.ended == LEFT, len(self.names), self.ended)), 1)
+        return found
+
+    @property
+    def turned(self) -> NDArray[np.bool_]:
+        """(M,) whether any part that began so has ended otherwise, or has left."""
+        counts = self.counts
+        return counts.sum(axis=1) > np.diag(counts)
+
+    def arriving(self, shares: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the shares (M,) [1] that arrive at the tooling of those (M,) that enter the track.
+
+        An orientation that was not ridden stays what it is. What has left comes back with all others.
+
+        Parameters
+        ----------
+        shares : (M,) float [1]
+        """
+        counts = self.counts.astype(float)
+        ridden = counts.sum(axis=1)
+        matrix = np.where(ridden[:, None] > 0.0, counts[:, :-1] / np.maximum(ridden, 1.0)[:, None], 0.0)
+        matrix[ridden == 0.0, ridden == 0.0] = 1.0
+        out = (np.asarray(shares)[:, None] * matrix).sum(axis=0)
+        total = out.sum()
+        return out / total if total > 0.0 else np.asarray(shares, float)
+
+
+def ride_of_track(
+    part: Part,
+    bowl: Bowl,
+    every: Sequence[Orientation],
+    rows: Sequence[int],
+    *,
+    each: int,
+    distance: float | None = None,
+    run: RunSettings = USUAL_RUN,
+) -> RideOfTrack:
+    """Let parts ride along the bare track of a bowl, begun a little off, and look how they arrive.
+
+    They begin up to OFF_WALL_M from the wall, OFF_HEADING askew and OFF_LEVEL out of level, at any phase. A
+    part that stands goes on when others push it: it stays as it is.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowl : Bowl
+        With its drive; of its devices those that lean the track at its entry count.
+    every : sequence of Orientation
+        M of them, on its track.
+    rows : sequence of int
+        Those that ride.
+    each : int
+        Parts of each.
+    distance : float [m], optional
+        By default a turn of the bowl, RIDE_M at the most. A part rides for RIDE_S at the most.
+    run : RunSettings
+        Each part draws its own start from the seed.
+
+    Returns
+    -------
+    RideOfTrack
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user stops it before all have arrived.
+    FeederError
+        If the part has no shape or the bowl conveys nothing at all.
+    """
+    distance = min(2.0 * np.pi * bowl.track.radius, RIDE_M) if distance is None else distance
+    solid, length, principal = solid_of(part)
+    solid = rounded(solid, course.axes(every, principal))
+    known, looks = (
+        runs.setting(solid, length, bowl),
+        Looks(every, solid, length, principal, bowl.track.radius),
+    )
+    run.begin()
+    entered = np.repeat(np.asarray(rows, int), each)
+    states, times = starts.laid_down(
+        bowl, every, entered, solid, principal, length, run.seed,
+        play=OFF_WALL_M, turn=OFF_HEADING, tilt=OFF_LEVEL,
+    )  # fmt: skip
+    count = max(round(distance / SEGMENT_M), 1)
+    follow = _segment(known, bowl, every, distance / count)
+    ways, seconds, going = np.zeros(len(entered)), np.zeros(len(entered)), np.ones(len(entered), bool)
+    lost = np.zeros(len(entered), bool)
+    for done in range(count):
+        on = np.flatnonzero(going)
+        if not len(on):
+            break
+        rode = runs.ride(follow, states[on], times[on] + seconds[on], jobs=run.jobs)
+        if rode.partial:
+            raise KeyboardInterrupt
+        passed = rode.outcomes == runs.PASSED
+        lost[on] = np.isin(rode.outcomes, (runs.RETURNED, runs.ROLLED))
+        ways[on] += rode.ways
+        seconds[on] += rode.seconds
+        states[on] = whereabouts.moved(rode.states, -rode.ways / length, known.radius)
+        going[on] = passed & (seconds[on] < RIDE_S)
+        run.tell(done + 1, count)
+    ended = looks.of(states)
+    askew = (ended == OTHER) & ~lost
+    ended[askew] = looks.nearest(states[askew])
+    ended[lost] = LEFT
+    return RideOfTrack(
+        tuple(one.name for one in every), *map(check.frozen, (entered, ended, askew, ways, seconds))
+    )
+
+
+def joined(first: RideOfTrack, second: RideOfTrack) -> RideOfTrack:
+    """Return two rides of the same orientations as one."""
+    names = ("entered", "ended", "askew", "ways", "seconds")
+    both = (np.concatenate([getattr(one, name) for one in (first, second)]) for name in names)
+    return RideOfTrack(first.names, *map(check.frozen, both))
+
+
+def _segment(
+    known: runs.BowlOfPart, bowl: Bowl, every: Sequence[Orientation], distance: float
+) -> Callable[[NDArray[np.float64], NDArray[np.float64]], runs.Runs]:
+    """What follows parts along a segment of bare track."""
+    station = stations.plain(bowl.track, every, distance, stations.at_entry(bowl.devices, bowl.track, every))
+    found = answer.answer(bowl).velocity
+    speed = max(found if np.isfinite(found) else 0.0, course.SLOWEST)
+    size = max(one.length for one in every)
+    limits = (RIDE_S, STANDING_S, course.GETS_ON * STANDING_S * speed, 0.5 * size)
+    return runs.past(known, station, limits=limits, every=RIDE_S, places=1)

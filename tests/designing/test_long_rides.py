@@ -1,0 +1,123 @@
+"""What a design owes to parts that turn on the way to the tooling, and that it says so."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.designing import long_rides, loop, queues
+from feederscrew.designing.record import DesignRequest, RobustRun
+from feederscrew.dropping.ensemble import wilson
+from feederscrew.output.designs import tables
+from feederscrew.trial.long_ride import LEFT, RideOfTrack
+
+NAMES = ("A@0", "A@180", "B@0")
+
+
+def ridden(entering, wanted, *changes):
+    """Ten parts of each; changes are (row, what it becomes, how many)."""
+    entered = np.repeat([0, 1, 2], 10)
+    ended = entered.copy()
+    for row, becomes, count in changes:
+        places = np.flatnonzero((entered == row) & (ended == row))[:count]
+        ended[places] = becomes
+    ride = RideOfTrack(NAMES, entered, ended, np.zeros(30, bool), np.full(30, 0.45), np.ones(30))
+    entering = np.array(entering)
+    return long_rides.LongRide(ride, entering, ride.arriving(entering), wanted)
+
+
+def test_each_orientation_says_how_many_stay_turn_and_leave():
+    rows = ridden([0.5, 0.3, 0.2], (0,), (1, 0, 2), (2, LEFT, 10)).rows()
+    low, high = (float(end[0]) for end in wilson([8], 10))
+    assert rows[1] == {
+        "orientation": "A@180", "parts": 10, "stays": 8, "stays_low": low, "stays_high": high,
+        "becomes": {"A@0": 2}, "left": 0, "share_entering": 0.3,
+        "share_arriving": pytest.approx(0.24 / 0.8),
+    }  # fmt: skip
+    assert (rows[2]["stays"], rows[2]["left"], rows[2]["becomes"]) == (0, 10, {})
+    table = tables.long_ride(rows)
+    assert list(table["becomes"]) == ["-", "A@0: 2", "-"] and list(table["left"]) == [0, 0, 10]
+    assert list(table["arriving [%]"]) == [70.0, 30.0, 0.0]
+
+
+def test_what_is_gained_and_lost_is_counted_by_where_it_began():
+    """Of A@0, half of all, one in ten becomes B; a fifth of A@180 becomes A@0."""
+    seen = ridden([0.5, 0.3, 0.2], (0,), (0, 2, 1), (1, 0, 2))
+    assert seen.lost == pytest.approx([0.05, 0.0, 0.0])
+    assert seen.gained == pytest.approx([0.0, 0.06, 0.0])
+    assert seen.distance == pytest.approx(0.45)
+
+
+def test_a_design_that_depends_on_what_turns_says_so_and_no_other_does():
+    still = ridden([0.5, 0.3, 0.2], (0,))
+    assert still.warning == ""
+    little = ridden([0.9, 0.05, 0.05], (0,), (1, 0, 5))  # 2.5 % of 92.5
+    assert little.warning == ""
+    much = ridden([0.5, 0.3, 0.2], (0,), (1, 0, 2))
+    assert "2 of 10 parts of A@180 turned or left on 450 mm" in much.warning
+    assert "from 50 to 56 %" in much.warning
+    among = ridden([0.5, 0.3, 0.2], (0, 1), (1, 0, 9))  # both are wanted: which of them does not matter
+    assert among.warning == ""
+    others = ridden([0.5, 0.3, 0.2], (0,), (1, 2, 10))
+    assert others.warning == ""
+    gone = ridden([0.5, 0.3, 0.2], (0,), (0, LEFT, 3))
+    assert "3 of 10 parts of A@0 turned or left" in gone.warning
+
+
+def test_those_that_turn_ride_again(monkeypatch):
+    """Only what comes often rides, and what is wanted; what turned rides twice, with other seeds."""
+    asked = []
+
+    def ride(part, bowl, lying, rows, *, each, run):
+        asked.append((tuple(rows), each, run.seed))
+        entered = np.repeat(rows, each)
+        ended = np.where(entered == 1, 0, entered)
+        count = len(entered)
+        return RideOfTrack(
+            tuple("PQRST"), entered, ended, np.zeros(count, bool), np.ones(count), np.ones(count)
+        )
+
+    monkeypatch.setattr(long_rides, "ride_of_track", ride)
+    request = DesignRequest(0.5, seed=7)
+    seen = long_rides.long_ride(None, None, (), np.array([0.2, 0.6, 0.04, 0.04, 0.12]), [3], request.run)
+    assert asked == [((1, 0, 4, 3), 6, 7), ((1,), 6, 8)]
+    assert seen.ride.counts[1].tolist() == [12, 0, 0, 0, 0, 0]
+    assert seen.arriving == pytest.approx([0.8, 0.0, 0.04, 0.04, 0.12])
+
+
+def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypatch):
+    """Apart parts come as the ride has made them, touching as they entered; draws are half of each."""
+    monkeypatch.setattr(queues, "PARTS", 3)
+    monkeypatch.setattr(queues, "SECONDS", 1.0)
+    cube, seen = shapes.part(shapes.box(10, 10, 10)), []
+    first = long_rides.long_ride
+
+    def ride(*values):
+        found = first(*values)
+        mix = np.arange(1.0, len(found.entering) + 1.0)
+        return replace(found, arriving=mix / mix.sum())
+
+    def filled(row, *, whole):
+        seen.append((row.shares, row.touching))
+        return queues_filled(row, whole=whole)
+
+    def robust_run(part, bowl, known, shares, *_, **__):
+        drawn.append(shares)
+        return RobustRun(1, 1, "")
+
+    queues_filled, drawn = queues.filled, []
+    monkeypatch.setattr(loop, "robust_run", robust_run)
+    monkeypatch.setattr(loop, "long_ride", ride)
+    monkeypatch.setattr(queues, "filled", filled)
+    found = loop.design(cube, bowls.default(), frozenset(), DesignRequest(0.5, draws=1), with_nearest=False)
+    ride = found.long_ride
+    assert ride is not None and seen and drawn
+    assert all(
+        np.array_equal(apart, ride.arriving) and np.array_equal(touching, ride.entering)
+        for apart, touching in seen
+    )
+    assert all(shares == pytest.approx(0.5 * (ride.arriving + ride.entering)) for shares in drawn)
+    (row,) = tables.document(found)["long_ride"][:1]
+    assert row["parts"] >= long_rides.EACH and row["stays"] + row["left"] <= row["parts"]
