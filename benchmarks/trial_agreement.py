@@ -6,19 +6,24 @@ Example: python benchmarks/trial_agreement.py 20            (trials of each orie
          python benchmarks/trial_agreement.py 4 drawn:100-119   (parts of a generator, by seeds)
          python benchmarks/trial_agreement.py 3 each:100-111    (the same parts, one device of each kind)
          python benchmarks/trial_agreement.py 6 some/part.stl
+         python benchmarks/trial_agreement.py 3 each:620-623 throw:1.8 hertz:50 kinds:2  (parts that hop)
 
 For each part the chain that ``feeder tooling`` finds for the most frequent orientation that needs one, in the
 bowl of the defaults. With ``each`` one device of each kind instead, at a value between those that two
-orientations need, by the seed. Shares are those of the centroid solid angle, so that no drop test is needed.
+orientations need, by the seed; with ``kinds`` so many of the kinds, by the seed. With ``throw`` and ``hertz``
+the bowl has leaf springs instead: 20 deg, bank 3 deg, restitution 0.3. Shares are those of the centroid solid
+angle, so that no drop test is needed.
 """
 
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.conveying import answer
 from feederscrew.part import load
 from feederscrew.studies import tooling, trial
 from feederscrew.tooling.devices.kinds import KINDS
@@ -30,6 +35,9 @@ sys.path.insert(0, str(Path(__file__).parent))
 import trial_parts
 
 SINGLE = ("gap", "canyon", "narrowed_track", "wiper", "cut_out")
+LEAF_SPRINGS = [
+    "drive.vibration_angle=20 deg", "track.bank=3 deg", "friction.static=0.6", "restitution=0.3",
+]  # fmt: skip
 RULE, VERDICTS = "csa", 3000  # whose shares; of a search for holes
 PARTS = Path(__file__).parent.parent / "parts"
 NAMES = (
@@ -38,12 +46,23 @@ NAMES = (
 )  # fmt: skip
 
 
-def chain(part, folder):
+def drive_of(words):
+    """What of a bowl file is other than the defaults, by words such as throw:1.8 and hertz:50."""
+    asked = dict(word.split(":") for word in words if word.startswith(("throw:", "hertz:")))
+    if not asked:
+        return []
+    own = [*LEAF_SPRINGS, f"drive.frequency={asked['hertz']} Hz"]
+    once = bowls.read(None, own)
+    amplitude = once.drive.amplitude * float(asked["throw"]) / answer.throw_number(once)
+    return [*own, f"drive.amplitude={1e3 * amplitude:.6g} mm"]
+
+
+def chain(part, folder, drive):
     """A bowl with the chain for the most frequent orientation that needs one, and which that is.
 
     Where none can be isolated, the chain that comes nearest for the most frequent one.
     """
-    bowl, nearest, own = bowls.read(None, []), None, {"rule": RULE, "verdicts": VERDICTS}
+    bowl, nearest, own = bowls.read(None, drive), None, {"rule": RULE, "verdicts": VERDICTS}
     first = tooling.tooling(part, bowl, rule=RULE, verdicts=1, seconds=1e-3)
     for k in np.argsort(-first.shares, kind="stable"):
         one = first.orientations[k]
@@ -57,19 +76,21 @@ def chain(part, folder):
     lines = [f"  - {cut.device.kind}: {cut.device.text}\n" for cut in nearest[0].design.cuts]
     path = Path(folder) / f"{part.name}.yaml"
     path.write_text("devices:\n" + "".join(lines))
-    return bowls.read(path, width), nearest[1]
+    return bowls.read(path, [*drive, *width]), nearest[1]
 
 
-def single(part, seed, folder):
+def single(part, seed, folder, drive, kinds):
     """One bowl for each kind of device that drops parts or sweeps them off, and what it is."""
-    first = tooling.tooling(part, bowls.read(None, []), rule=RULE, verdicts=1, seconds=1e-3)
-    every = [one for one in first.orientations if not one.returned]
+    bowl = bowls.read(None, drive)
+    aspects = trial.arriving(part, bowl, rule=RULE).aspects
+    every = trial.stream.orientations(part, aspects, bowl.track, bowl=bowl).lying
+    every = [one for one in every if not one.returned]
     rng, path = np.random.default_rng((24, 1, seed)), Path(folder) / f"{part.name}.yaml"
-    for kind in SINGLE:
+    for kind in SINGLE if kinds >= len(SINGLE) else rng.choice(SINGLE, kinds, replace=False):
         text = _hole(every, rng) if kind == "cut_out" else _between(kind, every, rng)
         if text:
             path.write_text(f"devices:\n  - {kind}: {text}\n")
-            yield bowls.read(path, []), "none"
+            yield bowls.read(path, drive), "none"
 
 
 def _between(kind, every, rng):
@@ -93,13 +114,13 @@ def _hole(every, rng):
     return "[" + ", ".join(f"[{x:.2f} mm, {y:.2f} mm]" for x, y in corners) + "]"
 
 
-def bowls_of(part, name, each):
+def bowls_of(part, name, each, drive, kinds):
     """Bowls in which a part is tried, and the orientation each is for."""
     with tempfile.TemporaryDirectory() as folder:
         if each:
-            yield from single(part, int(name.removeprefix("drawn_")), folder)
+            yield from single(part, int(name.removeprefix("drawn_")), folder, drive, kinds)
         else:
-            yield chain(part, folder)
+            yield chain(part, folder, drive)
 
 
 def rows(run):
@@ -109,7 +130,10 @@ def rows(run):
         margin = 1e3 * run.margin[k]
         sure = "track" if one.returned else "clear" if run.sure[k] and abs(margin) > 0.25 else "unsure"
         fates = ", ".join(f"{n} {fate}" for fate, n in zip(course.FATES, run.counts[k]) if n)
-        mark = " <-" if run.odd[k] else ""
+        names = [*(state.name for state in run.known.states), "other"]
+        onto = [f"{n} as {names[m]}" for m, n in enumerate(run.matrix[k]) if n and m != k]
+        mark = f" ({', '.join(onto)})" if onto else ""
+        mark += " <-" if run.odd[k] else ""
         yield f"  {one.name:7s} {said:6s} {margin:8.3f} {sure:6s} {run.holding[k]:3d} hold: {fates}{mark}"
 
 
@@ -155,9 +179,12 @@ def main():
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 6
     total = held = asked = 0
     each = any(word.startswith("each:") for word in sys.argv[2:])
-    for name in names_of(sys.argv[2:]):
+    drive = drive_of(sys.argv[2:])
+    kinds = next((int(word[6:]) for word in sys.argv[2:] if word.startswith("kinds:")), len(SINGLE))
+    parts = [word for word in sys.argv[2:] if not word.startswith(("throw:", "hertz:", "kinds:"))]
+    for name in names_of(parts):
         part = part_of(name)
-        for bowl, wanted in bowls_of(part, name, each):
+        for bowl, wanted in bowls_of(part, name, each, drive, kinds):
             run = tried(part, bowl, count)
             devices = ", ".join(f"{device.kind} {device.text}" for device in bowl.devices)
             print(f"{name}: {devices}; wanted {wanted}")
@@ -168,6 +195,7 @@ def main():
             held += int((clear & kept(run)).sum())
             print(f"so far {total} orientations, {asked} clear, {held} of them as the rule says", flush=True)
     print(f"{total} orientations, {asked} with a margin beyond 0.25 mm, {held} of them as the rule says")
+    print(f"{time.process_time():.0f} s of processor")
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ from feederscrew.mechanics.floor.balance import HOP
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import Seat
 from feederscrew.rates.rocking import Rocker, goes_over, over_period
-from feederscrew.rates.tipping import FLAT, plain, seated
+from feederscrew.rates.tipping import FLAT, landing_energy, may_tip, plain, seated
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling import touching
 from feederscrew.tooling.devices.base import Device
@@ -44,7 +44,7 @@ def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, 
     Returns
     -------
     (M,) bool
-        True also where that is not known: a part that hops, a drive that is not straight.
+        True also where that is not known: a drive that is not straight.
 
     Notes
     -----
@@ -52,9 +52,13 @@ def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, 
     foot all through the cycle, as on the bare track, or the part rocks. Over an edge across the track every
     part rocks in the end, since its weight comes near that edge. It is steady if rocking, followed from
     stroke to stroke, does not take it over: ahead where least carries it, however long it stands there, and
-    back over the far edge, from which it travels on at the velocity of the point mass.
+    back over the far edge, from which it travels on at the velocity of the point mass. A landing of a part
+    that hops must not tip it over what a ledge, a canyon or a slot leaves of its foot, less the margin; over
+    an edge across the track the verdict itself is less the flight.
     """
-    known = plain(bowl)
+    known, energy = plain(bowl), landing_energy(bowl)
+    if energy > 0.0:
+        return np.array([_lands(devices, one, bowl, margin, energy) for one in lying], dtype=bool)
     return np.array([not known or _steady(devices, one, bowl, margin) for one in lying], dtype=bool)
 
 
@@ -100,6 +104,21 @@ def _steady(devices: Sequence[Device], one: Orientation, bowl: Bowl, margin: flo
             return False
         if hole is not None and not _keeps_upright(one, hole, place, force, offset, bowl):
             return False
+    return True
+
+
+def _lands(devices: Sequence[Device], one: Orientation, bowl: Bowl, margin: float, energy: float) -> bool:
+    """Whether no landing may tip an orientation at any device, by a margin [m]."""
+    if one.returned or one.touching is None:
+        return True
+    if one.kind != FLAT and rolls_across(one):
+        return not any(_takes(device, one) for device in _met(devices))
+    for device in _met(devices):
+        span = device.span_on(one.track)
+        if span is not None and _takes(device, one):
+            left = touching.beside(one.foot, span, one.distance, one.track.radius).corners
+            if may_tip(left, one, bowl, energy, margin):
+                return False
     return True
 
 

@@ -112,13 +112,24 @@ class Orientations:
     def sure(self):
         """(M,) bool, whether it comes along the bare track as it lies, and no momentum decides at a device.
 
-        On the track it shall neither rock nor roll: nothing holds what is round at the wall without a bank,
-        and no bank brings back to it what rolls along the track, since that does not slip.
+        On the track it shall neither rock nor roll, nor a landing turn it: nothing holds what is round at
+        the wall without a bank, and no bank brings back to it what rolls along the track, since that does not
+        slip.
         """
         rocks = False if self.tipping is None else self.tipping.tips & ~self.tipping.over
         level = [one.kind == "rolling" and one.track.bank <= 0.0 for one in self.lying]
         loose = np.array(level, dtype=bool) | [one.along_a_bank for one in self.lying]
-        return self.decided & ~(self.rolls_back | rocks | loose)
+        tips, yaws = np.array([(one.may_tip, one.may_yaw) for one in self.lying], dtype=bool).T
+        turns = tips | (yaws & ~self._gone_at_any_heading)
+        return self.decided & ~(self.rolls_back | rocks | loose | turns)
+
+    @property
+    def _gone_at_any_heading(self):
+        """(M,) bool, whether devices return every heading of its aspect by some margin."""
+        gone = np.isfinite(self.margin) & (self.through <= 0.0)
+        gone |= np.array([one.returned for one in self.lying], dtype=bool)
+        left = {aspect for aspect, lost in zip(self.aspects, gone) if not lost}
+        return np.array([aspect not in left for aspect in self.aspects], dtype=bool)
 
 
 def orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):

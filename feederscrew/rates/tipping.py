@@ -3,9 +3,12 @@
 While the line of action of the normal force lies outside the contact polygon, the part turns about the
 nearest side. Over a settled cycle the moments about that side hold it down, or the bare track would not carry
 it: it rocks. It turns over where that, followed from stroke to stroke, lifts its centre of mass over a side.
+
+A part that hops is not followed. In flight nothing holds it; each landing strikes its foot from below and
+drags it along the track, and the wall drags it back. ``landing`` says when neither can turn it.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -13,19 +16,28 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
+from feederscrew.conveying import answer
+from feederscrew.conveying.hop import hop
 from feederscrew.errors import ConfigError
-from feederscrew.geometry.polygons import cross, inset, sides
+from feederscrew.geometry.polygons import convex, cross, inset, sides
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.floor.balance import HOP, TIP
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import Seat, seat
 from feederscrew.rates.rocking import goes_over, rocker
-from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, travelling
-from feederscrew.units import listed
+from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, speed, travelling
+from feederscrew.units import factor, listed
 
 INSTANTS = 12  # of one period
+MM = factor("mm", "length")
+HOPS = (
+    "at this drive parts hop {:.2g} mm high and fly {:.2g} mm along the track: margins at edges across the "
+    "track are less that way, all others less that height"
+)
+TURNS = "{}: a landing may tip it over, or the wall turn it, so no verdict on it is sure - see feeder trial"
 FLAT = "flat"  # a part that rolls lies on a line: it rolls where others tip, and tips over the line's ends
+ROUND = 0.98  # of the farthest place of an outline, the nearest: it is round, and no heading of it is another
 BESIDE = 10.0  # heights of the centre of mass: no force of a bowl acts so far beside it
 
 
@@ -101,15 +113,22 @@ def marked(lying: Sequence[Orientation], bowl: Bowl) -> tuple[tuple[Orientation,
     -------
     tuple of Orientation, TrackTipping
     """
-    found = tipping(lying, bowl)
-    over = tuple(replace(one, turns_over=bool(turns)) for one, turns in zip(lying, found.over))
-    return travelling(over, bowl), found
+    found, energy = tipping(lying, bowl), landing_energy(bowl)
+    known = tuple(replace(one, turns_over=bool(turns)) for one, turns in zip(lying, found.over))
+    if energy > 0.0:
+        known = tuple(landing(one, bowl, energy) for one in known)
+    return travelling(known, bowl), found
 
 
-def remark(lying: Iterable[Orientation]) -> tuple[str, ...]:
-    """Say which orientations the drive turns over: one sentence, or none."""
+def remark(lying: Sequence[Orientation]) -> tuple[str, ...]:
+    """Say what a drive turns over, how parts hop, and which of them may turn as they do: a sentence each."""
     over = [one.name for one in lying if one.turns_over]
-    return (f"{listed(over)} can tip over on the track at this drive and count as returned",) if over else ()
+    said = [f"{listed(over)} can tip over on the track at this drive and count as returned"] if over else []
+    hop, flight = max(((one.hop, one.flight) for one in lying), default=(0.0, 0.0))
+    if hop > 0.0:
+        said.append(HOPS.format(hop / MM, flight / MM))
+    turning = [one.name for one in lying if one.may_turn]
+    return (*said, TURNS.format(listed(turning))) if turning else tuple(said)
 
 
 def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
@@ -136,6 +155,103 @@ def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
     """
     found = [_one(one, bowl) for one in lying] if plain(bowl) else [_NEVER] * len(lying)
     return TrackTipping(*(check.frozen(np.array(column)) for column in zip(*found)))
+
+
+def landing_energy(bowl: Bowl) -> float:
+    """Return the energy of the hardest landing of a part, as a height; 0 where it never leaves the track.
+
+    Source: u^2 / 2 g, u the velocity of a point mass towards the track as it lands.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Single values.
+
+    Returns
+    -------
+    float [m]
+    """
+    if speed(bowl) <= 0.0 or hop(bowl).height <= 0.0:
+        return 0.0
+    return float(answer.answer(bowl).hardest_impact ** 2 / (2.0 * bowl.gravity))
+
+
+def landing(one: Orientation, bowl: Bowl, energy: float) -> Orientation:
+    """Return an orientation that knows whether a landing may tip it over, or the wall turn it.
+
+    Source: own; docs/tooling.md, "Parts that hop".
+
+    Parameters
+    ----------
+    one : Orientation
+    bowl : Bowl
+        Single values.
+    energy : float [m]
+        From ``landing_energy``: above 0.
+    """
+    if one.falls_off or one.touching is None:
+        return one
+    contact = seated(one, bowl.track.bank).contact
+    return replace(one, may_tip=may_tip(contact, one, bowl, energy), may_yaw=may_yaw(one, bowl))
+
+
+def may_tip(contact: np.ndarray, one: Orientation, bowl: Bowl, energy: float, margin: float = 0.0) -> bool:
+    """Return whether a landing may tip an orientation over a side of what carries it.
+
+    Parameters
+    ----------
+    contact : (K, 2) float [m]
+        Corners of what carries it, in track axes from the foot of the centre of mass.
+    one, bowl, energy
+        As for ``landing``.
+    margin : float [m]
+        By which that is taken to be smaller all round.
+
+    Notes
+    -----
+    The track drags the foot by at most mu times what it strikes it with. Over a side b from the foot of the
+    centre of mass, of which the normal lies at an angle a to the track, that tips a part of which the centre
+    of mass is at the height h where mu h |cos a| > b. Where it is less, the part has to be lifted by
+    sqrt(h^2 + b^2) - h. Along the track the whole energy E of the landing may do that. Across it nothing
+    drags the part: struck at a place beside its centre of mass it keeps (1 + e)^2 / 4 of E as rotation at
+    most, e being the restitution. The wall holds a part over a side that faces it; a groove holds it over the
+    sides that face both its surfaces.
+    """
+    ring = contact[convex(contact)]
+    if len(ring) < 3:
+        return True
+    edges = sides(ring)
+    outward = np.column_stack([edges[:, 1], -edges[:, 0]]) / np.hypot(*edges.T)[:, None]
+    along, across = np.abs(outward[:, 0]), np.abs(outward[:, 1]) if one.groove else -outward[:, 1]
+    reach = np.maximum((outward * ring).sum(axis=1) - margin, 0.0)
+    height, struck = one.posture.height, 0.25 * (1.0 + bowl.restitution) ** 2
+    spent = energy * np.where(along > np.abs(outward[:, 1]), 1.0, struck)
+    tips = (bowl.friction.static * height * along > reach) | (np.hypot(height, reach) - height < spent)
+    return bool((tips & (across < along)).any())
+
+
+def may_yaw(one: Orientation, bowl: Bowl) -> bool:
+    """Return whether the wall may turn an orientation out of its heading while the track does not hold it.
+
+    Source: own; docs/tooling.md, "Parts that hop": the couple of the wall's friction.
+
+    Parameters
+    ----------
+    one : Orientation
+        That knows where it touches the wall.
+    bowl : Bowl
+
+    Notes
+    -----
+    The wall drags the part back with mu N, the distance d beside the centre of mass, and so moves its own
+    force N ahead of that by mu d. It keeps its heading while that is within what touches the wall.
+    """
+    outline = one.outline
+    along = sides(outline)
+    nearest = (outline[:, 0] * along[:, 1] - outline[:, 1] * along[:, 0]) / np.hypot(*along.T)
+    if one.groove or nearest.min() > ROUND * np.hypot(*outline.T).max() or one.touching is None:
+        return False
+    return bool(bowl.friction.wall * one.distance > one.touching[1, 0])
 
 
 _NEVER = (False, 0.0, np.nan, False)

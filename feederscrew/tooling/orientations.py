@@ -10,6 +10,7 @@ import shapely.affinity
 
 from feederscrew.bowl.record import Track
 from feederscrew.conveying import answer
+from feederscrew.conveying.hop import STAYS, hop
 from feederscrew.errors import ConfigError
 from feederscrew.geometry.polygons import turned
 from feederscrew.mechanics.wall.stable_headings import headings
@@ -43,11 +44,15 @@ class Orientation:
     mirror: str = ""  # name of its mirror image, fore and aft; '' where there is none
     touching: np.ndarray | None = None  # of its corners, where it touches the wall; None where not known
     turns_over: bool = False  # the drive tips it over on the track
+    may_tip: bool = False  # the drive throws it, and a landing may tip it over
+    may_yaw: bool = False  # the drive throws it, and the wall may turn it out of its heading
     may_roll_back: bool = False  # on its round side, not along a climbing track: no verdict is sure
     carry: float = 0.0  # [m] it travels on unsupported before it has tipped: 0 of one that is only placed
     carry_ahead: float = 0.0  # [m] the same over an edge across the track
     grip: float = 0.0  # [1] friction of the track it travels on: 0 of one that is only placed
     speed: float = 0.0  # [m/s] at which it travels
+    hop: float = 0.0  # [m] by which it is over the track at most, where the drive throws it
+    flight: float = 0.0  # [m] along the track, of its longest flight
     swing: float = 0.0  # [m/s] amplitude of the track's velocity along it
     gravity: float = GRAVITY  # [m/s2] of the bowl it travels in: standard gravity of one only placed
     wall_grip: float = 0.0  # [1] friction of the wall
@@ -64,6 +69,11 @@ class Orientation:
     def returned(self):
         """Whether the track itself does not carry it."""
         return self.falls_off or self.turns_over
+
+    @property
+    def may_turn(self):
+        """Whether a drive that throws it may bring it into another orientation on the bare track."""
+        return self.may_tip or self.may_yaw
 
     @property
     def shift(self):
@@ -159,7 +169,9 @@ def placed(found):
 
 
 def _placed(one):
-    other = replace(one, carry=0.0, carry_ahead=0.0, grip=0.0, speed=0.0, swing=0.0, climbs=0.0)
+    other = replace(
+        one, carry=0.0, carry_ahead=0.0, grip=0.0, speed=0.0, swing=0.0, climbs=0.0, hop=0.0, flight=0.0
+    )
     known = {name for name, value in vars(Orientation).items() if isinstance(value, cached_property)}
     vars(other).update({name: value for name, value in vars(one).items() if name in known})
     return other
@@ -220,6 +232,7 @@ def travelling(found, bowl):
     or even carry it on as it does what slides.
     """
     along, track = speed(bowl), bowl.track
+    thrown = hop(bowl) if along > 0.0 else STAYS
     fastest = 2.0 * np.pi * bowl.drive.frequency * bowl.drive.amplitude
     swing = fastest * np.cos(bowl.drive.vibration_angle)
     held = np.tan(track.climb) <= bowl.friction.wall * np.tan(track.bank)
@@ -230,6 +243,8 @@ def travelling(found, bowl):
             carry_ahead=FALLEN * along * _tipping_time(one, gyration(one, 0.5 * np.pi), bowl.gravity),
             grip=float(bowl.friction.static),
             speed=along,
+            hop=thrown.height,
+            flight=thrown.flight,
             swing=swing,
             gravity=float(bowl.gravity),
             wall_grip=float(bowl.friction.wall),

@@ -1,5 +1,7 @@
 """An orientation at a device: what statics knows to tell of it, and the device's verdict."""
 
+from dataclasses import replace
+
 import numpy as np
 import shapely
 
@@ -48,7 +50,21 @@ def verdict(device, one, every=(), sigma=0.0):
     ConfigError
         If a device names an orientation that the part does not have.
     """
-    return device.judged(Meeting(one, every, sigma))
+    meeting = Meeting(one, every, sigma)
+    found, blur = device.judged(meeting), device.hop_blur(one)
+    return _less(found, blur, meeting) if blur > 0.0 else found
+
+
+def _less(found, blur, meeting):
+    """A verdict with its margin less what hopping takes of it [m]; within that it is not sure either way."""
+    if not np.isfinite(found.margin) or found.margin == 0.0 or -UNSURE <= found.margin < 0.0:
+        return found
+    left = np.copysign(max(abs(found.margin) - blur, 0.0), found.margin)
+    left = left if found.margin > 0.0 else min(left, -UNSURE)
+    passes = found.passes if found.onto else meeting.share(left)
+    if found.onto and found.margin > 0.0 and left == 0.0:
+        left = -UNSURE
+    return replace(found, passes=passes, margin=float(left))
 
 
 class Meeting:

@@ -6,7 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.conveying import hop, sensitivity
+from feederscrew.conveying import sensitivity
+from feederscrew.conveying.hop import hop
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.rates import stream
 from feederscrew.rates.steadiness import gone, steady
@@ -18,7 +19,10 @@ from feederscrew.trial.queue import QueuedParts
 
 CLEAR = 2.5e-4  # [m] margin from which a static verdict should hold
 HELD = 0.95  # [1] of the trials in which it should
-HOPS = "throw number {:.3g}: {}"
+HOPS = (
+    "throw number {:.3g}: parts hop {:.2g} mm high and fly {:.2g} mm - margins of static verdicts are less "
+    "that"
+)
 BOUNCES = (
     "restitution of single impacts spreads from {:.3g} to {:.3g}: a point would travel at {:.4g} to {:.4g} "
     "mm/s - velocities and rates here are of the value between"
@@ -225,8 +229,8 @@ class TrialRun:
     def remarks(self):
         """Say what a user must not overlook, a sentence each."""
         if self.throw_number > 1.0:
-            for said in hop.remark(self.bowl):
-                yield HOPS.format(self.throw_number, said)
+            known = hop(self.bowl)
+            yield HOPS.format(self.throw_number, 1e3 * known.height, 1e3 * known.flight)
             low, high = sensitivity.rebounds(self.bowl)
             yield BOUNCES.format(low, high, 1e3 * self.rebound.less, 1e3 * self.rebound.more)
         for k in np.flatnonzero(self.odd):

@@ -166,6 +166,14 @@ class Device:
         """Return an orientation that it lets pass as it goes on behind it."""
         return one
 
+    def hop_blur(self, one):
+        """Return what the hop of an orientation takes of its margin [m].
+
+        Over an edge across the track its flight. Beside an edge along it, and where the margin is a height,
+        how high it hops: a part off the track by so much is as far off its place.
+        """
+        return one.flight if type(self).hole_on is not Device.hole_on else one.hop
+
     def gap(self, one, speed):
         """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
         return 0.0

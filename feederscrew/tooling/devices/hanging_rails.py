@@ -88,6 +88,10 @@ class Rails(Device):
     def value_text(self):
         return written(self.span, self.lead)
 
+    def hop_blur(self, one):
+        """Return nothing: its margins are widths of head, shank and slot, which a hop does not change."""
+        return 0.0
+
     def standing(self, track, every):
         """Return its slot, which goes on behind it: those that hang do not come back onto the track."""
         room, size = room_of(every), max(np.hypot(one.length, max(one.width, one.height)) for one in every)

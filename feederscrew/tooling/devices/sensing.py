@@ -102,7 +102,8 @@ class Sorter(Device):
         for view in VIEWS:
             also = tuple((other.aspect, other.heading) for other in unlike(view))
             like = one.aspect, one.heading, float(margin) + RESOLUTION[view] + met.askew(view)
-            made.append(cls(where, like=like, sees=view, also=also))
+            device = cls(where, like=like, sees=view, also=also)
+            made.append(replace(device, like=(*like[:2], like[2] + device.hop_blur(one))))
         return made
 
     def with_play(self, play):
@@ -182,6 +183,10 @@ class Sorter(Device):
         middle = 0.5 * room
         sensor = Sensor(middle, self.sees, self.wanted(every), self.like[2], self.blur)
         return Standing(room + AHEAD, jets=self.jet.jets(middle + AHEAD, every, self.time), sensor=sensor)
+
+    def hop_blur(self, one):
+        """Return what the hop of an orientation takes of its margin [m]: nothing as it is seen from above."""
+        return 0.0 if self.sees == "outline" else one.hop
 
     def gap(self, one, speed):
         """Return the free way [m] that it needs between parts that come with some speed [m/s]."""

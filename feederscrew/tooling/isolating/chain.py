@@ -87,9 +87,10 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
         first = pivot(kind, every, wanted, same)
         if not wishes.allows(kind.kind) or not np.isfinite(values[first]) or (kind.overhead and not clearing):
             continue
-        if lower and values[first] <= 2.0 * margin:
+        play = margin + kind(WHERE).hop_blur(every[first])
+        if lower and values[first] <= 2.0 * play:
             continue
-        limit = snapped(values[first] + (-margin if lower else margin), wishes.step, up=not lower)
+        limit = snapped(values[first] + (-play if lower else play), wishes.step, up=not lower)
         device = kind.proposal(WHERE, limit)
         if limit > 0.0 and device.acts(every[wanted].track):
             found[device] = np.array([margin_at(device, one, every) for one in every])

@@ -177,7 +177,8 @@ def _with_holes(given, cuts, returned, search):
         left = [k for k in np.flatnonzero(~returned) if k != given.wanted and given.often[k]]
         if given.coming[left].sum() <= given.allowed:
             break
-        made = hole_search.cut_out(given.every, given.wanted, left, given.margin, search) if left else None
+        play = given.margin + given.every[given.wanted].flight  # a hole so much shorter may be jumped
+        made = hole_search.cut_out(given.every, given.wanted, left, play, search) if left else None
         if made is not None and given.wishes.cutter > 0.0:
             made = round_corners.with_corners(given, made, given.wishes.cutter)
         if made is None:

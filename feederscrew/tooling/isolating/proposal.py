@@ -185,12 +185,14 @@ def told(given, cuts, returned, same=None, late=False):
 def _surely(given, flow, states):
     """Share of the parts offered [1] that leaves as wanted and lies still on its way: the least of it.
 
-    What is on a round side with nothing that holds it at the wall may roll, and what the drive tips may rock.
+    What is on a round side with nothing that holds it at the wall may roll, what the drive tips may rock, and
+    what it throws may come down otherwise.
     """
     total = given.shares.sum()
     loose = [
         one.returned
         or one.may_roll_back
+        or one.may_turn
         or (one.kind == "rolling" and not one.groove and (one.track.bank <= 0.0 or one.along_a_bank))
         for one in given.every
     ]
