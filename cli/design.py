@@ -126,7 +126,9 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
     cameras with a valve: the first that holds is taken. The answer is one of holds, falls short and none,
     with the numbers it rests on. What falls short says where, with the nearest design that would hold.
 
-    What --config says of track, drive and friction is kept. Its devices stay before those of the design.
+    The drive is the calmest on one set of leaf springs that is fast enough, at the frequency of the mains
+    (machine.mains) or twice that. What --config says of track, drive, machine and friction is kept. Its
+    devices stay before those of the design.
     The same seed gives the same answer whatever the number of jobs. Ctrl-C ends it
     with exit status 130 as not proved: it says what was counted so far, and writes no papers to build from.
 

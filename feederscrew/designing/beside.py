@@ -185,6 +185,8 @@ def settings_of(bowl: Bowl, given: Collection[str] = ()) -> tuple[Setting, ...]:
             continue
         pair: list[Any] = [reduce(getattr, key.field.split("."), one) for one in (bowl, usual)]
         value, default = pair
+        if key.name == "machine.supply":  # follows the mains
+            default = 2.0 * bowl.sizing.mains_frequency
         if value is None or (value == default and key.name not in given):
             continue
         if key.choices:

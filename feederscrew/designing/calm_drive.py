@@ -3,7 +3,7 @@
 import functools
 import itertools
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -163,19 +163,27 @@ def driven(made: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
     ----------
     A. H. Redford, G. Boothroyd, "Vibratory feeding", Proc. Inst. Mech. Eng. 182, 135-152, 1967.
     """
-    velocity, kinds = velocity if hops else max(velocity, LEAST), list(_kinds(made, hops))
-    order = sorted(itertools.chain(*itertools.chain(*kinds)), key=_fast, reverse=True)  # calm ones first
-    if math.isfinite(velocity) and _fast(order[0]) >= velocity:
-        levels = [[one for one in level if _fast(one) >= velocity] for level in itertools.chain(*kinds)]
-        for can_build in (_can_build, _always):  # where no machine makes any, as if one did
-            for level in levels:
-                enough = [bowl for bowl in level if can_build(made, bowl)]
-                if enough:
-                    least = enough if made.has_stroke else [_slowed(bowl, velocity) for bowl in enough]
-                    return min(least, key=_calmness)
-            if any(_can_build(made, bowl) for bowl in order):
-                break
-    return next((bowl for bowl in order if _can_build(made, bowl)), order[0])
+    velocity = velocity if hops else max(velocity, LEAST)
+    levels = list(itertools.chain(*_kinds(made, hops)))
+    chosen = _calmest(made, levels, velocity, _can_build)
+    if chosen is None:
+        order = sorted(itertools.chain(*levels), key=_fast, reverse=True)  # of equal ones the calmest first
+        chosen = next((bowl for bowl in order if _can_build(made, bowl)), None)
+        if chosen is None:  # no machine makes any: as if one did
+            chosen = _calmest(made, levels, velocity, lambda *_: True) or order[0]
+    return chosen
+
+
+def _calmest(
+    made: PlainBowl, levels: list[list[Bowl]], velocity: float, can_build: Callable[[PlainBowl, Bowl], bool]
+) -> Bowl | None:
+    """The calmest bowl of groups of about the same hop that is fast enough; None where none is."""
+    for level in levels if math.isfinite(velocity) else ():
+        enough = [bowl for bowl in level if _is_fast(bowl, velocity) and can_build(made, bowl)]
+        if enough:
+            least = enough if made.has_stroke else [_slowed(bowl, velocity) for bowl in enough]
+            return min(least, key=_calmness)
+    return None
 
 
 def calmer(made: PlainBowl, bowl: Bowl) -> Bowl | None:
@@ -297,10 +305,6 @@ def _can_build(made: PlainBowl, bowl: Bowl) -> bool:
     return not drive_sought.lacks(bowl, frozenset(made.given))
 
 
-def _always(made: PlainBowl, bowl: Bowl) -> bool:
-    return True
-
-
 def with_amplitude(bowl: Bowl, amplitude: float) -> Bowl:
     """Return a bowl at another amplitude [m], rounded to a micrometre."""
     rounded = float(np.floor(amplitude / STROKE_STEP + 1e-6) * STROKE_STEP)
@@ -314,13 +318,18 @@ def _slowed(bowl: Bowl, velocity: float) -> Bowl:
     low = high * max(lower) / throw if lower and not is_two_axis(bowl.drive) else 0.0
     for _ in range(HALVINGS if low == 0.0 else HALVINGS // 2):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _fast(with_amplitude(bowl, middle)) >= velocity else (middle, high)
+        low, high = (low, middle) if _is_fast(with_amplitude(bowl, middle), velocity) else (middle, high)
     return with_amplitude(bowl, min(high + STROKE_STEP, bowl.drive.amplitude))
 
 
 def _fast(bowl: Bowl) -> float:
     """The velocity [m/s] that may be asked of a bowl: its own, or less where the worst friction slows it."""
     return min(speed(bowl), slowest(bowl) / STEADY)
+
+
+def _is_fast(bowl: Bowl, velocity: float) -> bool:
+    """Whether a velocity [m/s] may be asked of a bowl."""
+    return speed(bowl) >= velocity and slowest(bowl) >= STEADY * velocity
 
 
 def slowest(bowl: Bowl) -> float:

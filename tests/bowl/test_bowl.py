@@ -340,3 +340,14 @@ def test_a_number_next_to_nothing_is_nothing():
     found = bowl.read(None, ["drive.amplitude=1e-300 mm", "friction.kinetic=1e-310"])
     assert (found.drive.amplitude, found.friction.kinetic) == (0.0, 0.0)
     assert bowl.read(None, ["drive.amplitude=1e-9 mm"]).drive.amplitude == pytest.approx(1e-12)
+
+
+def test_the_supply_follows_the_mains_and_the_drive_of_a_file_does_not():
+    """A place with 60 Hz is no machine: the stroke of the defaults belongs to 50 Hz."""
+    sixty = bowl.read(None, ("machine.mains=60Hz",))
+    assert (sixty.sizing.mains_frequency, sixty.machine.supply, sixty.drive.frequency) == (60.0, 120.0, 50.0)
+    own = bowl.read(None, ("machine.mains=60 hz", "machine.supply=50 Hz half wave"))
+    assert (own.machine.supply, own.drive.frequency) == (50.0, 50.0)
+    with pytest.raises(FeederError, match="write 50 Hz or 60 Hz"):
+        bowl.read(None, ("machine.mains=55 Hz",))
+    assert bowl.read(None, ("machine.controller=Frequency",)).sizing.control == "frequency"

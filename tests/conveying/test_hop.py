@@ -8,6 +8,7 @@ from scipy.optimize import brentq
 
 from feederscrew.bowl.reading import settings
 from feederscrew.bowl.settings import record
+from feederscrew.conveying.answer import answer
 from feederscrew.conveying.hop import MARGIN_M, Hop, hop, remark
 
 BOWL = record(settings(overrides=["track.climb=3 deg", "friction.static=0.6", "restitution=0.3"]))
@@ -90,6 +91,8 @@ def test_a_flight_over_several_periods_is_one_flight():
     own = hop(bowl_at(6.0))
     assert 1.0 < own.duration < 2.0
     assert own.height > 3.0 * hop(bowl_at(3.0)).height
+    velocity = answer(replace(bowl_at(6.0), restitution=0.0)).velocity
+    assert own.flight == pytest.approx(velocity * own.duration / 50.0, rel=0.1)
 
 
 def test_a_hop_is_told_where_it_is_higher_than_a_margin():

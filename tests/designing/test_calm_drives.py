@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying.hop import hop
@@ -13,6 +14,7 @@ from feederscrew.designing.record import DesignRequest
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.machine.stroke import greatest_amplitude
+from feederscrew.resting.aspects import find
 
 
 def plain(*given, drive=calm_drive.LEAF_SPRING, overrides=("track.bank=3 deg",)):
@@ -42,6 +44,13 @@ def test_a_leaf_spring_drive_is_fast_enough_at_any_friction(velocity):
     assert made.drive.amplitude <= greatest_amplitude(made)
     assert calm_drive.speed(made) >= asked > calm_drive.slowest(weaker(made))
     assert calm_drive.slowest(made) >= calm_drive.STEADY * asked
+
+
+def test_a_drive_that_low_friction_slows_is_not_taken():
+    """At 50 Hz, 25 deg and throw number 0.9 a point mass makes 27 mm/s; 10 mm/s at 0.6 of the friction."""
+    made = calm_drive.driven(plain(), 0.025, hops=True)
+    assert calm_drive.slowest(made) >= calm_drive.STEADY * 0.025
+    assert throw_number(made) > 1.0
 
 
 def test_twice_the_mains_frequency_comes_first_and_half_of_it_where_it_is_too_slow():
@@ -115,6 +124,14 @@ def test_two_magnets_only_where_they_are_asked_for():
     assert np.degrees(kept.drive.phase) == pytest.approx(-60.0)
     straight = calm_drive.driven(given_bowl("drive.phase=0 deg", drive=calm_drive.TWO_AXIS), 0.1)
     assert straight.drive.phase == 0.0
+
+
+@pytest.mark.parametrize("drive", calm_drive.DRIVES)
+def test_the_bowl_for_a_part_knows_which_drive_is_asked_for(drive):
+    part = shapes.part(shapes.box(20.0, 12.0, 5.0))
+    made = calm_drive.section(part, find(part), bowls.default(), (), drive=drive)
+    two_axis = calm_drive.driven(made, 0.06).drive.phase != 0.0
+    assert two_axis is (drive == calm_drive.TWO_AXIS)
 
 
 @pytest.mark.parametrize("drive", calm_drive.DRIVES)

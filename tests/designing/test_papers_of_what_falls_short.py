@@ -94,6 +94,17 @@ def test_the_machine_is_in_the_first_lines_of_text_and_page(sensing):
     assert all(word in page for word in ("leaf spring", "throw number", "stroke", "1 camera", "1 valve"))
 
 
+def test_a_phase_that_is_given_is_kept_and_said():
+    led = replace(
+        bowls.read(None, BOWL), drive=replace(bowls.read(None, BOWL).drive, phase=np.radians(-60.0))
+    )
+    (said,) = [one for one in study(bowl=led).warnings if one.startswith("drive.phase")]
+    assert "-60 deg is kept as given, which needs two magnets" in said
+    asked_for = replace(study(bowl=led), request=DesignRequest(0.5, drive="two-axis"))
+    for one in (asked_for, study()):
+        assert not [line for line in one.warnings if line.startswith("drive.phase")]
+
+
 def test_a_family_says_the_machine_and_the_warnings_of_each_part():
     other = replace(study(part=replace(PART, name="other")), machine_warnings=("the magnet strikes",))
     both = FamilyStudy((study(), other), False)

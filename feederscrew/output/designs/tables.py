@@ -38,6 +38,7 @@ def document(study):
         "wanted": study.wanted,
         "up": list(study.request.up),
         "outcome": study.outcome,
+        "drive_asked_for": study.request.drive,
         "target_per_minute": study.request.target / PER_MINUTE,
         **(_proof(study) if proved else dict.fromkeys(PROOF)),
         "static_per_minute": study.static_rate / PER_MINUTE,
