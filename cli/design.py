@@ -74,6 +74,11 @@ REQUEST = (  # what shall leave, and what may be used
         help="Short trials of the search, at most.",
     ),
     click.option(
+        "--alternatives",
+        is_flag=True,
+        help="Prove the best design of each cost class: of steel, of steady air, of a sensor with a valve.",
+    ),
+    click.option(
         "--draws",
         type=options.Whole(1, 1000),
         default=20,
@@ -91,7 +96,7 @@ REQUEST = (  # what shall leave, and what may be used
 )
 REQUESTED = (
     "target", "aspect", "heading", "up", "outcome", "without", "drive", "diameter", "tolerance", "budget",
-    "draws", "seed", "jobs",
+    "alternatives", "draws", "seed", "jobs",
 )  # fmt: skip
 
 
@@ -117,7 +122,8 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
 
     Which way up to feed PART, the chain of devices, the track and the drive. Each proposal is tried, and
     what its trial denies is changed. What gets through goes through a queue at low, normal and high fill,
-    and through draws of part, friction, drive and cuts. The answer is one of holds, falls short and none,
+    and through draws of part, friction, drive and cuts. Chains of steel come first, then steady air, then
+    cameras with a valve: the first that holds is taken. The answer is one of holds, falls short and none,
     with the numbers it rests on. What falls short says where, with the nearest design that would hold.
 
     The drive is the calmest on one set of leaf springs that is fast enough, at the frequency of the mains
@@ -131,8 +137,9 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
     has its own folder.
 
     With -o: design.yaml, a bowl file that says what its trial showed, and design.html, the page to hand on.
-    Also acceptance.csv, design_trials.csv, and the files of feeder tooling and feeder bowl, with the bowl as
-    a solid. Drawings of what falls short bear a mark across; what delivers nothing has none.
+    Also alternatives.csv, acceptance.csv, design_trials.csv, and the files of feeder tooling and feeder
+    bowl, with the bowl as a solid. Drawings of what falls short bear a mark across; what delivers nothing
+    has none.
     """
     if others:
         _of_one_part(asked, taken, part)

@@ -33,6 +33,7 @@ class DesignOptions(BowlSettings, total=False):
     rule: str
     drive: str
     budget: int
+    alternatives: bool
     draws: int
     seed: int
     jobs: int
@@ -70,6 +71,7 @@ def design(
     rule: str = DesignRequest.rule,
     drive: str = DesignRequest.drive,
     budget: int = DesignRequest.budget,
+    alternatives: bool = DesignRequest.alternatives,
     draws: int = DesignRequest.draws,
     seed: int = DesignRequest.seed,
     jobs: int = DesignRequest.jobs,
@@ -110,6 +112,9 @@ def design(
         Kind of drive: 'leaf-spring' (one magnet), 'two-axis' (two magnets) or 'any', leaf springs first.
     budget : int
         Short trials of the search, at most.
+    alternatives : bool
+        Whether the best of each cost class is proved (steel, steady air, a sensor with a valve), and not the
+        cheapest alone that holds.
     draws : int
         Trials of the answer with part, friction, drive and cuts drawn from their spread.
     seed : int
@@ -142,6 +147,7 @@ def design(
         drive=drive,
         tolerance=asked.amount("tolerance", tolerance, "length", 0.0),
         budget=asked.whole("budget", budget),
+        alternatives=bool(alternatives),
         draws=asked.whole("draws", draws),
         seed=asked.whole("seed", seed, 0),
         jobs=asked.whole("jobs", jobs),

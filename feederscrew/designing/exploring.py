@@ -43,11 +43,11 @@ HANGS_BELOW = np.radians(5.0)  # bank above which a part askew comes to rails be
 SLOWER = 1.2  # a chain that gains so many times what was taken for it is proposed again, at its own drive
 
 
-LYING = proposals.Way(1, proposals.MARGINS[0], "any", ())  # of what a part may do at best
+LYING = proposals.ProposalWay(1, proposals.MARGINS[0], "any", ())  # of what a part may do at best
 
 
 @dataclass(frozen=True, eq=False)
-class _Track:
+class _BankedTrack:
     """A bank of the track: the bowl without devices, and what comes along it."""
 
     made: calm_drive.PlainBowl
@@ -61,9 +61,9 @@ class _Track:
 class _Idea:
     """An orientation on a track, and a way of proposing a chain for it."""
 
-    track: _Track
+    track: _BankedTrack
     row: int
-    way: proposals.Way
+    way: proposals.ProposalWay
     proposal: proposals.Proposal | None = None  # once it was looked for
     again: int = 0  # times that a device was left out at which it was lost
 
@@ -145,7 +145,7 @@ def _tracks(search):
                 search.known = arriving(search, start)
             ways, weights = offered(search, start)
             rows = proposals.promising(ways, weights, search.request)[: proposals.ROWS]
-            search.tracks.append(_Track(made, ways, weights, rows, BANK_RANK**place))
+            search.tracks.append(_BankedTrack(made, ways, weights, rows, BANK_RANK**place))
         lying = [
             _promise(search, one, row, LYING) for one in search.tracks for row in one.rows
         ]  # also of what may hang: infinite
@@ -462,6 +462,7 @@ def attempted(search, made, proposal, weights, driven=None):
         cause=_cause(tried, proposal),
         peak_to_peak=2.0 * bowl.drive.amplitude,
         throw_number=float(throw_number(bowl)),
+        cost_class=proposal.cost_class,
     )
     search.attempts.append(attempt)
     search.end_trial()

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 from feederscrew.designing import calm_drive, exploring, loop, proposals
+from feederscrew.designing.alternatives import merit
 from feederscrew.designing.record import FALLS_SHORT, HOLDS, NONE, NOT_PROVED, DesignStudy
 from feederscrew.designing.searching import Search
 from feederscrew.errors import FeederError
@@ -133,7 +134,7 @@ def _member(part, lead, plain, given, request, own):
     if found.status == HOLDS or found.partial:
         return replace(found, request=request)
     other = loop.design(part, plain, given, request, **own)
-    return replace(max((found, other), key=loop.merit), partial=other.partial)
+    return replace(max((found, other), key=merit), partial=other.partial)
 
 
 def _of_one_chain(members, request, given, told, before):

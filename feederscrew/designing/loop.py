@@ -1,12 +1,23 @@
 """The loop: an orientation and its chain, a short trial, what the trial denies changed, and the proof."""
 
+import math
 from collections.abc import Callable, Collection
 from dataclasses import replace
 
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.designing import beside, calm_drive, exploring, nearest, proposals, queues, trying
+from feederscrew.designing import (
+    alternatives,
+    beside,
+    calm_drive,
+    exploring,
+    nearest,
+    proposals,
+    queues,
+    trying,
+)
+from feederscrew.designing.alternatives import merit
 from feederscrew.designing.hazards import risks
 from feederscrew.designing.long_rides import LongRide, long_ride
 from feederscrew.designing.record import (
@@ -29,6 +40,7 @@ from feederscrew.part.record import Part
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.wishes import may_be_left_out, may_be_up
+from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.devices.named import rows
 from feederscrew.tooling.isolating.design import place
 from feederscrew.tooling.orientations import orientations
@@ -91,8 +103,10 @@ def design(
     )  # fmt: skip
     search.shares_given = known is not None
     proofs: Proofs = []
+    searched: list[int] = []
     try:
         for cost_class in proposals.COST_CLASSES:
+            searched.append(cost_class)
             _search_class(search, cost_class, proofs)
             if _answered(search, proofs):
                 break
@@ -100,11 +114,18 @@ def design(
         if nearby is None:
             _make_whole(search, proofs)
     except KeyboardInterrupt:
-        return replace(_best(search, proofs), attempts=tuple(search.attempts), partial=True)
-    best = replace(nearby or _best(search, proofs), attempts=tuple(search.attempts))
+        return replace(_listed(search, proofs, searched, _best(search, proofs)), partial=True)
+    best = _listed(search, proofs, searched, nearby or _best(search, proofs))
     if any(study.partial for study, _ in proofs):  # which of them it is
         return replace(best, partial=True)
     return best if best.status == HOLDS else replace(best, nearest=near)
+
+
+def _listed(search: Search, proofs: Proofs, searched: list[int], best: DesignStudy) -> DesignStudy:
+    """The design with every short trial, and beside the best of each cost class."""
+    studies = [study for study, _ in proofs] + ([best] if best.queues else [])
+    rows = alternatives.alternatives(studies, search.attempts, searched)
+    return replace(best, attempts=tuple(search.attempts), alternatives=rows)
 
 
 def _nearest(search: Search, proofs: Proofs) -> tuple[NearestDesign | None, DesignStudy | None]:
@@ -132,13 +153,18 @@ def _proved_at_any_rate(search: Search, candidate: Candidate) -> DesignStudy:
 
 
 def _best(search: Search, proofs: Proofs) -> DesignStudy:
-    """The best design so far, as far as it was proved; the best attempt where none was."""
+    """The cheapest design that holds, or the best so far as far as it was proved; else the best attempt."""
     if proofs:
-        return max((study for study, _ in proofs), key=merit)
+        return max((study for study, _ in proofs), key=_cheapest)
     candidate = _likeliest(search)
     if candidate is None or search.known is None:
         return _without(search)
     return _unproved(search, candidate, search.known)
+
+
+def _cheapest(study: DesignStudy) -> tuple[float, tuple[bool, bool, float, float]]:
+    """What of two designs is the better one: of those that hold the one of the cheaper cost class."""
+    return -cost_class_of(study.devices) if study.status == HOLDS else -math.inf, merit(study)
 
 
 def _likeliest(search: Search) -> Candidate | None:
@@ -149,11 +175,6 @@ def _likeliest(search: Search) -> Candidate | None:
         key=lambda one: (one.attempt.clean, -len(one.attempt.faults), one.attempt.rate),
         default=None,
     )
-
-
-def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
-    """Return what of two designs is the better one: holds, then clean, then the most parts."""
-    return study.status == "holds", study.jams == 0, study.robust.share, study.delivered[1]
 
 
 def _check_named(part: Part, plain: Bowl, request: DesignRequest, known: Shares | None) -> None:

@@ -30,7 +30,7 @@ LEAST_WINDOW = 1e-3  # [m] between what passes such a drop and what it rejects
 
 
 @dataclass(frozen=True)
-class Way:
+class ProposalWay:
     """A way of proposing a chain for an orientation."""
 
     cost_class: int
@@ -55,7 +55,7 @@ def ways_of(cost_class, request):
 
     Returns
     -------
-    list of Way
+    list of ProposalWay
         Of a sensor alone, and of one with devices that parts meet; none of a class of which no kind of
         device may be used.
     """
@@ -66,14 +66,14 @@ def ways_of(cost_class, request):
     outcomes = [one for one in ("hanging", "lying") if request.outcome in ("any", one)]
     kinds = [(*left_out, *HOLES), *([(*left_out, *MET, *HOLES)] if cost_class == SENSED else [])]
     found = [
-        Way(cost_class, margin, outcome, some)
+        ProposalWay(cost_class, margin, outcome, some)
         for margin in MARGINS for outcome in outcomes for some in kinds
     ]  # fmt: skip
     if "lying" in outcomes:
         lying = [way for way in found if way.outcome == "lying" and way.without == kinds[0]]
         found += [replace(way, turns=True) for way in lying]
     if "lying" in outcomes and cost_class == COST_CLASSES[0]:
-        found.append(Way(cost_class, MARGINS[-1], "lying", left_out))
+        found.append(ProposalWay(cost_class, MARGINS[-1], "lying", left_out))
     return found
 
 
@@ -179,7 +179,7 @@ def proposed(part, bowl, aspects, row, known, request, way):
     row : int
     known : Orientations
     request : DesignRequest
-    way : Way
+    way : ProposalWay
 
     Returns
     -------

@@ -31,7 +31,7 @@ DRIVE, DEVICE, ARRIVAL, PART = CAUSES = ("drive", "device", "arrival", "part")
 HEADING_OFF = (
     ", heading off"  # behind the name of an aspect: it lies so, at a heading that is none of the known
 )
-NONE, NOT_PROVED = "none", "not proved"
+NONE, NOT_PROVED, NOT_TRIED = "none", "not proved", "not tried"
 
 
 @dataclass(frozen=True)
@@ -86,6 +86,7 @@ class Attempt:
     cause: str = ""  # of CAUSES: why what is wanted is lost, or others leave; '' of a clean one
     peak_to_peak: float = 0.0  # [m] stroke of its drive
     throw_number: float = 0.0  # [1] of its drive
+    cost_class: int = 1  # of its chain: 1 steel alone, 2 steady air, 3 a sensor with a valve
 
     @property
     def clean(self) -> bool:
@@ -154,6 +155,21 @@ class FilledQueue:
 
 
 @dataclass(frozen=True)
+class Alternative:
+    """The best design of a cost class: 1 steel alone, 2 steady air, 3 a sensor with a valve."""
+
+    cost_class: int
+    status: str  # 'holds', 'falls short', 'none', 'not proved', or 'not tried'
+    delivered: tuple[float, float, float] | None = None  # wanted parts [1/s]: value, low and high end
+    purity: float | None = None  # [1] of what left its queues
+    efficiency: float | None = None  # [1] share of the parts offered in its queues that left as wanted
+    chain: tuple[str, ...] = ()  # 'gap: 9.5 mm'
+    chain_words: tuple[str, ...] = ()  # the same as the trade names it
+    sees: tuple[str, ...] = ()  # what each of its sensors sees
+    why: str = ""  # where it falls short, or why there is none; '' of one that holds
+
+
+@dataclass(frozen=True)
 class NearestDesign:
     """What holds where a design does not, as it was tried; or that nothing that was tried holds."""
 
@@ -215,6 +231,7 @@ class DesignStudy(Shown):
     drive_mismatch: DriveMismatch | None = None  # with the drive that its drawn machine makes
     machine_warnings: tuple[str, ...] = ()  # what of its drawn machine is out of limits
     machine_lacks: tuple[str, ...] = ()  # of the drive that was tried: why it does not hold
+    alternatives: tuple[Alternative, ...] = ()  # the best of each cost class, the cheapest first
     long_ride: LongRide | None = None  # from the track's entry to the tooling; None of what was not proved
 
     @property
@@ -278,6 +295,12 @@ class DesignStudy(Shown):
         if not left:
             return np.nan, 0.0
         return right / left, float(wilson([right], left)[0][0])
+
+    @property
+    def efficiency(self) -> float:
+        """Share [1] of the parts offered in its queues that left as wanted; NaN of none."""
+        right, offered = (sum(getattr(one, name) for one in self.queues) for name in ("right", "offered"))
+        return right / offered if offered else np.nan
 
     @property
     def jams(self) -> int:

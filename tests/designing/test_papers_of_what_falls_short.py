@@ -166,7 +166,14 @@ def test_drawings_of_cuts_bear_a_mark_on_a_layer_of_its_own(sensing):
 
 def test_what_delivers_nothing_leaves_no_papers(built):
     _, machine = built
-    kept = {"design.json", "design.html", "design_trials.csv", "design_history.png", "design.yaml"}
+    kept = {
+        "design.json",
+        "design.html",
+        "alternatives.csv",
+        "design_trials.csv",
+        "design_history.png",
+        "design.yaml",
+    }
     for one in (study(right=0), study(right=0, left=0), study(queues=())):
         assert one.status in ("falls short", "none")
         assert set(offered(one, machine)) == kept

@@ -83,6 +83,9 @@ def _answer(study, d):
     if d["machine"]:
         yield Text(f"The machine: {tables.machine_text(d['machine'])}.")
     yield Table(tables.two_columns(tables.outcome(d, study.devices)))
+    if study.alternatives:
+        yield Heading("Cheapest first: steel (1), steady air (2), a sensor with a valve (3)")
+        yield Table(tables.alternatives(study))
     if d["bowl"]:
         yield Table(tables.two_columns(tables.dimensions(d)))
     if study.risks:

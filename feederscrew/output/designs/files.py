@@ -33,6 +33,7 @@ def offers(study, settings, built=None):
         offer.document("design.json", tables.document, study),
         offer.text("design.html", _page, study, built),
         offer.table("design_trials.csv", tables.attempts, study),
+        offer.table("alternatives.csv", tables.alternatives, study),
         offer.picture("design_history.png", "Each short trial of the loop", _history, study),
     ]
     for one in study.risks:

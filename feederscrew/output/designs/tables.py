@@ -48,6 +48,7 @@ def document(study):
             "tolerance_mm": study.request.tolerance / MM,
         },
         "chain": [{"device": one.kind, "value": one.text} for one in study.devices],
+        "alternatives": [alternative(one) for one in study.alternatives],
         "why": study.why,
         "cause": study.cause or None,
         "nearest": nearest(study),
@@ -65,6 +66,61 @@ def document(study):
         "queues": [queue(one) for one in study.queues],
         "attempts": attempts(study).rows(),
     }
+
+
+NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed air")}  # of a cost class
+CLASS_WORDS = ("steel alone", "steady air", "a sensor with a valve")
+
+
+def alternative(one):
+    """Return an Alternative as a dict: null where nothing was counted."""
+    value, low, _ = one.delivered or (None, None, None)
+    return {
+        "class": one.cost_class,
+        "status": one.status,
+        "delivered_per_minute": None if value is None else value / PER_MINUTE,
+        "delivered_low": None if low is None else low / PER_MINUTE,
+        "purity": one.purity,
+        "yield": one.efficiency,
+        "chain": list(one.chain),
+        "needs": _needs(one),
+        "why": one.why or None,
+    }
+
+
+def _needs(one):
+    """What a chain needs beside steel, its cameras by what they see."""
+    cameras = [CAMERAS[view] for view in one.sees]
+    return [*cameras, *NEEDS[3][1:]] if cameras else list(NEEDS[one.cost_class])
+
+
+def alternatives(study):
+    """Return the best of each cost class, one a row."""
+    rows = []
+    for one in study.alternatives:
+        d = alternative(one)
+        rows.append(
+            d | {"chain": ", ".join(d["chain"]) or "none", "needs": ", ".join(d["needs"]) or "nothing more"}
+        )
+    names = (
+        "class", "status", "delivered_per_minute", "delivered_low", "purity", "yield", "chain", "needs",
+        "why",
+    )  # fmt: skip
+    return tables.frame({name: [row[name] for row in rows] for name in names})
+
+
+def alternative_text(one):
+    """Return an Alternative as one sentence."""
+    figures = ""
+    if one.delivered is not None and one.purity is not None:
+        figures = (
+            f", {one.delivered[0] / PER_MINUTE:.3g}/min, purity {100.0 * one.purity:.3g} %, "
+            f"yield {100.0 * one.efficiency:.3g} %"
+        )
+    chain = "; ".join(one.chain_words or one.chain)
+    needs = f"needs {units.listed(_needs(one))}" if chain and _needs(one) else ""
+    more = [text for text in (chain, needs, one.why) if text]
+    return f"{one.status}{figures}" + "".join(f"; {text}" for text in more)
 
 
 PROOF = (  # what a design has shown: none of it of one that is not proved
@@ -316,6 +372,8 @@ def summary(study):
         why.append(("nearest that holds", study.nearest.text.removeprefix("nearest that holds: ")))
     first, *rows = outcome(d, study.devices)
     rows = [first, *why, *rows, *dimensions(d), *(("risk", one) for one in d["risks"])]
+    for one in study.alternatives:
+        rows.append((f"with {CLASS_WORDS[one.cost_class - 1]}", alternative_text(one)))
     rows.append(("trials, parts", f"{len(d['attempts'])}, {d['trial_parts']}"))
     return two_columns([line for row in rows for line in folded(*row)])
 
