@@ -142,7 +142,7 @@ def _with(bowl: Bowl, amplitude: float, settings: Iterable[Setting]) -> Bowl:
 def on_leaves(bowl: Bowl, given: Collection[str]) -> Machine:
     """Return the machine of a bowl with the leaves that tune it to its drive at its stroke.
 
-    Source: ``tuning.sets`` and ``tuning.chosen``; docs/bowl.md, "1. The part, and the rate".
+    Source: ``tuning.sets``; docs/bowl.md, "1. The part, and the rate".
 
     Parameters
     ----------
