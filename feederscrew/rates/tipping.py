@@ -199,6 +199,8 @@ def landing(one: Orientation, bowl: Bowl, energy: float) -> Orientation:
 def may_tip(contact: np.ndarray, one: Orientation, bowl: Bowl, energy: float, margin: float = 0.0) -> bool:
     """Return whether a landing may tip an orientation over a side of what carries it.
 
+    Source: own; moments of an impact about a side with Coulomb's friction, and the energy to rise over it.
+
     Parameters
     ----------
     contact : (K, 2) float [m]
