@@ -107,7 +107,7 @@ def follow(part, found, launches, surface, rng, *, runs=USUAL, jobs=1, progress=
 
 def _states(launches, length, principal):
     """(N, 13) states as the kernel has them: along the principal axes, without dimensions."""
-    turns = _rotations(launches.attitudes) * Rotation.from_matrix(principal)
+    turns = _rotations(launches.attitudes) * Rotation.from_matrix(np.array(principal))
     states = np.zeros((len(launches.names), body.STATE))
     states[:, : body.VX] = launches.positions / length
     states[:, body.VX : body.Q] = launches.velocities / np.sqrt(GRAVITY * length)

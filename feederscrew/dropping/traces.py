@@ -81,7 +81,7 @@ def follow(shape, length, principal, starts, drops, rows):
     still. Should that be on another face, balanced on an edge, or never, as with a part that rolls on and on,
     it ends where the drop was counted.
     """
-    to_body = Rotation.from_matrix(principal.T)
+    to_body = Rotation.from_matrix(np.array(principal.T))
     second = np.sqrt(length / GRAVITY)
     traces = []
     for k, state in enumerate(starts.states):

@@ -74,7 +74,7 @@ def _over_cut(met, place):
         hull = np.einsum("ni,ij->nj", hull, one.axes) / MM
     return {
         "name": one.name,
-        "quaternion": [short(q) for q in Rotation.from_matrix(one.axes).as_quat(canonical=True)],
+        "quaternion": [short(q) for q in Rotation.from_matrix(np.array(one.axes)).as_quat(canonical=True)],
         "height": short(one.posture.height / MM),
         "contact": [short(x) for x in hull.ravel()],
         "track": place,
@@ -85,7 +85,9 @@ def _pose(found, row, standing):
     """Name, rotation (x, y, z, w) from the file's axes to the floor's, height and contact polygon."""
     return {
         "name": found.names[row],
-        "quaternion": [short(q) for q in Rotation.from_matrix(standing.floor_axes).as_quat(canonical=True)],
+        "quaternion": [
+            short(q) for q in Rotation.from_matrix(np.array(standing.floor_axes)).as_quat(canonical=True)
+        ],
         "height": short(found.heights[row] / MM),
         "contact": [short(x) for x in found.polygons[row].ravel() / MM],
     }

@@ -60,7 +60,7 @@ def _pose(ride, path, place):
 
 def _path(path, principal):
     """Time [s], place [mm] and attitude, x y z w, up to where it moves no more (K, 8)."""
-    turns = Rotation.from_quat(path[:, [5, 6, 7, 4]]) * Rotation.from_matrix(principal).inv()
+    turns = Rotation.from_quat(path[:, [5, 6, 7, 4]]) * Rotation.from_matrix(np.array(principal)).inv()
     result = np.column_stack([path[:, 0], path[:, 1:4] / MM, turns.as_quat()])
     moving = np.flatnonzero(np.abs(result[:, 1:4] - result[-1, 1:4]).max(axis=1) > STILL)
     last = result[moving[-1], 0] + AFTER if len(moving) else AFTER

@@ -41,7 +41,7 @@ def stills(part, run):
         top = height - row * (HEAD + HEIGHT + CAPTION)
         page.text(EDGE, top - 30, ride.title(found), fontsize=11, fontweight="bold", color=style.INK)
         moments = list(_chosen(ride.path, radius))
-        inwards = Rotation.from_matrix(found.principal).inv()
+        inwards = Rotation.from_matrix(np.array(found.principal)).inv()
         bodies = [(place + (turn * inwards).apply(points), part.faces) for _, place, turn in moments]
         places = [place for _, place, _ in moments]
         angles = [np.arctan2(place[0], run.bowl.track.radius - place[1]) for place in places]
