@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from feederscrew import check
 
 PERIOD_SAMPLES = 360  # of one period
-FULL_TURN = 2.0 * math.pi
+PERIOD_PHASE = 2.0 * math.pi
 PERIODS_FOLLOWED = 8  # periods followed before the settled one is sought by its velocity at phase 0
 MAX_STEP_DOUBLINGS = 40  # of the step that brackets it
 VELOCITY_TOLERANCE = 1e-12  # of the greatest speed gained in a period: a velocity this near is found
@@ -38,7 +38,7 @@ def phases(samples=PERIOD_SAMPLES) -> NDArray[np.float64]:
 
     Source: a harmonic drive; docs/mechanics.md, "Frames and signs".
     """
-    return FULL_TURN * np.arange(samples) / samples
+    return PERIOD_PHASE * np.arange(samples) / samples
 
 
 def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
@@ -67,7 +67,7 @@ def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
     The velocity after a period is a function of that before it which keeps their order, so from rest it tends
     to the first velocity that it leaves as it is.
     """
-    ride = _Ride(acceleration, tuple(windows), period / FULL_TURN, samples)
+    ride = _Ride(acceleration, tuple(windows), period / PERIOD_PHASE, samples)
     speed, scale = 0.0, 0.0
     for _ in range(PERIODS_FOLLOWED):
         velocity, mean = ride.over(speed)
@@ -139,17 +139,17 @@ class _Ride:
     def __init__(self, acceleration, windows, pace, samples) -> None:
         self.windows, self.samples = windows, samples
         self.gain = lambda phase, speed, sense: pace * acceleration(phase, speed, sense)  # a radian
-        self.kink = KINK * pace * max(abs(acceleration(0.25 * FULL_TURN * k, 0.0, 1.0)) for k in range(4))
+        self.kink = KINK * pace * max(abs(acceleration(0.25 * PERIOD_PHASE * k, 0.0, 1.0)) for k in range(4))
 
     def over(self, speed) -> tuple[Any, ...]:
         """Return velocities at the samples and at the end of a period that begins with one, and the mean."""
-        grid = [FULL_TURN * k / self.samples for k in range(self.samples + 1)]
+        grid = [PERIOD_PHASE * k / self.samples for k in range(self.samples + 1)]
         found, way = [speed], 0.0
         for start, end in itertools.pairwise(grid):
             speed, more = self._between(speed, start, end)
             way += more
             found.append(speed)
-        return np.array(found), way / FULL_TURN
+        return np.array(found), way / PERIOD_PHASE
 
     def _between(self, speed, start, end) -> tuple[Any, ...]:
         """Velocity at the end of a stretch, and the way made in it, times the pace of the phase."""

@@ -94,7 +94,7 @@ def test_a_slip_shorter_than_a_sample_is_not_missed():
 
 
 def test_a_part_that_gets_faster_with_every_period_has_not_settled():
-    windows = [(0.0, cycle.FULL_TURN, 1.0)]
+    windows = [(0.0, cycle.PERIOD_PHASE, 1.0)]
     assert not cycle.settle(lambda phase, speed, sense: 1.0, windows, 0.02).settled
     braked = cycle.settle(lambda phase, speed, sense: 1.0 - speed, windows, 0.02)  # slowly, to a speed of 1
     assert braked.settled

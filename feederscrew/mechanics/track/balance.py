@@ -301,8 +301,8 @@ def loose_windows(rest, needed, static, samples=cycle.PERIOD_SAMPLES) -> list[An
     sense = _loose_sense(rest(phase), static)
     change = np.flatnonzero(sense != np.roll(sense, 1))
     if len(change) == 0:
-        return [(0.0, cycle.FULL_TURN, float(sense[0]))] if sense[0] else []
-    before, step = sense[change - 1], cycle.FULL_TURN / samples
+        return [(0.0, cycle.PERIOD_PHASE, float(sense[0]))] if sense[0] else []
+    before, step = sense[change - 1], cycle.PERIOD_PHASE / samples
     low, high = phase[change] - step, phase[change].copy()
     edges = _loose_edges(lambda at: needed(at) - static, low, high, (before != 0.0) & (sense[change] == 0.0))
     return _cut_windows(edges, sense[change])
@@ -335,11 +335,11 @@ def _loose_edges(beyond, low, high, falls) -> NDArray[np.float64]:
 def _cut_windows(starts, senses) -> list[tuple[float, float, float]]:
     """Windows within one period from where each begins; a state lasts to the next one's begin."""
     windows = []
-    for start, end, sense in zip(starts, np.append(starts[1:], starts[0] + cycle.FULL_TURN), senses):
-        if sense and end > cycle.FULL_TURN:
+    for start, end, sense in zip(starts, np.append(starts[1:], starts[0] + cycle.PERIOD_PHASE), senses):
+        if sense and end > cycle.PERIOD_PHASE:
             windows += [
-                (0.0, float(end - cycle.FULL_TURN), float(sense)),
-                (float(start), cycle.FULL_TURN, float(sense)),
+                (0.0, float(end - cycle.PERIOD_PHASE), float(sense)),
+                (float(start), cycle.PERIOD_PHASE, float(sense)),
             ]
         elif sense:
             windows.append((float(start), float(end), float(sense)))

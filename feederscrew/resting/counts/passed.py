@@ -9,7 +9,7 @@ from feederscrew.errors import FeederError
 from feederscrew.resting.counts import count_rows
 from feederscrew.resting.counts.count_rows import Few
 from feederscrew.resting.counts.head import NO_HEAD, Head
-from feederscrew.resting.counts.profiles import DEVICE, INTEGER, MAX_COUNT, of_another_part
+from feederscrew.resting.counts.profiles import DEVICE, INTEGER, MAX_PARTS_COUNTED, of_another_part
 from feederscrew.units import shown
 
 PASSED, REJECTED = "passed", "rejected"  # the columns after the device, in either order
@@ -103,10 +103,12 @@ def _judge(where, row, columns, lines, faults) -> None:
         what = f"has {len(cells)} value{'s' * (len(cells) != 1)} after the device"
         faults.add(where, what, "give the parts that passed and those that were rejected")
     elif odd := [f"{column}: {shown(cell)}" for column, cell in zip(columns, cells) if not _whole(cell)]:
-        faults.add(where, f"{odd[0]} is not a number of parts", f"give a whole number up to {MAX_COUNT:g}")
+        faults.add(
+            where, f"{odd[0]} is not a number of parts", f"give a whole number up to {MAX_PARTS_COUNTED:g}"
+        )
     elif not any(float(cell) for cell in cells):
         faults.add(where, f"no part came to device {shown(name)}", "remove the row")
 
 
 def _whole(cell):
-    return INTEGER.fullmatch(cell) is not None and float(cell) <= MAX_COUNT
+    return INTEGER.fullmatch(cell) is not None and float(cell) <= MAX_PARTS_COUNTED

@@ -20,7 +20,7 @@ DROPPED = ("height_mm", "count")  # columns by which a table of ``feeder drop`` 
 ASPECT, ORIENTATION, DEVICE = "aspect", "orientation", "device"  # what a file counts by: its first column
 INTEGER = re.compile(r"\+?\d+", re.ASCII)
 FULL_TURN = 360.0  # [deg]
-MAX_COUNT = 1e12  # of a count
+MAX_PARTS_COUNTED = 1e12  # of a count
 MAX_NAME_LETTERS = 40  # of a column's name in a message
 DECIMAL_PATTERN = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
@@ -253,8 +253,8 @@ def _judge(where, column, value, faults) -> None:
         faults.add(where, f"{what} is not a number", "write digits with a decimal point")
     elif float(value) < 0.0:
         faults.add(where, f"{what} is negative", "give a number from 0")
-    elif float(value) > MAX_COUNT:
-        faults.add(where, f"{what} is too large", f"give a number up to {MAX_COUNT:g}")
+    elif float(value) > MAX_PARTS_COUNTED:
+        faults.add(where, f"{what} is too large", f"give a number up to {MAX_PARTS_COUNTED:g}")
 
 
 def _measured(where, name, texts) -> Any:
