@@ -240,7 +240,8 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading,
             other, driven, ways, even, wanted_rows, rows=list(dict.fromkeys(rows)), each=1,
             run=RunSettings(sum(seed), jobs), **own,
         )  # fmt: skip
-        if came_back(tried, rows[0]):
+        counting = trying.wanted_rows(ways, tried.states[:1])
+        if any(came_back(tried, row) for row in tried.rows if row in counting):
             again = wanted_of(known, shares, wanted, spared)
             places = [matched(known.lying[k], lying) for k in again]
             more = trying.single(
