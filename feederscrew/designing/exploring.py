@@ -335,7 +335,7 @@ def offered(search, bowl):
 
 def _tried_out(search, made, proposal, weights):
     """Try a proposal and what mends it; the Candidate where one is clean and fast enough."""
-    lost = 0
+    lost, before = 0, None
     for _ in range(MENDED + 1):
         candidate = _screened(search, attempted(search, made, proposal, weights))
         calmed = _calmed(search, made, candidate, weights)
@@ -349,8 +349,9 @@ def _tried_out(search, made, proposal, weights):
         search.failed.append(candidate)
         if not candidate.attempt.efficiency > 0.0 and not candidate.proposal.hangs:
             lost += 1
-        if lost == LOST:
+        if lost == LOST or _showed(candidate) == before:  # what was changed made no difference
             break
+        before = _showed(candidate)
         changed = proposals.better(proposal, candidate.tried, candidate.ways.lying, candidate.drawn)
         if changed is None or search.spent:
             break
@@ -360,6 +361,12 @@ def _tried_out(search, made, proposal, weights):
     place = made.bowl.track.bank, proposal.row
     search.avoid(place, proposal, candidate.tried)
     search.note_lost(place, proposal, candidate.tried)
+
+
+def _showed(candidate):
+    """What the trial of a candidate showed: equal where another one did the same."""
+    attempt = candidate.attempt
+    return attempt.faults, attempt.efficiency, attempt.stopped
 
 
 def _calmed(search, made, candidate, weights):

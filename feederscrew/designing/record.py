@@ -393,11 +393,18 @@ def _instead(study: DesignStudy) -> str:
     listed, left = study.left_instead, sum(one.left for one in study.queues)
     if not listed:
         return ""
-    text = ", ".join(f"{name}: {count} of {left}" for name, count in listed[:3])
+    text = ", ".join(f"{name}: {count} of {left}{_came_through(study, name)}" for name, count in listed[:3])
     aspects = [name.removesuffix(HEADING_OFF) for name, _ in listed if name.endswith(HEADING_OFF)]
     own = [one for one in aspects if (study.wanted or "").partition("@")[0] == one]
     offer = f" (--up {own[0]} counts {own[0]} at any heading)" if own else ""
     return f"; what left instead: {text}{offer}"
+
+
+def _came_through(study: DesignStudy, name: str) -> str:
+    """At which fill most of what left otherwise did so, and through which device that should return it."""
+    fill = max(study.queues, key=lambda one: dict(one.left_instead).get(name, 0)).fill
+    device = next((cut.device.name for cut in reversed(study.cuts) if name in cut.returns), "")
+    return f" (most at {fill} fill" + (f", through the {device})" if device else ")")
 
 
 def _cause_of(study: DesignStudy) -> tuple[str, str]:
@@ -425,9 +432,11 @@ def _cause_of(study: DesignStudy) -> tuple[str, str]:
     if queue is None or not queue.right:
         return ARRIVAL, "too little of what is wanted leaves its queues"
     right, offered = (sum(getattr(one, k) for one in study.queues) for k in ("right", "offered"))
+    share, need = right / offered, study.request.target / queue.pace
     return ARRIVAL, (
-        f"{60.0 * queue.pace:.3g} parts a minute come along, and {100.0 * right / offered:.3g} % of them "
-        f"leave as {study.wanted}"
+        f"{60.0 * queue.pace:.3g} parts a minute come along, and {100.0 * share:.3g} % of them "
+        f"leave as {study.wanted}: {60.0 * study.delivered[1] / RATE_KEPT:.2g}/min would hold, or a part of "
+        f"which {100.0 * need:.3g} % come so"
     )
 
 
@@ -437,7 +446,10 @@ def _cause_of_trials(study: DesignStudy) -> tuple[str, str]:
         return PART, "no device tells an orientation that was asked for from the others"
     best = max(_asked_for(study), key=lambda one: (one.efficiency, one.rate))
     if not best.faults:
-        return ARRIVAL, f"{best.wanted} comes too seldom: {60.0 * best.rate:.3g}/min at the most"
+        return ARRIVAL, (
+            f"{best.wanted} comes too seldom: {60.0 * best.rate:.3g}/min at the most - ask for less, or let "
+            "other aspects count (--up)"
+        )
     return best.cause or PART, f"{best.wanted}: {', '.join(best.faults[:2])}"
 
 

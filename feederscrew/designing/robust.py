@@ -25,7 +25,7 @@ from feederscrew.tooling.fates import at_entry
 FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side
 CARRIED, CLEAN = " is carried through", 0.985  # and the purity from which that is let be
 ALIKE = 1e-4  # of the greatest: principal moments that a part of revolution has in common
-AGAIN = 3  # parts of a wanted orientation that are tried where one came back: a bowl brings it once more
+AGAIN = 3  # parts of each wanted orientation that are tried where one came back: a bowl brings more of them
 OTHERS = 3  # parts tried in each draw beside the wanted one, as they come
 
 
@@ -240,12 +240,16 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading,
             other, driven, ways, even, wanted_rows, rows=list(dict.fromkeys(rows)), each=1,
             run=RunSettings(sum(seed), jobs), **own,
         )  # fmt: skip
-        if came_back(tried, rows[0]):
+        counting = trying.wanted_rows(ways, tried.states[:1])
+        if any(came_back(tried, row) for row in tried.rows if row in counting):
+            again = wanted_of(known, shares, wanted, spared)
+            places = [matched(known.lying[k], lying) for k in again]
             more = trying.single(
-                other, driven, ways, even, wanted_rows, rows=rows[:1], each=AGAIN,
+                other, driven, ways, even, wanted_rows, rows=list(dict.fromkeys(places)), each=AGAIN,
                 run=RunSettings(sum(seed) + 1, jobs), **own,
             )  # fmt: skip
-            spared = (*spared, chosen[0]) if comes_through(more) else spared
+            weights = {place: float(shares[k]) for k, place in zip(again, places)}
+            spared = (*spared, *again) if comes_through(more, weights) else spared
     except FeederError as fault:  # the drawn bowl does not convey, or the part does not fit
         return [fault.what], 0.0
     return faults(tried, {matched(known.lying[k], lying) for k in spared}), tried.velocity
@@ -285,10 +289,33 @@ def came_back(tried, row):
     return not tried.right[place] and bool(ends) and all(end.startswith("returned") for end in ends)
 
 
-def comes_through(tried):
-    """Return whether most of some more parts of a wanted orientation leave, and the others come back."""
-    mostly = 2 * int(tried.right.sum()) > int(tried.parts.sum())
-    return mostly and not tried.wrong.any() and not tried.held.any()
+def wanted_of(known, shares, rows, spared=()):
+    """Return the rows that leave as wanted, but those that are spared and those that hardly come.
+
+    Parameters
+    ----------
+    known : Orientations
+        M of them.
+    shares : (M,) float [1]
+    rows, spared : sequence of int
+    """
+    own = trying.wanted_rows(known, trying.wanted_states(known, rows)[:1]) or [rows[0]]
+    some = [k for k in own if k not in spared and shares[k] >= trying.SELDOM]
+    return some or [rows[0]]
+
+
+def comes_through(tried, weights):
+    """Return whether at least half of more parts of what is wanted leave, and the others come back.
+
+    Parameters
+    ----------
+    tried : Tried
+    weights : dict of int to float [1]
+        Shares in which their orientations come.
+    """
+    own = np.array([weights[k] for k in tried.rows])
+    leaving = float((own * tried.right / tried.parts).sum())
+    return 2.0 * leaving >= own.sum() and not tried.wrong.any() and not tried.held.any()
 
 
 def faults(tried, spared=()):

@@ -15,6 +15,7 @@ from feederscrew.designing.searching import Search
 from feederscrew.output import tables as tables_of
 from feederscrew.output.designs import tables
 from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.isolating.chain import Cut
 
 PART = shapes.part(shapes.box(10, 10, 10))
 GAP = made("gap", "test", limit=9e-3, text="9 mm")
@@ -160,3 +161,21 @@ def test_it_stops_at_the_first_class_that_holds_unless_alternatives_are_asked(mo
     assert found.alternatives[0].status == "holds" and len(found.alternatives) == 3
     assert found.alternatives[2].status == ("holds" if every else "not tried")
     assert found.devices == (GAP,)  # the cheapest of those that hold
+
+
+def test_too_small_a_yield_says_which_rate_or_share_would_hold():
+    """Of 50 parts a minute a fifth leaves: 10/min, and for 40/min four fifths have to."""
+    made_study = study(GAP, right=10, left=10, returned=40)
+    low = 60.0 * made_study.delivered[1] / 0.9
+    assert made_study.cause == "arrival"
+    assert f"{low:.2g}/min would hold" in made_study.why and "80 % come so" in made_study.why
+
+
+def test_what_is_impure_names_the_fill_and_the_device_that_others_came_through():
+    cut = Cut(GAP, 1e-3, 1e-3, GAP, GAP, ("B@0",))
+    found = study(GAP, right=40, left=45, cuts=(cut,))
+    low, normal, high = found.queues
+    rows = (low, replace(normal, left_instead=(("B@0", 2),)), replace(high, left_instead=(("B@0", 9),)))
+    assert "B@0: 11 of 135 (most at high fill, through the gap)" in replace(found, queues=rows).why
+    bare = replace(found, queues=rows, cuts=())
+    assert "B@0: 11 of 135 (most at high fill)" in bare.why

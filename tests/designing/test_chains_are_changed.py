@@ -198,6 +198,22 @@ def test_a_blade_at_which_parts_stay_is_swept_otherwise(block):
     assert sweeps[:2] == [35, 20] and len(set(sweeps)) == len(sweeps) and 30 not in sweeps
 
 
+def test_a_wanted_part_that_comes_back_denies_a_draw_only_where_most_of_the_others_do_too(block):
+    _, ways, names = block
+    along, across = names["A@0"], names["A@90"]
+    seen = tried(ways, {along}, (), (), along)
+    back = replace(
+        seen, places=tuple({"returned at gap": 2} if k == across else {} for k in range(len(ways.lying)))
+    )
+    assert robust.came_back(back, across) and not robust.came_back(back, along)
+    pair = replace(
+        back, **{n: getattr(back, n)[[along, across]] for n in ("rows", "parts", "right", "wrong", "held")}
+    )
+    assert robust.comes_through(pair, {along: 0.5, across: 0.5})  # half of them leave
+    assert not robust.comes_through(pair, {along: 0.4, across: 0.6})
+    assert not robust.comes_through(replace(pair, held=np.array([0, 1])), {along: 0.9, across: 0.1})
+
+
 def test_a_device_is_found_by_the_name_that_the_trial_gives_it(block):
     _, ways, names = block
     seen = tried(ways, (), (), {names["A@0"]}, names["A@0"])

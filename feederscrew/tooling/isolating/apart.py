@@ -82,13 +82,15 @@ def smallest_change(wanted, other, margin):
 
 def carries_more(one, other, margin):
     """Return whether one orientation stands on all that another stands on, and is no higher or wider."""
+    lower = one.height <= other.height + margin and one.width <= other.width + 2.0 * margin
+    return lower and stands_on_all(one, other, margin)
+
+
+def stands_on_all(one, other, margin):
+    """Return whether one orientation stands on all that another stands on: no hole lets it fall alone."""
     foot, within = (shapely.MultiPoint(k.foot.corners).convex_hull for k in (one, other))
-    return (
-        foot.buffer(margin).covers(within)
-        and abs(one.distance - other.distance) < 2.0 * margin
-        and one.height <= other.height + margin
-        and one.width <= other.width + 2.0 * margin
-    )
+    near = abs(one.distance - other.distance) < 2.0 * margin
+    return bool(near and foot.buffer(margin).covers(within))
 
 
 def difference(wanted, other):

@@ -9,6 +9,7 @@ from feederscrew.errors import ArgumentError
 from feederscrew.tooling.devices.kinds import names
 from feederscrew.tooling.devices.named import place_of, rows
 from feederscrew.tooling.isolating import chain, hole_search, rails, round_corners, turners, varied
+from feederscrew.tooling.isolating.apart import stands_on_all
 from feederscrew.tooling.isolating.needed import told_needed
 from feederscrew.tooling.isolating.proposal import ALL, told, weights, without
 from feederscrew.tooling.isolating.proposal import task as asked_for
@@ -130,18 +131,23 @@ def _plain(given, search):
         if not _left(given, returned):
             break
     found = told_needed(given, cuts, returned)
-    if holes and not found.isolated:
-        more = told_needed(given, *_with_holes(given, cuts, returned, search))
-        found = found if more.stands and not found.stands else more
-    found = replace(found, late=search.late)
     sensed = {"sensed": given.wishes.sensed}
     for stage in (sensed, sensed | {"varied": given.wishes.vary}):
         if found.isolated or not any(stage.values()):
             continue
-        other = told_needed(given, *_chosen(given, weight, stage), late=search.late)
+        other = told_needed(given, *_chosen(given, weight, stage))
         purer = stage.get("varied") and other.purity > found.purity + MORE
         found = other if other.isolated or purer else found
-    return found
+    if holes and not found.isolated:  # by far the longest search: only where nothing simpler isolates
+        more = told_needed(given, *_with_holes(given, cuts, returned, search))
+        if more.isolated or (not more.stands and (found.stands or not _purer(found, more))):
+            found = more
+    return replace(found, late=search.late)
+
+
+def _purer(found, other):
+    """Whether a design leaves purer parts than another one."""
+    return bool(np.nan_to_num(found.purity) > np.nan_to_num(other.purity) + MORE)
 
 
 def _chosen(given, weight, stage) -> tuple[Any, np.ndarray]:
@@ -177,6 +183,7 @@ def _with_holes(given, cuts, returned, search):
         left = [k for k in np.flatnonzero(~returned) if k != given.wanted and given.often[k]]
         if given.coming[left].sum() <= given.allowed:
             break
+        left = [k for k in left if not stands_on_all(given.every[k], given.every[given.wanted], given.margin)]
         play = given.margin + given.every[given.wanted].flight  # a hole so much shorter may be jumped
         made = hole_search.cut_out(given.every, given.wanted, left, play, search) if left else None
         if made is not None and given.wishes.cutter > 0.0:
