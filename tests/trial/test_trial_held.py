@@ -41,7 +41,7 @@ def blocks(bowl, *planned):
     """A queue of flat blocks while it moves."""
     every = orientations(PART, ASPECTS, bowl.track)
     shares = np.array([one.height < 6e-3 and one.length > 0.015 for one in every], float)
-    return queue._Queue(PART, bowl, ASPECTS, (every, shares), every, queue.QueuePlan(*planned), 3)
+    return queue.PartsQueue(PART, bowl, ASPECTS, (every, shares), every, queue.QueuePlan(*planned), 3)
 
 
 def ways(row):
