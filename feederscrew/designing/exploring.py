@@ -419,6 +419,7 @@ def _screened(search, candidate):
         search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.rows,
         draws=min(SCREENED, request.draws), tolerance=request.tolerance, run=request.run,
         any_heading=candidate.proposal.any_heading, spared=trying.spared_rows(candidate.tried),
+        enough=search.enough(candidate.attempt),
     )  # fmt: skip
     if drawn.partial:
         raise KeyboardInterrupt

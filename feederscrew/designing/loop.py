@@ -297,6 +297,7 @@ def _drawn(search: Search, candidate: Candidate, shares: np.ndarray) -> RobustRu
         search.part, candidate.bowl, candidate.ways, shares, candidate.proposal.rows,
         draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
         any_heading=candidate.proposal.any_heading, spared=trying.spared_rows(candidate.tried),
+        enough=search.enough(candidate.attempt),
     )  # fmt: skip
 
 

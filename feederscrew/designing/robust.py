@@ -26,6 +26,7 @@ FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either s
 CARRIED, CLEAN = " is carried through", 0.985  # and the purity from which that is let be
 ALIKE = 1e-4  # of the greatest: principal moments that a part of revolution has in common
 AGAIN = 3  # parts of each wanted orientation that are tried where one came back: a bowl brings more of them
+HALF = 0.5  # [1] of what is wanted that has to leave in a draw, where some of it comes back
 OTHERS = 3  # parts tried in each draw beside the wanted one, as they come
 
 
@@ -164,7 +165,9 @@ def matched(one, every):
     return min(range(len(every)), key=lambda k: away(every[k]))
 
 
-def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run, any_heading=(), spared=()):
+def robust_run(
+    part, bowl, known, shares, wanted, *, draws, tolerance, run, any_heading=(), spared=(), enough=HALF
+):
     """Try draws of part, friction, drive and cuts.
 
     Parameters
@@ -186,12 +189,15 @@ def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run, any_
         Aspects that count as the wanted one, whatever the heading.
     spared : sequence of int
         Orientations that count as the wanted one and may be returned.
+    enough : float [1]
+        Share of what is wanted that has to leave, where a part of it comes back: HALF at least.
 
     Returns
     -------
     RobustRun
         A draw holds where what is wanted leaves as wanted, and nothing of the others leaves or stays. Each
-        draw tries the wanted orientation and some others, drawn by their shares.
+        draw tries the wanted orientation and some others, drawn by their shares. Where a wanted part comes
+        back, AGAIN more of each wanted orientation are tried: it is offered again, and costs rate.
     """
     held, wrong, speeds, done = 0, Counter[str](), [], 0
     try:
@@ -207,6 +213,7 @@ def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run, any_
                 run.jobs,
                 any_heading,
                 spared,
+                enough,
             )
             held, done = held + (not faults), draw + 1
             wrong.update(set(faults))
@@ -218,7 +225,7 @@ def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run, any_
     return RobustRun(done, held, worst, float(min(speeds, default=np.nan)), partial=done < draws)
 
 
-def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading, spared):
+def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading, spared, enough):
     """What goes wrong in one draw, and the velocity there."""
     rng = np.random.default_rng(seed)
     other = drawn_part(part, tolerance, rng)
@@ -249,7 +256,7 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading,
                 run=RunSettings(sum(seed) + 1, jobs), **own,
             )  # fmt: skip
             weights = {place: float(shares[k]) for k, place in zip(again, places)}
-            spared = (*spared, *again) if comes_through(more, weights) else spared
+            spared = (*spared, *again) if comes_through(more, weights, enough) else spared
     except FeederError as fault:  # the drawn bowl does not convey, or the part does not fit
         return [fault.what], 0.0
     return faults(tried, {matched(known.lying[k], lying) for k in spared}), tried.velocity
@@ -304,18 +311,20 @@ def wanted_of(known, shares, rows, spared=()):
     return some or [rows[0]]
 
 
-def comes_through(tried, weights):
-    """Return whether at least half of more parts of what is wanted leave, and the others come back.
+def comes_through(tried, weights, enough=HALF):
+    """Return whether enough of more parts of what is wanted leave, and the others come back.
 
     Parameters
     ----------
     tried : Tried
     weights : dict of int to float [1]
         Shares in which their orientations come.
+    enough : float [1]
+        Share of them that has to leave.
     """
     own = np.array([weights[k] for k in tried.rows])
     leaving = float((own * tried.right / tried.parts).sum())
-    return 2.0 * leaving >= own.sum() and not tried.wrong.any() and not tried.held.any()
+    return leaving >= enough * own.sum() * (1.0 - 1e-9) and not tried.wrong.any() and not tried.held.any()
 
 
 def faults(tried, spared=()):

@@ -8,7 +8,8 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import proposals, trying
-from feederscrew.designing.record import Attempt, DesignRequest, RobustRun
+from feederscrew.designing.record import RATE_KEPT, Attempt, DesignRequest, RobustRun
+from feederscrew.designing.robust import HALF
 from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.running import RunSettings
@@ -106,6 +107,11 @@ class Search:
     def spent(self) -> bool:
         """Whether the budget of trials is used up."""
         return len(self.attempts) >= min(self.request.budget, self.most, self.reach)
+
+    def enough(self, attempt: Attempt) -> float:
+        """Return the share [1] of what is wanted that has to leave in a draw, for the target to be kept."""
+        need = RATE_KEPT * self.request.target / max(attempt.rate, 1e-300)
+        return float(np.clip(need, HALF, 1.0))
 
     def avoid(self, place: tuple[float, int], proposal: proposals.Proposal, tried: trying.Tried) -> None:
         """Note the devices of a chain at which what is wanted is lost; rails are the only way to hang.

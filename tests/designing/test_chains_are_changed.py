@@ -211,6 +211,8 @@ def test_a_wanted_part_that_comes_back_denies_a_draw_only_where_most_of_the_othe
     )
     assert robust.comes_through(pair, {along: 0.5, across: 0.5})  # half of them leave
     assert not robust.comes_through(pair, {along: 0.4, across: 0.6})
+    assert robust.comes_through(pair, {along: 0.7, across: 0.3}, 0.7)  # and all that the target needs
+    assert not robust.comes_through(pair, {along: 0.7, across: 0.3}, 0.75)
     assert not robust.comes_through(replace(pair, held=np.array([0, 1])), {along: 0.9, across: 0.1})
 
 

@@ -15,7 +15,7 @@ from scipy import stats
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
 from feederscrew.designing import exploring, proposals, robust, trying
-from feederscrew.designing.record import DesignRequest
+from feederscrew.designing.record import Attempt, DesignRequest
 from feederscrew.designing.searching import Search
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import made
@@ -225,3 +225,11 @@ def test_a_row_brings_its_velocity_over_its_pitch_times_what_leaves(block):
         as_it_lies = replace(all_right, states=(state,)).rate
         longest = max(mean, ways.states[state].length)
         assert as_it_lies == pytest.approx(0.06 / (1.5 * longest), rel=1e-12)
+
+
+@pytest.mark.parametrize(("rate", "share"), [(0.5, 0.9), (0.6, 0.75), (5.0, 0.5), (0.1, 1.0)])
+def test_what_may_come_back_in_a_draw_is_what_the_target_does_not_take(rate, share):
+    """0.9 of the target of 0.5 a second, over the rate of the short trial; half at least."""
+    search = Search(None, DesignRequest(0.5), bowls.default(), frozenset(), lambda text: None)
+    attempt = Attempt("A@0", (), "", 0.0, 0.1, 2, 1.0, 1.0, 0.0, rate, ())
+    assert search.enough(attempt) == pytest.approx(share)
