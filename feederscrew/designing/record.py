@@ -448,7 +448,7 @@ def _cause_of_trials(study: DesignStudy) -> tuple[str, str]:
     if not best.faults:
         return ARRIVAL, (
             f"{best.wanted} comes too seldom: {60.0 * best.rate:.3g}/min at the most - ask for less, or let "
-            "other aspects count (--up)"
+            "other aspects count with --up"
         )
     return best.cause or PART, f"{best.wanted}: {', '.join(best.faults[:2])}"
 

@@ -13,6 +13,7 @@ LIBRARY = Path(__file__).parents[3] / "feederscrew"
 OPTION = re.compile(r"(?:^|[\s(`])(--[a-z]\S*)")
 SAID = {
     ("settings.py", "--set"),  # the column of 'config show' that says where a value came from
+    ("alternatives.py", "--alternatives"),
     ("record.py", "--up"), ("nearest.py", "--up"),  # what a design offers its user to type
     ("bowl.py", "--aspect"), ("bowl.py", "--config"),  # the command line that finds devices
 }  # fmt: skip
