@@ -56,6 +56,8 @@ CALMER = (
     0.45  # of the velocity, of a calm drive that turns or loses what is wanted: two steps reach ``LEAST``
 )
 CALMER_HOP = 0.5  # of the hop, of a drive that throws the part: half the energy of a landing
+LIVELIER_HOP = 2.5  # times the hop, of a drive that shakes off a blade what stays there at a calmer one
+LEAST_LIVELY_M = 1e-4  # hop of such a drive at least
 CALMER_STEP = 0.01  # [1] of the throw number: so much above ``CALM`` counts as that
 CALMER_SHARE = 0.9  # of the velocity: what is faster is no calmer drive
 HALVINGS = 12  # of the amplitude
@@ -214,6 +216,30 @@ def calmer(made: PlainBowl, bowl: Bowl) -> Bowl | None:
     other = driven(made, CALMER * speed(bowl))
     gentler = throw_number(bowl) > CALM + CALMER_STEP or speed(other) <= CALMER_SHARE * speed(bowl)
     return other if gentler and 0.0 < throw_number(other) <= CALM + CALMER_STEP else None
+
+
+def livelier(made: PlainBowl, bowl: Bowl) -> Bowl | None:
+    """Return a bowl with the calmest drive that throws parts ``LIVELIER_HOP`` times as high as another one's.
+
+    Parameters
+    ----------
+    made : PlainBowl
+        The bowl without devices, as for ``driven``.
+    bowl : Bowl
+        With the drive at which parts stay at a blade.
+
+    Returns
+    -------
+    Bowl or None
+        Without devices. None where the user gave the stroke, or no drive is that lively.
+    """
+    height = max(LIVELIER_HOP * hop(bowl).height, LEAST_LIVELY_M)
+    if made.has_stroke:
+        return None
+    levels = itertools.chain(*_kinds(made, True))
+    order = sorted(itertools.chain(*levels), key=_calmness)
+    rows = (one for one in order if hop(one).height >= height and speed(one) > 0.0)
+    return next((one for one in rows if _can_build(made, one)), None)
 
 
 def _is_calmer(bowl: Bowl, height: float) -> bool:

@@ -350,6 +350,10 @@ def _tried_out(search, made, proposal, weights):
         if not candidate.attempt.efficiency > 0.0 and not candidate.proposal.hangs:
             lost += 1
         if lost == LOST or _showed(candidate) == before:  # what was changed made no difference
+            lively = _livened(search, made, candidate, weights)
+            if lively is not None:
+                yield lively
+                return
             break
         before = _showed(candidate)
         changed = proposals.better(proposal, candidate.tried, candidate.ways.lying, candidate.drawn)
@@ -367,6 +371,24 @@ def _showed(candidate):
     """What the trial of a candidate showed: equal where another one did the same."""
     attempt = candidate.attempt
     return attempt.faults, attempt.efficiency, attempt.stopped
+
+
+def _livened(search, made, candidate, weights):
+    """The clean candidate at a livelier drive, where parts stay at a blade that should shed them; or None."""
+    ends = {end for n in range(len(candidate.tried.rows)) for end in candidate.tried.places[n]}
+    blades = [cut.device.name for cut in candidate.proposal.cuts if cut.device.overhead]
+    if search.spent or not any(end == f"stopped at {name}" for end in ends for name in blades):
+        return None
+    bowl = calm_drive.livelier(made, candidate.bowl)
+    if bowl is None:
+        return None
+    step = f"livelier drive, {2e3 * bowl.drive.amplitude:.3g} mm peak to peak"
+    other = replace(candidate.proposal, step=step)
+    other = _screened(search, attempted(search, made, other, weights, bowl))
+    if not other.attempt.clean:
+        return None
+    search.passed.append(other)
+    return other if other.attempt.rate >= search.request.target else None
 
 
 def _calmed(search, made, candidate, weights):

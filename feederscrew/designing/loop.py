@@ -47,7 +47,7 @@ from feederscrew.tooling.orientations import orientations
 from feederscrew.trial.result import TrialRun
 
 ANY_RATE = 1e-6  # [1/s] a target below any rate
-PROVED = 2  # designs of a cost class that go through draws and queue
+PROVED, DRAWN = 2, 4  # designs of a cost class that go through queues, and through draws
 FASTER = 1.3  # times as fast, where draws lose what is wanted: what creeps over a slot falls in late
 Proofs = list[tuple[DesignStudy, Candidate]]
 
@@ -203,7 +203,8 @@ def _search_class(search: Search, cost_class: int, proofs: Proofs) -> None:
         before = len(proofs)
         _prove(search, candidate, proofs)
         own += proofs[before:]
-        if own[-1][0].status == HOLDS or own[-1][0].partial or len(own) >= PROVED:
+        queued = sum(bool(study.queues) for study, _ in own)
+        if own[-1][0].status == HOLDS or own[-1][0].partial or queued >= PROVED or len(own) >= DRAWN:
             break
 
 
@@ -215,19 +216,30 @@ def _answered(search: Search, proofs: Proofs) -> bool:
 
 
 def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
-    """Prove a design as far as it holds; where it lacks nothing but speed, a faster one too."""
+    """Prove a design as far as it holds; then one at another drive or with another value."""
     study = proved(search, candidate, whole=False)
     proofs.append((study, candidate))
-    if nearest.only_slow(study):
+    proposal, lively = candidate.proposal, None
+    made = calm_drive.PlainBowl(replace(candidate.bowl, devices=()), search.given, None, search.request.drive)
+    if study.jams and not study.partial and not search.spent:  # parts that hop higher come free of a blade
+        lively = calm_drive.livelier(made, candidate.bowl)
+        if lively is None:
+            return
+    elif nearest.only_slow(study):
         search.reserve *= 1.1 * RATE_KEPT * search.request.target / study.delivered[1]
     elif nearest.only_lost(study):
         search.least = FASTER * calm_drive.speed(candidate.bowl)
     else:
-        return
-    made = calm_drive.PlainBowl(replace(candidate.bowl, devices=()), search.given, None, search.request.drive)
-    other = exploring.attempted(search, made, candidate.proposal, candidate.weights)
+        denied = study.robust.share < DRAWS_HELD and not study.partial and not search.spent
+        lying = candidate.ways.lying
+        changed = proposals.better(proposal, candidate.tried, lying, study.robust) if denied else None
+        if changed is None:
+            return
+        proposal = changed
+    other = exploring.attempted(search, made, proposal, candidate.weights, lively)
     search.least = 0.0
-    if other.bowl.drive != candidate.bowl.drive and other.attempt.clean:
+    is_other = other.bowl.drive != candidate.bowl.drive or proposal is not candidate.proposal
+    if is_other and other.attempt.clean:
         proofs.append((proved(search, other, whole=False), other))
 
 

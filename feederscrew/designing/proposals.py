@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.designing import pulses, trying
+from feederscrew.designing.robust import CARRIED
 from feederscrew.designing.slots import STEP, widened
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
@@ -302,11 +303,37 @@ def better(proposal, tried, every, drawn=None):
     right = set(trying.wanted_rows(tried.known, tried.states))
     lost = any(k in right and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
     if drawn is not None:
-        return widened(proposal, every) if "lost" in drawn.worst else None
+        return widened(proposal, every) if "lost" in drawn.worst else cut_more(proposal, tried, drawn, every)
     wider = widened(proposal, every) if lost else None
     moved_one = wider or swept(proposal, tried, every) or mended(proposal, tried, every)
     moved_one = moved_one or pulses.longer(proposal, tried, every)
     return moved_one or guarded(proposal, tried, every)
+
+
+def cut_more(proposal, tried, drawn, every):
+    """Return the proposal that cuts more of what draws carry through; None where no value or drop does.
+
+    Parameters
+    ----------
+    proposal : Proposal
+    tried : Tried
+    drawn : RobustRun
+        Its worst fault names what is carried through.
+    every : sequence of Orientation
+    """
+    name, carried, _ = drawn.worst.partition(CARRIED)
+    if not carried:
+        return None
+    for place, cut in enumerate(proposal.cuts):
+        if not cut.device.bound or name not in cut.returns or not np.isfinite(cut.largest.limit):
+            continue
+        other = moved(cut, 0.5 * (cut.device.limit + cut.largest.limit), every, proposal.row)
+        if abs(other.device.limit - cut.device.limit) >= STEP and other.margin_pass > 0.0:
+            cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
+            return replace(proposal, cuts=cuts, step=f"{cut.device.kind} moved to {other.device.text}")
+    wanted = trying.wanted_rows(tried.known, tried.states)
+    rows = [k for k, one in enumerate(every) if one.name == name and k not in wanted]
+    return dropped_before(proposal, rows, wanted, every)
 
 
 def guarded(proposal, tried, every):

@@ -18,7 +18,7 @@ RUNNING, PASSED, RETURNED, STANDS, ROLLED = (
     travel.RUNNING, travel.PASSED, travel.RETURNED, travel.STANDS, travel.ROLLED,
 )  # fmt: skip
 OVER = 0.1  # of its size: a part whose centre of mass is so far over the free edge does not come back
-PERIOD, HOPPING = 48, 160  # steps of a period of the drive, and where parts hop
+PERIOD, HOPPING = 48, 96  # steps of a period of the drive, and where parts hop
 SWEEPS, CONVERGED = 60, 1e-4  # of the contact solver: at most, and what a sweep may still change
 ONWARDS = 5e-3  # of the unit of length: a border goes on so far where its corner is not convex
 BATCH = 5  # parts a core takes at a time

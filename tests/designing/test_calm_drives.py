@@ -174,3 +174,12 @@ def test_friction_is_scaled_in_every_place():
     rubbed = calm_drive.rubbed(bowl, 0.5).friction
     assert rubbed.static == 0.5 * bowl.friction.static and rubbed.wall == 0.5 * bowl.friction.wall
     assert rubbed.kinetic == 0.5 * bowl.friction.kinetic
+
+
+def test_a_livelier_drive_throws_parts_much_higher_and_no_drive_in_between_is_left_out():
+    calm = calm_drive.driven(plain(), 0.05)
+    lively = calm_drive.livelier(plain(), calm)
+    assert hop(lively).height >= calm_drive.LIVELIER_HOP * hop(calm).height
+    assert hop(lively).height < 2.0 * calm_drive.LIVELIER_HOP * hop(calm).height
+    assert calm_drive.speed(lively) > 0.0
+    assert calm_drive.livelier(plain("drive.amplitude"), calm) is None

@@ -286,3 +286,18 @@ def test_of_a_drawn_part_only_what_is_tried_is_judged(monkeypatch, block):
     assert [some.fates[k] for k in rows] == [whole.fates[k] for k in rows]
     assert len(judged) == len(rows) + int((whole.passes[rows, 1] > 0.0).sum()) < 2 * len(ways.lying)
     assert {some.fates[names["A@0"]], some.fates[names["A@90"]]} == {"carried", "returned"}
+
+
+def test_what_draws_carry_through_is_cut_by_more(block):
+    """A drop moves from the value in the middle towards the greatest that the block still passes."""
+    _, ways, names = block
+    across, along = names["A@90"], names["A@0"]
+    seen = tried(ways, {along}, {across}, (), along)
+    proposal = proposals.better(proposals.Proposal(along, (), (), "no device"), seen, ways.lying)
+    drawn = robust.RobustRun(20, 18, "A@90 is carried through in 2 of 20")
+    (before,), (after,) = proposal.cuts, proposals.better(proposal, seen, ways.lying, drawn).cuts
+    middle = 0.5 * (before.device.limit + before.largest.limit)
+    assert after.device.limit == pytest.approx(middle, abs=proposals.STEP)
+    assert after.margin_pass > 0.0 and "A@90" in after.returns
+    other = replace(drawn, worst="A@0 is carried through in 2 of 20")  # nothing tells it from itself
+    assert proposals.better(proposal, seen, ways.lying, other) is None
