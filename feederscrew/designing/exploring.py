@@ -24,6 +24,7 @@ from feederscrew.tooling.hanging import neck
 EACH = 2  # parts of each orientation in a short trial
 MENDED = 3  # times that one proposal is mended
 LOST = 2  # trials of it in which nothing leaves as wanted, and it is given up
+LIVELIER_TRIALS = 2  # livelier drives that one chain is tried at, where parts stay at a blade
 CALMER_TRIALS = 2  # calmer drives that one chain is tried at, where the drive loses what is wanted
 LEAST_USE = 0.5  # of the best clean rate: an orientation that promises less is not tried
 SHORT = 5  # short trials where no orientation comes often enough for the target at any calm drive
@@ -375,20 +376,19 @@ def _showed(candidate):
 
 def _livened(search, made, candidate, weights):
     """The clean candidate at a livelier drive, where parts stay at a blade that should shed them; or None."""
-    ends = {end for n in range(len(candidate.tried.rows)) for end in candidate.tried.places[n]}
     blades = [cut.device.name for cut in candidate.proposal.cuts if cut.device.overhead]
-    if search.spent or not any(end == f"stopped at {name}" for end in ends for name in blades):
-        return None
-    bowl = calm_drive.livelier(made, candidate.bowl)
-    if bowl is None:
-        return None
-    step = f"livelier drive, {2e3 * bowl.drive.amplitude:.3g} mm peak to peak"
-    other = replace(candidate.proposal, step=step)
-    other = _screened(search, attempted(search, made, other, weights, bowl))
-    if not other.attempt.clean:
-        return None
-    search.passed.append(other)
-    return other if other.attempt.rate >= search.request.target else None
+    for _ in range(LIVELIER_TRIALS):
+        stays = any(f"stopped at {name}" in fault for fault in candidate.attempt.faults for name in blades)
+        bowl = calm_drive.livelier(made, candidate.bowl) if stays and not search.spent else None
+        if bowl is None:
+            return None
+        step = f"livelier drive, {2e3 * bowl.drive.amplitude:.3g} mm peak to peak"
+        proposal = replace(candidate.proposal, step=step)
+        candidate = _screened(search, attempted(search, made, proposal, weights, bowl))
+        if candidate.attempt.clean:
+            search.passed.append(candidate)
+            return candidate if candidate.attempt.rate >= search.request.target else None
+    return None
 
 
 def _calmed(search, made, candidate, weights):
