@@ -375,10 +375,11 @@ def _showed(candidate):
 
 
 def _livened(search, made, candidate, weights):
-    """The clean candidate at a livelier drive, where parts stay at a blade that should shed them; or None."""
-    blades = [cut.device.name for cut in candidate.proposal.cuts if cut.device.overhead]
+    """The clean candidate at a livelier drive, where parts stay at a blade or at rails; or None."""
+    met = [cut.device for cut in candidate.proposal.cuts if cut.device.overhead or cut.device.hangs]
+    names = [device.name for device in met]
     for _ in range(LIVELIER_TRIALS):
-        stays = any(f"stopped at {name}" in fault for fault in candidate.attempt.faults for name in blades)
+        stays = any(f"stopped at {name}" in fault for fault in candidate.attempt.faults for name in names)
         bowl = calm_drive.livelier(made, candidate.bowl) if stays and not search.spent else None
         if bowl is None:
             return None
