@@ -242,7 +242,8 @@ def test_what_draws_lose_at_a_device_is_tried_again_at_a_faster_drive(monkeypatc
     """A fifth of the draws stop what is wanted: its chain is driven 1.3 times as fast, and proved again."""
     bowl, asked = replace(bowls.default(), devices=("rails",)), []
     speed = calm_drive.speed(replace(bowl, devices=()))
-    first = SimpleNamespace(bowl=bowl, proposal="rails", weights=None)
+    ways = SimpleNamespace(lying=())
+    first = SimpleNamespace(bowl=bowl, proposal="rails", weights=None, tried=None, ways=ways)
     faster = replace(bowl.drive, amplitude=1.3 * bowl.drive.amplitude)
     second = SimpleNamespace(bowl=replace(bowl, drive=faster), attempt=SimpleNamespace(clean=True))
     worst = {bowl: (16, "A@0 is lost (stopped at rails) in 4 of 20"), second.bowl: (19, "")}
@@ -251,20 +252,25 @@ def test_what_draws_lose_at_a_device_is_tried_again_at_a_faster_drive(monkeypatc
         held, why = worst[candidate.bowl]
         return study(queue(), robust=RobustRun(20, held, why))
 
-    def attempted(search, made, proposal, weights):
+    def attempted(search, made, proposal, weights, driven=None):
         asked.append((made.bowl.devices, proposal, search.least))
         return second
 
     monkeypatch.setattr(loop, "proved", proved)
     monkeypatch.setattr(loop.exploring, "attempted", attempted)
     request = DesignRequest(1.0)
-    search, proofs = SimpleNamespace(least=0.0, given=frozenset(), request=request), []
+    search = SimpleNamespace(least=0.0, given=frozenset(), request=request, spent=False)
+    proofs = []
     loop._prove(search, first, proofs)
     assert [one.robust.held for one, _ in proofs] == [16, 19] and search.least == 0.0
     assert asked == [((), "rails", pytest.approx(loop.FASTER * speed))]
     worst[bowl] = 16, "A@0 is carried through in 4 of 20"
+    monkeypatch.setattr(loop.proposals, "better", lambda *chain: None)
     loop._prove(search, first, proofs)
     assert len(proofs) == 3 and len(asked) == 1
+    monkeypatch.setattr(loop.proposals, "better", lambda *chain: "a narrower track")
+    loop._prove(search, first, proofs)
+    assert len(proofs) == 5 and asked[1] == ((), "a narrower track", 0.0)
 
 
 @pytest.mark.parametrize("measured", ["nan", "inf", "1_0", "\u0663", "many", "1e999"])
