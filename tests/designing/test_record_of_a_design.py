@@ -12,6 +12,7 @@ from scipy.stats import binom
 from feederscrew import bowl as bowls
 from feederscrew.designing import accepting, calm_drive, loop, queues
 from feederscrew.designing.hazards.risks import Risk
+from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import (
     Attempt,
     DesignRequest,
@@ -271,6 +272,38 @@ def test_what_draws_lose_at_a_device_is_tried_again_at_a_faster_drive(monkeypatc
     monkeypatch.setattr(loop.proposals, "better", lambda *chain: "a narrower track")
     loop._prove(search, first, proofs)
     assert len(proofs) == 5 and asked[1] == ((), "a narrower track", 0.0)
+
+
+def test_what_jams_in_a_queue_is_tried_at_a_livelier_drive(monkeypatch):
+    bowl, drives = bowls.default(), []
+    first = SimpleNamespace(bowl=bowl, proposal="rails", weights=None)
+    lively = replace(bowl, drive=replace(bowl.drive, amplitude=2.0 * bowl.drive.amplitude))
+    second = SimpleNamespace(bowl=lively, attempt=SimpleNamespace(clean=True))
+    jams = {bowl: 1, lively: 0}
+    monkeypatch.setattr(
+        loop, "proved", lambda search, one, whole: study(replace(queue(), jams=jams[one.bowl]))
+    )
+    monkeypatch.setattr(loop.calm_drive, "livelier", lambda made, own: lively)
+    monkeypatch.setattr(loop.exploring, "attempted", lambda *given: drives.append(given[-1]) or second)
+    search = SimpleNamespace(least=0.0, given=frozenset(), request=DesignRequest(1.0), spent=False)
+    proofs = []
+    loop._prove(search, first, proofs)
+    assert drives == [lively] and [one.jams for one, _ in proofs] == [1, 0]
+
+
+@pytest.mark.parametrize(("fault", "count"), [("B stays (stopped at wiper)", 1), ("B is carried through", 0)])
+def test_what_stays_at_a_blade_is_tried_at_a_livelier_drive(monkeypatch, fault, count):
+    drives = []
+    wiper = SimpleNamespace(device=SimpleNamespace(overhead=True, hangs=False, name="wiper"))
+    proposal = Proposal(0, (wiper,), (), "proposed")
+    first = SimpleNamespace(bowl="calm", proposal=proposal, attempt=SimpleNamespace(faults=(fault,)))
+    clean = SimpleNamespace(attempt=SimpleNamespace(clean=True, rate=2.0))
+    search = SimpleNamespace(spent=False, passed=[], request=DesignRequest(1.0))
+    monkeypatch.setattr(loop.exploring, "_screened", lambda search, candidate: candidate)
+    monkeypatch.setattr(loop.exploring, "attempted", lambda *given: drives.append(given[-1]) or clean)
+    monkeypatch.setattr(loop.calm_drive, "livelier", lambda made, own: bowls.default())
+    assert loop.exploring._livened(search, None, first, None) is (clean if count else None)
+    assert len(drives) == len(search.passed) == count
 
 
 @pytest.mark.parametrize("measured", ["nan", "inf", "1_0", "\u0663", "many", "1e999"])
