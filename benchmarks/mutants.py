@@ -67,13 +67,13 @@ TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "dropping.kernel.falling.resist": "tests/dropping/test_drop_resistance.py",
 }
 EXCUSED = {  # constants whose value within reason has no consequence, and why
-    "machine.sizing.SETTLED": "a bound below every length that is printed",
-    "machine.sizing.ROUNDS": "the search ends by itself long before",
-    "machine.throughput.STEPS": "strokes so near each other find the same one",
-    "rates.rocking.QUIET": "a part that comes down so slowly is at rest within the same instant",
-    "rates.tipping.INSTANTS": "any number of instants that shows a stroke",
-    "rates.tipping.BESIDE": "any width beyond every force's place: it tips over the ends alone",
-    "tooling.holding.FAR": "any length beyond every foot",
+    "machine.sizing.DIAMETER_TOLERANCE_M": "a bound below every length that is printed",
+    "machine.sizing.MAX_SIZING_ITERATIONS": "the search ends by itself long before",
+    "machine.throughput.STROKE_SAMPLES": "strokes so near each other find the same one",
+    "rates.rocking.REST_ANGULAR_SPEED": "a part that comes down so slowly is at rest within the same instant",
+    "rates.tipping.TIPPING_PHASES": "any number of instants that shows a stroke",
+    "rates.tipping.MAX_FORCE_OFFSET_HEIGHTS": "any width beyond every force: it tips over the ends alone",
+    "tooling.holding.BEYOND_FOOT_M": "any length beyond every foot",
 }
 COPIED = (
     "feederscrew",

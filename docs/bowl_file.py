@@ -12,7 +12,7 @@ from collections import Counter
 from pathlib import Path
 
 from feederscrew.bowl import documentation, json_schema
-from feederscrew.bowl.schema import KEYS
+from feederscrew.bowl.schema import BOWL_KEYS
 from feederscrew.dropping import conditions
 
 PAGE = Path(__file__).resolve().parent / "bowl_file.md"
@@ -57,8 +57,8 @@ def between(text, name, content):
 
 def with_keywords(text):
     """Return the module with a keyword for each key whose name is in one section, and is none of a launch."""
-    count = Counter(key.word for key in KEYS)
-    words = [key.word for key in KEYS if count[key.word] == 1 and key.word not in conditions.KEYS]
+    count = Counter(key.word for key in BOWL_KEYS)
+    words = [key.word for key in BOWL_KEYS if count[key.word] == 1 and key.word not in conditions.KEYS]
     before, _, rest = text.partition(BEGIN)
     lines = "".join(f"    {word}: Setting\n" for word in words)
     return before + BEGIN + lines + END + rest.partition(END)[2]

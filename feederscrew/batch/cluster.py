@@ -14,12 +14,12 @@ from feederscrew.batch.workers import work
 from feederscrew.errors import ArgumentError, FeederError, MissingPackage
 from feederscrew.units import shown
 
-PATIENCE = 20  # [s] for a scheduler to answer and for a first worker
-AHEAD = 2  # tasks sent for each thread of the cluster, so that none waits
+CLUSTER_TIMEOUT_S = 20  # [s] for a scheduler to answer and for a first worker
+TASKS_PER_THREAD = 2  # tasks sent for each thread of the cluster, so that none waits
 POLL = 0.05  # [s] between looks at what has come
 AT_WORK = ("pending", "lost")  # what a worker had done that died is done again by another
 ADDRESS = re.compile(r"((tcp|tls|ucx|wss?)://)?[^\s/]+:\d+/?")
-AGAIN = "mend it, then start this command again with `resume`: what is finished is kept"
+RESUME_CLUSTER_ADVICE = "mend it, then start this command again with `resume`: what is finished is kept"
 
 
 class Cluster:
@@ -70,14 +70,14 @@ class Cluster:
             raise ArgumentError("scheduler", what, "write it as tcp://host:8786")
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # we tell what is lost, in one line
         try:
-            return distributed.Client(self.address, timeout=PATIENCE, set_as_default=False)
+            return distributed.Client(self.address, timeout=CLUSTER_TIMEOUT_S, set_as_default=False)
         except (OSError, ValueError) as error:
             raise self._fault(f"no scheduler answers ({_first_line(error)})") from None
 
     def _check_workers(self, client):
         """Check that every worker has this very program and libraries, or its bytes would not be ours."""
         try:
-            client.wait_for_workers(1, timeout=PATIENCE)
+            client.wait_for_workers(1, timeout=CLUSTER_TIMEOUT_S)
             found = client.run(_versions)
         except OSError as error:
             raise self._fault(f"no worker answers ({_first_line(error)})") from None
@@ -92,7 +92,7 @@ class Cluster:
         running: dict[Any, Task] = {}  # by its future
         while True:
             with self._attended():
-                room = max(1, AHEAD * sum(client.nthreads().values())) - len(running)
+                room = max(1, TASKS_PER_THREAD * sum(client.nthreads().values())) - len(running)
             for task in islice(tasks, max(room, 0)):
                 with self._attended():
                     running[client.submit(self.job, task, pure=False)] = task
@@ -130,7 +130,7 @@ class Cluster:
             raise self._fault("the scheduler is lost") from None
 
     def _fault(self, what):
-        return FeederError(self.address, what, AGAIN)
+        return FeederError(self.address, what, RESUME_CLUSTER_ADVICE)
 
 
 def _distributed():

@@ -8,12 +8,14 @@ from feederscrew.batch.task import DONE, THUMBNAIL
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture
 from feederscrew.units import counted
 
-NAME = "index.html"
-HEADINGS = (
+INDEX_FILE = "index.html"
+INDEX_HEADINGS = (
     "", "part", "bowl", "mass [g]", "aspects", "leaves on", "velocity [mm/s]", "parts a minute",
     "what to know",
 )  # fmt: skip
-NUMBERS = Matrix(("all numbers",), ((MarkedCell(summary.NAME, link=summary.NAME),),))
+SUMMARY_LINK_TABLE = Matrix(
+    ("all numbers",), ((MarkedCell(summary.SUMMARY_FILE, link=summary.SUMMARY_FILE),),)
+)
 
 
 def page(store, rows):
@@ -32,7 +34,7 @@ def page(store, rows):
     failed = sum(row["status"] != DONE for row in rows)
     text = counted(len(rows), "part") + (f", {failed} of them failed" if failed else "")
     lines = tuple(_row(store, row) for row in rows)
-    return Page(text, "", (Chapter((Matrix(HEADINGS, lines, sortable=True), NUMBERS)),))
+    return Page(text, "", (Chapter((Matrix(INDEX_HEADINGS, lines, sortable=True), SUMMARY_LINK_TABLE)),))
 
 
 def _row(store, row):

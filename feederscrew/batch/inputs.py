@@ -117,7 +117,7 @@ def _fits(path, suffixes, kind):
         return False
     if suffix not in CARDS or not path.is_file():
         return True
-    held = documents.content(path, documents.LARGEST, "a YAML file")
+    held = documents.content(path, documents.MAX_DOCUMENT_BYTES, "a YAML file")
     return (CARD_KEY.search(held) is not None) == (kind == "part")
 
 

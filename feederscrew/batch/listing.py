@@ -9,9 +9,9 @@ from feederscrew import documents
 from feederscrew.errors import ConfigError
 
 PART, NAMES, ASPECT, CONFIG = "part", "names", "aspect", "config"
-OPTIONS = ("units", "density", "centre_of_mass", "body")
-COLUMNS = (PART, *OPTIONS, NAMES, ASPECT, CONFIG)
-LARGEST = 20_000_000  # [bytes] a few hundred thousand parts
+LISTED_OPTIONS = ("units", "density", "centre_of_mass", "body")
+LISTING_COLUMNS = (PART, *LISTED_OPTIONS, NAMES, ASPECT, CONFIG)
+MAX_LISTING_BYTES = 20_000_000  # [bytes] a few hundred thousand parts
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ def read(path, faults):
     Parameters
     ----------
     path : str
-        A CSV whose first line names columns out of ``COLUMNS``; lines that begin with # are comments.
+        A CSV whose first line names columns out of ``LISTING_COLUMNS``; lines that begin with # are comments.
     faults : list of ConfigError
         What is wrong in it is added.
 
@@ -56,20 +56,27 @@ def read(path, faults):
 
 
 def _text(path):
-    data = documents.content(path, LARGEST, "a CSV file")
-    if len(data) > LARGEST:
-        raise ConfigError(path, f"has more than {LARGEST // 10**6} MB", "split the list")
+    data = documents.content(path, MAX_LISTING_BYTES, "a CSV file")
+    if len(data) > MAX_LISTING_BYTES:
+        raise ConfigError(path, f"has more than {MAX_LISTING_BYTES // 10**6} MB", "split the list")
     return documents.decoded(data, path)
 
 
 def _header_faults(path, line, header):
     where = f"{path}:{line}"
     if PART not in header:
-        return [ConfigError(where, "has no column 'part'", f"begin with a line such as {','.join(COLUMNS)}")]
-    odd = dict.fromkeys(name for name in header if name not in COLUMNS)
+        return [
+            ConfigError(
+                where, "has no column 'part'", f"begin with a line such as {','.join(LISTING_COLUMNS)}"
+            )
+        ]
+    odd = dict.fromkeys(name for name in header if name not in LISTING_COLUMNS)
     twice = dict.fromkeys(name for name in header if header.count(name) > 1)
     return [
-        *(ConfigError(where, f"unknown column {name[:40]!r}", documents.hint(name, COLUMNS)) for name in odd),
+        *(
+            ConfigError(where, f"unknown column {name[:40]!r}", documents.hint(name, LISTING_COLUMNS))
+            for name in odd
+        ),
         *(ConfigError(where, f"column '{name}' is there twice", "keep one") for name in twice),
     ]
 
@@ -84,6 +91,6 @@ def _row(path, line, header, cells, faults):
         faults.append(ConfigError(where, "names no part", "fill its first column, or remove the line"))
         return []
     beside = Path(path).parent
-    options = tuple((name, given[name]) for name in OPTIONS if given.get(name))
+    options = tuple((name, given[name]) for name in LISTED_OPTIONS if given.get(name))
     config, names = (str(beside / given[file]) if given.get(file) else None for file in (CONFIG, NAMES))
     return [Row(str(beside / given[PART]), options, config, where, given.get(ASPECT) or None, names)]

@@ -179,8 +179,8 @@ def _stopped(store, requests, finished):
 
     The tables of an earlier run that ended stay until a run ends: then it is beside them.
     """
-    before = store.text(summary.NAME)
-    name = summary.NAME if before is None or summary.is_partial(before) else summary.PARTIAL
+    before = store.text(summary.SUMMARY_FILE)
+    name = summary.SUMMARY_FILE if before is None or summary.is_partial(before) else summary.PARTIAL
     rows = summary.rows(store, requests, finished)
     store.write({name: tables.text(summary.frame(rows), "csv")})
     return store.path / name
@@ -195,13 +195,13 @@ def _finished(store, requests, kept, workers):
     files = {
         SHEET.format(f"_{number}" if number > 1 else ""): sheet for number, sheet in enumerate(sheets, 1)
     }
-    files[index_page.NAME] = html(index_page.page(store, rows))
-    files[summary.NAME] = tables.text(summary.frame(rows), "csv")  # last: it says that all is there
+    files[index_page.INDEX_FILE] = html(index_page.page(store, rows))
+    files[summary.SUMMARY_FILE] = tables.text(summary.frame(rows), "csv")  # last: it says that all is there
     store.write(files, without=[SHEET.format("*"), summary.PARTIAL])
     return Batch(
         rows=rows,
         kept=kept,
         strangers=tuple(store.strangers([request.name for request in requests])),
-        targets=(store.path / summary.NAME, store.path / index_page.NAME),
+        targets=(store.path / summary.SUMMARY_FILE, store.path / index_page.INDEX_FILE),
         sources=tuple(dict.fromkeys(request.source for request in requests)),
     )

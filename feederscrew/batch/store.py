@@ -25,7 +25,7 @@ from feederscrew.output.folder import RECORD
 
 MARKER = "batch.json"  # says that the folder is a batch's
 PARTS = "parts"
-AGAIN = "make room there, then start this batch again with `resume`: what is finished is kept"
+RESUME_STORE_ADVICE = "make room there, then start this batch again with `resume`: what is finished is kept"
 STALE = ".batch-"  # how the name of what is not finished begins
 REPLACED = "replaced"  # folder in it of results that make room for new ones
 
@@ -168,7 +168,7 @@ class Store:
             yield
         except OSError as error:
             what = f"cannot be written ({error.strerror or error})"
-            raise FeederError(self.path, what, AGAIN) from error
+            raise FeederError(self.path, what, RESUME_STORE_ADVICE) from error
 
     def strangers(self, names):
         """Return the folders of parts that are not in this batch, by name."""

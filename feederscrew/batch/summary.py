@@ -8,9 +8,9 @@ from feederscrew.batch.task import DONE, NOT_COMPUTED, THUMBNAIL
 from feederscrew.output import tables
 from feederscrew.output.batch import ACROSS, DOWN
 
-NAME = "summary.csv"
+SUMMARY_FILE = "summary.csv"
 PARTIAL = "summary_partial.csv"  # of a run that was stopped, beside the tables of an earlier one
-COLUMNS = (
+SUMMARY_COLUMNS = (
     "part", "folder", "config", "status", "reason", "material", "mass_g", "aspects", "aspect", "heading_deg",
     "orientation", "rule", "answer", "p_orientation", "passes_devices", "velocity_mm_s", "regime", "pitch_mm",
     "parts_per_minute", "parts_per_minute_low", "parts_per_minute_high",
@@ -18,7 +18,7 @@ COLUMNS = (
 )  # fmt: skip
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 TILES = ACROSS * DOWN
-HIDDEN = (  # from a table for people; reasons stand above it, a line each
+HIDDEN_SUMMARY_COLUMNS = (  # from a table for people; reasons stand above it, a line each
     "reason", "folder", "aspects", "material", "aspect", "heading_deg", "rule", "answer", "regime",
     "passes_devices", "drops", "drop_aspect", "p_drop",
     "note", "warnings",
@@ -38,7 +38,7 @@ def rows(store, requests, finished=None):
     Returns
     -------
     tuple of dict
-        By ``COLUMNS``, None where there is nothing to say.
+        By ``SUMMARY_COLUMNS``, None where there is nothing to say.
     """
     nothing = {"status": NOT_COMPUTED, "reason": "", "warnings": (), "row": {}}
     return tuple(
@@ -62,12 +62,12 @@ def _row(record, request):
         "warnings": "; ".join(record["warnings"]) or None,
     }
     numbers = record["row"] | known
-    return {name: numbers.get(name) for name in COLUMNS}
+    return {name: numbers.get(name) for name in SUMMARY_COLUMNS}
 
 
 def frame(rows):
     """Return the rows as a table."""
-    return tables.frame({name: [_harmless(row[name]) for row in rows] for name in COLUMNS})
+    return tables.frame({name: [_harmless(row[name]) for row in rows] for name in SUMMARY_COLUMNS})
 
 
 def _harmless(value):

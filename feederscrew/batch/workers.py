@@ -15,7 +15,9 @@ ATTEMPTS = 3  # of a part whose worker dies under it
 LIFETIME = 200  # parts of one process: what libraries leak goes with it
 PRELOAD = "feederscrew.batch.preload"  # WORK, imported sooner
 WORK = "feederscrew.batch.work"  # its libraries take a second to import, which only the processes need
-LOST = "its process ended {} times before it was done, perhaps for lack of memory - try it alone"
+WORKER_LOST_MESSAGE = (
+    "its process ended {} times before it was done, perhaps for lack of memory - try it alone"
+)
 
 
 def work(task):
@@ -66,7 +68,7 @@ class Processes:
                         if failures.count(name) < ATTEMPTS:
                             again.append(task)
                             continue
-                        outcome = Outcome.failed(task, LOST.format(ATTEMPTS), final=False)
+                        outcome = Outcome.failed(task, WORKER_LOST_MESSAGE.format(ATTEMPTS), final=False)
                     self._busy(crew, tasks, again)  # at work while the outcome is put in place
                     yield outcome
         finally:

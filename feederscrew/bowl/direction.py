@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from feederscrew.bowl.record import Machine
 
-RIGHT = 0.5 * np.pi  # [rad] upright
+RIGHT_ANGLE_RAD = 0.5 * np.pi  # [rad] upright
 
 
 def direction(machine: Machine, radius: ArrayLike) -> Any:
@@ -59,4 +59,4 @@ def vibration_angle(machine: Machine, radius: ArrayLike, climb: ArrayLike) -> An
     radius, climb : array_like [m], [rad]
         Of the track.
     """
-    return np.clip(direction(machine, radius) - climb, 0.0, RIGHT)
+    return np.clip(direction(machine, radius) - climb, 0.0, RIGHT_ANGLE_RAD)

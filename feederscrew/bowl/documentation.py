@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from feederscrew.bowl.devices import SECTION
+from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.key import Key
-from feederscrew.bowl.schema import BY_NAME, KEYS, OPTIONAL, rival
+from feederscrew.bowl.schema import BOWL_KEYS, BY_NAME, OPTIONAL, rival
 from feederscrew.bowl.settings import OF_THE_MACHINE, default
 from feederscrew.errors import FeederError
 from feederscrew.tooling.devices.kinds import KINDS
@@ -30,12 +30,12 @@ def template() -> str:
     ]
     lines += [f"# {line}" for line in WHY.splitlines()]
     section = ""
-    for key in KEYS:
+    for key in BOWL_KEYS:
         if key.section != section:
             section = key.section
             lines += ["", *_opening(section)] if section else [""]
         lines.append(_template_line(key))
-    lines += ["", f"# {SECTION}:  # along the track, in the order parts meet them"]
+    lines += ["", f"# {DEVICES_SECTION}:  # along the track, in the order parts meet them"]
     lines += [f"#   - {kind}: {one.example}  # {one.meaning}" for kind, one in KINDS.items()]
     return "\n".join(lines) + "\n"
 

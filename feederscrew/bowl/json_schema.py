@@ -7,14 +7,14 @@ from typing import Any
 
 from feederscrew import units
 from feederscrew.bowl import documentation
-from feederscrew.bowl.devices import SECTION
+from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.key import Key
-from feederscrew.bowl.schema import BY_NAME, KEYS, SECTIONS, rival
-from feederscrew.value_forms import PLAIN, quantity
+from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, rival
+from feederscrew.value_forms import UNITLESS, quantity
 
 DRAFT = "http://json-schema.org/draft-07/schema#"  # the latest one that YAML editors know well
 TITLE = "feeder bowl file"
-ABOUT = {
+SECTION_DESCRIPTIONS = {
     "drive": "How the bowl vibrates.",
     "friction": "Coefficients of friction.",
     "track": "The track and its wall.",
@@ -32,10 +32,10 @@ def schema() -> dict[str, Any]:
         Draft 7. A value with a unit is a string with a pattern; ``x-lowest``, ``x-highest``, ``x-units`` and
         ``x-dimension`` say what the checks of `feeder` hold it to, as the draft has no bounds for strings.
     """
-    properties = {key.name: _value(key) for key in KEYS if not key.section}
-    for section in SECTIONS:
+    properties = {key.name: _value(key) for key in BOWL_KEYS if not key.section}
+    for section in BOWL_SECTIONS:
         properties[section] = _section(section)
-    properties[SECTION] = {
+    properties[DEVICES_SECTION] = {
         "description": "Devices along the track, in the order in which parts meet them.",
         "type": "array",
         "items": {
@@ -85,9 +85,9 @@ def write_beside(path: str | PathLike[str]) -> Path:
 
 
 def _section(section: str) -> dict[str, Any]:
-    keys = [key for key in KEYS if key.section == section]
+    keys = [key for key in BOWL_KEYS if key.section == section]
     made = {
-        "description": ABOUT.get(section, f"Values of {section}."),
+        "description": SECTION_DESCRIPTIONS.get(section, f"Values of {section}."),
         "type": "object",
         "properties": {key.word: _value(key) for key in keys},
         "additionalProperties": False,
@@ -112,7 +112,7 @@ def _value(key: Key) -> dict[str, Any]:
         "x-dimension": key.dimension,
         "x-lowest": key.lowest,
         "x-highest": key.highest,
-        "x-units": [unit for unit in units.UNITS[key.dimension] if unit],
+        "x-units": [unit for unit in units.UNITS_BY_DIMENSION[key.dimension] if unit],
     }
     return made if follows else {**made, "default": _typed(key.default, key.dimension)}
 
@@ -134,7 +134,7 @@ def _word(key: Key) -> dict[str, Any]:
 def _typed(text: str, dimension: str) -> str | float:
     """A default as YAML reads it: a number where it has no unit."""
     number, unit = units.split(text)
-    if dimension not in PLAIN or unit:
+    if dimension not in UNITLESS or unit:
         return text
     return int(number) if number.is_integer() else number
 

@@ -11,7 +11,7 @@ class Key:
 
     name: str  # 'drive.amplitude', as in --set
     field: str  # of the Bowl record; two keys of one field exclude each other
-    dimension: str  # of units.UNITS
+    dimension: str  # of units.UNITS_BY_DIMENSION
     lowest: str
     highest: str
     default: str  # a value as typed, or the name of the key whose value is taken

@@ -18,7 +18,7 @@ GENERATOR = "a published bowl generator"
 RNA = "RNA, operating instructions"
 ASSUMED = "assumption"
 
-MACHINE = (
+MACHINE_KEYS = (
     _machine(
         "bowl_mass", "mass", "0.01 kg", "2000 kg", "6 kg",
         "all that stands on the springs: bowl, top frame, tooling; without parts",
@@ -61,7 +61,7 @@ MACHINE = (
     ),
 )  # fmt: skip
 
-SIZING = (
+SIZING_KEYS = (
     _rule("least_diameter", "length", "10 mm", "5000 mm", "300 mm", "least diameter of a bowl", GENERATOR),
     _rule(
         "diameter_per_length", "number", "0", "100", "5.8",

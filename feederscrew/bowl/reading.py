@@ -10,7 +10,7 @@ from feederscrew import documents, units
 from feederscrew.bowl import devices, verified
 from feederscrew.bowl.key import Key
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.schema import BY_NAME, KEYS, SECTIONS, rival
+from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, rival
 from feederscrew.bowl.settings import (
     OVERRIDES,
     Setting,
@@ -25,7 +25,12 @@ from feederscrew.documents import Entry, Node
 from feederscrew.errors import ArgumentError, ConfigError, FeederError
 
 SMALLEST = 1e-15  # [SI] a number nearer to 0 is 0: squared, or divided by, it would leave the range of floats
-TOP_LEVEL = (*SECTIONS, devices.SECTION, verified.SECTION, *(key.name for key in KEYS if not key.section))
+TOP_LEVEL = (
+    *BOWL_SECTIONS,
+    devices.DEVICES_SECTION,
+    verified.VERIFIED_SECTION,
+    *(key.name for key in BOWL_KEYS if not key.section),
+)
 
 
 def settings(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> tuple[Setting, ...]:
@@ -178,15 +183,15 @@ def _given(root: Node, faults: list[FeederError]) -> tuple[dict[str, Setting], l
         raise ConfigError(root.where, "no 'key: value' line", "start from 'feeder config init'")
     given: dict[str, Setting] = {}
     for entry in root.entries:
-        if entry.key in SECTIONS:
+        if entry.key in BOWL_SECTIONS:
             _read_section(entry, given, faults)
         elif entry.key in BY_NAME and not BY_NAME[entry.key].section:
             _read_value(BY_NAME[entry.key], entry, given, faults)
-        elif entry.key == devices.SECTION:
+        elif entry.key == devices.DEVICES_SECTION:
             given |= {
                 s.key.name: s for s in map(of_device, itertools.count(1), devices.listed(entry, faults))
             }
-        elif entry.key != verified.SECTION:
+        elif entry.key != verified.VERIFIED_SECTION:
             faults.append(_unknown(entry, "", TOP_LEVEL))
     return given, faults
 
@@ -196,7 +201,7 @@ def _read_section(section: Entry, given: dict[str, Setting], faults: list[Feeder
     if value.kind == "list" or value.text:
         what = f"'{section.key}' is a section, not a value"
         faults.append(ConfigError(value.where, what, f"indent its keys below '{section.key}:'"))
-    words = [key.word for key in KEYS if key.section == section.key]
+    words = [key.word for key in BOWL_KEYS if key.section == section.key]
     for entry in value.entries:
         if entry.key in words:
             _read_value(BY_NAME[f"{section.key}.{entry.key}"], entry, given, faults)
@@ -227,7 +232,7 @@ def _from_node(key: Key, node: Node) -> Setting:
 
 def _unknown(entry: Entry, section: str, known: Sequence[str]) -> ConfigError:
     """The fault of a key that does not exist here; it may exist elsewhere."""
-    elsewhere = next((k for k in KEYS if entry.key in (k.word, k.name) and k.section != section), None)
+    elsewhere = next((k for k in BOWL_KEYS if entry.key in (k.word, k.name) and k.section != section), None)
     mend = documents.hint(entry.key, known)
     if elsewhere is not None:
         mend = f"write {elsewhere.word} " + (
@@ -281,10 +286,10 @@ def named(name: str, where: str) -> Key:
     """
     if name in BY_NAME:
         return BY_NAME[name]
-    if name in SECTIONS:
-        first = next(key.name for key in KEYS if key.section == name)
+    if name in BOWL_SECTIONS:
+        first = next(key.name for key in BOWL_KEYS if key.section == name)
         raise ArgumentError(where, f"'{name}' is a section, not a key", f"write one of its keys, as {first}")
-    if name == devices.SECTION:
+    if name == devices.DEVICES_SECTION:
         raise ArgumentError(where, "devices are a list", "write them in a bowl file")
     raise ArgumentError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
 

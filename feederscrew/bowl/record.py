@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 from feederscrew.records import Shown
 from feederscrew.tooling.devices.base import Device
 
-WIDEST = 0.95  # of the wall's radius: about the axis there is no track
+MAX_TRACK_WIDTH_SHARE = 0.95  # of the wall's radius: about the axis there is no track
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Track:
     @property
     def extent(self) -> float:
         """How far from the wall there is track [m]: its width, or nearly to the bowl's axis."""
-        return min(self.width, WIDEST * self.radius)
+        return min(self.width, MAX_TRACK_WIDTH_SHARE * self.radius)
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Unbalance:
     turns: float = 1.0  # [1] 1 where it turns counter-clockwise as it rises, -1 of a left hand
 
 
-EVEN = Unbalance()  # nothing of it is known
+BALANCED = Unbalance()  # nothing of it is known
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class Machine:
     leaves: float  # of all banks together
     damping: float  # [1] of the critical one
     supply: float  # [Hz] at which the supply drives the bowl
-    unbalance: Unbalance = EVEN  # known of a bowl that is a solid
+    unbalance: Unbalance = BALANCED  # known of a bowl that is a solid
 
 
 @dataclass(frozen=True)

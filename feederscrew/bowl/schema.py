@@ -1,11 +1,11 @@
 """Every key of a bowl file, once: checks, defaults and documentation are all read from here."""
 
 from feederscrew.bowl.key import Key
-from feederscrew.bowl.machine_keys import MACHINE, SIZING
-from feederscrew.bowl.solid_keys import DRIVE, HAND, SOLID, SUPPLY
-from feederscrew.bowl.unbalance import KEYS as UNBALANCE
+from feederscrew.bowl.machine_keys import MACHINE_KEYS, SIZING_KEYS
+from feederscrew.bowl.solid_keys import DRIVE_MOUNT_KEYS, HAND, SOLID_KEYS, SUPPLY
+from feederscrew.bowl.unbalance import UNBALANCE_KEYS as UNBALANCE
 
-KEYS = (
+BOWL_KEYS = (
     Key(
         "drive.amplitude", "drive.amplitude", "length", "0 mm", "20 mm", "0.21 mm",
         "half the peak-to-peak stroke, along the vibration direction",
@@ -83,18 +83,18 @@ KEYS = (
         "of the track, from the wall to its free edge",
     ),
     *HAND,
-    *MACHINE,
+    *MACHINE_KEYS,
     *UNBALANCE,
-    *DRIVE,
+    *DRIVE_MOUNT_KEYS,
     *SUPPLY,
-    *SIZING,
-    *SOLID,
+    *SIZING_KEYS,
+    *SOLID_KEYS,
 )  # fmt: skip
-BY_NAME = {key.name: key for key in KEYS}
+BY_NAME = {key.name: key for key in BOWL_KEYS}
 OPTIONAL = ("machine",)  # sections that change other keys once one of theirs is given
-SECTIONS = tuple(dict.fromkeys(key.section for key in KEYS if key.section))
+BOWL_SECTIONS = tuple(dict.fromkeys(key.section for key in BOWL_KEYS if key.section))
 
 
 def rival(key: Key) -> Key | None:
     """Return the other key of the same field, or None."""
-    return next((other for other in KEYS if other.field == key.field and other is not key), None)
+    return next((other for other in BOWL_KEYS if other.field == key.field and other is not key), None)

@@ -23,7 +23,7 @@ HAND = (
         "mirror image",
     ),
 )  # fmt: skip
-DRIVE = (
+DRIVE_MOUNT_KEYS = (
     _count("machine.bolts", "0", "100", "6", "that hold the bowl on its drive, beside the one in the middle"),
     _length("machine.bolt_hole", "1 mm", "100 mm", "9 mm", "diameter of the holes of these bolts"),
     _length(
@@ -43,7 +43,7 @@ SUPPLY = (
         "140 Hz", choices=("mains", "frequency"),
     ),
 )  # fmt: skip
-SOLID = (
+SOLID_KEYS = (
     Key(
         "sizing.bolt_share", "sizing.bolt_share", "number", "0.05", "0.9", "0.4",
         "circle of the bolts below the bowl, over its diameter (assumption)",

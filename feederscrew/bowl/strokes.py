@@ -10,8 +10,8 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.schema import BY_NAME
 from feederscrew.errors import ArgumentError, ConfigError
 
-WHERE = "amplitudes"
-MOST = 50  # strokes of one call
+AMPLITUDES_KEY = "amplitudes"
+MAX_STROKES = 50  # strokes of one call
 FULL = 5.0  # of the bowl's own amplitude, at most
 
 
@@ -36,8 +36,8 @@ def strokes(bowl: Bowl, text: str | None = None) -> tuple[Bowl, ...]:
     if text is None:
         return (bowl,)
     entries = text.split(",")
-    if len(entries) > MOST:
-        raise ArgumentError(WHERE, f"{len(entries)} amplitudes", f"give at most {MOST}")
+    if len(entries) > MAX_STROKES:
+        raise ArgumentError(AMPLITUDES_KEY, f"{len(entries)} amplitudes", f"give at most {MAX_STROKES}")
     amplitudes = [_amplitude(bowl.drive.amplitude, entry) for entry in entries]
     return tuple(replace(bowl, drive=replace(bowl.drive, amplitude=amplitude)) for amplitude in amplitudes)
 
@@ -63,15 +63,17 @@ def named(paths: Sequence[str | None]) -> list[str]:
 def _amplitude(full: float, entry: str) -> float:
     if not entry.strip().endswith("%"):
         try:
-            return checked(BY_NAME["drive.amplitude"], entry, WHERE).value
+            return checked(BY_NAME["drive.amplitude"], entry, AMPLITUDES_KEY).value
         except ConfigError as fault:
             raise ArgumentError(fault.where, fault.what, fault.mend) from None
     try:
         share = units.quantity(entry, "number")
     except units.QuantityError as fault:
-        raise ArgumentError(WHERE, fault.what, fault.mend) from None
+        raise ArgumentError(AMPLITUDES_KEY, fault.what, fault.mend) from None
     if not 0.0 <= share <= FULL:
         raise ArgumentError(
-            WHERE, f"{units.shown(entry)} is out of range", f"give 0% to {FULL:.0%} of drive.amplitude"
+            AMPLITUDES_KEY,
+            f"{units.shown(entry)} is out of range",
+            f"give 0% to {FULL:.0%} of drive.amplitude",
         )
     return share * full

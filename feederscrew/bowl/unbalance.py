@@ -10,10 +10,10 @@ from feederscrew.bowl.record import Unbalance
 from feederscrew.errors import FeederError
 
 CENTRE = "centre_x", "centre_y", "centre_z"
-UPRIGHT = "inertia_x", "inertia_y"
-PRODUCTS = "product_yz", "product_xz", "product_xy"
-WORDS = (*CENTRE, *UPRIGHT, *PRODUCTS)
-NEARLY = 1e-9  # of what is rounded in a file
+INERTIA_NAMES = "inertia_x", "inertia_y"
+PRODUCT_OF_INERTIA_NAMES = "product_yz", "product_xz", "product_xy"
+UNBALANCE_NAMES = (*CENTRE, *INERTIA_NAMES, *PRODUCT_OF_INERTIA_NAMES)
+UNBALANCE_TOLERANCE = 1e-9  # of what is rounded in a file
 
 
 def _key(word: str, dimension: str, lowest: str, highest: str, default: str, meaning: str) -> Key:
@@ -34,12 +34,12 @@ def _product(word: str) -> Key:
     return _key(word, "inertia", "-5000 kg m2", "5000 kg m2", "0 kg m2", meaning)
 
 
-KEYS = (
+UNBALANCE_KEYS = (
     _centre("centre_x", "off its axis; all zero: balanced"),
     _centre("centre_y", "off its axis"),
     _centre("centre_z", "over the upper ends of the leaves"),
-    *map(_upright, UPRIGHT),
-    *map(_product, PRODUCTS),
+    *map(_upright, INERTIA_NAMES),
+    *map(_product, PRODUCT_OF_INERTIA_NAMES),
 )
 
 
@@ -63,12 +63,12 @@ def known(values: Mapping[str, Any], hand: str) -> dict[str, Any]:
     FeederError
         If no body has them.
     """
-    rest = {word: value for word, value in values.items() if word not in WORDS}
-    if not any(np.any(values.get(word, 0.0)) for word in WORDS):
+    rest = {word: value for word, value in values.items() if word not in UNBALANCE_NAMES}
+    if not any(np.any(values.get(word, 0.0)) for word in UNBALANCE_NAMES):
         return rest
     x, y, z = (values["bowl_mass"] * values[word] for word in CENTRE)
-    xx, yy = (values[word] for word in UPRIGHT)
-    yz, xz, xy = (values[word] for word in PRODUCTS)
+    xx, yy = (values[word] for word in INERTIA_NAMES)
+    yz, xz, xy = (values[word] for word in PRODUCT_OF_INERTIA_NAMES)
     if not any(np.ndim(value) for value in values.values()):
         _check(values)
     return rest | {"unbalance": Unbalance((x, y, z), (xx, yy), (yz, xz, xy), -1.0 if hand == "left" else 1.0)}
@@ -86,10 +86,11 @@ def _check(values: Mapping[str, Any]) -> None:
         for word, at in (("inertia_x", x), ("inertia_y", y), ("bowl_inertia", z))
     )
     yz, xz, xy = (
-        values[word] - mass * one * other for word, one, other in zip(PRODUCTS, (y, x, x), (z, z, y))
+        values[word] - mass * one * other
+        for word, one, other in zip(PRODUCT_OF_INERTIA_NAMES, (y, x, x), (z, z, y))
     )
     whole = xx * yy * zz + 2.0 * xy * xz * yz - xx * yz * yz - yy * xz * xz - zz * xy * xy
-    if min(xx, xx * yy - xy * xy, whole) < -NEARLY * total**2 * max(total, 1.0):
+    if min(xx, xx * yy - xy * xy, whole) < -UNBALANCE_TOLERANCE * total**2 * max(total, 1.0):
         what = "no body has such a centre of mass, moments and products of inertia"
         raise FeederError("machine.inertia_x", what, "give all eight of one body, or leave them out")
 
@@ -103,5 +104,5 @@ def told(machine: Any) -> dict[str, float]:
     """
     own = machine.unbalance
     moments = [one / machine.bowl_mass for one in own.moment]
-    found = dict(zip(WORDS, (*moments, *own.upright, *own.products)))
+    found = dict(zip(UNBALANCE_NAMES, (*moments, *own.upright, *own.products)))
     return found if any(found.values()) else {}

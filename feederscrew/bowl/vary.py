@@ -8,7 +8,7 @@ from feederscrew.bowl.key import Key
 from feederscrew.bowl.reading import checked, named
 from feederscrew.errors import ArgumentError, ConfigError
 
-MOST = 2000  # values of one key
+MAX_RANGE_VALUES = 2000  # values of one key
 
 
 @dataclass(frozen=True)
@@ -69,9 +69,11 @@ def _range(text: str) -> KeyRange:
 
 
 def _count(text: str, where: str) -> int:
-    if text.strip().isascii() and text.strip().isdigit() and 2 <= int(text.strip()[:9]) <= MOST:
+    if text.strip().isascii() and text.strip().isdigit() and 2 <= int(text.strip()[:9]) <= MAX_RANGE_VALUES:
         return int(text.strip())
-    raise ArgumentError(where, f"{units.shown(text)} is not a count", f"give a whole number from 2 to {MOST}")
+    raise ArgumentError(
+        where, f"{units.shown(text)} is not a count", f"give a whole number from 2 to {MAX_RANGE_VALUES}"
+    )
 
 
 def _example(key: Key) -> str:

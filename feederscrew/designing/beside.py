@@ -11,7 +11,7 @@ from feederscrew import bowl as bowls
 from feederscrew import units
 from feederscrew.bowl import unbalance
 from feederscrew.bowl.record import Bowl, Machine
-from feederscrew.bowl.schema import KEYS
+from feederscrew.bowl.schema import BOWL_KEYS
 from feederscrew.bowl.settings import Setting, of_device
 from feederscrew.designing.nearest import tried_nearest
 from feederscrew.designing.proposals import Proposal
@@ -22,8 +22,8 @@ from feederscrew.machine.feasibility import is_two_axis
 from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
-from feederscrew.solidbowl.materials import STEEL
-from feederscrew.solidbowl.plan import CHORD
+from feederscrew.solidbowl.materials import STEEL_NAME
+from feederscrew.solidbowl.plan import ARC_CHORD_M
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import solidbowl
 from feederscrew.studies.bowl import MachineSheet
@@ -176,8 +176,8 @@ def settings_of(bowl: Bowl, given: Collection[str] = ()) -> tuple[Setting, ...]:
         What differs from the defaults is given as well.
     """
     usual, lines = bowls.default(), {}
-    for key in KEYS:
-        if key.field in lines or key.word in unbalance.WORDS:
+    for key in BOWL_KEYS:
+        if key.field in lines or key.word in unbalance.UNBALANCE_NAMES:
             continue
         pair: list[Any] = [reduce(getattr, key.field.split("."), one) for one in (bowl, usual)]
         value, default = pair
@@ -264,7 +264,7 @@ def _sized(settings: Sequence[Setting], study: DesignStudy) -> tuple[MachineShee
 
     Where the static rule lets nothing or too little through, the machine is that of a track without devices.
     """
-    wanted = solidbowl.asked(settings, solid=True, material=STEEL, chord=CHORD)
+    wanted = solidbowl.asked(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
     try:
         return machines.bowl(settings, study.part, study.request.target, solid=wanted), ""
     except FeederError as fault:

@@ -15,7 +15,7 @@ from feederscrew.designing.robust import denied, robust_run
 from feederscrew.designing.searching import Candidate
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.rates import arrivals, spacing, stream
-from feederscrew.rates.tipping import FLAT
+from feederscrew.rates.tipping import FLAT_KIND
 from feederscrew.studies import solidbowl
 from feederscrew.studies.rate import shares
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
@@ -292,7 +292,7 @@ def _banks(search, aspects):
     if "track.bank" in search.given:
         return (search.plain.track.bank,)
     chances = np.nan_to_num(aspects.chances[search.request.rule])
-    rolling = float(chances[[kind != FLAT for kind in aspects.kinds]].sum())
+    rolling = float(chances[[kind != FLAT_KIND for kind in aspects.kinds]].sum())
     return calm_drive.STEEP_BANKS if rolling > ROLLS * chances.sum() else calm_drive.BANKS
 
 

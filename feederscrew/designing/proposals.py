@@ -12,7 +12,7 @@ from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import KINDS, cost_class, dearer, names
 from feederscrew.tooling.devices.named import nearest
 from feederscrew.tooling.devices.named import rows as rows_of
-from feederscrew.tooling.isolating.chain import WHERE, judged, limits, numbered
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, judged, limits, numbered
 from feederscrew.tooling.isolating.shop_values import millimetres
 
 ROWS = 6  # orientations for which chains are proposed, the most frequent first
@@ -376,7 +376,7 @@ def dropped_before(proposal, others, wanted, every):
         return None
     (kind, middle, listed), room = chosen, best[1]
     limit = float(np.round(middle / STEP) * STEP)
-    device = kind.proposal(WHERE, limit).rewritten()
+    device = kind.proposal(DESIGN_KEY, limit).rewritten()
     must = np.array([k in listed for k in range(len(every))])
     ends = [device.valued(limit + way) for way in (-0.5 * room, 0.5 * room)]
     cut = judged(every, proposal.row, device, must, *ends)

@@ -8,7 +8,7 @@ import numpy as np
 
 from feederscrew.bowl import unbalance
 from feederscrew.bowl.direction import shares
-from feederscrew.bowl.record import EVEN, Bowl, Machine, Sizing, Unbalance
+from feederscrew.bowl.record import BALANCED, Bowl, Machine, Sizing, Unbalance
 from feederscrew.machine.sizing import Size
 
 RADIUS_STEP_M = 1e-4  # of a springs' circle that is chosen
@@ -43,7 +43,7 @@ def machine_for(bowl: Bowl, size: Size, given: Any, *, exact: bool = False) -> M
         "spring_radius": rules.spring_radius * radius,
     }
     made = replace(bowl.machine, **{name: value for name, value in guess.items() if name not in given})
-    if not set(unbalance.WORDS) & set(given):
+    if not set(unbalance.UNBALANCE_NAMES) & set(given):
         made = replace(made, unbalance=_unbalance(size, made))
     upright = bowl.drive.vibration_angle + size.climb
     if exact:
@@ -103,7 +103,7 @@ def _bowl(radius: float, size: Size, rules: Sizing) -> Any:
 def _unbalance(size: Size, made: Machine) -> Unbalance:
     """How the mass of the solid lies, in the measure of a mass and an inertia that the user gave."""
     if size.mass is None or size.inertia is None:
-        return EVEN
+        return BALANCED
     heavy, own = made.bowl_mass / size.mass, size.unbalance
     x, y, z = own.moment
     inert = made.bowl_inertia / size.inertia

@@ -12,7 +12,7 @@ from feederscrew.machine import speeds
 from feederscrew.machine.stroke import greatest_amplitude
 
 MM, MPA = 1e-3, 1e6
-UNEVEN = 0.05  # of the stroke round a bowl, that parts show
+VISIBLE_STROKE_SPREAD = 0.05  # of the stroke round a bowl, that parts show
 
 
 def remarks(sheet: Any) -> tuple[str, ...]:
@@ -45,7 +45,7 @@ def _rocking(sheet: Any) -> Iterator[FeederError]:
     if sheet.rocking is None:
         return
     as_is, balanced = sheet.rocking
-    if as_is.greatest - as_is.least > UNEVEN:
+    if as_is.greatest - as_is.least > VISIBLE_STROKE_SPREAD:
         weight, angle = sheet.solid.balance
         low, high, rest = (100.0 * (one - 1.0) for one in (as_is.least, as_is.greatest, balanced.greatest))
         what = f"its stroke differs by {low:+.2g} to {high:+.2g} % round the bowl, whose mass lies to a side"

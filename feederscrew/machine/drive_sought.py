@@ -18,10 +18,10 @@ FULL_WAVE = 2.0
 MPA = 1e6  # [Pa]
 # amplitude of the pull of all magnets: B^2 / (4 mu_0) at 1 T on six poles of 40 x 40 mm (assumption)
 GREATEST_PULL_N = 1900.0
-EVEN = 1e-9  # [1] flows closer than this are equal
-ROUNDS = 4  # of strokes and leaves that follow from each other
+FLOW_TOLERANCE = 1e-9  # [1] flows closer than this are equal
+MAX_DRIVE_ITERATIONS = 4  # of strokes and leaves that follow from each other
 ALONE, CONTROLLED = "strokes", "controlled"  # fields of an Emptying
-WAYS = {ALONE: "amplitude left alone", CONTROLLED: "amplitude controlled"}
+STROKE_CONTROL_LABELS = {ALONE: "amplitude left alone", CONTROLLED: "amplitude controlled"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +69,8 @@ def brought(sought: Sought, flow: Callable[[Bowl | None], throughput.Flow]) -> t
     while True:
         driven = _driven(sought, now)
         own = flow(driven)
-        enough = own.parts >= now.parts * (1.0 - EVEN)
-        if enough and (own.parts <= now.parts * (1.0 + EVEN) or now.parts in tried):
+        enough = own.parts >= now.parts * (1.0 - FLOW_TOLERANCE)
+        if enough and (own.parts <= now.parts * (1.0 + FLOW_TOLERANCE) or now.parts in tried):
             return driven, own
         tried.add(now.parts)
         now = own  # there are only so many orientations to turn over
@@ -110,7 +110,7 @@ def _driven(sought: Sought, flow: throughput.Flow) -> Bowl:
         found, best = throughput.amplitude_for(made, sought.target / flow.parts)
         if found is not None:
             empty = _with(made, found[0], settings)
-            held = (_held(empty, sought, sought.target / flow.parts, way) for way in WAYS)
+            held = (_held(empty, sought, sought.target / flow.parts, way) for way in STROKE_CONTROL_LABELS)
             return next((one for one in held if one is not None), empty)
         fastest.append(best)
     raise throughput.unreachable(sought.target, flow.parts, max(fastest))
@@ -119,7 +119,7 @@ def _driven(sought: Sought, flow: throughput.Flow) -> Bowl:
 def _held(empty: Bowl, sought: Sought, velocity: float, way: str) -> Bowl | None:
     """The bowl with the smallest stroke whose lowest velocity, from full to empty, is enough, or None."""
     made, strokes = empty, np.ones(1)  # of the empty bowl
-    for _ in range(ROUNDS):
+    for _ in range(MAX_DRIVE_ITERATIONS):
         emptied = filling.emptying(made, sought.fill)
         if np.array_equal(getattr(emptied, way), strokes):
             return made
@@ -161,7 +161,9 @@ def on_leaves(bowl: Bowl, given: Collection[str]) -> Machine:
     """
     machine, rules = bowl.machine, bowl.sizing
     rows: list[tuple[Machine, tuning.LeafSet]] = []
-    for width in (machine.leaf_width,) if "leaf_width" in given else (machine.leaf_width, *tuning.WIDTHS):
+    for width in (
+        (machine.leaf_width,) if "leaf_width" in given else (machine.leaf_width, *tuning.LEAF_WIDTHS_M)
+    ):
         rows += _leaf_sets(bowl, width, given)
         lasting = [row for row in rows if row[1].stress <= rules.fatigue_stress]
         best = min(lasting, key=partial(_unusual, bowl), default=None)
@@ -177,7 +179,7 @@ def _leaf_sets(bowl: Bowl, width: float, given: Collection[str]) -> Iterator[tup
     """Every set of leaves of a width [m] that tunes a bowl, each with the machine that has its length."""
     machine, at_springs = replace(bowl.machine, leaf_width=width), stroke(bowl).springs
     for length in (
-        (machine.leaf_length,) if "leaf_length" in given else (machine.leaf_length, *tuning.LENGTHS)
+        (machine.leaf_length,) if "leaf_length" in given else (machine.leaf_length, *tuning.LEAF_LENGTHS_M)
     ):
         long = replace(machine, leaf_length=length)
         for one in tuning.sets(long, bowl.drive.frequency, at_springs, bowl.sizing):

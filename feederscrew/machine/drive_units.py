@@ -48,7 +48,7 @@ class DriveUnit:
         return f"{self.mains:.0f} Hz {self.wave}"
 
 
-UNITS = (
+DRIVE_UNITS = (
     DriveUnit("d150-100hz", 0.15, 50.0, "full wave"),
     DriveUnit("d200-100hz", 0.20, 50.0, "full wave"),
     DriveUnit("d250-100hz", 0.25, 50.0, "full wave"),
@@ -80,10 +80,12 @@ def unit(name: str) -> DriveUnit:
     ArgumentError
         If there is none.
     """
-    for one in UNITS:
+    for one in DRIVE_UNITS:
         if one.name == name.strip().casefold():
             return one
-    raise ArgumentError(f"machine {name!r}", "is not known", f"give {listed([one.name for one in UNITS])}")
+    raise ArgumentError(
+        f"machine {name!r}", "is not known", f"give {listed([one.name for one in DRIVE_UNITS])}"
+    )
 
 
 def machine_of(one: DriveUnit) -> Machine:
@@ -132,7 +134,7 @@ def _rounded(value: float) -> float:
 
 def lines() -> tuple[str, ...]:
     """Return what ``feeder config init --machine list`` prints: a line for each drive unit."""
-    return tuple(_line(one) for one in UNITS)
+    return tuple(_line(one) for one in DRIVE_UNITS)
 
 
 def _line(one: DriveUnit) -> str:

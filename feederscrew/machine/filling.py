@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import check
-from feederscrew.bowl.direction import RIGHT, shares
+from feederscrew.bowl.direction import RIGHT_ANGLE_RAD, shares
 from feederscrew.bowl.record import Bowl, Machine, Sizing
 from feederscrew.machine.springs import gain, springs
 
-LEVELS = 21  # of the curve, from full to empty
+FILL_LEVEL_COUNT = 21  # of the curve, from full to empty
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ def emptying(bowl: Bowl, fill: Fill) -> Emptying:
     make both shares smaller, and each by another amount, so that the angle at the track changes as well.
     """
     machine, rules, drive = bowl.machine, bowl.sizing, bowl.drive
-    levels = np.linspace(1.0, 0.0, LEVELS)
+    levels = np.linspace(1.0, 0.0, FILL_LEVEL_COUNT)
     laden = [loaded(machine, fill, rules.carried * u) for u in levels]
     natural = np.array([springs(one).natural_frequency for one in laden])
     gains = gain(drive.frequency, natural, machine.damping)
@@ -103,7 +103,7 @@ def emptying(bowl: Bowl, fill: Fill) -> Emptying:
     along = relative * turns / turns[-1] * np.cos(upright)
     up = relative * rises / rises[-1] * np.sin(upright)
     strokes = np.hypot(along, up)
-    angles = np.clip(np.arctan2(up, along) - bowl.track.climb, 0.0, RIGHT)
+    angles = np.clip(np.arctan2(up, along) - bowl.track.climb, 0.0, RIGHT_ANGLE_RAD)
     angles[-1], strokes[-1] = drive.vibration_angle, 1.0  # without rounding
     reach = np.minimum(1.0, strokes / rules.controller)
     columns = (levels, levels * fill.mass, natural, gains, relative, strokes, angles, reach)

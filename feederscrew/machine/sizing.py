@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import check
-from feederscrew.bowl.record import EVEN, Sizing, Track, Unbalance
+from feederscrew.bowl.record import BALANCED, Sizing, Track, Unbalance
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned
 from feederscrew.mechanics.wall.stable_headings import headings
@@ -15,11 +15,13 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import posture
 from feederscrew.tooling.devices.named import nearest
 
-STRAIGHT = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
-ROUNDS = 200  # of a search that halves its error in each
-SETTLED = 1e-12  # [m]
-ABOVE = 5e-3  # [m] of upright wall over a part on a track or below its rails, at least, where it steps out
-STEEP = 0.9  # slope, a little over 40 deg, of a wall between two turns that lie beside each other
+STRAIGHT_TRACK = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
+MAX_SIZING_ITERATIONS = 200  # of a search that halves its error in each
+DIAMETER_TOLERANCE_M = 1e-12  # [m]
+MIN_WALL_ABOVE_PART_M = (
+    5e-3  # [m] of upright wall over a part on a track or below its rails, at least, where it steps out
+)
+MAX_WALL_SLOPE = 0.9  # slope, a little over 40 deg, of a wall between two turns that lie beside each other
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class Size:
     pitch: float  # [m] rise of one turn
     mass: float | None = None  # [kg] of the bowl, where it is known from its solid
     inertia: float | None = None  # [kg m2] of the same about its axis
-    unbalance: Unbalance = EVEN  # of the same
+    unbalance: Unbalance = BALANCED  # of the same
     room: float | None = None  # [m] radius of its inside at the bottom, where its solid steps outwards
 
 
@@ -84,7 +86,7 @@ def lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = None)
         If the part is a card without an outline.
     """
     stood = [posture(part, aspects, aspects.names[row]) for row in np.flatnonzero(aspects.stable)]
-    found = [headings(one, STRAIGHT) for one in stood]
+    found = [headings(one, STRAIGHT_TRACK) for one in stood]
     rows = [(one.aspect, *row) for one in found for row in zip(one.headings, one.lengths, one.widths)]
     counted = rows if wanted is None else [rows[_place([row[:2] for row in rows], wanted)]]
     return Lying(
@@ -158,8 +160,12 @@ def _climb(part: Lying, across: float, wide: float, rules: Sizing) -> float:
     """The least climb [rad]: parts pass below the next turn, or below the slope that leads to it."""
     rise, way = rules.headroom * part.tallest + rules.sheet, np.pi * across
     if rules.shape != "cylinder":
-        free = [max(rules.headroom * one, one + ABOVE) for one in (part.tallest, part.hanging) if one > 0.0]
-        rise = sum(free) + STEEP * wide + 4.0 * rules.sheet
+        free = [
+            max(rules.headroom * one, one + MIN_WALL_ABOVE_PART_M)
+            for one in (part.tallest, part.hanging)
+            if one > 0.0
+        ]
+        rise = sum(free) + MAX_WALL_SLOPE * wide + 4.0 * rules.sheet
         way = np.pi * (across - wide)
     return max(rules.least_climb, np.arctan(rise / way))
 
@@ -178,11 +184,11 @@ def _diameters(part: Lying, play: float, rules: Sizing, width: float | None, sor
         least["bend on this track"] = part.length**2 / (2.0 * room) if room > 0.0 else np.inf
         return least
     across = max(least.values())
-    for _ in range(ROUNDS):
+    for _ in range(MAX_SIZING_ITERATIONS):
         before = across
         wide = part.width + play + part.length**2 / (2.0 * across)
         across = max(*least.values(), rules.diameter_per_width * wide)
-        if abs(across - before) < SETTLED:
+        if abs(across - before) < DIAMETER_TOLERANCE_M:
             break
     return least | {"width of the track": rules.diameter_per_width * wide}
 

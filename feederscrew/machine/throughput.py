@@ -12,11 +12,11 @@ from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.machine.stroke import greatest_amplitude
 from feederscrew.rates import well_oriented
 
-STEPS = 120  # strokes that are looked at
-ALONE = (1.0,)  # of a bowl that does not change
-HALVINGS = 40
-CLIMBS = 30  # halvings of the search for the steepest climb
-STEEPEST = np.radians(45.0)
+STROKE_SAMPLES = 120  # strokes that are looked at
+CONSTANT_LOAD = (1.0,)  # of a bowl that does not change
+STROKE_BISECTIONS = 40
+CLIMB_BISECTIONS = 30  # halvings of the search for the steepest climb
+MAX_CLIMB_RAD = np.radians(45.0)
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,9 @@ def flow(
     chances = np.nan_to_num(found.rules[rule])
     leaving = float((chances * found.leaves).sum())
     if not leaving > 0.0 and float((chances * found.through).sum()) > 0.0:
-        raise FeederError("track.climb", f"the part {well_oriented.ROLLS}", well_oriented.HOLD)
+        raise FeederError(
+            "track.climb", f"the part {well_oriented.ROLLS_BACK_REMARK}", well_oriented.HOLD_ADVICE
+        )
     if not leaving > 0.0:
         raise FeederError("devices", "let no part pass", "see what each returns in feeder rate")
     share, length = leaving / float((chances * found.stays).sum()), well_oriented.mean_length(found, rule)
@@ -78,7 +80,7 @@ def flow(
 
 
 def amplitude_for(
-    bowl: Bowl, velocity: float, strokes: Any = ALONE, angles: Any = None
+    bowl: Bowl, velocity: float, strokes: Any = CONSTANT_LOAD, angles: Any = None
 ) -> tuple[tuple[float, float] | None, tuple[float, float]]:
     """Return the smallest stroke from which on a part travels at least so fast.
 
@@ -108,7 +110,7 @@ def amplitude_for(
     velocity holds over the range that is tuned with the controller; where there is none, the smallest stroke
     that is fast enough is taken.
     """
-    amplitudes = greatest_amplitude(bowl) * np.arange(1, STEPS + 1) / STEPS
+    amplitudes = greatest_amplitude(bowl) * np.arange(1, STROKE_SAMPLES + 1) / STROKE_SAMPLES
     speeds = _speeds(bowl, amplitudes, strokes, angles)
     best = int(np.argmax(speeds))
     fastest = float(speeds[best]), float(amplitudes[best])
@@ -116,7 +118,7 @@ def amplitude_for(
     if first is None:
         return None, fastest
     low, high = (amplitudes[first - 1] if first else 0.0), amplitudes[first]
-    for _ in range(HALVINGS):
+    for _ in range(STROKE_BISECTIONS):
         middle = 0.5 * (low + high)
         enough = _speeds(bowl, middle, strokes, angles) >= velocity
         low, high = (low, middle) if enough else (middle, high)
@@ -145,10 +147,10 @@ def steepest(bowl: Bowl) -> float:
         there = replace(bowl, drive=drive, track=replace(bowl.track, climb=climb))
         return float(answer.cells(there)["velocity"]) > 0.0
 
-    low, high = 0.0, min(STEEPEST, upright)
+    low, high = 0.0, min(MAX_CLIMB_RAD, upright)
     if not travels(low):
         return float("nan")
-    for _ in range(CLIMBS):
+    for _ in range(CLIMB_BISECTIONS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if travels(middle) else (low, middle)
     return low

@@ -13,8 +13,8 @@ from feederscrew.machine.springs import (
 )
 
 THICKNESSES = (1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3)  # [m] that makers stock
-WIDTHS = (30e-3, 40e-3, 50e-3, 60e-3)  # [m] the same
-LENGTHS = tuple(1e-3 * n for n in range(60, 270, 10))  # [m] free, where it may be chosen
+LEAF_WIDTHS_M = (30e-3, 40e-3, 50e-3, 60e-3)  # [m] the same
+LEAF_LENGTHS_M = tuple(1e-3 * n for n in range(60, 270, 10))  # [m] free, where it may be chosen
 THICKER = 0.5e-3  # [m] step of the same
 USUAL_A_BANK = 4  # leaves of one bank that makers stack; more only where nothing else does
 MOST_A_BANK = 6  # leaves of one bank

@@ -13,8 +13,8 @@ from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.errors import FeederError
 from feederscrew.geometry.vectors import cross, determinant, dot
 
-STEEL = 7850.0  # [kg/m3] of the base, taken as a round plate of it
-PLACES = 360  # round the bowl at which its stroke is computed
+BASE_DENSITY = 7850.0  # [kg/m3] of the base, taken as a round plate of it
+RIM_SAMPLES = 360  # round the bowl at which its stroke is computed
 
 
 @dataclass(frozen=True)
@@ -97,11 +97,11 @@ def rocking(machine: Machine, radius: float, height: float, weight: Any = None) 
     """
     bowl = _bowl(machine) if weight is None else _bowl(machine).with_weight(weight[0], np.array(weight[1]))
     speed, spin = _bowl_motion(machine, bowl)
-    theta = 2.0 * np.pi * np.arange(PLACES) / PLACES
-    places = np.column_stack([radius * np.cos(theta), radius * np.sin(theta), np.full(PLACES, height)])
+    theta = 2.0 * np.pi * np.arange(RIM_SAMPLES) / RIM_SAMPLES
+    places = np.column_stack([radius * np.cos(theta), radius * np.sin(theta), np.full(RIM_SAMPLES, height)])
     moved = speed + cross(spin, places)
     strokes = np.sqrt(dot(moved, moved))
-    mean = np.sqrt(dot(strokes, strokes) / PLACES)
+    mean = np.sqrt(dot(strokes, strokes) / RIM_SAMPLES)
     rise, turn = _screw(machine)
     along, around = bowl.momentum(speed, spin)
     return Rocking(
@@ -155,7 +155,7 @@ def _bowl(machine: Machine) -> _Body:
 def _base(machine: Machine) -> _Body:
     """A round plate of steel below the lower ends of the leaves."""
     mass, inertia = machine.base_mass, machine.base_inertia
-    thick = mass**2 / (2.0 * np.pi * STEEL * inertia)
+    thick = mass**2 / (2.0 * np.pi * BASE_DENSITY * inertia)
     low = -machine.leaf_length * np.cos(machine.spring_angle) - 0.5 * thick
     across = 0.5 * inertia + mass * (thick**2 / 12.0 + low**2)
     return _Body(mass, np.array([0.0, 0.0, mass * low]), np.diag([across, across, inertia]))

@@ -12,9 +12,9 @@ from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import Seat
 
-INSTANTS = 48  # of one period
+ROCKING_STEPS = 48  # of one period
 SETTLES, FOLLOWED = 12, 60  # periods until the sliding repeats itself, and that the rocking is followed
-QUIET = 1e-4  # [rad/s] a part that comes down slower lies still
+REST_ANGULAR_SPEED = 1e-4  # [rad/s] a part that comes down slower lies still
 SENSES = (0.0, 1.0, -1.0)  # at rest, sliding ahead, sliding back
 
 
@@ -89,10 +89,10 @@ def goes_over(rocker: Rocker, period: float, start: int = 0) -> bool:
     G. W. Housner, "The behavior of inverted pendulum structures during earthquakes", Bulletin of the
     Seismological Society of America 53(2), 403-417, 1963.
     """
-    step, angle, rate = period / INSTANTS, 0.0, 0.0
-    for k in range(start, start + FOLLOWED * INSTANTS):
+    step, angle, rate = period / ROCKING_STEPS, 0.0, 0.0
+    for k in range(start, start + FOLLOWED * ROCKING_STEPS):
         near = rocker.near + rocker.growth * step * (k - start)
-        force, offset = rocker.force[k % INSTANTS], rocker.offset[k % INSTANTS]
+        force, offset = rocker.force[k % ROCKING_STEPS], rocker.offset[k % ROCKING_STEPS]
         side = math.copysign(1.0, angle or rate or offset)
         beside, other = (near, rocker.far) if side > 0.0 else (rocker.far, near)
         still = rocker.spread + rocker.height**2
@@ -103,7 +103,7 @@ def goes_over(rocker: Rocker, period: float, start: int = 0) -> bool:
         after = angle + step * rate
         if after * side <= 0.0:  # it comes down
             rate *= max((still - beside * other) / (still + other**2), 0.0)
-            rate, after = (rate if abs(rate) > QUIET else 0.0), 0.0
+            rate, after = (rate if abs(rate) > REST_ANGULAR_SPEED else 0.0), 0.0
         angle = after
         if abs(angle) >= math.atan2(near if angle > 0.0 else rocker.far, rocker.height):
             return True
@@ -126,10 +126,10 @@ def over_period(place: Seat, bowl: Bowl) -> tuple[np.ndarray, np.ndarray]:
     tuple of (INSTANTS,) float [m/s2], (INSTANTS, 2) float [m]
         Force of the track over the mass, and where it acts from the foot of the centre of mass.
     """
-    phase = phases(INSTANTS)
-    motions = [balance.motion(place, bowl, phase, np.full(INSTANTS, sense)) for sense in SENSES]
-    senses = _senses(motions, 1.0 / bowl.drive.frequency / INSTANTS)
-    rows = np.arange(INSTANTS)
+    phase = phases(ROCKING_STEPS)
+    motions = [balance.motion(place, bowl, phase, np.full(ROCKING_STEPS, sense)) for sense in SENSES]
+    senses = _senses(motions, 1.0 / bowl.drive.frequency / ROCKING_STEPS)
+    rows = np.arange(ROCKING_STEPS)
     force = np.array([motion.normal_force for motion in motions])[senses, rows] / place.mass
     return force, np.nan_to_num(np.array([motion.offset for motion in motions])[senses, rows])
 
@@ -138,9 +138,9 @@ def _senses(motions: list[balance.TrackMotion], step: float) -> np.ndarray:
     """How the part slides at each instant of a settled period, (INSTANTS,) int: places in ``SENSES``."""
     gains = [step * motion.acceleration[:, 0] for motion in motions]
     loose, speed = motions[0].slides, 0.0
-    found = np.zeros(INSTANTS, dtype=int)
-    for k in range(SETTLES * INSTANTS):
-        row = k % INSTANTS
+    found = np.zeros(ROCKING_STEPS, dtype=int)
+    for k in range(SETTLES * ROCKING_STEPS):
+        row = k % ROCKING_STEPS
         if speed == 0.0:
             speed = gains[0][row] if loose[row] else 0.0
         else:

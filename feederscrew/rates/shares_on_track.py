@@ -5,7 +5,7 @@ import numpy as np
 from feederscrew.rates.stream import Orientations
 from feederscrew.tooling.orientations import Orientation
 
-RECOMMENDED = "recommended"  # the rule that has an interval of its own
+RECOMMENDED_RULE = "recommended"  # the rule that has an interval of its own
 
 
 def mean_length(found: Orientations, rule: str) -> float:
@@ -64,7 +64,7 @@ def efficiency_ends(found: Orientations, row: int, rule: str) -> tuple[float, ..
     fed, (_, enters) = fed_share(found, row), entering(found, rule)
     if not enters > 0.0:
         return 0.0, 0.0
-    if rule == RECOMMENDED and not np.isnan(found.interval).any():
+    if rule == RECOMMENDED_RULE and not np.isnan(found.interval).any():
         return tuple(min(float((end * fed).sum()) / enters, 1.0) for end in found.interval.T)
     all_rules = [efficiency(found, row, one) for one in found.rules]
     return min(all_rules), max(all_rules)

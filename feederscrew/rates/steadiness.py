@@ -13,16 +13,18 @@ from feederscrew.mechanics.floor.balance import HOP
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import Seat
 from feederscrew.rates.rocking import Rocker, goes_over, over_period
-from feederscrew.rates.tipping import FLAT, landing_energy, may_tip, plain, seated
+from feederscrew.rates.tipping import FLAT_KIND, landing_energy, may_tip, plain, seated
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling import touching
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.falling_through import surely_gone
 from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, speed
 
-INSTANTS = 12  # of one period
+STEADINESS_PHASES = 12  # of one period
 LANDINGS = 8  # instants of the period at which it comes to lie on the far edge
-SAME = 1e-9  # [m] a device that leaves this much less of the support takes nothing from it
+SUPPORT_LOSS_TOLERANCE_M = (
+    1e-9  # [m] a device that leaves this much less of the support takes nothing from it
+)
 
 
 def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, margin: float) -> np.ndarray:
@@ -92,10 +94,10 @@ def _steady(devices: Sequence[Device], one: Orientation, bowl: Bowl, margin: flo
     """Whether one orientation is steady at every device."""
     if one.returned or one.touching is None:
         return True
-    if one.kind != FLAT and rolls_across(one):
+    if one.kind != FLAT_KIND and rolls_across(one):
         return not any(_takes(device, one) for device in _met(devices))
     place = seated(one, bowl.track.bank)
-    if (balance.motion(place, bowl, phases(INSTANTS)).state == HOP).any():
+    if (balance.motion(place, bowl, phases(STEADINESS_PHASES)).state == HOP).any():
         return True
     force, offset = over_period(place, bowl)
     for device in _met(devices):
@@ -111,7 +113,7 @@ def _lands(devices: Sequence[Device], one: Orientation, bowl: Bowl, margin: floa
     """Whether no landing may tip an orientation at any device, by a margin [m]."""
     if one.returned or one.touching is None:
         return True
-    if one.kind != FLAT and rolls_across(one):
+    if one.kind != FLAT_KIND and rolls_across(one):
         return not any(_takes(device, one) for device in _met(devices))
     for device in _met(devices):
         span = device.span_on(one.track)
@@ -137,15 +139,18 @@ def _takes(device: Device, one: Orientation) -> bool:
     if span is not None:
         (first, last), radius = span, one.track.radius
         high = radius - first if first > 0.0 else 2.0 * radius
-        return feet.over_ring(one.standing, max(radius - last, 0.0), high) <= one.margin - SAME
-    return hole is not None and feet.least(one.standing, hole)[0] <= one.margin - SAME
+        return (
+            feet.over_ring(one.standing, max(radius - last, 0.0), high)
+            <= one.margin - SUPPORT_LOSS_TOLERANCE_M
+        )
+    return hole is not None and feet.least(one.standing, hole)[0] <= one.margin - SUPPORT_LOSS_TOLERANCE_M
 
 
 def _keeps_down(one: Orientation, span: tuple[float, float], offset: np.ndarray, margin: float) -> bool:
     """Whether the force of the track stays within what is left of a foot beside a hole along the track."""
     (first, last), radius = span, one.track.radius
     high = radius - first if first > 0.0 else 2.0 * radius
-    if feet.over_ring(one.standing, max(radius - last, 0.0), high) > one.margin - SAME:
+    if feet.over_ring(one.standing, max(radius - last, 0.0), high) > one.margin - SUPPORT_LOSS_TOLERANCE_M:
         return True
     left = touching.beside(one.foot, span, one.distance, radius).corners
     hull = left[convex(left)]
@@ -157,7 +162,7 @@ def _keeps_upright(
 ) -> bool:
     """Whether a part neither rocks over the edge that it leaves nor back over the one that it comes to."""
     support, _ = feet.least(one.standing, hole)
-    if support > one.margin - SAME:
+    if support > one.margin - SUPPORT_LOSS_TOLERANCE_M:
         return True
     reach, period = one.foot.corners[:, 0], 1.0 / bowl.drive.frequency
     leaving = Rocker(

@@ -29,16 +29,22 @@ from feederscrew.rates.rocking import goes_over, rocker
 from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, speed, travelling
 from feederscrew.units import factor, listed
 
-INSTANTS = 12  # of one period
+TIPPING_PHASES = 12  # of one period
 MM = factor("mm", "length")
-HOPS = (
+HOP_REMARK = (
     "at this drive parts hop {:.2g} mm high and fly {:.2g} mm along the track: margins at edges across the "
     "track are less that way, all others less that height"
 )
-TURNS = "{}: a landing may tip it over, or the wall turn it, so no verdict on it is sure - see feeder trial"
-FLAT = "flat"  # a part that rolls lies on a line: it rolls where others tip, and tips over the line's ends
-ROUND = 0.98  # of the farthest place of an outline, the nearest: it is round, and no heading of it is another
-BESIDE = 10.0  # heights of the centre of mass: no force of a bowl acts so far beside it
+LANDING_REMARK = (
+    "{}: a landing may tip it over, or the wall turn it, so no verdict on it is sure - see feeder trial"
+)
+FLAT_KIND = (
+    "flat"  # a part that rolls lies on a line: it rolls where others tip, and tips over the line's ends
+)
+ROUND_OUTLINE_RATIO = (
+    0.98  # of the farthest place of an outline, the nearest: it is round, and no heading of it is another
+)
+MAX_FORCE_OFFSET_HEIGHTS = 10.0  # heights of the centre of mass: no force of a bowl acts so far beside it
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,9 +132,9 @@ def remark(lying: Sequence[Orientation]) -> tuple[str, ...]:
     said = [f"{listed(over)} can tip over on the track at this drive and count as returned"] if over else []
     hop, flight = max(((one.hop, one.flight) for one in lying), default=(0.0, 0.0))
     if hop > 0.0:
-        said.append(HOPS.format(hop / MM, flight / MM))
+        said.append(HOP_REMARK.format(hop / MM, flight / MM))
     turning = [one.name for one in lying if one.may_turn and one.hop > 0.0]
-    return (*said, TURNS.format(listed(turning))) if turning else tuple(said)
+    return (*said, LANDING_REMARK.format(listed(turning))) if turning else tuple(said)
 
 
 def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
@@ -153,7 +159,7 @@ def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
     After the stroke its weight brings it back, by g r / (r^2 + h^2) at most. Where it is then still tilted at
     the next one, or over already, its rocking is followed: ``rocking.goes_over``.
     """
-    found = [_one(one, bowl) for one in lying] if plain(bowl) else [_NEVER] * len(lying)
+    found = [_one(one, bowl) for one in lying] if plain(bowl) else [_NO_TIPPING] * len(lying)
     return TrackTipping(*(check.frozen(np.array(column)) for column in zip(*found)))
 
 
@@ -252,12 +258,12 @@ def may_yaw(one: Orientation, bowl: Bowl) -> bool:
     outline = one.outline
     along = sides(outline)
     nearest = (outline[:, 0] * along[:, 1] - outline[:, 1] * along[:, 0]) / np.hypot(*along.T)
-    if one.groove or nearest.min() > ROUND * np.hypot(*outline.T).max() or one.touching is None:
+    if one.groove or nearest.min() > ROUND_OUTLINE_RATIO * np.hypot(*outline.T).max() or one.touching is None:
         return False
     return bool(bowl.friction.wall * one.distance > one.touching[1, 0])
 
 
-_NEVER = (False, 0.0, np.nan, False)
+_NO_TIPPING = (False, 0.0, np.nan, False)
 
 
 def plain(bowl: Bowl) -> bool:
@@ -270,13 +276,13 @@ def plain(bowl: Bowl) -> bool:
 
 def _one(one: Orientation, bowl: Bowl) -> tuple[bool, float, float, bool]:
     """Whether one orientation tips, how far a stroke tilts it, from where it goes on, if it goes over."""
-    if one.falls_off or one.touching is None or (one.kind != FLAT and rolls_across(one)):
-        return _NEVER
-    place, phase = seated(one, bowl.track.bank), phases(INSTANTS)
+    if one.falls_off or one.touching is None or (one.kind != FLAT_KIND and rolls_across(one)):
+        return _NO_TIPPING
+    place, phase = seated(one, bowl.track.bank), phases(TIPPING_PHASES)
     rest = balance.motion(place, bowl, phase)
     if (rest.state == HOP).any() or not (rest.state == TIP).any():
-        return _NEVER
-    motions = [rest] + [balance.motion(place, bowl, phase, np.full(INSTANTS, s)) for s in (-1.0, 1.0)]
+        return _NO_TIPPING
+    motions = [rest] + [balance.motion(place, bowl, phase, np.full(TIPPING_PHASES, s)) for s in (-1.0, 1.0)]
     force = np.concatenate([found.normal_force for found in motions])
     offset = np.concatenate([found.offset for found in motions])
     moment = force * np.maximum(-inset(place.contact, offset), 0.0)
@@ -298,10 +304,10 @@ def seated(one: Orientation, bank: float) -> Seat:
     One that rolls tips over the ends of its line only, so its contact is wide beside that.
     """
     place = seat(one.posture, one.heading, one.touching, bank)
-    if one.kind == FLAT:
+    if one.kind == FLAT_KIND:
         return place
     back, ahead = place.contact[:, 0].min(), place.contact[:, 0].max()
-    side = BESIDE * place.height
+    side = MAX_FORCE_OFFSET_HEIGHTS * place.height
     return replace(place, contact=np.array([[back, -side], [ahead, -side], [ahead, side], [back, side]]))
 
 

@@ -9,7 +9,7 @@ from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.mechanics.wall.stable_headings import headings, stable_row
 from feederscrew.rates.shares_on_track import (
-    RECOMMENDED,
+    RECOMMENDED_RULE,
     efficiency,
     efficiency_ends,
     entering,
@@ -25,8 +25,8 @@ __all__ = [
     "Orientations", "Range", "Rate", "efficiency", "fed", "mean_length", "orientations",
     "parts_per_metre", "rate", "velocity", "wanted",
 ]  # fmt: skip
-ROLLS = "lies on its round side and rolls back down the climb"
-HOLD = "bank the track, so that friction.wall tan(bank) is above tan(climb), or take another aspect"
+ROLLS_BACK_REMARK = "lies on its round side and rolls back down the climb"
+HOLD_ADVICE = "bank the track, so that friction.wall tan(bank) is above tan(climb), or take another aspect"
 
 
 @dataclass(frozen=True)
@@ -218,7 +218,7 @@ def _blocked(found, rule):
 def _probability(found, row, rule):
     """Probability of a row by a rule, within that rule's own interval or the range of all rules."""
     value = float(found.rules[rule][row])
-    if rule == RECOMMENDED and not np.isnan(found.interval[row]).any():
+    if rule == RECOMMENDED_RULE and not np.isnan(found.interval[row]).any():
         return Range(value, *(float(end) for end in found.interval[row]))
     chances = [chance[row] for chance in found.rules.values() if not np.isnan(chance[row])]
     return Range(value, float(min(chances)), float(max(chances)))
@@ -253,7 +253,7 @@ def parts_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
 def holds(found, target):
     """Raise a FeederError where a wanted orientation rolls back down the climb."""
     if found.rolls_back[_row(found, target)]:
-        raise FeederError(_where(target), ROLLS, HOLD)
+        raise FeederError(_where(target), ROLLS_BACK_REMARK, HOLD_ADVICE)
 
 
 def _where(target):

@@ -4,7 +4,7 @@ import numpy as np
 
 from feederscrew.errors import FeederError
 
-BESIDE = 1e-3  # [m] of level floor beside the track
+BOLT_CLEARANCE_M = 1e-3  # [m] of level floor beside the track
 WEB = 0.5  # of a hole's diameter: metal between two of them, at least
 
 
@@ -25,7 +25,7 @@ def circle(track, asked, radius):
 
 def _room(track, radius):
     """Radius within which nothing of the track lies."""
-    return radius - track.width - 2.0 * BESIDE
+    return radius - track.width - 2.0 * BOLT_CLEARANCE_M
 
 
 def hub(track, asked, radius):

@@ -11,7 +11,7 @@ from feederscrew.solidbowl.leaning import TrackLedge
 from feederscrew.tooling.devices.hole_shapes import beyond_borders
 from feederscrew.tooling.strip import strip
 
-BEYOND = 2e-3  # [m] by which what reaches an edge of the track is cut over it
+CUT_OVERRUN_M = 2e-3  # [m] by which what reaches an edge of the track is cut over it
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,16 +126,16 @@ def _cut(station, drawn, width):
     """A hole, carried a little over the edge of the track that it reaches, and into the wall."""
     s, y = station.hole.T
     corners = np.column_stack([s, np.where(y <= 1e-9, 0.0, y)])
-    ring = beyond_borders(corners.tolist(), drawn - 1e-9, max(width - drawn, 0.0) + BEYOND)
+    ring = beyond_borders(corners.tolist(), drawn - 1e-9, max(width - drawn, 0.0) + CUT_OVERRUN_M)
     return TrackHole(station.label, station.device.kind, np.array(ring), station.device.hangs)
 
 
 def _blade(station, width):
     """The plate of a gate without its opening; it reaches into the wall."""
     free = shapely.union_all([shapely.Polygon(ring) for ring in station.openings])
-    ways = ((0.0, 0.0), (-2.0 * BEYOND, 0.0), (0.0, -2.0 * BEYOND))
+    ways = ((0.0, 0.0), (-2.0 * CUT_OVERRUN_M, 0.0), (0.0, -2.0 * CUT_OVERRUN_M))
     free = shapely.union_all([affinity.translate(free, *by) for by in ways])
-    frame = shapely.box(-BEYOND, 0.0, width, station.top)
+    frame = shapely.box(-CUT_OVERRUN_M, 0.0, width, station.top)
     return TrackBlade(
         label=station.label,
         kind=station.device.kind,

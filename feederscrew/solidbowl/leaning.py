@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew.tooling.devices.base import room_of
 from feederscrew.tooling.fates import leading
 
-GENTLE = np.radians(10.0)  # slope along the track of its free edge, where the bank changes
+MAX_EDGE_SLOPE_RAD = np.radians(10.0)  # slope along the track of its free edge, where the bank changes
 RAMP = np.radians(15.0)  # slope on which a ledge comes down to the track beside it
 TWIST = 0.5  # of the room that a part has to itself: over so much the bank changes at least
 
@@ -115,7 +115,7 @@ def _moved(station, by):
 def _twist(track, before, after, every):
     """Length [m] over which one bank becomes another: the free edge rises or falls gently."""
     edge = track.width * abs(np.sin(after) - np.sin(before))
-    return float(max(TWIST * room_of(every), edge / np.tan(GENTLE)))
+    return float(max(TWIST * room_of(every), edge / np.tan(MAX_EDGE_SLOPE_RAD)))
 
 
 def _ledge(station, every):

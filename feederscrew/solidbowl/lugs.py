@@ -8,23 +8,23 @@ import shapely
 
 from feederscrew.errors import FeederError
 from feederscrew.solidbowl import facets
-from feederscrew.solidbowl.plan import TURN
+from feederscrew.solidbowl.plan import FULL_TURN
 
 HOLE = 3.4e-3  # [m] for a screw M3, ISO 273
 FLATS, DEEP = 5.7e-3, 2.6e-3  # [m] of the pocket for its nut, ISO 4032 and 0.2 mm of play
-LENGTH = 16e-3  # [m] of the screw, and of both halves of a lug
-NAME = "M3 x 16"
+SCREW_LENGTH_M = 16e-3  # [m] of the screw, and of both halves of a lug
+SCREW_NAME = "M3 x 16"
 WEIGHT = 1.5e-3  # [kg] of a screw, ISO 4762, with its nut
-SIDE = 5e-3  # [m] of a lug to either side of its screw
+LUG_HALF_WIDTH_M = 5e-3  # [m] of a lug to either side of its screw
 OFF, OVER = 6e-3, 5e-3  # [m] from the wall to the screw, and from there to the lug's outer face
-INTO = 5e-4  # [m] by which a lug reaches into the wall
-BETWEEN = 40e-3  # [m] between screws of a seam, about
-KEPT = 15e-3  # [m] from devices and outlet
-SMOOTH = 8e-4  # [m] by which the wall may bulge between places of a lug
-TILTED = 16e-3  # [m] by which the wall may lean away over a lug: 45 deg
+LUG_OVERLAP_M = 5e-4  # [m] by which a lug reaches into the wall
+SCREW_SPACING_M = 40e-3  # [m] between screws of a seam, about
+LUG_CLEARANCE_M = 15e-3  # [m] from devices and outlet
+MAX_WALL_BULGE_M = 8e-4  # [m] by which the wall may bulge between places of a lug
+MAX_LUG_LEAN_M = 16e-3  # [m] by which the wall may lean away over a lug: 45 deg
 POKE = 1e-11  # [m3] of it on the inner side of the wall at most
-FAR = 10.0  # [m] beyond everything
-ROUND = 24  # corners of a hole
+BEYOND_LUGS_M = 10.0  # [m] beyond everything
+SCREW_HOLE_SIDES = 24  # corners of a hole
 STANDS = OFF + OVER  # [m] of a lug over the wall, at least
 
 
@@ -44,16 +44,16 @@ class Lug:
         side = np.cross(self.along, self.out)
         axes = np.column_stack([self.out, side, self.along])
         more = 1e-3 + self.under
-        end = self.middle - (0.5 * LENGTH + more) * self.along
+        end = self.middle - (0.5 * SCREW_LENGTH_M + more) * self.along
         return [
-            facets.plank(_regular(ROUND, HOLE), LENGTH + more + 1e-3, axes, end),
+            facets.plank(_regular(SCREW_HOLE_SIDES, HOLE), SCREW_LENGTH_M + more + 1e-3, axes, end),
             facets.plank(_regular(6, FLATS), DEEP + more, axes, end),
         ]
 
 
 def _regular(corners, across):
     """A regular polygon [m] by the distance of its flats, one of them outwards."""
-    turns = TURN * (np.arange(corners) + 0.5) / corners
+    turns = FULL_TURN * (np.arange(corners) + 0.5) / corners
     size = 0.5 * across / np.cos(np.pi / corners)
     return shapely.Polygon(size * np.column_stack([np.cos(turns), np.sin(turns)]))
 
@@ -103,8 +103,8 @@ def remarks(bare, ends):
 
 def _upright(at, axis, extents):
     """Frames (place, along, out, across) of lugs at both ends of an upright seam."""
-    low, high = extents[2] + [SIDE + STANDS + 2e-3, -SIDE - 1e-3]
-    count = 1 + int((high - low) / BETWEEN)
+    low, high = extents[2] + [LUG_HALF_WIDTH_M + STANDS + 2e-3, -LUG_HALF_WIDTH_M - 1e-3]
+    count = 1 + int((high - low) / SCREW_SPACING_M)
     heights = np.linspace(low, high, count) if count > 1 else [0.5 * (low + high)]
     unit, up = np.eye(3), np.array([0.0, 0.0, 1.0])
     along = unit[axis] if at >= 0.0 else -unit[axis]
@@ -116,7 +116,7 @@ def _level(at, extents):
     """Frames of lugs round a level seam."""
     around = np.pi * (extents[0, 1] - extents[0, 0])
     up = np.array([0.0, 0.0, 1.0])
-    for turn in TURN * (np.arange(count := int(around / BETWEEN / 2.0)) + 0.5) / count:
+    for turn in FULL_TURN * (np.arange(count := int(around / SCREW_SPACING_M / 2.0)) + 0.5) / count:
         out = np.array([np.cos(turn), np.sin(turn), 0.0])
         yield at * up, up, out, np.cross(up, out)
 
@@ -124,20 +124,20 @@ def _level(at, extents):
 def _lug(body, frame, level, low):
     """A lug on the wall's outer face; None where that is not smooth there."""
     place, along, out, across = frame
-    n, t = 0.5 * LENGTH * np.linspace(-1.0, 1.0, 5), SIDE * np.linspace(-1.0, 1.0, 3)
+    n, t = 0.5 * SCREW_LENGTH_M * np.linspace(-1.0, 1.0, 5), LUG_HALF_WIDTH_M * np.linspace(-1.0, 1.0, 3)
     off = np.array([[_wall(body, place + a * along + b * across, out) for b in t] for a in n])
-    if not np.isfinite(off).all() or np.ptp(off) > TILTED:
+    if not np.isfinite(off).all() or np.ptp(off) > MAX_LUG_LEAN_M:
         return None
-    if max(np.abs(np.diff(off, 2, axis=k)).max() for k in (0, 1)) > SMOOTH:
+    if max(np.abs(np.diff(off, 2, axis=k)).max() for k in (0, 1)) > MAX_WALL_BULGE_M:
         return None
     top = off.max() + STANDS
-    foot = [(a, b, off[i, j] - INTO) for i, a in enumerate(n) for j, b in enumerate(t)]
+    foot = [(a, b, off[i, j] - LUG_OVERLAP_M) for i, a in enumerate(n) for j, b in enumerate(t)]
     rim = [(a, b, top) for a in n[[0, -1]] for b in t[[0, -1]]]
     deep = top - off.min()
     under = [(n[0] - deep, b) for b in t] if level else [(a, t[0] - deep) for a in n]
     if (place + under[0][0] * along + under[0][1] * across)[2] < low:
         return None
-    foot += [(a, b, _wall(body, place + a * along + b * across, out) - INTO) for a, b in under]
+    foot += [(a, b, _wall(body, place + a * along + b * across, out) - LUG_OVERLAP_M) for a, b in under]
     corners = np.array([*foot, *rim])
     if not np.isfinite(corners).all():
         return None
@@ -147,18 +147,18 @@ def _lug(body, frame, level, low):
 
 def _wall(body, place, out):
     """How far out [m] the outer face of the wall lies from a place; not a number without one."""
-    found = facets.first_met(body, place + FAR * out, place)
-    return FAR - found[0] if found else np.nan
+    found = facets.first_met(body, place + BEYOND_LUGS_M * out, place)
+    return BEYOND_LUGS_M - found[0] if found else np.nan
 
 
 def _clear(made, kept, others, planes):
     """Whether a lug lies apart from devices, from other lugs and from other seams."""
-    if kept.distance(shapely.Point(made.middle[:2])) < KEPT:
+    if kept.distance(shapely.Point(made.middle[:2])) < LUG_CLEARANCE_M:
         return False
-    if any(np.sum((made.middle - one.middle) ** 2) < (2.0 * LENGTH) ** 2 for one in others):
+    if any(np.sum((made.middle - one.middle) ** 2) < (2.0 * SCREW_LENGTH_M) ** 2 for one in others):
         return False
     own = int(np.argmax(np.abs(made.along)))
-    return all(axis == own or abs(made.middle[axis] - at) > LENGTH for axis, at in planes)
+    return all(axis == own or abs(made.middle[axis] - at) > SCREW_LENGTH_M for axis, at in planes)
 
 
 def _outside(made, body):

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-STEEL = "steel"
+STEEL_NAME = "steel"
 
 
 @dataclass(frozen=True)
@@ -18,11 +18,11 @@ class BowlMaterial:
     flat: bool  # the underside of the floor is flat, to stand on a printer's bed
 
 
-PRINTED = (
+PRINTED_MATERIALS = (
     BowlMaterial("pla", 4e-3, 5e-3, 4e-3, 1240.0, supported=False, flat=True),
     BowlMaterial("pa12", 3e-3, 4e-3, 3e-3, 1010.0, supported=True, flat=False),
 )
-NAMES = (*(one.name for one in PRINTED), STEEL)
+NAMES = (*(one.name for one in PRINTED_MATERIALS), STEEL_NAME)
 
 
 def material(name, rules):
@@ -39,7 +39,7 @@ def material(name, rules):
     -------
     BowlMaterial
     """
-    if name == STEEL:
+    if name == STEEL_NAME:
         sheet = rules.sheet
-        return BowlMaterial(STEEL, sheet, sheet, sheet, rules.sheet_density, supported=True, flat=False)
-    return next(one for one in PRINTED if one.name == name)
+        return BowlMaterial(STEEL_NAME, sheet, sheet, sheet, rules.sheet_density, supported=True, flat=False)
+    return next(one for one in PRINTED_MATERIALS if one.name == name)

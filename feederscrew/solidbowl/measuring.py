@@ -7,8 +7,10 @@ import numpy as np
 from feederscrew.solidbowl import facets, grooves_wall
 from feederscrew.solidbowl.plan import SEEN
 
-OVER = 5e-4  # [m] over the track, where its wall is met
-RIM = -0.3 - 1e-4  # [rad] before the outlet, where the rim is measured; beside the corners of facets
+WALL_RAY_HEIGHT_M = 5e-4  # [m] over the track, where its wall is met
+RIM_SECTION_RAD = (
+    -0.3 - 1e-4
+)  # [rad] before the outlet, where the rim is measured; beside the corners of facets
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,7 @@ def measures(made):
 def _rim(plan):
     """An angle at which the rim is measured: before every groove, where the wall is open."""
     starts = [float(plan.way.angle(one[0])) - 0.1 for one in grooves_wall.spans(plan)]
-    return min([RIM, *starts])
+    return min([RIM_SECTION_RAD, *starts])
 
 
 def _outlet_height(plan, body, outlet):
@@ -84,7 +86,7 @@ def track_width(plan, body, s):
     along = np.cos(bank) * outward - [0.0, 0.0, np.sin(bank)]
     low, high = (
         facets.first_met(body, start, start + 3.0 * way.radius * along)[0]
-        for start in (middle + [0.0, 0.0, OVER], middle + [0.0, 0.0, 2.0 * OVER])
+        for start in (middle + [0.0, 0.0, WALL_RAY_HEIGHT_M], middle + [0.0, 0.0, 2.0 * WALL_RAY_HEIGHT_M])
     )
     under = float(way.height(s, plan.width)) - SEEN * plan.material.plate
     to_middle = float(way.wall_radius(s)) - half * float(np.cos(bank))

@@ -6,24 +6,26 @@ import numpy as np
 
 from feederscrew.errors import FeederError
 from feederscrew.solidbowl import bolting
-from feederscrew.solidbowl.bolting import BESIDE
+from feederscrew.solidbowl.bolting import BOLT_CLEARANCE_M
 from feederscrew.solidbowl.cuts import Stretch
 from feederscrew.solidbowl.materials import BowlMaterial
 from feederscrew.solidbowl.stairs import CYLINDER, Stairs, stairs
 from feederscrew.solidbowl.way import Way
 
-CHORD = 5e-5  # [m] by which an arc may be seen too flat
+ARC_CHORD_M = 5e-5  # [m] by which an arc may be seen too flat
 DOME = np.radians(3.0)  # slope of the floor outwards
-ABOVE = 5e-3  # [m] of the wall over the tallest part on the track's end
+WALL_ABOVE_PART_M = 5e-3  # [m] of the wall over the tallest part on the track's end
 OUTLET = 15e-3  # [m] by which the outlet stands out of the wall
-LEAD = 10e-3  # [m] of track between the last device and the outlet
+OUTLET_LEAD_M = 10e-3  # [m] of track between the last device and the outlet
 DIP = 0.06  # [rad] the track begins so far below the floor: no edge where it grows from it
-CLEAR = 2e-3  # [m] more than a part needs, below rails
-NARROW = 0.75  # of the radius: no track is wider
-LOWEST = 10e-3  # [m] over the floor of a track that goes down
-STEEP = 1.5  # of the tangent of a bank: beside the chord of an arc a twist takes some of the height
-TURN = 2.0 * np.pi
-QUARTER = 0.25 * TURN  # of track at least, over floor and dome: there its width is measured
+RAIL_CLEARANCE_M = 2e-3  # [m] more than a part needs, below rails
+MAX_TRACK_WIDTH_RATIO = 0.75  # of the radius: no track is wider
+MIN_TRACK_HEIGHT_M = 10e-3  # [m] over the floor of a track that goes down
+BANK_DROP_FACTOR = (
+    1.5  # of the tangent of a bank: beside the chord of an arc a twist takes some of the height
+)
+FULL_TURN = 2.0 * np.pi
+MIN_CLEAR_TRACK_RAD = 0.25 * FULL_TURN  # of track at least, over floor and dome: there its width is measured
 SHORTEST = 0.999  # of it: what is told has four digits
 SEEN, CLEARED = 0.3, 3e-4  # of the plate, and [m] over the dome: there the free edge is measured
 
@@ -74,8 +76,8 @@ class BowlPlan:
     def segments(self):
         """How many facets a full turn has; where the track is steep across, more."""
         banks = self.way.bank, *(bank for _, _, bank in self.way.leans)
-        chord = self.chord / max(1.0, *(STEEP * float(np.tan(bank)) for bank in banks))
-        return int(np.ceil(TURN / (2.0 * np.arccos(1.0 - chord / self.way.radius)) / 4.0)) * 4
+        chord = self.chord / max(1.0, *(BANK_DROP_FACTOR * float(np.tan(bank)) for bank in banks))
+        return int(np.ceil(FULL_TURN / (2.0 * np.arccos(1.0 - chord / self.way.radius)) / 4.0)) * 4
 
     @property
     def outlet_height(self):
@@ -85,7 +87,7 @@ class BowlPlan:
     @property
     def turns(self):
         """Turns of the track from the floor to the outlet."""
-        return -float(self.way.angle(0.0)) / TURN
+        return -float(self.way.angle(0.0)) / FULL_TURN
 
     @property
     def room(self):
@@ -96,7 +98,9 @@ class BowlPlan:
     def ring(self):
         """Radius up to which the floor is level, a little more than the track covers; the dome is within."""
         lowest = self.way.rises(self.width) - DIP * self.way.radius if self.stairs else 0.0
-        return float(self.way.wall_radius(lowest)) - self.width * float(np.cos(self.way.bank)) - BESIDE
+        return (
+            float(self.way.wall_radius(lowest)) - self.width * float(np.cos(self.way.bank)) - BOLT_CLEARANCE_M
+        )
 
     @property
     def dome(self):
@@ -117,7 +121,7 @@ class BowlPlan:
 class Asked:
     """What is asked of the solid beside the sizes of the sheet."""
 
-    chord: float = CHORD
+    chord: float = ARC_CHORD_M
     material: str = "steel"
     outlet_height: float = 0.0  # [m] 0: as the track's turns make it
     outlet_angle: float = 0.0  # [rad]
@@ -178,9 +182,9 @@ def plan(size, track, made_of, tooled, asked, *, extents):
         stretch=tooled,
         first=first,
         outlet=float(outlet),
-        hanging=greatest + CLEAR if hangs else 0.0,
+        hanging=greatest + RAIL_CLEARANCE_M if hangs else 0.0,
         headroom=tallest,
-        top=way.highest + max([tallest + ABOVE, *gates]),
+        top=way.highest + max([tallest + WALL_ABOVE_PART_M, *gates]),
         hub=bolting.hub(track, asked, lowest),
         bolts=asked.bolts,
         bolt=asked.bolt,
@@ -195,7 +199,7 @@ def plan(size, track, made_of, tooled, asked, *, extents):
 
 
 def _check(size, track):
-    widest = NARROW * track.radius
+    widest = MAX_TRACK_WIDTH_RATIO * track.radius
     if track.width > widest:
         what = f"{1e3 * track.width:.4g} mm is too wide for a bowl of {1e3 * size.diameter:.4g} mm"
         raise FeederError(
@@ -208,10 +212,10 @@ def _check(size, track):
 
 def _way(size, track, made_of, tooled, asked, stepped):
     """The way of the track, and where on it the tooled stretch begins."""
-    needed = 0.0 if tooled is None else tooled.length + LEAD
+    needed = 0.0 if tooled is None else tooled.length + OUTLET_LEAD_M
     drops = () if tooled is None else tooled.drops
     rise, gained = np.tan(track.climb), _gained(track, tooled, needed)
-    round_once = TURN * track.radius
+    round_once = FULL_TURN * track.radius
     free = round_once - track.width * np.sin(track.bank) / rise  # of track below, from where it rises
     falls = None if tooled is None or stepped is not None else tooled.falls
     most = np.inf if falls is None else free + needed - falls
@@ -239,7 +243,7 @@ def _way(size, track, made_of, tooled, asked, stepped):
 def _quarter(stepped):
     """Length of a quarter turn, over the wall's radius at its end."""
     flare = 0.0 if stepped is None else stepped.flare
-    return QUARTER if flare == 0.0 else -float(np.expm1(-flare * QUARTER)) / flare
+    return MIN_CLEAR_TRACK_RAD if flare == 0.0 else -float(np.expm1(-flare * MIN_CLEAR_TRACK_RAD)) / flare
 
 
 def _check_long(height, end, least, gained, rise):
@@ -261,15 +265,15 @@ def _gained(track, tooled, needed):
 
 
 def _check_bends(way, stepped, round_once, tallest):
-    if way.bends and way.lowest < LOWEST:
+    if way.bends and way.lowest < MIN_TRACK_HEIGHT_M:
         what = f"a device leads the track down to {1e3 * way.lowest:.3g} mm over the floor"
-        least = 1e3 * (float(way.height(way.end)) + LOWEST - way.lowest)
+        least = 1e3 * (float(way.height(way.end)) + MIN_TRACK_HEIGHT_M - way.lowest)
         raise TrackTooLow("devices", what, f"give a sizing.outlet_height of at least {least:.4g} mm")
     if way.bends and stepped is not None:
         _check_beside(way, stepped)
         return
     free = way.lowest - float(way.risen(way.end - round_once))
-    if way.bends and way.end > round_once and free < tallest + ABOVE:
+    if way.bends and way.end > round_once and free < tallest + WALL_ABOVE_PART_M:
         what = f"a device leads the track down to {1e3 * free:.3g} mm over the turn below"
         raise TrackTooLow("devices", what, "give a lower sizing.outlet_height")
 
@@ -277,7 +281,7 @@ def _check_bends(way, stepped, round_once, tallest):
 def _check_beside(way, stepped):
     """Raise the fault of a track that goes down too near to the turn before, beside which it lies."""
     last = np.array([*(at for at, _ in way.bends), way.end])
-    free = float((way.risen(last) - way.risen(way.at(way.angle(last) - TURN))).min())
+    free = float((way.risen(last) - way.risen(way.at(way.angle(last) - FULL_TURN))).min())
     if free < stepped.needed:
         what = f"a device leads the track down to {1e3 * free:.4g} mm over the turn before"
         mend = (

@@ -8,20 +8,20 @@ import shapely
 from feederscrew import units
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.solidbowl import facets, lugs
-from feederscrew.solidbowl.plan import TURN
+from feederscrew.solidbowl.plan import FULL_TURN
 from feederscrew.solidbowl.track import fillet
 from feederscrew.tooling import whole_surface
 from feederscrew.units import MM
 
-MOST = 6  # segments in one direction
-TURNS = 36  # positions of the seams that are tried, over a quarter turn
-DEEP = 6e-3  # [m] of a dowel's hole in each segment
+MAX_SEGMENTS = 6  # segments in one direction
+SEAM_POSITIONS = 36  # positions of the seams that are tried, over a quarter turn
+DOWEL_HOLE_DEPTH_M = 6e-3  # [m] of a dowel's hole in each segment
 SHARE = 0.5  # of the wall: diameter of a dowel
 LAND = 0.8  # of its diameter: solid round a dowel
-APART = 25e-3  # [m] between dowels
-GRID = 1.5e-3  # [m] at which places for dowels are looked for
-NEAR = 1e-3  # [m] of a surface
-PLACES = "floor", "wall", "track", "outlet"  # what may hang over
+DOWEL_SPACING_M = 25e-3  # [m] between dowels
+DOWEL_GRID_M = 1.5e-3  # [m] at which places for dowels are looked for
+SURFACE_DISTANCE_M = 1e-3  # [m] of a surface
+OVERHANG_PLACES = "floor", "wall", "track", "outlet"  # what may hang over
 DOWELS, SCREWS = JOINTS = ("dowels", "screws")
 
 
@@ -118,7 +118,9 @@ def segments(made, size, joint=DOWELS):
     holes = [one for plane in planes for one in _dowels(made, body, turn, plane, dowel)]
     joints, bare, of = _lugs(made, body, turn, planes) if joint == SCREWS else ([], 0, 0)
     body, joined = _joined(body, joints, turn)
-    body = facets.without(body, [facets.rod(axis, middle, dowel, DEEP) for axis, middle in holes])
+    body = facets.without(
+        body, [facets.rod(axis, middle, dowel, DOWEL_HOLE_DEPTH_M) for axis, middle in holes]
+    )
     cells = facets.cut_by(body, planes)
     found = sorted(
         (piece for cell in cells for piece in facets.parts_of(cell)), key=lambda one: one.bounding_box()
@@ -126,7 +128,9 @@ def segments(made, size, joint=DOWELS):
     pieces = tuple(_piece(f"segment_{k}", one) for k, one in enumerate(found, start=1))
     places = np.array([middle for _, middle in holes]).reshape(-1, 3)
     screwed = np.array([(one.middle, one.along, one.out) for one in joints]).reshape(-1, 3, 3)
-    return Segments(pieces, places, dowel, 2.0 * DEEP, turn, _turned(screwed, turn), joined, (bare, of))
+    return Segments(
+        pieces, places, dowel, 2.0 * DOWEL_HOLE_DEPTH_M, turn, _turned(screwed, turn), joined, (bare, of)
+    )
 
 
 def _lugs(made, body, turn, planes):
@@ -171,7 +175,7 @@ def _seams(made, size, screwed):
     Of the turns with fewest segments the one whose seams keep farthest from the devices.
     """
     found = []
-    for turn in 0.5 * np.pi * np.arange(TURNS) / TURNS:
+    for turn in 0.5 * np.pi * np.arange(SEAM_POSITIONS) / SEAM_POSITIONS:
         extents = _box(made.vertices, turn)
         counts = _counts(extents, size)
         if screwed and max(counts) > 1:
@@ -180,10 +184,10 @@ def _seams(made, size, screwed):
         rank = np.prod(counts), -round(_clear(made, turn, counts, extents), 9), float(turn)
         found.append((rank, counts, float(turn), extents))
     _, counts, turn, extents = min(found, key=lambda one: one[0])
-    if max(counts) > MOST:
-        least = " x ".join(f"{1e3 * (high - low) / MOST:.4g}" for low, high in extents)
+    if max(counts) > MAX_SEGMENTS:
+        least = " x ".join(f"{1e3 * (high - low) / MAX_SEGMENTS:.4g}" for low, high in extents)
         sentence = " x ".join(f"{1e3 * side:.4g}" for side in size)
-        what = f"{sentence} mm takes more than {MOST} segments in one direction"
+        what = f"{sentence} mm takes more than {MAX_SEGMENTS} segments in one direction"
         raise FeederError("bed", what, f"give at least {least} mm, or a smaller bowl")
     return counts, turn, extents
 
@@ -231,12 +235,18 @@ def _filed(plan, flat):
 def _dowels(made, body, turn, plane, size):
     """Places (axis, middle (3,) [m]) of dowels across a seam: in solid, apart, and none below a cut."""
     axis, at = plane
-    areas = [facets.cut_face(body, axis, at + off).buffer(-LAND * size) for off in (-DEEP, 0.0, DEEP)]
+    areas = [
+        facets.cut_face(body, axis, at + off).buffer(-LAND * size)
+        for off in (-DOWEL_HOLE_DEPTH_M, 0.0, DOWEL_HOLE_DEPTH_M)
+    ]
     area = areas[0].intersection(areas[1]).intersection(areas[2])
     if area.is_empty:
         return []
     low_u, low_v, high_u, high_v = area.bounds
-    u, v = np.meshgrid(np.arange(low_u, high_u + GRID, GRID), np.arange(low_v, high_v + GRID, GRID))
+    u, v = np.meshgrid(
+        np.arange(low_u, high_u + DOWEL_GRID_M, DOWEL_GRID_M),
+        np.arange(low_v, high_v + DOWEL_GRID_M, DOWEL_GRID_M),
+    )
     places = np.column_stack([u.ravel(), v.ravel()])
     places = places[shapely.contains_xy(area, *places.T)]
     ring = shapely.MultiPoint(_box_points(made, turn)).convex_hull.buffer(2.0 * size)
@@ -245,7 +255,7 @@ def _dowels(made, body, turn, plane, size):
         middle = np.insert(place, axis, at)
         if shapely.contains_xy(ring, *middle[:2]):
             continue
-        if all(np.sum((middle - other) ** 2) > APART**2 for _, other in kept):
+        if all(np.sum((middle - other) ** 2) > DOWEL_SPACING_M**2 for _, other in kept):
             kept.append((axis, middle))
     return kept
 
@@ -268,7 +278,7 @@ def overhangs(made):
     down = -across[:, 2] > (np.sqrt(0.5) + 1e-6) * 2.0 * area
     high = corners[..., 2].max(axis=1) > made.vertices[:, 2].min() + 1e-4
     where = _where(plan, facets.as_planned(plan, corners.mean(axis=1)))
-    found = {name: float(area[down & high & (where == name)].sum()) for name in PLACES}
+    found = {name: float(area[down & high & (where == name)].sum()) for name in OVERHANG_PLACES}
     return {name: one for name, one in found.items() if one > 1e-4}
 
 
@@ -276,24 +286,24 @@ def _by_the_outlet(plan, places):
     """Whether places (N, 3) [m] belong to what is straight beyond the end of the track: (N,) bool."""
     (x, y, z), far = places.T, plan.way.radius - plan.across - plan.material.wall
     high = z > plan.outlet_height - 2.0 * plan.material.plate - fillet(plan) - plan.hanging
-    return (y > -NEAR) & (x > far - NEAR) & high
+    return (y > -SURFACE_DISTANCE_M) & (x > far - SURFACE_DISTANCE_M) & high
 
 
 def _where(plan, places):
     """What of a bowl places (N, 3) [m] belong to, outlet at the angle 0: words (N,)."""
     way, (x, y, z) = plan.way, places.T
     r, theta = np.hypot(x, y), np.arctan2(y, x)
-    behind = theta - TURN * (theta > 0.0) - TURN * np.arange(int(plan.turns) + 2)[:, None]
+    behind = theta - FULL_TURN * (theta > 0.0) - FULL_TURN * np.arange(int(plan.turns) + 2)[:, None]
     s = way.at(behind)  # of each turn of the track that is there
     inwards = (way.wall_radius(s) - r) / np.cos(way.bank_at(s))
     above = z - way.height(s, inwards)
     deep = -(plan.material.plate + plan.across + plan.hanging)
-    beside = (inwards > -NEAR) & (inwards < plan.width + NEAR)
-    on_track = (beside & (above > deep) & (above < NEAR)).any(axis=0)
+    beside = (inwards > -SURFACE_DISTANCE_M) & (inwards < plan.width + SURFACE_DISTANCE_M)
+    on_track = (beside & (above > deep) & (above < SURFACE_DISTANCE_M)).any(axis=0)
     lowest = float(way.wall_radius(way.rises(plan.width)))
     kinds = [
         _by_the_outlet(plan, places),
         on_track,
-        (r < plan.ring + NEAR) | ((z < NEAR) & (r < lowest)),
+        (r < plan.ring + SURFACE_DISTANCE_M) | ((z < SURFACE_DISTANCE_M) & (r < lowest)),
     ]
     return np.select(kinds, ["outlet", "track", "floor"], "wall")

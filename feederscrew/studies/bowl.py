@@ -125,7 +125,9 @@ class MachineSheet(Shown):
         enough = alone.min() >= ENOUGH * self._asked.target or alone.min() >= controlled.min()
         rates, way = (alone, drive_sought.ALONE) if enough else (controlled, drive_sought.CONTROLLED)
         row = int(np.argmin(rates))
-        return Lowest(float(rates[row]), float(self.emptying.levels[row]), drive_sought.WAYS[way])
+        return Lowest(
+            float(rates[row]), float(self.emptying.levels[row]), drive_sought.STROKE_CONTROL_LABELS[way]
+        )
 
     def rates(self, velocities: np.ndarray) -> np.ndarray:
         """Return counted parts [1/s] at velocities; of a sheet with an order."""
@@ -200,7 +202,7 @@ def bowl(
     own = check.options("bowl", solidbowl.SizingOptions, options)
     plain = solidbowl.in_material(answer.conveying(bowls.record(settings)), own.solid)
     found = arriving(part, plain, rule) if known is None else known
-    straight = replace(sizing.STRAIGHT, climb=plain.track.climb)
+    straight = replace(sizing.STRAIGHT_TRACK, climb=plain.track.climb)
     wanted = None if aspect is None else well_oriented.wanted(part, found, straight, aspect, heading)
     lying = sizing.lying(part, found, wanted)
     _check_rule(rule, found)

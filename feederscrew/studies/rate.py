@@ -26,7 +26,7 @@ from feederscrew.running import CoresKeywords, OnCores
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.simulated import memory
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.isolating.design import PLAY, TOLERANCE
+from feederscrew.tooling.isolating.design import PLAY_M, TOLERANCE_M
 
 ALIKE = 1.0 - 1e-9  # of the most frequent orientation: as frequent
 LEAST = 1e-6  # of what must be above 0
@@ -181,7 +181,7 @@ class RateStudy(Shown):
     def of_size(self) -> tuple[str, ...]:
         """What to say of a part not much larger than play and tolerance, or than its track is wide."""
         usual = "play and tolerance as usual" if self.sigma == 0.0 else "play and tolerance"
-        allowances = {usual: self.sigma or float(np.hypot(PLAY, TOLERANCE))} if self.devices else {}
+        allowances = {usual: self.sigma or float(np.hypot(PLAY_M, TOLERANCE_M))} if self.devices else {}
         return small_part_remarks(self.part, allowances, self.bowl.track.width)
 
     @property

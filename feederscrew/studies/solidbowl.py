@@ -17,8 +17,8 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.solidbowl import cuts, leaning, lugs, riding, segments
 from feederscrew.solidbowl.closed_body import BowlSolid, body, screwed
 from feederscrew.solidbowl.exact import exact_body, exact_file
-from feederscrew.solidbowl.materials import STEEL, material
-from feederscrew.solidbowl.plan import CHORD, Asked, BowlPlan, TrackTooLow, plan
+from feederscrew.solidbowl.materials import STEEL_NAME, material
+from feederscrew.solidbowl.plan import ARC_CHORD_M, Asked, BowlPlan, TrackTooLow, plan
 from feederscrew.solidbowl.ways_down import ways_down
 from feederscrew.studies.rate import Spacing, SpacingKeywords
 from feederscrew.tooling.devices.base import Device
@@ -125,7 +125,10 @@ def drawable_climb(bowl: Bowl, part: Part, coming: stream.Orientations) -> float
     depth = rules.outlet_height if rules.outlet_height > 0.0 else 2.0 * rules.depth * track.radius
     size = Size(2.0 * track.radius, {}, track.width, 0.0, 0.0, track.climb, depth, np.nan, np.nan)
     wanted = Asked(
-        material=STEEL, shape=rules.shape, outlet_height=rules.outlet_height, friction=bowl.friction.static
+        material=STEEL_NAME,
+        shape=rules.shape,
+        outlet_height=rules.outlet_height,
+        friction=bowl.friction.static,
     )
     made = in_material(bowl, wanted)
     try:
@@ -255,7 +258,7 @@ def of_sheet(sheet: Any, settings: Sequence[Setting], aspects: Aspects) -> BowlS
     """
     order, bowl = sheet.order, sheet.bowl
     coming = stream.orientations(order.part, aspects, bowl.track, bowl.devices)
-    wanted = asked(settings, solid=True, material=STEEL, chord=CHORD)
+    wanted = asked(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
     counted = {"rule": order.rule, "target": order.wanted}
     return solid(bowl, order.size, order.part, coming, wanted, counted)[1]
 

@@ -24,7 +24,7 @@ from feederscrew.studies.wishes import ToolingKeywords, ToolingOptions, asked_fo
 from feederscrew.tooling.devices.kinds import names
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import tracks
-from feederscrew.tooling.isolating.design import MARGIN, PLAY, TOLERANCE, place
+from feederscrew.tooling.isolating.design import MARGIN_M, PLAY_M, TOLERANCE_M, place
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Design, Goal
 from feederscrew.tooling.mirrored import named
@@ -48,8 +48,8 @@ class ToolingStudy(Shown):
     designs: tuple[Design | None, ...]  # (M,) None where it was not asked for
     wanted: int | None  # the orientation asked for; None for all of them
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
-    play: float = PLAY  # [m] of the part from the wall, within the margin
-    tolerance: float = TOLERANCE  # [m] of its size, within the margin
+    play: float = PLAY_M  # [m] of the part from the wall, within the margin
+    tolerance: float = TOLERANCE_M  # [m] of its size, within the margin
     trials: tuple[Any, ...] = ()  # designing.own_trial.TriedDesign of what was tried, that of `design` first
 
     def trial_of(self, place: int) -> Any:
@@ -108,7 +108,7 @@ def tooling(
     *,
     heading: float | None = None,
     rule: str = "recommended",
-    margin: float = MARGIN,
+    margin: float = MARGIN_M,
     known: Aspects | None = None,
     **wishes: Unpack[ToolingKeywords],
 ) -> ToolingStudy:

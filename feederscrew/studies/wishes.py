@@ -12,11 +12,11 @@ from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.kinds import KINDS, leaning
-from feederscrew.tooling.isolating.chain import WHERE, Wishes
-from feederscrew.tooling.isolating.design import PLAY, TOLERANCE
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, Wishes
+from feederscrew.tooling.isolating.design import PLAY_M, TOLERANCE_M
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Goal
-from feederscrew.tooling.isolating.shop_values import FINE
+from feederscrew.tooling.isolating.shop_values import SHOP_ROUNDING_M
 from feederscrew.tooling.orientations import speed
 from feederscrew.units import shown
 
@@ -36,8 +36,8 @@ class ToolingOptions:
     cutter: float = Wishes.cutter
     vary: bool = Wishes.vary
     turn: bool = Wishes.turn
-    play: float = PLAY
-    tolerance: float = TOLERANCE
+    play: float = PLAY_M
+    tolerance: float = TOLERANCE_M
     seed: int = HoleSearch.seed
     verdicts: int = HoleSearch.verdicts
     seconds: float = 600.0
@@ -68,7 +68,7 @@ def asked_for(part: Part, bowl: Bowl, found: Aspects, own: ToolingOptions) -> Wi
     """Return what a design may use, checked, as Wishes."""
     if own.outcome not in OUTCOMES:
         raise ArgumentError("outcome", f"{own.outcome!r} is unknown", f"choose {', '.join(OUTCOMES)}")
-    check.argument("step", own.step, FINE)
+    check.argument("step", own.step, SHOP_ROUNDING_M)
     kinds = may_be_left_out(own.without)
     wishes = Wishes(
         outcome=own.outcome,
@@ -110,7 +110,7 @@ def may_be_up(part: Part, found: Aspects, up: str | Sequence[str]) -> tuple[str,
 def _separation(bowl: Bowl, wishes: Wishes) -> Device | None:
     """The stretch that makes gaps in this bowl; None where it may not be used or makes none."""
     for kind in leaning():
-        steeper = kind.parting(WHERE) if wishes.allows(kind.kind) else None
+        steeper = kind.parting(DESIGN_KEY) if wishes.allows(kind.kind) else None
         if steeper is not None and speed(steeper.onward(bowl)) > speed(bowl):
             return steeper
     return None

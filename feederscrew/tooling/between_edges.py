@@ -11,9 +11,9 @@ import shapely
 
 from feederscrew.geometry.polygons import cross, outline, sides, turned
 
-TILTS = 60  # steps of a tilt up to a right angle, to either side
-HOLLOW = 0.99  # of its convex outline: a part that fills less may catch an edge by its own corners
-NONE = 1e-12  # of a share of a force
+REST_TILTS = 60  # steps of a tilt up to a right angle, to either side
+CONVEX_FILL_SHARE = 0.99  # of its convex outline: a part that fills less may catch an edge by its own corners
+FORCE_SHARE_TOLERANCE = 1e-12  # of a share of a force
 
 
 def may_rest(section, width, friction, wall=False):
@@ -45,10 +45,10 @@ def may_rest(section, width, friction, wall=False):
     shaking of the drive and what speed is left only loosen it.
     """
     hull = section.convex_hull
-    if section.area < HOLLOW * hull.area:
+    if section.area < CONVEX_FILL_SHARE * hull.area:
         return True
     ring = outline(shapely.get_coordinates(hull))
-    tilts = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 2 * TILTS + 1)
+    tilts = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 2 * REST_TILTS + 1)
     met = [(_leans if wall else _bridges)(turned(ring, turn), width) for turn in tilts]
     if friction > 0.0:
         return any(two is not None and _holds(two, friction) for two in met)
@@ -129,9 +129,9 @@ def _holds(two, friction):
     rows[:, 2] /= size if size > 0.0 else 1.0
     for three in itertools.combinations(rows, 3):
         basis = np.array(three)
-        if abs(_det(basis)) < NONE:
+        if abs(_det(basis)) < FORCE_SHARE_TOLERANCE:
             continue
-        if (_shares(basis, weight) >= -NONE).all():
+        if (_shares(basis, weight) >= -FORCE_SHARE_TOLERANCE).all():
             return True
     return False
 

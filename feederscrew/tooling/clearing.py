@@ -9,8 +9,8 @@ import math
 from feederscrew.errors import FeederError
 
 PERIODS, SETTLED = 60, 20  # of the drive, in all and until the motion is taken
-STEPS = 240  # of one period
-STILL = 1e-6  # [m/s] what slides more slowly does not leave
+CLEARING_STEPS = 240  # of one period
+REST_SPEED = 1e-6  # [m/s] what slides more slowly does not leave
 
 
 def limit(friction):
@@ -48,7 +48,7 @@ def seconds(device, one, bowl):
     friction = bowl.friction.static if friction is None else friction
     speed = along_blade(bowl, sweep, friction)
     way = max(one.track.width - one.distance, 0.0)
-    return way / speed if speed > STILL else math.inf
+    return way / speed if speed > REST_SPEED else math.inf
 
 
 @functools.lru_cache(maxsize=64)
@@ -80,15 +80,15 @@ def along_blade(bowl, sweep, friction):
     if sweep >= limit(friction):
         return 0.0
     drive, grip, g = bowl.drive, bowl.friction, bowl.gravity
-    w, dt = 2.0 * math.pi * drive.frequency, 1.0 / drive.frequency / STEPS
+    w, dt = 2.0 * math.pi * drive.frequency, 1.0 / drive.frequency / CLEARING_STEPS
     fore = drive.amplitude * w * math.cos(drive.vibration_angle)
     lift = drive.amplitude * w * w * math.sin(drive.vibration_angle)
     pull = -g * math.sin(bowl.track.climb), -g * math.sin(bowl.track.bank)
     normal = g * math.cos(bowl.track.climb) * math.cos(bowl.track.bank)
     c, s = math.cos(sweep), math.sin(sweep)
     x = y = u = v = start = 0.0
-    for step in range(PERIODS * STEPS):
-        if step == SETTLED * STEPS:
+    for step in range(PERIODS * CLEARING_STEPS):
+        if step == SETTLED * CLEARING_STEPS:
             start = y
         phase = w * dt * step
         press = max(normal - lift * math.sin(phase + drive.phase), 0.0)

@@ -6,7 +6,7 @@ Source: averaged Coulomb friction on a vibrating surface; docs/tooling.md.
 import functools
 import math
 
-HALVINGS = 60
+FORCE_BISECTIONS = 60
 
 
 def speed(push, friction, swing, gravity):
@@ -45,7 +45,7 @@ def speed(push, friction, swing, gravity):
     if push >= holding(fastest):
         return math.inf
     low, high = 0.0, fastest
-    for _ in range(HALVINGS):
+    for _ in range(FORCE_BISECTIONS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if holding(middle) < push else (low, middle)
     return high
@@ -81,7 +81,7 @@ def _force_to_shift(one, wide):
     weight, friction = one.posture.mass * one.gravity, max(one.grip, 1e-3)
     way = max(one.track.width - one.distance, 0.0)
     low, high = 0.0, friction * weight
-    for _ in range(HALVINGS):
+    for _ in range(FORCE_BISECTIONS):
         middle = 0.5 * (low + high)
         found = speed(middle / one.posture.mass, friction, one.swing, one.gravity)
         gone = found * wide >= way * one.speed

@@ -7,18 +7,18 @@ import shapely
 import shapely.affinity
 
 from feederscrew.tooling import between_edges
-from feederscrew.tooling.devices.hole_shapes import BEHIND
+from feederscrew.tooling.devices.hole_shapes import WALL_OVERCUT_M
 from feederscrew.tooling.hanging import shoulder_margin
 from feederscrew.tooling.holding import may_turn_and_lie_over
 
-AZIMUTHS, TILTS = 8, 10  # ways it can tip: about level axes all round, by steps up to a right angle
-CLEAR = 2.5e-4  # [m] a hole is larger than the shadow that goes through it, all round
-BEYOND = 0.1  # [m] a hole that is open at the track's free edge goes on so far
-SQUARE = 1e-9  # of its box or its hull: what covers all but this, is a rectangle or convex
-PARALLEL = 1e-9  # sine between two sides that do not meet
-SLIGHT = 1e-12  # [m] by which what fits may stand out
-PLAIN = 2e-4  # of the part's size: corners of a shadow that stand out by less are left out
-LONG = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
+AZIMUTHS, FALL_TILTS = 8, 10  # ways it can tip: about level axes all round, by steps up to a right angle
+SHADOW_CLEARANCE_M = 2.5e-4  # [m] a hole is larger than the shadow that goes through it, all round
+OPEN_HOLE_OVERRUN_M = 0.1  # [m] a hole that is open at the track's free edge goes on so far
+RECTANGLE_TOLERANCE = 1e-9  # of its box or its hull: what covers all but this, is a rectangle or convex
+PARALLEL_SINE = 1e-9  # sine between two sides that do not meet
+FIT_TOLERANCE_M = 1e-12  # [m] by which what fits may stand out
+SHADOW_DETAIL_SHARE = 2e-4  # of the part's size: corners of a shadow that stand out by less are left out
+HOLE_LENGTHS = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
 FAR, ONE_LINE = 10.0, 1e-6  # [m] along any hole; half the width of a line across which it is measured
 PLACES, PIECES = 200, 8  # along a hole at which a part is tried; of a side of its outline
 
@@ -38,18 +38,18 @@ def falls_through(one, cut):
     -------
     bool
         Whether the shadow of the part, tipped some way by up to a right angle, lies in the hole with
-        ``CLEAR`` around it. Where it is tipped by less than that way, it is still on its way down over the
-        edge that it leaves. What goes over the track's free edge is gone.
+        ``SHADOW_CLEARANCE_M`` around it. Where it is tipped by less than that way, it is still on its way
+        down over the edge that it leaves. What goes over the track's free edge is gone.
     """
     hole = shapely.make_valid(_open(np.asarray(cut, float), one.track.width)).buffer(
-        -CLEAR, join_style="mitre"
+        -SHADOW_CLEARANCE_M, join_style="mitre"
     )
     if hole.is_empty:
         return False
     shadows, sizes = _shadows(one)
     extent = np.subtract(hole.bounds[2:], hole.bounds[:2])
     may = np.flatnonzero((sizes <= extent).all(axis=1))
-    if hole.area > (1.0 - SQUARE) * extent.prod():  # it is a rectangle
+    if hole.area > (1.0 - RECTANGLE_TOLERANCE) * extent.prod():  # it is a rectangle
         return bool(len(may))
     parts = [(part, _sides(part)) for part in shapely.get_parts(hole)]
     return any(_fits(shadows[k], *one) for k in may for one in parts)
@@ -70,7 +70,7 @@ def lets_go(device, one):
         Whether the part goes over the free edge, or through a hole along the track as it lies, or down
         between two edges where no tilt of it can rest on them. True of a device that cuts nothing.
     """
-    cut = device.outline_on(one.track, LONG * float(np.hypot(one.length, max(one.width, one.height))))
+    cut = device.outline_on(one.track, HOLE_LENGTHS * float(np.hypot(one.length, max(one.width, one.height))))
     if cut is None or _over_the_edge(device, one.track):
         return True
     span = device.span_on(one.track)
@@ -111,8 +111,8 @@ def fits_as_it_lies(one, cut):
         As for ``falls_through``.
     """
     hole = shapely.make_valid(_open(np.asarray(cut, float), one.track.width))
-    behind = shapely.affinity.translate(hole, 0.0, -BEHIND) if hole.bounds[1] <= 0.0 else hole
-    hole = hole.union(behind).buffer(-CLEAR, join_style="mitre")
+    behind = shapely.affinity.translate(hole, 0.0, -WALL_OVERCUT_M) if hole.bounds[1] <= 0.0 else hole
+    hole = hole.union(behind).buffer(-SHADOW_CLEARANCE_M, join_style="mitre")
     border = shapely.segmentize(shapely.linearrings(one.outline), one.length / PIECES)
     ahead, beside = shapely.get_coordinates(border).T
     middle, radius = one.track.radius - one.distance, one.track.radius
@@ -153,7 +153,9 @@ def _drops_between(one, cut):
 def _open(cut, width):
     """The hole as a polygon, beyond the track's free edge where it reaches it."""
     free = cut[:, 1] >= width - 1e-9
-    return shapely.Polygon(np.column_stack([cut[:, 0], np.where(free, cut[:, 1] + BEYOND, cut[:, 1])]))
+    return shapely.Polygon(
+        np.column_stack([cut[:, 0], np.where(free, cut[:, 1] + OPEN_HOLE_OVERRUN_M, cut[:, 1])])
+    )
 
 
 @functools.lru_cache(maxsize=512)
@@ -168,19 +170,21 @@ def _tipped(one):
     size = np.ptp(points, axis=0).max()
     c, s = np.cos(one.heading), np.sin(one.heading)
     x, y, z = c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1], points[:, 2]
-    for tilt in np.linspace(0.0, 0.5 * np.pi, TILTS):
+    for tilt in np.linspace(0.0, 0.5 * np.pi, FALL_TILTS):
         way = np.linspace(0.0, 2.0 * np.pi, AZIMUTHS, endpoint=False)[: None if tilt > 0.0 else 1, None]
         a, b = np.cos(way), np.sin(way)
         along = (a * x + b * y) * np.cos(tilt) + z * np.sin(tilt)
         beside = -b * x + a * y
         shadows = np.stack([a * along - b * beside, b * along + a * beside], axis=-1)
-        rings = shapely.simplify(shapely.convex_hull(shapely.multipoints(shadows)), PLAIN * size)
+        rings = shapely.simplify(
+            shapely.convex_hull(shapely.multipoints(shadows)), SHADOW_DETAIL_SHARE * size
+        )
         yield from (shapely.get_coordinates(ring)[:-1] for ring in rings)
 
 
 def _sides(part):
     """Half-planes (K, 3) [1, 1, m] that bound a convex polygon: normals and distances; None of another."""
-    if part.interiors or part.area < (1.0 - SQUARE) * part.convex_hull.area:
+    if part.interiors or part.area < (1.0 - RECTANGLE_TOLERANCE) * part.convex_hull.area:
         return None
     ring = shapely.get_coordinates(shapely.geometry.polygon.orient(part).exterior)
     along = np.diff(ring, axis=0)
@@ -200,10 +204,10 @@ def _fits_between(shadow, sides):
     room = c - (a[:, None] * shadow[:, 0] + b[:, None] * shadow[:, 1]).max(axis=1)
     one, other = np.triu_indices(len(sides), 1)
     turn = a[one] * b[other] - b[one] * a[other]
-    one, other, turn = (k[np.abs(turn) > PARALLEL] for k in (one, other, turn))
+    one, other, turn = (k[np.abs(turn) > PARALLEL_SINE] for k in (one, other, turn))
     x = (room[one] * b[other] - b[one] * room[other]) / turn
     y = (a[one] * room[other] - room[one] * a[other]) / turn
-    return bool((a[:, None] * x + b[:, None] * y <= room[:, None] + SLIGHT).all(axis=0).any())
+    return bool((a[:, None] * x + b[:, None] * y <= room[:, None] + FIT_TOLERANCE_M).all(axis=0).any())
 
 
 def _fits_within(shadow, part):

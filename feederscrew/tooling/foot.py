@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from feederscrew.geometry import polygons
-from feederscrew.tooling.devices.hole_shapes import BEHIND, gap
+from feederscrew.tooling.devices.hole_shapes import WALL_OVERCUT_M, gap
 
 SPOT = 1e-7  # [m] half the length of a single point of contact
-BESIDE = 1e-9  # [1] of an angle or a distance: what is beyond by more is so for certain
+SECTOR_TOLERANCE = 1e-9  # [1] of an angle or a distance: what is beyond by more is so for certain
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,8 +88,8 @@ def _sector(start, end, middle):
     share = np.clip(-(start * along).sum(axis=1) / (along * along).sum(axis=1), 0.0, 1.0)
     nearest = np.hypot(*(start + share[:, None] * along).T).min()
     theta, far = np.arctan2(*start.T), np.hypot(*start.T).max()
-    least, most = theta.min() - BESIDE, theta.max() + BESIDE
-    return np.array([least, most, nearest * (1.0 - BESIDE), far * (1.0 + BESIDE)])
+    least, most = theta.min() - SECTOR_TOLERANCE, theta.max() + SECTOR_TOLERANCE
+    return np.array([least, most, nearest * (1.0 - SECTOR_TOLERANCE), far * (1.0 + SECTOR_TOLERANCE)])
 
 
 def scratch(foot, hole):
@@ -136,7 +136,7 @@ def unheld(foot, hole, work=None, enough=np.inf):
     """
     from feederscrew.tooling.kernel import unheld as kernel
 
-    turn = enough * (1.0 + BESIDE) / foot.centre
+    turn = enough * (1.0 + SECTOR_TOLERANCE) / foot.centre
     return float(kernel.longest(foot, hole, work or scratch(foot, hole), turn)) * foot.centre
 
 
@@ -197,7 +197,7 @@ def longest_gap(foot, radius):
 
 def _extent(foot, radius):
     """How far from the wall a foot reaches [m], and a little more."""
-    return min(float(radius - foot.polar[:, 1].min() + BEHIND), radius)
+    return min(float(radius - foot.polar[:, 1].min() + WALL_OVERCUT_M), radius)
 
 
 def ring_scratch(foot):

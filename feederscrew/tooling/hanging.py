@@ -15,11 +15,19 @@ from feederscrew.tooling.foot import Footprint
 from feederscrew.tooling.orientations import Orientation
 
 SLICES = 80  # along the part
-STEEP = np.radians(45.0)  # a part that stands or lies across the track does not go down by its shank
-ALIKE = np.cos(np.radians(5.0))  # parts that hang by the same head hang alike, however they lay before
+MAX_SHANK_ANGLE_RAD = np.radians(
+    45.0
+)  # a part that stands or lies across the track does not go down by its shank
+SAME_HEAD_COSINE = np.cos(
+    np.radians(5.0)
+)  # parts that hang by the same head hang alike, however they lay before
 HANGING = "hanging"  # what the hanging pose is called, in place of an aspect
-SUNK = 0.38  # of the shank's radius: how far beyond a rail the middle of its tip has to lie ...
-STRAIGHT = 0.05  # of its diameter: ... unless its tip lies no farther aside than that from its weight
+TIP_BEYOND_RAIL_SHARE = (
+    0.38  # of the shank's radius: how far beyond a rail the middle of its tip has to lie ...
+)
+STRAIGHT_SHANK_SHARE = (
+    0.05  # of its diameter: ... unless its tip lies no farther aside than that from its weight
+)
 BARE, FULL = 1.05, 0.9  # of the shank's and of its own width: where the underside of a head begins and ends
 SEATED = 0.1  # of the head's height: how much of a cone's underside counts as resting on the rails
 
@@ -112,7 +120,9 @@ class _Lying:
 def _neck(lying):
     one = lying.one
     axis = _axis(one)
-    if abs(axis[2]) > np.sin(STEEP) or abs(axis[1]) > np.sin(STEEP) * np.hypot(axis[0], axis[1]):
+    if abs(axis[2]) > np.sin(MAX_SHANK_ANGLE_RAD) or abs(axis[1]) > np.sin(MAX_SHANK_ANGLE_RAD) * np.hypot(
+        axis[0], axis[1]
+    ):
         return None
     places, widths = _widths(one, axis)
     found = []
@@ -188,7 +198,10 @@ def tip_goes_down(one, near):
     if found is None:
         return False
     beyond = one.distance + found.tip - near
-    return abs(found.tip) <= STRAIGHT * found.shank or beyond >= SUNK * 0.5 * found.shank
+    return (
+        abs(found.tip) <= STRAIGHT_SHANK_SHARE * found.shank
+        or beyond >= TIP_BEYOND_RAIL_SHARE * 0.5 * found.shank
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -284,7 +297,7 @@ def hung(one, span, known=()):
     held = shoulders(one, span[1] - span[0])
     found = neck(one) if held is None else _neck_of(one, held)
     for other in known:
-        if vectors.dot(found.down, other.neck.down) > ALIKE:
+        if vectors.dot(found.down, other.neck.down) > SAME_HEAD_COSINE:
             return other
     if held is not None:
         solid = one.posture.solid

@@ -10,11 +10,11 @@ import shapely
 
 from feederscrew.geometry.polygons import outline, turned
 from feederscrew.tooling.hanging import neck
-from feederscrew.tooling.orientations import ROUNDED, rolls_across
+from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M, rolls_across
 
-SAME = 1e-6  # of the part's height: places so near to the foremost one are met with it
-BESIDE = 1e-2  # of the part's height: places so near to the wall lean on it
-FAR = 10.0  # [m] beyond any foot
+FOREMOST_TOLERANCE = 1e-6  # of the part's height: places so near to the foremost one are met with it
+WALL_CONTACT_SHARE = 1e-2  # of the part's height: places so near to the wall lean on it
+BEYOND_FOOT_M = 10.0  # [m] beyond any foot
 LEVER = 0.1  # of the length, from the head to the weight: in trials those with 0.15 hang, with 0.04 not
 OFF_WALL = 9e-5  # [m] by which a head that hangs stays off the wall at least
 
@@ -184,7 +184,7 @@ def leans(one, width):
     """
     points = one.posture.surface
     across = turned(points[:, :2], one.heading)[:, 1]
-    high = points[across <= across.min() + BESIDE * one.height, 2].max()
+    high = points[across <= across.min() + WALL_CONTACT_SHARE * one.height, 2].max()
     return max(one.climbs * (2.0 * high - one.posture.height) / width, 0.0)
 
 
@@ -213,13 +213,13 @@ def rides(one, width, length):
     places = one.foot.corners[:, 0]
     share = 1.0 - float(places.max()) / length if length < np.ptp(places) else 1.0
     sunk = radius - math.sqrt(radius**2 - 0.25 * width**2)
-    return share * (sunk - ROUNDED) < one.climbs - ROUNDED
+    return share * (sunk - CUT_BORDER_RADIUS_M) < one.climbs - CUT_BORDER_RADIUS_M
 
 
 def widest(corners):
     """Return the greatest width [m] across the track of a hole with some corners (K, 2) [m]."""
     area = shapely.Polygon(corners)
-    lines = [shapely.LineString([(x, -FAR), (x, FAR)]) for x, _ in corners]
+    lines = [shapely.LineString([(x, -BEYOND_FOOT_M), (x, BEYOND_FOOT_M)]) for x, _ in corners]
     return max(area.intersection(line).length for line in lines)
 
 
@@ -233,12 +233,12 @@ def _met(one, low):
     share = (low - height[a]) / (height[b] - height[a])
     reach = np.concatenate([ahead[height >= low], ahead[a] + share * (ahead[b] - ahead[a])])
     level = np.concatenate([height[height >= low], np.full(len(a), low)])
-    return float(reach.max()), float(level[reach >= reach.max() - SAME * one.height].min())
+    return float(reach.max()), float(level[reach >= reach.max() - FOREMOST_TOLERANCE * one.height].min())
 
 
 def _behind(one):
     """Way [m] from where the weight meets the track back to the border of the supported hull."""
     hull = shapely.MultiPoint(one.foot.corners).convex_hull
-    back = hull.intersection(shapely.LineString([(0.0, -one.shift), (-FAR, -one.shift)]))
+    back = hull.intersection(shapely.LineString([(0.0, -one.shift), (-BEYOND_FOOT_M, -one.shift)]))
     least = one.foot.corners[:, 0].min() if back.is_empty else back.bounds[0]
     return max(float(-least), 0.0)

@@ -21,7 +21,7 @@ from feederscrew.tooling.sensor_views import area
 from feederscrew.tooling.touching import silhouette
 from feederscrew.units import GRAVITY
 
-ROUNDED = 5e-5  # [m] by which the borders of a cut are rounded: less depth does not catch
+CUT_BORDER_RADIUS_M = 5e-5  # [m] by which the borders of a cut are rounded: less depth does not catch
 FALLEN = 2.0  # time constants after which a part that tips is lost
 
 
@@ -248,7 +248,7 @@ def travelling(found, bowl):
             swing=swing,
             gravity=float(bowl.gravity),
             wall_grip=float(bowl.friction.wall),
-            climbs=float(ROUNDED + fastest**2 / (2.0 * bowl.gravity)),
+            climbs=float(CUT_BORDER_RADIUS_M + fastest**2 / (2.0 * bowl.gravity)),
             may_roll_back=bool(not held and rolls_across(one)),
         )
         for one in found

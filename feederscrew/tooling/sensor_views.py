@@ -9,14 +9,16 @@ import shapely.affinity
 from feederscrew.geometry import shaded
 from feederscrew.geometry.polygons import turned
 
-FINE = 1e-4  # [m] between places of a border at which two are compared
-PLAIN = 1e-4  # of the part's size: corners that stand out by less are left out
-KEPT = 1e-6  # of an area, that closing its slits may lose by rounding
-GRID = 1e-6  # [m] to which sections are rounded: where facets meet they meet
-ASKEW = tuple(np.radians((-4.0, -2.0, 0.0, 2.0, 4.0)))  # by which parts come turned from their heading
-ABOUT = np.radians(10.0)  # by which an outline is turned, either way, until it fits
+BORDER_STEP_M = 1e-4  # [m] between places of a border at which two are compared
+VIEW_DETAIL_SHARE = 1e-4  # of the part's size: corners that stand out by less are left out
+SLIT_AREA_TOLERANCE = 1e-6  # of an area, that closing its slits may lose by rounding
+SECTION_GRID_M = 1e-6  # [m] to which sections are rounded: where facets meet they meet
+VIEW_TURNS_RAD = tuple(
+    np.radians((-4.0, -2.0, 0.0, 2.0, 4.0))
+)  # by which parts come turned from their heading
+MAX_VIEW_TURN_RAD = np.radians(10.0)  # by which an outline is turned, either way, until it fits
 COARSE, SHRINKS, GOLDEN = 9, 10, 0.5 * (np.sqrt(5.0) - 1.0)  # turns that are tried first, then between them
-NOTHING = 1e-7  # [m] of what is not there
+MIN_FEATURE_M = 1e-7  # [m] of what is not there
 SLIT = 2e-5  # [m] half the width of slits between facets that are closed
 
 
@@ -51,7 +53,7 @@ def _difference(one, other, sees):
     wanted = _outline(other, sees)
     if sees == "outline":
         return fitted(_outline(one, sees), wanted)
-    return min(apart(_outline(one, sees, by), wanted) for by in ASKEW)
+    return min(apart(_outline(one, sees, by), wanted) for by in VIEW_TURNS_RAD)
 
 
 def askew(one, sees):
@@ -63,7 +65,7 @@ def askew(one, sees):
 
 @functools.lru_cache(maxsize=512)
 def _askew(lies, sees):
-    return max(apart(_outline(lies, sees, by), _outline(lies, sees)) for by in ASKEW)
+    return max(apart(_outline(lies, sees, by), _outline(lies, sees)) for by in VIEW_TURNS_RAD)
 
 
 def _lies(one, line, sees):
@@ -85,7 +87,7 @@ def fitted(seen, wanted, enough=0.0):
     best = off(0.0)
     if best <= enough:
         return best
-    turns = np.linspace(-ABOUT, ABOUT, COARSE)
+    turns = np.linspace(-MAX_VIEW_TURN_RAD, MAX_VIEW_TURN_RAD, COARSE)
     tried = [off(turn) for turn in turns]
     k = int(np.argmin(tried))
     if tried[k] - _between(seen, turns[1] - turns[0]) > enough > 0.0:
@@ -122,7 +124,7 @@ def apart(first, second):
 
 def _reach(area, other):
     """Greatest distance [m] of the places of an area's border from another area's, and of holes alike."""
-    places = shapely.get_coordinates(shapely.segmentize(area.boundary, 10.0 * FINE))
+    places = shapely.get_coordinates(shapely.segmentize(area.boundary, 10.0 * BORDER_STEP_M))
     return float(shapely.distance(shapely.points(places), other.boundary).max())
 
 
@@ -176,7 +178,9 @@ def area(points, faces, sees, resolution=0.0, line=0.0):
         return _relief(points[faces], line, resolution)
     seen = points[:, :2] if sees == "outline" else points[:, [0, 2]]
     seen = seen - [seen[:, 0].max(), seen[:, 1].min() if sees == "outline" else 0.0]
-    whole = _without_slits(shaded.area(seen, faces)).simplify(PLAIN * np.ptp(points, axis=0).max())
+    whole = _without_slits(shaded.area(seen, faces)).simplify(
+        VIEW_DETAIL_SHARE * np.ptp(points, axis=0).max()
+    )
     coarse = shapely.set_precision(whole, resolution) if resolution > 0.0 else whole
     return whole if coarse.is_empty else coarse
 
@@ -186,7 +190,7 @@ def _relief(facets, line, resolution):
     off = facets[:, :, 1] - line
     crossing = (off.min(axis=1) < 0.0) & (off.max(axis=1) >= 0.0)
     facets, off = facets[crossing], off[crossing]
-    nothing = shapely.box(-NOTHING, 0.0, 0.0, NOTHING)
+    nothing = shapely.box(-MIN_FEATURE_M, 0.0, 0.0, MIN_FEATURE_M)
     if not len(facets):
         return nothing
     row, k = np.nonzero((off < 0.0) != (np.roll(off, -1, axis=1) < 0.0))  # two sides of each cross the line
@@ -194,7 +198,7 @@ def _relief(facets, line, resolution):
     ends = _at(first, last, before[:, None], beyond[:, None]).reshape(-1, 2, 3)[:, :, [0, 2]]
     ends = ends - [ends[:, :, 0].max(), 0.0]
     ends = np.round(ends / resolution) * resolution if resolution > 0.0 else ends
-    seen = shaded.below(np.stack([ends[:, :, 0], np.maximum(ends[:, :, 1], 0.0)], axis=2), GRID)
+    seen = shaded.below(np.stack([ends[:, :, 0], np.maximum(ends[:, :, 1], 0.0)], axis=2), SECTION_GRID_M)
     return nothing if seen.is_empty else seen  # the line may graze a corner
 
 
@@ -210,6 +214,6 @@ def _without_slits(whole):
     """
     for width in (SLIT, 0.9 * SLIT, 1.1 * SLIT):
         closed = whole.buffer(width, join_style="mitre").buffer(-width, join_style="mitre")
-        if closed.area >= (1.0 - KEPT) * whole.area:
+        if closed.area >= (1.0 - SLIT_AREA_TOLERANCE) * whole.area:
             return closed
     return whole

@@ -8,11 +8,13 @@ import shapely
 
 from feederscrew.bowl.record import Track
 from feederscrew.tooling.devices.base import Device, room_of
-from feederscrew.tooling.devices.pieces import BLADE, FRAME
+from feederscrew.tooling.devices.pieces import BLADE, GATE_FRAME_M
 from feederscrew.tooling.fates import leading
 
-BESIDE = 5e-3  # [m] of track beyond what parts and cuts need, where the whole track is not drawn
-CHORD = 1e-5  # [m] by which an arc may be seen too flat
+DRAWN_TRACK_MARGIN_M = (
+    5e-3  # [m] of track beyond what parts and cuts need, where the whole track is not drawn
+)
+DRAWN_CHORD_M = 1e-5  # [m] by which an arc may be seen too flat
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +105,7 @@ def strip(track, devices, every, lead=0.5):
     return replace(bare, length=start, stations=tuple(stations))
 
 
-def bent(ring, radius, shift=0.0, chord=CHORD):
+def bent(ring, radius, shift=0.0, chord=DRAWN_CHORD_M):
     """Return a ring (K, 2) [m] of lengths along the wall and distances from it as it lies in the bowl.
 
     Parameters
@@ -132,7 +134,7 @@ def _width(track, devices, every):
     if track.width <= track.extent:
         return track.width
     needed = [one.width for one in every] + [device.across for device in devices]
-    return min(max(needed) + BESIDE, track.extent)
+    return min(max(needed) + DRAWN_TRACK_MARGIN_M, track.extent)
 
 
 def _station(device, start, length, section, every):
@@ -151,7 +153,7 @@ def _station(device, start, length, section, every):
         hole=None if cut is None else np.add(cut, [start, 0.0]),
         blade=blade,
         openings=() if gate is None else _rings(gate),
-        top=0.0 if gate is None else max(section.tallest, gate.bounds[3]) + FRAME,
+        top=0.0 if gate is None else max(section.tallest, gate.bounds[3]) + GATE_FRAME_M,
         drop=lower[0] if lower is not None and lower[1] <= 0.0 else 0.0,
         edge=device.edge(start, length, section.width),
         wall=_wall(device, section.track, every),

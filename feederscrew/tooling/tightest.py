@@ -15,9 +15,9 @@ from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.strip import bent
 from feederscrew.tooling.verdicts import Meeting, verdict
 
-CHORD = 1e-7  # [m] by which an arc may be seen too flat
-BESIDE = 3e-6  # [rad] to either side of a place where an edge of the hole meets a corner of the foot
-LONG = 3.0  # lengths of the part: how far a device that goes on along the track is shown
+PASSAGE_CHORD_M = 1e-7  # [m] by which an arc may be seen too flat
+EDGE_OFFSET_RAD = 3e-6  # [rad] to either side of a place where an edge of the hole meets a corner of the foot
+SHOWN_HOLE_LENGTHS = 3.0  # lengths of the part: how far a device that goes on along the track is shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ def passage(device, one, every, known=()):
     """
     found = verdict(device, one, every)
     touching, weight = foot(one), (0.0, one.distance - one.shift)
-    holes = [_hole(device, one, by) for by in (0.0, -BESIDE, BESIDE)]
+    holes = [_hole(device, one, by) for by in (0.0, -EDGE_OFFSET_RAD, EDGE_OFFSET_RAD)]
     hulls = [(touching if cut is None else touching.difference(cut)).convex_hull for cut in holes]
     worst = int(np.argmin([_within(hull, weight) for hull in hulls]))
     return Passage(
@@ -171,10 +171,10 @@ def _shift(device, one):
 
 def _hole(device, one, by):
     """What a device cuts away where the margin is least, about the radial line of the foot."""
-    track, length = one.track, LONG * one.length
+    track, length = one.track, SHOWN_HOLE_LENGTHS * one.length
     ring, shift = device.outline_on(track, length), _shift(device, one)
     if ring is None:
         return None
     shift = -0.5 * length / track.radius if shift is None else shift + by
-    ring = bent(np.array(through_the_wall(ring.tolist())), track.radius, shift, CHORD)
+    ring = bent(np.array(through_the_wall(ring.tolist())), track.radius, shift, PASSAGE_CHORD_M)
     return shapely.make_valid(shapely.Polygon(ring))

@@ -6,14 +6,16 @@ import shapely
 from feederscrew import check
 from feederscrew.geometry.polygons import turned
 from feederscrew.resting.posture import TOUCHING
-from feederscrew.tooling.foot import BEHIND, Footprint
+from feederscrew.tooling.foot import WALL_OVERCUT_M, Footprint
 
-SUNK = 0.03  # of the centre of mass's height: how much of a rolling part's underside counts as its foot
+ROLLING_FOOT_SHARE = (
+    0.03  # of the centre of mass's height: how much of a rolling part's underside counts as its foot
+)
 SLIVER = 1e-6  # of the part's size squared: smaller areas and holes of them are leftovers of rounding
-CHORD = 2e-7  # [m] by which the edge of a slot may be seen too flat
-PLAIN = 1e-4  # of the part's size: corners that stand out by less are left out
-FINEST = 3e-5  # [m] to which a silhouette is exact on a curved track
-GRID = 1e-8  # [m] of its corners
+SLOT_CHORD_M = 2e-7  # [m] by which the edge of a slot may be seen too flat
+FOOT_DETAIL_SHARE = 1e-4  # of the part's size: corners that stand out by less are left out
+SILHOUETTE_STEP_M = 3e-5  # [m] to which a silhouette is exact on a curved track
+FOOT_GRID_M = 1e-8  # [m] of its corners
 
 
 def footprint(posture, heading):
@@ -31,18 +33,19 @@ def footprint(posture, heading):
     -------
     Footprint
         In track axes from the foot of the centre of mass. A part that rolls touches with the strip of its
-        underside that a hole's edge would carry, up to ``SUNK`` of its height, however finely its round
-        side is cut into facets. Where none of the mesh is low enough to carry it, the contact polygon does.
+        underside that a hole's edge would carry, up to ``ROLLING_FOOT_SHARE`` of its height, however finely
+        its round side is cut into facets. Where none of the mesh is low enough to carry it, the contact
+        polygon does.
     """
     rolls = posture.kind == "rolling"
     if not rolls and not posture.on_floor.any():
         return _of_polygon(turned(posture.contact, heading))
     points, faces = posture.surface, posture.solid.faces
     size = np.ptp(posture.outline, axis=0).max()
-    depth = SUNK * posture.height if rolls else TOUCHING * size
+    depth = ROLLING_FOOT_SHARE * posture.height if rolls else TOUCHING * size
     plan = turned(points[:, :2], heading)
     area = area_below(plan, points[:, 2], faces, depth, rolls)
-    area = area.simplify(PLAIN * size) if not area.is_empty else area
+    area = area.simplify(FOOT_DETAIL_SHARE * size) if not area.is_empty else area
     edges, single = _bare(plan, points[:, 2] < depth, faces, area, TOUCHING * size)
     if area.is_empty and len(edges) + len(single) < 1:
         return _of_polygon(turned(posture.contact, heading))
@@ -147,9 +150,9 @@ def ring(span, distance, radius, reach):
     shapely Polygon
     """
     most = min(reach / max(radius - span[1], 0.1 * radius), 0.999 * np.pi)
-    count = 2 + int(2.0 * most * np.sqrt(radius / (8.0 * CHORD)))
+    count = 2 + int(2.0 * most * np.sqrt(radius / (8.0 * SLOT_CHORD_M)))
     turn = np.linspace(-most, most, count)
-    sides = [radius - span[0] + BEHIND * (span[0] <= 0.0), max(radius - span[1], 0.0)]
+    sides = [radius - span[0] + WALL_OVERCUT_M * (span[0] <= 0.0), max(radius - span[1], 0.0)]
     middle = radius - distance
     sides = [np.column_stack([r * np.sin(turn), middle - r * np.cos(turn)]) for r in sides]
     return shapely.Polygon(np.vstack([sides[0], sides[1][::-1]]))
@@ -252,13 +255,13 @@ def silhouette(posture, heading, distance, radius):
     points, faces = posture.surface, posture.solid.faces
     plan = turned(points[:, :2], heading)
     corners = np.column_stack([plan[:, 0], radius - distance - plan[:, 1], points[:, 2]])[faces]
-    corners = _short(corners, np.sqrt(8.0 * radius * FINEST))
+    corners = _short(corners, np.sqrt(8.0 * radius * SILHOUETTE_STEP_M))
     seen = np.stack([radius - np.hypot(corners[..., 0], corners[..., 1]), corners[..., 2]], axis=-1)
     a, b, c = seen[:, 0], seen[:, 1], seen[:, 2]
     twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    whole = shapely.union_all(shapely.polygons(seen[twice > 1e-14]), grid_size=GRID)
+    whole = shapely.union_all(shapely.polygons(seen[twice > 1e-14]), grid_size=FOOT_GRID_M)
     size = np.ptp(points, axis=0).max()
-    return rings(whole.simplify(PLAIN * size), SLIVER * size**2)
+    return rings(whole.simplify(FOOT_DETAIL_SHARE * size), SLIVER * size**2)
 
 
 def _short(corners, longest):

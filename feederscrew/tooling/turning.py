@@ -26,7 +26,7 @@ from feederscrew.resting.tumbling import half_edges as tumbling
 from feederscrew.resting.tumbling import walk
 from feederscrew.tooling.devices.ledge_edges import below_ledge
 
-BEYOND = 1e-7  # [rad] past the barrier a part rolls down by itself
+BARRIER_OVERSHOOT_RAD = 1e-7  # [rad] past the barrier a part rolls down by itself
 TOUCHES = 1e-5  # of the part's size: hull corners that low rest on the track
 SKEW = 0.2  # sine of the angle from which a side of the foot is neither along the track nor across it
 
@@ -237,7 +237,7 @@ def _tipped(hull, frame, inwards):
     """
     side, kept, down = frame
     angle, height = barrier(vectors.product(hull.vertices, np.column_stack([side, down])))
-    past = math.cos(angle + BEYOND) * down + math.sin(angle + BEYOND) * side
+    past = math.cos(angle + BARRIER_OVERSHOOT_RAD) * down + math.sin(angle + BARRIER_OVERSHOOT_RAD) * side
     rests = _end(hull, past)
     kept = vectors.carried(kept, past, rests)
     return angle, height, (np.cross(kept, rests) if inwards else np.cross(rests, kept), kept, rests)

@@ -23,7 +23,7 @@ from feederscrew.tooling.holding import (
 )
 
 WORN = 2.5e-4  # [m] what an opening holds by less does not hold a part up
-FAR = 10.0  # [m] an opening goes on so far below the track and behind the wall
+BEYOND_OPENING_M = 10.0  # [m] an opening goes on so far below the track and behind the wall
 
 
 def verdict(device, one, every=(), sigma=0.0):
@@ -257,7 +257,9 @@ def opening_margin(opening, one):
     one : Orientation
         What of it is beyond the track's free edge meets no gate.
     """
-    shown = one.seen.intersection(shapely.box(-FAR, -FAR, one.track.width, FAR))
+    shown = one.seen.intersection(
+        shapely.box(-BEYOND_OPENING_M, -BEYOND_OPENING_M, one.track.width, BEYOND_OPENING_M)
+    )
     inside = shown.distance(_solid(opening, one.track.width))
     if inside > 0.0:
         return inside
@@ -267,7 +269,7 @@ def opening_margin(opening, one):
 
 def _solid(opening, width):
     """A gate as wide as the track, without its opening; track and wall themselves are none of it."""
-    gate = shapely.box(0.0, 0.0, width, FAR)
+    gate = shapely.box(0.0, 0.0, width, BEYOND_OPENING_M)
     return gate.difference(opening)
 
 

@@ -15,11 +15,15 @@ from feederscrew.geometry.graphs import components
 from feederscrew.units import MM
 
 SIMPLER = 0.0, 1e-5, 2e-4, 2e-3  # [mm] corners nearer than this become one: the first that closes
-CRUMB = 1.0  # [mm3] a film of air that closes in itself, or a piece, smaller than this is left out
-ROUNDED = 1e-6  # of a volume: by that and a crumb at most may rounding change it
-NEAR = 2e-4  # [mm] corners nearer than this are at one place; readers of STL unite what lies within 1e-5
-AWAY = 1e-3  # [mm] by which corners that meet are moved apart
-ROUNDS = 60
+MIN_VOID_VOLUME_MM3 = (
+    1.0  # [mm3] a film of air that closes in itself, or a piece, smaller than this is left out
+)
+VOLUME_ROUNDING = 1e-6  # of a volume: by that and a crumb at most may rounding change it
+MERGE_DISTANCE_MM = (
+    2e-4  # [mm] corners nearer than this are at one place; readers of STL unite what lies within 1e-5
+)
+SEPARATION_MM = 1e-3  # [mm] by which corners that meet are moved apart
+MAX_MERGE_ROUNDS = 60
 
 
 def mesh(body):
@@ -57,7 +61,10 @@ def _surface(body, simpler):
     points = _single(np.asarray(found.vert_properties)[:, :3])
     points, faces = closed(points, _without_crumbs(points, np.asarray(found.tri_verts).astype(int)))
     a, b, c = points[faces].transpose(1, 0, 2)
-    if abs(float((a * np.cross(b, c)).sum()) / 6.0 - body.volume()) > CRUMB + ROUNDED * body.volume():
+    if (
+        abs(float((a * np.cross(b, c)).sum()) / 6.0 - body.volume())
+        > MIN_VOID_VOLUME_MM3 + VOLUME_ROUNDING * body.volume()
+    ):
         raise FeederError("the body", "its surface closes another volume", "take other sizes")
     used, faces = np.unique(faces, return_inverse=True)
     points, places = np.unique(points[used], axis=0, return_inverse=True)
@@ -88,7 +95,7 @@ def closed(points, faces):
         If sixty rounds do not do it.
     """
     points = np.array(points, float)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_MERGE_ROUNDS):
         faces, stuck = _with_area(points, _collapsed(points, faces))
         met = np.union1d(_sharing_a_place(points, faces), stuck).astype(int)
         if not len(met):
@@ -109,13 +116,13 @@ def _without_crumbs(points, faces):
     a, b, c = points[faces].transpose(1, 0, 2)
     own = shells[faces[:, 0]]
     volumes = np.abs(np.bincount(own, (a * np.cross(b, c)).sum(axis=1) / 6.0, count))
-    return faces[(volumes[own] > CRUMB) | (own == np.argmax(volumes))]
+    return faces[(volumes[own] > MIN_VOID_VOLUME_MM3) | (own == np.argmax(volumes))]
 
 
 def _sharing_a_place(points, faces):
     """The corners in use that lie at the place of another."""
     used = np.unique(faces)
-    return used[np.unique(cKDTree(points[used]).query_pairs(NEAR, output_type="ndarray"))]
+    return used[np.unique(cKDTree(points[used]).query_pairs(MERGE_DISTANCE_MM, output_type="ndarray"))]
 
 
 def _apart(points, faces, met):
@@ -127,7 +134,7 @@ def _apart(points, faces, met):
         sizes = np.sqrt((ways**2).sum(axis=1, keepdims=True))
         way = np.divide(ways, sizes, out=np.zeros_like(ways), where=sizes > 0.0).sum(axis=0)
         size = np.sqrt((way**2).sum())
-        moved[one] = _single(points[one] + AWAY * way / max(size, 1e-3))
+        moved[one] = _single(points[one] + SEPARATION_MM * way / max(size, 1e-3))
     return moved
 
 
@@ -137,7 +144,7 @@ def _collapsed(points, faces):
     while len(faces) < before:
         before = len(faces)
         ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-        short = ends[((points[ends[:, 0]] - points[ends[:, 1]]) ** 2).sum(axis=1) < NEAR**2]
+        short = ends[((points[ends[:, 0]] - points[ends[:, 1]]) ** 2).sum(axis=1) < MERGE_DISTANCE_MM**2]
         for kept, gone in short[short[:, 0] < short[:, 1]]:
             faces = _without_edge(faces, kept, gone)
     return faces
@@ -159,7 +166,7 @@ def _with_area(points, faces):
     The long side of such a facet is turned in its neighbour.
     """
     stuck = set()
-    for _ in range(ROUNDS * ROUNDS):
+    for _ in range(MAX_MERGE_ROUNDS * MAX_MERGE_ROUNDS):
         flat = [row for row in _flat(points, faces) if row[2] not in stuck]
         if not flat:
             break
@@ -175,7 +182,7 @@ def _flat(points, faces):
     for one in faces[~np.cross(b - a, c - a).any(axis=1)]:
         sides = ((points[one] - points[np.roll(one, 1)]) ** 2).sum(axis=1)
         k = int(np.argmax(sides))
-        if sides.min() > NEAR**2:
+        if sides.min() > MERGE_DISTANCE_MM**2:
             found.append((int(one[k - 1]), int(one[k]), int(one[k - 2])))
     return found
 

@@ -7,7 +7,7 @@ import shapely
 
 from feederscrew import check
 from feederscrew.tooling.devices.hole_shapes import beyond_borders
-from feederscrew.tooling.orientations import ROUNDED
+from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
 from feederscrew.tooling.strip import bent
 from feederscrew.trial import air
 from feederscrew.trial.air import Air
@@ -260,7 +260,7 @@ def stacked(plates):
     rows, first = [], 0
     for frame, depth, friction, borders in plates:
         last = first + len(borders)
-        rows.append([*frame.ravel(), depth, ROUNDED, first, last, friction])
+        rows.append([*frame.ravel(), depth, CUT_BORDER_RADIUS_M, first, last, friction])
         first = last
     borders = np.concatenate([borders for *_, borders in plates])
     return check.frozen(np.array(rows, float)), check.frozen(borders)

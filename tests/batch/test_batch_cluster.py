@@ -123,7 +123,7 @@ def test_what_a_worker_had_done_before_it_died_is_waited_for_again(monkeypatch):
 
 
 def test_no_scheduler_is_one_line(tmp_path, three, monkeypatch):  # noqa: F811
-    monkeypatch.setattr("feederscrew.batch.cluster.PATIENCE", 1)
+    monkeypatch.setattr("feederscrew.batch.cluster.CLUSTER_TIMEOUT_S", 1)
     with pytest.raises(FeederError, match=r"^tcp://127.0.0.1:1: no scheduler answers"):
         ran(three, tmp_path / "out", workers=batch.Cluster("tcp://127.0.0.1:1"))
 

@@ -66,7 +66,7 @@ def test_the_template_holds_the_defaults(file):
 
 
 def test_every_key_stands_in_the_template_with_its_meaning():
-    for key in schema.KEYS:
+    for key in schema.BOWL_KEYS:
         assert f"{key.word}: " in documentation.template()
         assert key.meaning in documentation.template()
 
@@ -304,10 +304,10 @@ def test_one_field_is_varied_once():
 
 
 def test_the_schema_agrees_with_the_record():
-    assert bowl.texts(bowl.settings()).keys() == {k.name for k in schema.KEYS if k.section != "machine"}
+    assert bowl.texts(bowl.settings()).keys() == {k.name for k in schema.BOWL_KEYS if k.section != "machine"}
     with_machine = bowl.settings(None, ["machine.leaves=10"])
-    assert bowl.texts(with_machine).keys() == {key.name for key in schema.KEYS}
-    for key in (key for key in schema.KEYS if not key.choices):
+    assert bowl.texts(with_machine).keys() == {key.name for key in schema.BOWL_KEYS}
+    for key in (key for key in schema.BOWL_KEYS if not key.choices):
         low, high = (units.quantity(text, key.dimension) for text in (key.lowest, key.highest))
         default = next(s.value for s in bowl.settings() if s.key is key)
         assert low <= default <= high

@@ -19,7 +19,7 @@ from feederscrew.machine.stroke import greatest_amplitude
 STROKES = {50.0: 2.0, 60.0: 1.5, 100.0: 0.6, 120.0: 0.4}
 
 
-@pytest.mark.parametrize("unit", drive_units.UNITS, ids=lambda one: one.name)
+@pytest.mark.parametrize("unit", drive_units.DRIVE_UNITS, ids=lambda one: one.name)
 def test_the_bowl_file_of_a_drive_unit_is_a_tuned_machine(unit):
     bowl = bowls.record(settings_of_text(drive_units.bowl_file(unit), "bowl.yaml"))
     assert bowl.drive.frequency == unit.frequency in STROKES
@@ -64,9 +64,9 @@ def test_a_frequency_controller_runs_an_owned_machine_below_its_natural_frequenc
 
 
 def test_each_drive_unit_has_a_line_and_a_name_of_its_own():
-    names = [one.name for one in drive_units.UNITS]
+    names = [one.name for one in drive_units.DRIVE_UNITS]
     assert len(set(names)) == len(names) == len(drive_units.lines()) >= 6
-    for one, line in zip(drive_units.UNITS, drive_units.lines(), strict=True):
+    for one, line in zip(drive_units.DRIVE_UNITS, drive_units.lines(), strict=True):
         assert line.startswith(one.name) and f"{one.frequency:.0f} Hz" in line
         assert "typical, not from a data sheet" in line
 

@@ -134,7 +134,7 @@ def test_a_part_takes_the_longest_way_along_the_wall_and_the_widest_across():
     """Wanted in one orientation, only that counts; the nearest heading is meant, any turns away."""
     part, aspects = awkward.part()
     found = [
-        headings(posture(part, aspects, name), sizing.STRAIGHT)
+        headings(posture(part, aspects, name), sizing.STRAIGHT_TRACK)
         for name in np.array(aspects.names)[aspects.stable]
     ]
     every = sizing.lying(part, aspects)
@@ -149,7 +149,7 @@ def test_a_part_takes_the_longest_way_along_the_wall_and_the_widest_across():
                 own = sizing.lying(part, aspects, (one.aspect, heading + 2.0 * np.pi * turns + 1e-3))
                 assert (own.length, own.width, own.longest) == (length, width, every.longest)
                 uneven += abs(length - width) > 1e-3
-            laid = sizing.shape(part, aspects, sizing.STRAIGHT, (one.aspect, heading))
+            laid = sizing.shape(part, aspects, sizing.STRAIGHT_TRACK, (one.aspect, heading))
             assert laid.length == length and np.ptp(laid.outline[:, 0]) == pytest.approx(length)
     assert uneven
 
@@ -177,10 +177,10 @@ def test_a_bowl_that_is_given_is_twice_as_wide_as_the_part_is_long(share, fits):
 def test_what_is_wanted_has_another_heading_on_a_bend():
     """On a straight track and on one of 40 mm some headings of the skew body differ by more than 3 deg."""
     part, aspects = awkward.part()
-    track, away = replace(sizing.STRAIGHT, radius=0.04), []
+    track, away = replace(sizing.STRAIGHT_TRACK, radius=0.04), []
     for name in np.array(aspects.names)[aspects.stable]:
         lying = posture(part, aspects, name)
-        straight, bent = headings(lying, sizing.STRAIGHT), headings(lying, track)
+        straight, bent = headings(lying, sizing.STRAIGHT_TRACK), headings(lying, track)
         for heading in straight.headings:
             off = np.abs(np.angle(np.exp(1j * (bent.headings - heading))))
             away.append(np.degrees(off.min()))

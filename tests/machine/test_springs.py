@@ -162,7 +162,7 @@ def test_the_sets_that_tune():
     assert max(one.leaves for one in found) <= 3 * tuning.MOST_A_BANK
     assert {one.thickness for one in found} <= {*tuning.THICKNESSES, MACHINE.leaf_thickness}
     rules = replace(BOWL.sizing, banks=4.0)
-    longer = [replace(MACHINE, leaf_length=length) for length in tuning.LENGTHS]
+    longer = [replace(MACHINE, leaf_length=length) for length in tuning.LEAF_LENGTHS_M]
     fours = [one for machine in longer for one in tuning.sets(machine, 100.0, 1e-4, rules)]
     assert fours and {one.leaves % 4 for one in fours} == {0}
     rows = tuning.changes(MACHINE, 100.0, 1e-4, 3)

@@ -11,7 +11,7 @@ from feederscrew.bowl.record import Unbalance
 from feederscrew.errors import FeederError
 from feederscrew.machine import filling
 from feederscrew.machine.springs import centred_mass, held_fast, springs
-from feederscrew.machine.unbalanced import STEEL, effective_mass, is_even, rocking
+from feederscrew.machine.unbalanced import BASE_DENSITY, effective_mass, is_even, rocking
 
 MACHINE = bowls.read(None, ("machine.base_mass=20 kg", "machine.base_inertia=0.3 kg m2")).machine
 
@@ -34,7 +34,7 @@ def cloud(rng, turns=1.0):
 def base(machine):
     """Points of the base: eight of a round plate of steel, that has its inertia about every axis."""
     mass, inertia = machine.base_mass, machine.base_inertia
-    thick = mass / (STEEL * np.pi * 2.0 * inertia / mass)
+    thick = mass / (BASE_DENSITY * np.pi * 2.0 * inertia / mass)
     low = -machine.leaf_length * np.cos(machine.spring_angle) - 0.5 * thick
     r, h = np.sqrt(inertia / mass), thick / np.sqrt(12.0)
     theta = 0.5 * np.pi * np.arange(4)

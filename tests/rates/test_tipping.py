@@ -164,7 +164,7 @@ def test_tune_gives_the_rate_that_rate_gives_at_each_setting():
     for one in study.settings:
         driven = knobs.turned(BOWL, one.solution.key, one.solution.value)
         again = rate(part, driven, "A", rule="csa", known=Shares(found)).rate
-        assert again.parts.value == pytest.approx(400.0 / 60.0, rel=knobs.WITHIN)
+        assert again.parts.value == pytest.approx(400.0 / 60.0, rel=knobs.ACCEPTED_RATE_ERROR)
         assert again.parts.value == pytest.approx(one.solution.rate, rel=1e-9)
 
 

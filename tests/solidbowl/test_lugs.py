@@ -45,7 +45,7 @@ def test_a_screw_goes_through_both_halves_of_its_lug(name):
     for one, along, out in found.lugs:
         side = np.cross(along, out)
         towards = np.array([out, side, -out, -side])
-        head, nut = 0.5 * lugs.LENGTH * along, -0.5 * lugs.LENGTH * along
+        head, nut = 0.5 * lugs.SCREW_LENGTH_M * along, -0.5 * lugs.SCREW_LENGTH_M * along
         assert facets.first_met(whole, one + 1.5 * head, one + 1.5 * nut) == []  # the hole is free
         for at, free in ((0.0, lugs.HOLE), (6e-3, lugs.HOLE), (-4e-3, lugs.HOLE), (-7e-3, 5.7e-3)):
             around = [
@@ -161,7 +161,7 @@ def test_a_bowl_that_fits_whole_has_no_lugs_and_a_wall_without_room_is_said(monk
     solid = body(planned())
     found = segments.segments(solid, (1.0, 1.0, 1.0), segments.SCREWS)
     assert len(found.pieces) == 1 and len(found.screws) == 0 and found.joined is None
-    monkeypatch.setattr(lugs, "KEPT", 1.0)
+    monkeypatch.setattr(lugs, "LUG_CLEARANCE_M", 1.0)
     with pytest.raises(FeederError) as fault:
         segments.segments(solid, (0.2, 0.2, 0.2), segments.SCREWS)
     assert str(fault.value) == "join: no lug for a screw has room at the seams - take dowels"

@@ -35,7 +35,7 @@ def test_a_solid_s_springs_are_the_same_when_its_bowl_file_is_read_back(hand):
     assert springs(again).effective_mass == pytest.approx(springs(under).effective_mass, rel=1e-5)
     assert rocking(again, 0.15, 0.05).greatest == pytest.approx(rocking(under, 0.15, 0.05).greatest, rel=1e-6)
     lines = dict(design_file._unbalance(under))
-    assert list(lines) == list(unbalance.WORDS)
+    assert list(lines) == list(unbalance.UNBALANCE_NAMES)
     assert lines["centre_z"] == f"{1e3 * (solid.centre[2] - solid.plan.underside):.9g} mm"
     assert lines["product_xy"] == f"{under.unbalance.products[2]:.9g} kg m2"
 
@@ -52,7 +52,7 @@ def test_what_a_file_says_of_the_mass_is_kept():
 def test_a_balanced_machine_has_nothing_to_write():
     machine = bowls.read(None, ()).machine
     assert unbalance.told(machine) == {} and list(design_file._unbalance(machine)) == []
-    assert unbalance.known({"bowl_mass": 2.0, **dict.fromkeys(unbalance.WORDS, 0.0)}, "left") == {
+    assert unbalance.known({"bowl_mass": 2.0, **dict.fromkeys(unbalance.UNBALANCE_NAMES, 0.0)}, "left") == {
         "bowl_mass": 2.0
     }
 
@@ -83,7 +83,9 @@ def test_a_tensor_is_judged_about_the_centre_of_mass(rng):
         second = np.einsum("k,ki,kj->ij", weights, at, at)
         inertia = np.trace(second) - np.diag(second)
         centre = weights @ at / weights.sum()
-        values = dict(zip(unbalance.WORDS, (*centre, *inertia[:2], second[1, 2], second[0, 2], second[0, 1])))
+        values = dict(
+            zip(unbalance.UNBALANCE_NAMES, (*centre, *inertia[:2], second[1, 2], second[0, 2], second[0, 1]))
+        )
         values |= {"bowl_mass": weights.sum(), "bowl_inertia": inertia[2]}
         found = unbalance.known(values, "right")["unbalance"]
         np.testing.assert_allclose(found.moment, weights @ at)

@@ -71,7 +71,9 @@ def test_it_begins_where_it_is_listed_and_ends_at_a_bank():
     assert (start, end) == pytest.approx((plan.first + first[0], plan.first + last[0]))
     lean = grooves_wall.lean_at(grooves_wall.spans(plan)[0], np.array([start, start + 0.5 * opens, end]))
     assert np.degrees(lean) == pytest.approx([3.0, 25.0, 50.0])  # it opens over the length of a part
-    assert grooves_wall.lean_at((start, end, 0.8, opens), end + opens) == grooves_wall.LEAST
+    assert (
+        grooves_wall.lean_at((start, end, 0.8, opens), end + opens) == grooves_wall.MIN_GROOVE_WALL_LEAN_RAD
+    )
     early = grooved("from the entry")[0].plan
     assert early.way.angle(grooves_wall.spans(early)[0][0]) == pytest.approx(-0.85 * 2.0 * np.pi)
 

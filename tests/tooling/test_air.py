@@ -235,7 +235,7 @@ def test_what_fits_at_no_turn_is_not_turned_any_further(monkeypatch):
                 assert (sensor_views.fitted(seen, bent, play) <= play) == (whole <= play)
                 early += whole > play and len(calls) == 1 + sensor_views.COARSE
     assert early >= 5
-    step = 2.0 * sensor_views.ABOUT / (sensor_views.COARSE - 1)
+    step = 2.0 * sensor_views.MAX_VIEW_TURN_RAD / (sensor_views.COARSE - 1)
     moved = shapely.affinity.rotate(bent, 0.5 * step, (0.0, 0.0), use_radians=True)
     laid = shapely.affinity.translate(moved, -moved.bounds[2], -moved.bounds[1])
     first = shapely.affinity.translate(bent, -bent.bounds[2], -bent.bounds[1])

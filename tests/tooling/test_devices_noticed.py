@@ -12,7 +12,7 @@ from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
 from feederscrew.tooling import strip
 from feederscrew.tooling.devices.base import UNSURE
-from feederscrew.tooling.devices.blades import SQUARE
+from feederscrew.tooling.devices.blades import SQUARE_FACE_RAD
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.isolating import chain
 from feederscrew.tooling.orientations import orientations, travelling
@@ -203,7 +203,11 @@ def test_what_no_width_carries_fails_on_every_ledge_by_as_far_as_its_foot_reache
 def test_a_face_sweeps_off_below_a_right_angle_less_its_angle_of_friction(rod, sweep, own, fate):
     """atan 0.6 = 31 deg of the track, atan 0.5 = 27 deg of the face; one straight across stops all."""
     wiper = made(
-        "wiper", "test", limit=1e-3, sweep=np.radians(sweep) if sweep < 90.0 else SQUARE, friction=own
+        "wiper",
+        "test",
+        limit=1e-3,
+        sweep=np.radians(sweep) if sweep < 90.0 else SQUARE_FACE_RAD,
+        friction=own,
     )
     assert wiper.fate(Meeting(replace(rod, grip=0.6))) == fate
 

@@ -199,7 +199,7 @@ def test_its_section_is_closed_and_has_the_other_face(dowel):
     way = BOWL.track.radius * np.arctan2(vertices[:, 0], BOWL.track.radius - vertices[:, 1])
     top = vertices[:, 2].max()
     leaning_back = (way < first - 1e-3) & (vertices[:, 2] > 1e-3)
-    assert off[leaning_back].min() < -0.9 * math.sin(30.0 * DEG) * (section.tallest + solid.ABOVE)
+    assert off[leaning_back].min() < -0.9 * math.sin(30.0 * DEG) * (section.tallest + solid.WALL_MARGIN_M)
     assert off[(way > first + 3e-3) & (vertices[:, 2] > 0.9 * top)].min() > -1.01 * solid.WALL
     inner = leaning_back & (np.abs(off + vertices[:, 2] * math.tan(30.0 * DEG)) < 2e-5)
     assert inner.sum() > 10  # the face itself, from the wall's foot on

@@ -54,7 +54,7 @@ def parts(paper, study, at):
         text = f"dowels {size}, between {len(cut.pieces)} segments"
         rows.append([str(len(rows)), str(cut.dowels), text])
     if cut is not None and len(cut.screws):
-        text = f"screws ISO 4762 {lugs.NAME} with nuts ISO 4032, in lugs of the segments; floor: dowels"
+        text = f"screws ISO 4762 {lugs.SCREW_NAME} with nuts ISO 4032, in lugs of the segments; floor: dowels"
         rows.append([str(len(rows)), str(len(cut.screws)), text])
     rows.append([str(len(rows)), str(plan.bolts + 1), f"bolts for holes of {plan.bolt / MM:.4g} mm"])
     rows.append([str(len(rows)), f"{under.leaves:.0f}", f"leaves {leaf} mm"])

@@ -79,7 +79,7 @@ def _segments(cut):
         "dowel_mm": cut.dowel / MM,
         "dowel_length_mm": cut.dowel_length / MM,
         "screws": len(cut.screws),
-        "screw": lugs.NAME if len(cut.screws) else None,
+        "screw": lugs.SCREW_NAME if len(cut.screws) else None,
         "seam_ends": cut.ends[1],
         "seam_ends_without_screw": cut.ends[0],
         "seams_deg": cut.turned / DEG,

@@ -17,12 +17,16 @@ from feederscrew.solidbowl.exact import exact_faces
 from feederscrew.solidbowl.facets import in_space
 from feederscrew.units import MM
 
-SMOOTH = True  # a curve is a curve
-SEAM = 0.7  # [rad] where a face of revolution is closed: nothing else of a bowl ends there
-CRUMB = 1.0  # [mm3] a loose piece smaller than this is left out
-NEAR = 1e-5, 1e-4, 1e-6  # [mm] faces and edges nearer than this meet: the first with which all goes well
-WIDE = 1e4  # [mm] beyond everything
-_near = contextvars.ContextVar("near", default=NEAR[0])
+HAS_EXACT_CURVES = True  # a curve is a curve
+SEAM_ANGLE_RAD = 0.7  # [rad] where a face of revolution is closed: nothing else of a bowl ends there
+MIN_PIECE_VOLUME_MM3 = 1.0  # [mm3] a loose piece smaller than this is left out
+FUZZY_TOLERANCES_MM = (
+    1e-5,
+    1e-4,
+    1e-6,
+)  # [mm] faces and edges nearer than this meet: the first with which all goes well
+BEYOND_BOWL_MM = 1e4  # [mm] beyond everything
+_near = contextvars.ContextVar("near", default=FUZZY_TOLERANCES_MM[0])
 MISSING = "pip install 'feederscrew[cad]'"
 
 
@@ -64,7 +68,7 @@ def turned(profile, segments):
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol
 
     r, z = np.asarray(profile, float).T / MM
-    face = exact_faces.flat_face(np.column_stack([r * np.cos(SEAM), r * np.sin(SEAM), z]))
+    face = exact_faces.flat_face(np.column_stack([r * np.cos(SEAM_ANGLE_RAD), r * np.sin(SEAM_ANGLE_RAD), z]))
     return BRepPrimAPI_MakeRevol(face, exact_faces.axis()).Shape()
 
 
@@ -81,7 +85,7 @@ def disc(at, size, low, high):
     foot = gp_Ax2(
         exact_faces.point([at[0] / MM, at[1] / MM, low / MM]),
         gp_Dir(0, 0, 1),
-        gp_Dir(*exact_faces.towards(SEAM)),
+        gp_Dir(*exact_faces.towards(SEAM_ANGLE_RAD)),
     )
     return BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, (high - low) / MM).Shape()
 
@@ -157,8 +161,8 @@ def without(body, tools):
 
 def above(body, height):
     """Return what of a body lies above a height [m]."""
-    below = shapely.box(*(WIDE * MM * np.array([-1.0, -1.0, 1.0, 1.0])))
-    return without(body, [prism(below, -WIDE * MM, height)])
+    below = shapely.box(*(BEYOND_BOWL_MM * MM * np.array([-1.0, -1.0, 1.0, 1.0])))
+    return without(body, [prism(below, -BEYOND_BOWL_MM * MM, height)])
 
 
 def placed_as(body, *, mirrored, turned):
@@ -178,7 +182,7 @@ def one_piece(body, where):
     from OCP.TopAbs import TopAbs_SOLID
 
     pieces = sorted(exact_faces.parts(body, TopAbs_SOLID), key=lambda one: -exact_faces.volume(one))
-    if not pieces or any(exact_faces.volume(one) > CRUMB for one in pieces[1:]):
+    if not pieces or any(exact_faces.volume(one) > MIN_PIECE_VOLUME_MM3 for one in pieces[1:]):
         raise FeederError(where, f"OpenCASCADE finds {len(pieces)} bodies", "take bowl.stl")
     return pieces[0]
 

@@ -6,7 +6,7 @@ from scipy.interpolate import make_interp_spline
 from feederscrew.units import MM
 
 SEWN = 1e-5  # [mm] edges nearer than this are one
-CHORD = 0.05  # [rad] of a curve between two places that it is led through
+CURVE_STEP_RAD = 0.05  # [rad] of a curve between two places that it is led through
 EPS = 1e-6  # of a volume
 
 
@@ -99,7 +99,7 @@ def side(way, one, other, z):
     if straight:
         ends = way.plan(*np.array([one, other]).T) / MM
         return BRepBuilderAPI_MakeEdge(*(point([*place, z]) for place in ends)).Edge()
-    count = max(int(abs(other[0] - one[0]) / way.radius / CHORD), 3) + 1
+    count = max(int(abs(other[0] - one[0]) / way.radius / CURVE_STEP_RAD), 3) + 1
     ends = np.cos(way.bank_at(np.linspace(one[0], other[0], count)))
     arc = abs(one[1] - other[1]) < 1e-9 and way.flare == 0.0 and np.ptp(ends) * abs(one[1]) < 1e-12
     s, y = np.linspace(one, other, 3 if arc else count).T

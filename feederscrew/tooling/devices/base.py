@@ -13,14 +13,14 @@ from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import named
 from feederscrew.tooling.devices.pieces import Hole, Standing, across
 
-CLOSE = 1e-9  # [m] a part this much over a limit still passes
+LIMIT_TOLERANCE_M = 1e-9  # [m] a part this much over a limit still passes
 UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
 MM = units.factor("mm", "length")
 WRITTEN_STEP_M = 1e-7  # [m] to which a length is written
 RETURNED, STOPPED, CARRIED = "returned", "stopped", "carried"  # what becomes of a part at a device
-LONG = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
-MARKS = re.compile(r"[][{}:]")  # of a bowl file, which a value in words has none of
-ROOM = 1.3  # a device has so many lengths of the longest part to itself
+ENDLESS_HOLE_LENGTHS = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
+YAML_MARKS = re.compile(r"[][{}:]")  # of a bowl file, which a value in words has none of
+ROOM_PER_DEVICE = 1.3  # a device has so many lengths of the longest part to itself
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Device:
 
     kind: ClassVar[str] = "track"  # what it is called in a bowl file
     trade: ClassVar[str] = ""  # what the trade calls it; '': its kind, with blanks
-    form: ClassVar[dict[str, Any]] = forms.LENGTH  # of its value in a bowl file
+    form: ClassVar[dict[str, Any]] = forms.LENGTH_FORM  # of its value in a bowl file
     example: ClassVar[str] = ""  # as written after 'kind:'
     meaning: ClassVar[str] = ""
     hanging: ClassVar[bool] = True  # whether it means anything to parts that hang between rails
@@ -194,7 +194,10 @@ class Device:
         ----------
         met : Meeting
         """
-        cut, span = self.outline_on(met.one.track, LONG * met.size), self.span_on(met.one.track)
+        cut, span = (
+            self.outline_on(met.one.track, ENDLESS_HOLE_LENGTHS * met.size),
+            self.span_on(met.one.track),
+        )
         if span is not None and span[0] > 0.0 and met.held_by_shoulders(span) >= 0.0:
             return STOPPED  # it hangs in the slot up to its end
         return RETURNED if cut is None or met.falls_through(cut) else STOPPED
@@ -301,7 +304,7 @@ class Device:
         if self.like:
             aspect, heading, play = self.like
             return f"outline of {keeps(((aspect, heading),))}, with {length_words(play)} of play"
-        return span_words(self.span) if self.span else MARKS.sub("", self.short)
+        return span_words(self.span) if self.span else YAML_MARKS.sub("", self.short)
 
     def beside(self, width):
         """Return the ConfigError of a hole that lies beside a track of some width [m]."""
@@ -360,7 +363,7 @@ def mapping_text(entries):
 
 def room_of(every):
     """Return the length of track [m] that one has to itself, by the longest orientation."""
-    return ROOM * max(one.length for one in every)
+    return ROOM_PER_DEVICE * max(one.length for one in every)
 
 
 def share(margin, sigma):
@@ -370,7 +373,7 @@ def share(margin, sigma):
     """
     if sigma > 0.0:
         return 0.5 * math.erfc(-margin / (sigma * math.sqrt(2.0)))
-    return float(margin >= -CLOSE)
+    return float(margin >= -LIMIT_TOLERANCE_M)
 
 
 def carried(margin, way, carry):

@@ -22,15 +22,17 @@ from feederscrew.tooling.devices.base import (
     mapping_text,
     room_of,
 )
-from feederscrew.tooling.devices.pieces import FRAME, Blade, Standing
+from feederscrew.tooling.devices.pieces import GATE_FRAME_M, Blade, Standing
 
-SQUARE = 0.5 * math.pi  # [rad] of the face to the direction of travel: straight across the track
-PROPOSED = math.radians(30.0)  # [rad] sweep of a blade that a design tries: 20 to 35 deg clear fastest
-FAR = 10.0  # [m] beyond any track
+SQUARE_FACE_RAD = 0.5 * math.pi  # [rad] of the face to the direction of travel: straight across the track
+PROPOSED_SWEEP_RAD = math.radians(
+    30.0
+)  # [rad] sweep of a blade that a design tries: 20 to 35 deg clear fastest
+BEYOND_TRACK_M = 10.0  # [m] beyond any track
 SWEPT = forms.mapping(
     ("sweep", "friction", "contour"),
-    clearance=forms.LENGTH,
-    sweep=forms.ANGLE,
+    clearance=forms.LENGTH_FORM,
+    sweep=forms.ANGLE_FORM,
     friction=forms.quantity("number", "0", "5"),
     contour=forms.POLYGON | {"minItems": 1},
 )
@@ -71,12 +73,12 @@ class _Overhead(Device):
 class Wiper(_Overhead):
     """A blade over the track, which clears itself where its face sweeps parts off the free edge."""
 
-    sweep: float = SQUARE  # [rad] of the face to the direction of travel
+    sweep: float = SQUARE_FACE_RAD  # [rad] of the face to the direction of travel
     friction: float | None = None  # [1] of the face; None: that of the track
     contour: tuple[tuple[float, float], ...] = ()  # [m] distance from the wall and clearance there
 
     kind = "wiper"
-    form = forms.either(forms.LENGTH, SWEPT)
+    form = forms.either(forms.LENGTH_FORM, SWEPT)
     example = "6 mm"
     meaning = (
         "blade at a clearance over the track that holds up orientations that stand higher; straight across "
@@ -99,7 +101,7 @@ class Wiper(_Overhead):
 
     @classmethod
     def proposal(cls, where, limit):
-        return cls(where, limit=limit, sweep=PROPOSED)
+        return cls(where, limit=limit, sweep=PROPOSED_SWEEP_RAD)
 
     def value_text(self):
         if not (self.face or self.contour or self.friction is not None):
@@ -122,12 +124,12 @@ class Wiper(_Overhead):
     @property
     def face(self):
         """Its sweep [rad] and friction [1], None: that of the track; None of one straight across."""
-        return (self.sweep, self.friction) if self.sweep < SQUARE else None
+        return (self.sweep, self.friction) if self.sweep < SQUARE_FACE_RAD else None
 
     def clear_of(self, grip):
         """Return whether its face sweeps parts off a track of some friction."""
         friction = grip if self.friction is None else self.friction
-        return self.face is not None and self.sweep < SQUARE - math.atan(friction)
+        return self.face is not None and self.sweep < SQUARE_FACE_RAD - math.atan(friction)
 
     def fate(self, met):
         clears = self.clear_of(met.grip) and not met.hanging  # rails hold what hangs
@@ -144,7 +146,7 @@ class Wiper(_Overhead):
         if not self.contour:
             sweep = self.sweep if self.face else 0.0
             return met.verdict(met.unless_laid_over(self.limit - met.one.height, self.limit, sweep))
-        return met.verdict(met.through(self.opening(met.every, FAR)))
+        return met.verdict(met.through(self.opening(met.every, BEYOND_TRACK_M)))
 
     def standing(self, track, every):
         """Return its blade, which goes on over the free edge."""
@@ -152,9 +154,9 @@ class Wiper(_Overhead):
 
         room, lean = room_of(every), math.sin(self.sweep)
         edge = np.array(self._edge(track.extent))
-        tall = 2.0 * max(max(one.height for one in every), edge[:, 1].max()) + FRAME
+        tall = 2.0 * max(max(one.height for one in every), edge[:, 1].max()) + GATE_FRAME_M
         ring = [*((y / lean, z) for y, z in edge), (edge[-1, 0] / lean, tall), (0.0, tall)]
-        long = track.extent / math.tan(self.sweep) if self.sweep < SQUARE else 0.0
+        long = track.extent / math.tan(self.sweep) if self.sweep < SQUARE_FACE_RAD else 0.0
         blade = Blade(shapely.Polygon(ring), (0.5 * room, 0.0), self.sweep, friction=self.friction)
         return Standing(0.5 * room + long, blades=(blade,))
 

@@ -4,7 +4,7 @@ from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import named, values
 from feederscrew.tooling.devices.base import STOPPED, Device, corners_text, length_text, mapping_text
 
-HIGH = 1.0  # [m] no opening is higher
+MAX_OPENING_HEIGHT_M = 1.0  # [m] no opening is higher
 
 
 class Profile(Device):
@@ -12,7 +12,7 @@ class Profile(Device):
 
     kind = "profile"
     trade = "profile gate"
-    form = forms.either(forms.POLYGON, forms.mapping(of=forms.NAMED, play=forms.LENGTH))
+    form = forms.either(forms.POLYGON, forms.mapping(of=forms.NAMED, play=forms.LENGTH_FORM))
     example = "{of: A@90, play: 0.2 mm}"
     meaning = (
         "gate with an opening: a polygon of distances from the wall and heights, or an orientation's own "
@@ -39,7 +39,7 @@ class Profile(Device):
         import shapely
 
         free = self.free(every)
-        return free.intersection(shapely.box(0.0, 0.0, width, HIGH)) if self.like else free
+        return free.intersection(shapely.box(0.0, 0.0, width, MAX_OPENING_HEIGHT_M)) if self.like else free
 
     def free(self, every):
         """Return the opening however wide the track is, in distances from the wall and heights [m]."""

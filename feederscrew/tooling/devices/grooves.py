@@ -9,11 +9,11 @@ from feederscrew.tooling.devices.base import angle_text, degrees_words, mapping_
 from feederscrew.tooling.devices.leans import LEAST, Bank, Lean
 from feederscrew.tooling.devices.pieces import Slope, Standing
 
-FLATTEST, STEEPEST = math.radians(10.0), math.radians(60.0)  # [rad]
+FLATTEST, STEEPEST_FACE_RAD = math.radians(10.0), math.radians(60.0)  # [rad]
 HOLDS = 30.0  # [deg] of a groove's faces
 # [deg] that a design tries beside that: the steepest first, in which what turns has farther to fall
 ANGLES = (55.0, 45.0, 30.0, 15.0)
-LENGTHS = 3.0  # rooms of a part in which what comes across turns along it
+GROOVE_ROOMS = 3.0  # rooms of a part in which what comes across turns along it
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Groove(Lean):
     kind = "groove"
     trade = "V groove"
     serves = "lets lie along it what is round"
-    form = forms.mapping(angle=forms.ANGLE)
+    form = forms.mapping(angle=forms.ANGLE_FORM)
     example = "{angle: 30 deg}"
     meaning = (
         "the track is a V from here on, until a bank: it and its wall rise by so much to either side; round "
@@ -37,7 +37,7 @@ class Groove(Lean):
     @classmethod
     def read(cls, entry):
         given = values.mapping(entry, ("angle",), "write {angle: 30 deg}")
-        return {"angle": values.within(given, "angle", "angle", FLATTEST, STEEPEST)}
+        return {"angle": values.within(given, "angle", "angle", FLATTEST, STEEPEST_FACE_RAD)}
 
     def value_text(self):
         return mapping_text((("angle", angle_text(self.angle)),))
@@ -71,4 +71,4 @@ class Groove(Lean):
 
     def standing(self, track, every):
         slope = Slope(0.0, bank=self.angle, wall=0.5 * math.pi - self.angle)
-        return Standing(LENGTHS * room_of(every), slopes=(slope,))
+        return Standing(GROOVE_ROOMS * room_of(every), slopes=(slope,))

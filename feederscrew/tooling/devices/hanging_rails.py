@@ -11,9 +11,9 @@ from feederscrew.tooling.devices.base import MM, UNSURE, Device, room_of, span_w
 from feederscrew.tooling.devices.ledges import between
 from feederscrew.tooling.devices.pieces import Hole, Standing
 
-LONGEST = 1.0  # [m] of a lead-in
-SPAN = {"from_": forms.LENGTH, "to": forms.LENGTH}
-LEAD = {"length": forms.LENGTH, "taper": forms.LENGTH}
+MAX_LEAD_IN_M = 1.0  # [m] of a lead-in
+RAIL_SPAN_FORMS = {"from_": forms.LENGTH_FORM, "to": forms.LENGTH_FORM}
+LEAD_IN_FORMS = {"length": forms.LENGTH_FORM, "taper": forms.LENGTH_FORM}
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,9 @@ class Rails(Device):
     lead: tuple[float, ...] = ()
 
     kind = "rails"
-    form = forms.mapping(("lead_in",), **SPAN, lead_in=forms.mapping(**SPAN, **LEAD))
+    form = forms.mapping(
+        ("lead_in",), **RAIL_SPAN_FORMS, lead_in=forms.mapping(**RAIL_SPAN_FORMS, **LEAD_IN_FORMS)
+    )
     example = "{from: 4.5 mm, to: 8.5 mm}"
     meaning = (
         "slot between two rails, by their distances from the wall: headed parts whose centre of mass lies "
@@ -41,7 +43,7 @@ class Rails(Device):
             return found
         lead = given["lead_in"]
         wide, more = values.span_and(lead, needed=("length", "taper"))
-        ends = (values.within(more, name, "length", 0.0, LONGEST) for name in ("length", "taper"))
+        ends = (values.within(more, name, "length", 0.0, MAX_LEAD_IN_M) for name in ("length", "taper"))
         own, slot = wide["span"], found["span"]
         if own[0] > slot[0] + 1e-9 or own[1] < slot[1] - 1e-9:
             what = "lead_in is narrower than the slot"

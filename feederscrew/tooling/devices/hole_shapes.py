@@ -9,8 +9,8 @@ from feederscrew import check
 
 SAGITTA = 4e-6  # of the radius: by which a hole's bulging edge may be seen too flat ...
 FLATTEST = 2e-6  # [m] ... and at most; a short base of the support makes up to ten times that of the margin
-BEHIND = 1e-3  # [m] a hole that reaches the wall is cut on into it
-STEPS = 33  # points along the edge of a gap that is parallel to a radial one
+WALL_OVERCUT_M = 1e-3  # [m] a hole that reaches the wall is cut on into it
+GAP_EDGE_POINTS = 33  # points along the edge of a gap that is parallel to a radial one
 
 
 class HoleEdges(NamedTuple):
@@ -57,7 +57,7 @@ def gap(length, radius, width):
     -------
     HoleEdges
     """
-    low, high = max(radius - width, 1e-3 * radius, 1.000001 * length), radius + BEHIND
+    low, high = max(radius - width, 1e-3 * radius, 1.000001 * length), radius + WALL_OVERCUT_M
     rows = [[0.0, 0.0, 0.0, 0.0, low, high, 0.0], [0.0, 0.0, 0.0, length, low, high, 0.0]]
     inner = [1.0, 0.0, np.arcsin(length / low), 0.0, low, low, 1.0]
     return HoleEdges(edges=np.array([*rows, inner]), nodes=np.empty((0, 3)))
@@ -71,7 +71,7 @@ def gap_outline(length, radius, width):
     length, radius, width : float [m]
         As for ``gap``.
     """
-    across = np.linspace(width, 0.0, STEPS)
+    across = np.linspace(width, 0.0, GAP_EDGE_POINTS)
     left, met = gap(length, radius, width).edges[:2]
     sides = [
         radius * (edge[1] + np.arcsin(np.minimum(edge[3] / (radius - across), 1.0))) for edge in (left, met)
@@ -101,7 +101,7 @@ def _sides(corners):
 
 def through_the_wall(corners):
     """Return the corners [m] of a hole, in pairs, with every edge along the wall moved behind it."""
-    return _moved_out(corners, math.inf, BEHIND)
+    return _moved_out(corners, math.inf, WALL_OVERCUT_M)
 
 
 def beyond_borders(corners, width, far):

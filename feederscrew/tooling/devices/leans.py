@@ -10,12 +10,12 @@ from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import Device, angle_text, degrees_words, mapping_text, room_of
 from feederscrew.tooling.devices.pieces import Slope, Standing
 
-STEEPEST = math.radians(45.0)  # [rad]
+MAX_BANK_RAD = math.radians(45.0)  # [rad]
 # [deg] of a bank that holds what rolls: the least, the greatest, and beyond the angle that just holds
 LEAST, MOST, MORE = 6.0, 15.0, 1.0
-BANKS = (6.0, 10.0, 15.0)  # [deg] that a design tries
+PROPOSED_BANKS_DEG = (6.0, 10.0, 15.0)  # [deg] that a design tries
 PARTING = -6.0  # [deg] climb of a stretch that separates parts
-LINE = 2e-4  # [m] of a line in a drawing
+DRAWN_LINE_M = 2e-4  # [m] of a line in a drawing
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,9 @@ class Lean(Device):
 
     def edge(self, start, length, width):
         """Return where it begins, unrolled: a line across the track."""
-        return np.array([[start, 0.0], [start + LINE, 0.0], [start + LINE, width], [start, width]])
+        return np.array(
+            [[start, 0.0], [start + DRAWN_LINE_M, 0.0], [start + DRAWN_LINE_M, width], [start, width]]
+        )
 
     def told(self):
         return {"angle_deg": math.degrees(self.angle)}
@@ -66,7 +68,7 @@ class Bank(Lean):
     kind = "bank"
     trade = "banked track"
     serves = "holds what rolls at the wall"
-    form = forms.ANGLE
+    form = forms.ANGLE_FORM
     example = "6 deg"
     meaning = (
         "the track is banked towards the wall by so much from here on; listed first, from the track's entry: "
@@ -78,7 +80,7 @@ class Bank(Lean):
 
     @classmethod
     def read(cls, entry):
-        return {"angle": values.within({entry.key: entry}, entry.key, "angle", 0.0, STEEPEST)}
+        return {"angle": values.within({entry.key: entry}, entry.key, "angle", 0.0, MAX_BANK_RAD)}
 
     @classmethod
     def of(cls, degrees, where):
@@ -101,7 +103,7 @@ class Bank(Lean):
 
     @classmethod
     def leanings(cls, one, where):
-        return [(cls.of(bank, where),) for bank in BANKS]
+        return [(cls.of(bank, where),) for bank in PROPOSED_BANKS_DEG]
 
     def onward(self, one):
         """Return an orientation as it goes on: its weight meets the track nearer to the wall."""
@@ -119,7 +121,7 @@ class Separation(Lean):
 
     kind = "separation"
     trade = "spacing section"
-    form = forms.mapping(climb=forms.ANGLE)
+    form = forms.mapping(climb=forms.ANGLE_FORM)
     example = "{climb: -4 deg}"
     meaning = (
         "the track climbs by so much from here on, below 0 it goes down: parts travel faster and come apart, "
@@ -131,7 +133,7 @@ class Separation(Lean):
     @classmethod
     def read(cls, entry):
         given = values.mapping(entry, ("climb",), "write {climb: -4 deg}")
-        return {"angle": values.within(given, "climb", "angle", -STEEPEST, STEEPEST)}
+        return {"angle": values.within(given, "climb", "angle", -MAX_BANK_RAD, MAX_BANK_RAD)}
 
     @classmethod
     def parting(cls, where):

@@ -9,9 +9,9 @@ from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.pieces import Hole, Standing
 
 LOWER = 0.5  # of the part's greatest length: how far below a ledge the second track lies
-FAR = 10.0  # of the part's size: how far the lower track goes on
+LOWER_TRACK_LENGTHS = 10.0  # of the part's size: how far the lower track goes on
 SETTLES = 2.0  # of the part's size: how far behind a turning device parts end
-EDGE = 2e-4  # [m] the width with which an edge over which parts turn is drawn
+DRAWN_EDGE_M = 2e-4  # [m] the width with which an edge over which parts turn is drawn
 
 
 class _Turner(Device):
@@ -28,7 +28,7 @@ class _Turner(Device):
         drop, aside = self.lower(every)
         width, far = (
             track.extent,
-            FAR * max(np.hypot(one.length, max(one.width, one.height)) for one in every),
+            LOWER_TRACK_LENGTHS * max(np.hypot(one.length, max(one.width, one.height)) for one in every),
         )
         cut = Hole(np.array([[0.0, aside], [far, aside], [far, width], [0.0, width]]))
         return Standing(holes=(cut,), drop=drop, aside=aside, settles=SETTLES)
@@ -50,7 +50,9 @@ class Step(_Turner):
 
     def edge(self, start, length, width):
         middle = start + 0.5 * length
-        return np.array([[middle, 0.0], [middle + EDGE, 0.0], [middle + EDGE, width], [middle, width]])
+        return np.array(
+            [[middle, 0.0], [middle + DRAWN_EDGE_M, 0.0], [middle + DRAWN_EDGE_M, width], [middle, width]]
+        )
 
     def judged(self, met):
         turned, margin = met.pitched_over(self.limit)
@@ -84,7 +86,7 @@ class Tip(_Turner):
         return below_ledge(every), self.limit
 
     def edge(self, start, length, width):
-        low, high = self.limit, self.limit + EDGE
+        low, high = self.limit, self.limit + DRAWN_EDGE_M
         return np.array([[start, low], [start + length, low], [start + length, high], [start, high]])
 
     def judged(self, met):

@@ -141,7 +141,7 @@ class Slot(Device):
     """A long hole along the track."""
 
     kind = "slot"
-    form = forms.mapping(from_=forms.LENGTH, to=forms.LENGTH)
+    form = forms.mapping(from_=forms.LENGTH_FORM, to=forms.LENGTH_FORM)
     example = "{from: 2 mm, to: 5 mm}"
     meaning = "long hole along the track between two distances from the wall"
     picture = "above"

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.errors import ConfigError, FeederError
 
-WITHIN = np.radians(3.0)  # so near to a heading that the part can have, a named one is that
+HEADING_TOLERANCE_RAD = np.radians(3.0)  # so near to a heading that the part can have, a named one is that
 HEADING = re.compile(r"@(\d+\.\d+)")  # [deg] with decimals
 
 
@@ -39,7 +39,7 @@ def place(aspects, headings, aspect, heading, where, named="", kind=FeederError)
     """
     known = _places(aspects, aspect)
     found = nearest(aspects, headings, aspect, heading) if known else None
-    if found is not None and abs(_turn(headings[found] - heading)) <= WITHIN:
+    if found is not None and abs(_turn(headings[found] - heading)) <= HEADING_TOLERANCE_RAD:
         return found
     if named:
         some = known or range(len(aspects))

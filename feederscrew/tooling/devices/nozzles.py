@@ -14,12 +14,12 @@ from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import turned
 from feederscrew.tooling.devices.pieces import GRIP, Jet
 
-AMBIENT = 101325.0  # [Pa]
+AMBIENT_PRESSURE_PA = 101325.0  # [Pa]
 CHOKED = ((1.4 + 1.0) / 2.0) ** (1.4 / 0.4)  # [1] of absolute pressures: beyond it the nozzle is choked
 SPREAD = math.tan(math.radians(11.0))  # [1] growth of a free jet's radius: 10 to 12 deg to either side
 RAYS, GOLDEN = 24, math.pi * (3.0 - math.sqrt(5.0))  # of a jet; [rad] from one to the next
 TRIED, ENOUGH = 12, 0.5  # heights at which an orientation is blown at, and the least share of the thrust
-REACH = 0.5  # [m] no track is wider
+JET_REACH_M = 0.5  # [m] no track is wider
 ACROSS = (0.0, 1.0, 0.0)  # straight across the track
 
 
@@ -39,10 +39,10 @@ def thrust(diameter, pressure):
     Isentropic flow of air (ratio of heats 1.4), of a convergent nozzle: beyond the critical ratio of 1.893
     the mouth has the critical pressure, below it the ambient one.
     """
-    area, whole = 0.25 * math.pi * diameter**2, pressure + AMBIENT
-    if whole / AMBIENT > CHOKED:
-        return 2.4 / CHOKED * whole * area - AMBIENT * area
-    ratio = AMBIENT / whole
+    area, whole = 0.25 * math.pi * diameter**2, pressure + AMBIENT_PRESSURE_PA
+    if whole / AMBIENT_PRESSURE_PA > CHOKED:
+        return 2.4 / CHOKED * whole * area - AMBIENT_PRESSURE_PA * area
+    ratio = AMBIENT_PRESSURE_PA / whole
     return 2.0 * area * whole * 3.5 * (ratio ** (1.0 / 1.4) - ratio)
 
 
@@ -107,7 +107,7 @@ class Nozzles:
     def jets(self, place, every, seconds=math.inf):
         """Return their Jets at a place [m] along the device."""
         return tuple(
-            Jet((place, 0.0, height), ACROSS, 0.5 * self.diameter, SPREAD, self.thrust, REACH, seconds)
+            Jet((place, 0.0, height), ACROSS, 0.5 * self.diameter, SPREAD, self.thrust, JET_REACH_M, seconds)
             for height in self.heights(every)
         )
 

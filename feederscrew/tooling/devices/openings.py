@@ -6,7 +6,7 @@ from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import hole_shapes, values
 from feederscrew.tooling.devices.base import UNSURE, Device, carried, corners_text
 
-DRAWN = forms.mapping(dxf=forms.TEXT, layer={"type": ["string", "number"]})
+DRAWN = forms.mapping(dxf=forms.TEXT_FORM, layer={"type": ["string", "number"]})
 
 
 class Gap(Device):

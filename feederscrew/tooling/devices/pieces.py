@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 BLADE = 1.5e-3  # [m] thickness of a blade
-FRAME = 5e-3  # [m] of a gate above its opening
+GATE_FRAME_M = 5e-3  # [m] of a gate above its opening
 GRIP = 0.6  # [1] friction of a dry steel track
 
 
@@ -89,5 +89,5 @@ def across(gate, width, every, place):
     """Return a Blade square across a track of some width [m], with an opening, at a place [m] along it."""
     import shapely
 
-    tall = 2.0 * max(max(one.height for one in every), gate.bounds[3]) + FRAME
+    tall = 2.0 * max(max(one.height for one in every), gate.bounds[3]) + GATE_FRAME_M
     return Blade(shapely.box(0.0, 0.0, width, tall).difference(gate), foot=(place, 0.0))

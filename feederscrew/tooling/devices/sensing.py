@@ -21,17 +21,17 @@ from feederscrew.tooling.devices.base import (
 from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles
 from feederscrew.tooling.devices.pieces import Sensor, Standing
 
-VIEWS = ("outline", "side", "height", "relief")
+SENSOR_VIEWS = ("outline", "side", "height", "relief")
 RESOLUTION = {"outline": 1e-4, "side": 1e-4, "height": 1e-3, "relief": 1e-4}  # [m] camera, fibre, laser
-BORE, PRESSURE, PULSE = 2e-3, 3e5, 0.04  # [m], [Pa], [s] of each nozzle: 1.28 N, 0.051 N s
+PULSE_BORE_M, PULSE_PRESSURE_PA, PULSE = 2e-3, 3e5, 0.04  # [m], [Pa], [s] of each nozzle: 1.28 N, 0.051 N s
 NOZZLE_COUNT = 4.0
-BAR, MS = units.factor("bar", "pressure"), units.factor("ms", "time")
+PULSE_BAR_PA, MS = units.factor("bar", "pressure"), units.factor("ms", "time")
 REACTION = 0.01  # [s] of sensor and valve: 5 to 15 ms
 NOZZLES = forms.mapping(
     ("nozzle", "pressure", "height", "time", "nozzles"),
-    nozzle=forms.LENGTH,
+    nozzle=forms.LENGTH_FORM,
     pressure=forms.quantity("pressure"),
-    height=forms.LENGTH,
+    height=forms.LENGTH_FORM,
     time=forms.quantity("time"),
     nozzles=forms.quantity("count", "1", "20"),
 )
@@ -41,7 +41,9 @@ SEEN_BY = {  # what sees a part so, and what it compares
     "height": ("fibre sensor", "heights that differ"),
     "relief": ("laser along the middle", "height profiles that differ"),
 }
-AHEAD = 0.01  # [m] from the sensor to the nozzles: a part is blown at as its middle comes to them
+SENSOR_TO_NOZZLE_M = (
+    0.01  # [m] from the sensor to the nozzles: a part is blown at as its middle comes to them
+)
 
 
 @dataclass(frozen=True)
@@ -51,8 +53,8 @@ class Sorter(Device):
     like: tuple[str, float, float] = ()  # type: ignore[assignment]  # a sorter is always like something
     sees: str = "outline"
     resolution: float | None = None  # [m] of the sensor; None: as common
-    nozzle: float = BORE  # [m]
-    pressure: float = PRESSURE  # [Pa] at the nozzle, above the ambient
+    nozzle: float = PULSE_BORE_M  # [m]
+    pressure: float = PULSE_PRESSURE_PA  # [Pa] at the nozzle, above the ambient
     height: float | None = None  # [m] of the lowest nozzle over the track; None: low enough for the thinnest
     time: float = PULSE  # [s] of a pulse
     nozzles: float = NOZZLE_COUNT  # one above the other
@@ -63,9 +65,9 @@ class Sorter(Device):
     form = forms.mapping(
         ("sees", "resolution", "jet"),
         of=forms.either(forms.NAMED, {"type": "array", "minItems": 1, "items": forms.NAMED}),
-        play=forms.LENGTH,
-        sees={"enum": list(VIEWS)},
-        resolution=forms.LENGTH,
+        play=forms.LENGTH_FORM,
+        sees={"enum": list(SENSOR_VIEWS)},
+        resolution=forms.LENGTH_FORM,
         jet=NOZZLES,
     )
     example = "{of: A@90, play: 0.5 mm, sees: outline}"
@@ -85,7 +87,7 @@ class Sorter(Device):
 
     @classmethod
     def read(cls, entry):
-        return values.sensor(entry, VIEWS)
+        return values.sensor(entry, SENSOR_VIEWS)
 
     @property
     def blur(self):
@@ -99,7 +101,7 @@ class Sorter(Device):
         Those that ``unlike`` gives for a view are named beside it: they pass too, though they look otherwise.
         """
         one, made = met.one, []
-        for view in VIEWS:
+        for view in SENSOR_VIEWS:
             also = tuple((other.aspect, other.heading) for other in unlike(view))
             like = one.aspect, one.heading, float(margin) + RESOLUTION[view] + met.askew(view)
             device = cls(where, like=like, sees=view, also=also)
@@ -148,8 +150,8 @@ class Sorter(Device):
     def _jet_text(self):
         """Its nozzles and its pulse as a bowl file has them, as far as they are not as by default."""
         nozzles = [
-            ("nozzle", length_text(self.nozzle), self.nozzle != BORE),
-            ("pressure", f"{self.pressure / BAR:.9g} bar", self.pressure != PRESSURE),
+            ("nozzle", length_text(self.nozzle), self.nozzle != PULSE_BORE_M),
+            ("pressure", f"{self.pressure / PULSE_BAR_PA:.9g} bar", self.pressure != PULSE_PRESSURE_PA),
             ("height", "" if self.height is None else length_text(self.height), True),
             ("time", f"{self.time / MS:.9g} ms", self.time != PULSE),
             ("nozzles", f"{self.nozzles:.9g}", self.nozzles != NOZZLE_COUNT),
@@ -182,7 +184,11 @@ class Sorter(Device):
         room = room_of(every)
         middle = 0.5 * room
         sensor = Sensor(middle, self.sees, self.wanted(every), self.like[2], self.blur)
-        return Standing(room + AHEAD, jets=self.jet.jets(middle + AHEAD, every, self.time), sensor=sensor)
+        return Standing(
+            room + SENSOR_TO_NOZZLE_M,
+            jets=self.jet.jets(middle + SENSOR_TO_NOZZLE_M, every, self.time),
+            sensor=sensor,
+        )
 
     def hop_blur(self, one):
         """Return what the hop of an orientation takes of its margin [m]: nothing as it is seen from above."""

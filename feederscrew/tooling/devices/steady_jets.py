@@ -20,23 +20,27 @@ from feederscrew.tooling.devices.base import (
 from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles
 from feederscrew.tooling.devices.pieces import Standing
 
-CLEAR = 2.0  # times the force that just moves a part off: within it, to either side, nothing is sure
-PLACES = 9  # along a part at which a jet meets it
-BORE, PRESSURE = 2e-3, 2e4  # [m], [Pa]
-BAR = units.factor("bar", "pressure")
+SURE_FORCE_RATIO = (
+    2.0  # times the force that just moves a part off: within it, to either side, nothing is sure
+)
+JET_POSITIONS = 9  # along a part at which a jet meets it
+JET_BORE_M, JET_PRESSURE_PA = 2e-3, 2e4  # [m], [Pa]
+BAR_PA = units.factor("bar", "pressure")
 
 
 @dataclass(frozen=True)
 class SteadyJet(Device):
     """A nozzle in the wall that blows all the time: it moves off what offers it enough area at its height."""
 
-    nozzle: float = BORE  # [m]
-    pressure: float = PRESSURE  # [Pa] above the ambient
+    nozzle: float = JET_BORE_M  # [m]
+    pressure: float = JET_PRESSURE_PA  # [Pa] above the ambient
     height: float = 0.0  # [m] of the nozzle over the track
 
     kind = "jet"
     trade = "air jet"
-    form = forms.mapping(nozzle=forms.LENGTH, pressure=forms.quantity("pressure"), height=forms.LENGTH)
+    form = forms.mapping(
+        nozzle=forms.LENGTH_FORM, pressure=forms.quantity("pressure"), height=forms.LENGTH_FORM
+    )
     example = "{nozzle: 2 mm, pressure: 0.2 bar, height: 8 mm}"
     meaning = (
         "nozzle in the wall that blows all the time, at a height over the track: returns what it moves over "
@@ -52,13 +56,13 @@ class SteadyJet(Device):
         return values.nozzle(entry, needed=("nozzle", "pressure", "height"))
 
     def value_text(self):
-        entries = (("nozzle", length_text(self.nozzle)), ("pressure", f"{self.pressure / BAR:.9g} bar"))
+        entries = (("nozzle", length_text(self.nozzle)), ("pressure", f"{self.pressure / BAR_PA:.9g} bar"))
         return mapping_text((*entries, ("height", length_text(self.height))))
 
     @property
     def value_words(self):
         bore, high = length_words(self.nozzle), length_words(self.height)
-        return f"nozzle of {bore} at {self.pressure / BAR:.4g} bar, {high} over the track"
+        return f"nozzle of {bore} at {self.pressure / BAR_PA:.4g} bar, {high} over the track"
 
     @property
     def jet(self):
@@ -81,7 +85,7 @@ class SteadyJet(Device):
         one = met.one
         wide = self.nozzle + SPREAD * one.width + one.length
         ends = one.outline[:, 0].min(), one.outline[:, 0].max()
-        shares = (np.arange(PLACES) + 0.5) / PLACES
+        shares = (np.arange(JET_POSITIONS) + 0.5) / JET_POSITIONS
         pushes = [
             self.jet.push(one, met.every or (one,), -float(ends[0] + share * (ends[1] - ends[0])))
             for share in shares
@@ -96,7 +100,7 @@ class SteadyJet(Device):
         factor, most = self.factor(met), self.most(met)
         way = met.one.track.width - met.one.distance
         margin = way * (1.0 - (most if factor < 1.0 else factor))
-        if most > 1.0 / CLEAR and factor < CLEAR:
+        if most > 1.0 / SURE_FORCE_RATIO and factor < SURE_FORCE_RATIO:
             margin = 0.0 if factor < 1.0 else -UNSURE
         return met.verdict(max(margin, -way))
 

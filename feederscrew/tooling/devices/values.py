@@ -6,9 +6,9 @@ from pathlib import Path
 from feederscrew import units
 from feederscrew.errors import ConfigError
 
-CORNER = "write [9 mm, 8 mm]"
+CORNER_ADVICE = "write [9 mm, 8 mm]"
 POLYGON = "write a list of three or more corners, as [[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 8 mm]]"
-FARTHEST = 1000.0  # [m] no bowl reaches so far
+MAX_LENGTH_M = 1000.0  # [m] no bowl reaches so far
 NOZZLE = {  # dimension and limits, in SI units, of what is said of a jet
     "nozzle": ("length", 1e-4, 2e-2),
     "pressure": ("pressure", 1e3, 1e6),
@@ -33,7 +33,9 @@ def blade(entry):
         return length(entry)
     names = ("clearance", "sweep", "friction", "contour")
     given = mapping(entry, names, "write {clearance: 6 mm, sweep: 30 deg}", ("sweep", "friction", "contour"))
-    found = {"limit": within(given, "clearance", "length", 1e-9, FARTHEST)} if "clearance" in given else {}
+    found = (
+        {"limit": within(given, "clearance", "length", 1e-9, MAX_LENGTH_M)} if "clearance" in given else {}
+    )
     if "sweep" in given:
         found["sweep"] = within(given, "sweep", "angle", math.radians(1.0), math.radians(90.0))
     if "friction" in given:
@@ -59,7 +61,7 @@ def sensor(entry, views):
                 node.where, f"sees is {units.shown(node.text)}", f"known are {', '.join(views)}"
             )
     if "resolution" in given:
-        found["resolution"] = within(given, "resolution", "length", 0.0, FARTHEST)
+        found["resolution"] = within(given, "resolution", "length", 0.0, MAX_LENGTH_M)
     if "jet" in given:
         found |= nozzle(given["jet"], ("time", "nozzles"))
     return found
@@ -79,7 +81,7 @@ def within(given, name, dimension, low, high):
     value = _quantity(node, name, dimension)
     if low <= value <= high:
         return value
-    unit, size = next(iter(units.UNITS[dimension].items()))
+    unit, size = next(iter(units.UNITS_BY_DIMENSION[dimension].items()))
     what = f"{name} is {units.one_line(node.text)}"
     raise ConfigError(node.where, what, f"give {low / size:.4g} to {high / size:.4g} {unit}".rstrip())
 
@@ -179,8 +181,10 @@ def simple(corners, where, kind):
     if len(corners) < 3:
         raise ConfigError(where, f"{kind} has {len(corners)} corners", POLYGON)
     size = max(max(abs(x), abs(y)) for x, y in corners)
-    if size > FARTHEST:
-        raise ConfigError(where, f"{kind} reaches {size:.3g} m", f"keep its corners within {FARTHEST:g} m")
+    if size > MAX_LENGTH_M:
+        raise ConfigError(
+            where, f"{kind} reaches {size:.3g} m", f"keep its corners within {MAX_LENGTH_M:g} m"
+        )
     if crossed(corners):
         raise ConfigError(where, f"{kind} crosses itself", "list the corners in order around it")
     following = (*corners[1:], corners[0])
@@ -219,7 +223,7 @@ def _corners(node, kind):
     found = []
     for item in node.items:
         if item.kind != "list" or len(item.items) != 2:
-            raise ConfigError(item.where, f"is no corner of {kind}", CORNER)
+            raise ConfigError(item.where, f"is no corner of {kind}", CORNER_ADVICE)
         found.append(tuple(_quantity(one, f"corner of {kind}", "length") for one in item.items))
     return found
 

@@ -10,8 +10,8 @@ from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.isolating.chain import limits, numbered
 from feederscrew.tooling.verdicts import opening_margin
 
-ROUNDS = 4  # of the fit of one hull over the other
-SIDES = (("ahead", "behind"), ("on the inner side", "at the wall"), ("on top", "at the bottom"))
+HULL_FIT_ROUNDS = 4  # of the fit of one hull over the other
+SIDE_NAMES = (("ahead", "behind"), ("on the inner side", "at the wall"), ("on top", "at the bottom"))
 
 
 @dataclass(frozen=True)
@@ -104,14 +104,14 @@ def difference(wanted, other):
     sizes = [np.ptp(one.posture.corners, axis=0).max() for one in (wanted, other)]
     away, there = first[0, 0] * sizes[0] - second[0, 0] * sizes[1], sameness.directions()
     shift = np.zeros(3)
-    for _ in range(ROUNDS):  # least squares: the directions are spread evenly
+    for _ in range(HULL_FIT_ROUNDS):  # least squares: the directions are spread evenly
         left = away - (there * shift).sum(axis=1)
         shift = shift + 3.0 * (there * left[:, None]).mean(axis=0)
     left = np.abs(away - (there * shift).sum(axis=1))
     where = there[int(np.argmax(np.round(left, 9)))]
     axis = int(np.argmax(np.abs(where)))
     x, y, z = map(float, shift)
-    return Difference(float(left.max()), SIDES[axis][int(where[axis] < 0.0)], (x, y, z))
+    return Difference(float(left.max()), SIDE_NAMES[axis][int(where[axis] < 0.0)], (x, y, z))
 
 
 def _nearest(wanted, other):

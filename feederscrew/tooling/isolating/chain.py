@@ -8,11 +8,11 @@ import numpy as np
 from feederscrew.tooling.devices.base import STOPPED, UNSURE, Device
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.falling_through import surely_gone
-from feederscrew.tooling.isolating.shop_values import FINE, STEP, fine, snapped
+from feederscrew.tooling.isolating.shop_values import SHOP_ROUNDING_M, SHOP_STEP_M, fine, snapped
 from feederscrew.tooling.verdicts import Meeting, verdict
 
-WHERE = "design"
-HALVINGS = 10  # of the way from the value nearest to the wanted orientation to the middle
+DESIGN_KEY = "design"
+CUT_BISECTIONS = 10  # of the way from the value nearest to the wanted orientation to the middle
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Wishes:
 
     outcome: str = "any"  # how parts leave: 'lying', 'hanging' or 'any'
     without: tuple[str, ...] = ()  # kinds of devices that are not used
-    step: float = STEP  # [m] a shop makes: values are whole multiples
+    step: float = SHOP_STEP_M  # [m] a shop makes: values are whole multiples
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
     cutter: float = 0.0  # [m] radius that corners of holes are rounded to
     separation: Device | None = None  # that comes before a device that needs gaps
@@ -87,11 +87,11 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
         first = pivot(kind, every, wanted, same)
         if not wishes.allows(kind.kind) or not np.isfinite(values[first]) or (kind.overhead and not clearing):
             continue
-        play = margin + kind(WHERE).hop_blur(every[first])
+        play = margin + kind(DESIGN_KEY).hop_blur(every[first])
         if lower and values[first] <= 2.0 * play:
             continue
         limit = snapped(values[first] + (-play if lower else play), wishes.step, up=not lower)
-        device = kind.proposal(WHERE, limit)
+        device = kind.proposal(DESIGN_KEY, limit)
         if limit > 0.0 and device.acts(every[wanted].track):
             found[device] = np.array([margin_at(device, one, every) for one in every])
 
@@ -101,7 +101,7 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
 
     for kind in around() if sensed else ():
         if wishes.allows(kind.kind):
-            for device in kind.around(Meeting(every[wanted], every), margin, WHERE, unlike):
+            for device in kind.around(Meeting(every[wanted], every), margin, DESIGN_KEY, unlike):
                 found[device] = np.array([margin_at(device, one, every) for one in every])
     return found
 
@@ -185,7 +185,7 @@ def jams(found, chosen, others, margin):
     return False
 
 
-def placed(every, wanted, devices, must, least=np.inf, step=FINE, same=()):
+def placed(every, wanted, devices, must, least=np.inf, step=SHOP_ROUNDING_M, same=()):
     """Return the cuts of a chain, each value in the middle of what it may be.
 
     Source: own; docs/tooling.md, "5. Where it ends".
@@ -231,13 +231,13 @@ def _cut(every, wanted, device, must, least, step):
     middle = float(0.5 * (values[wanted] + nearest))
 
     def at(value):
-        value = fine(snapped(value, step, up=not upper)) if step > FINE else fine(value)
+        value = fine(snapped(value, step, up=not upper)) if step > SHOP_ROUNDING_M else fine(value)
         return device.valued(value)
 
     chosen = _surest(every, must, at, middle if np.isfinite(nearest) else device.limit, device.limit)
     if device.carries and least < np.inf:
         eased = max(chosen.limit, nearest - least) if upper else min(chosen.limit, nearest + least)
-        chosen = _surest(every, must, at, float(eased), chosen.limit, least - 2.0 * FINE)
+        chosen = _surest(every, must, at, float(eased), chosen.limit, least - 2.0 * SHOP_ROUNDING_M)
     ends = [device.valued(float(end)) for end in (nearest, values[wanted])]
     return judged(every, wanted, chosen, must, *ends)
 
@@ -269,7 +269,7 @@ def _surest(every, must, at, middle, near, by=UNSURE):
 
     if returns(at(middle)):
         return at(middle)
-    for _ in range(HALVINGS):
+    for _ in range(CUT_BISECTIONS):
         half = 0.5 * (near + middle)
         near, middle = (half, middle) if returns(at(half)) else (near, half)
     return at(near)

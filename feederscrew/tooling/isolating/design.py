@@ -14,15 +14,15 @@ from feederscrew.tooling.isolating.needed import told_needed
 from feederscrew.tooling.isolating.proposal import ALL, told, weights, without
 from feederscrew.tooling.isolating.proposal import task as asked_for
 
-MARGIN = 1.5e-4  # [m] to either side, beside ...
-PLAY, TOLERANCE = 5e-5, 5e-5  # [m] ... what parts come off the wall, and what their size is off
-WHOLE = MARGIN + PLAY + TOLERANCE  # [m]
+MARGIN_M = 1.5e-4  # [m] to either side, beside ...
+PLAY_M, TOLERANCE_M = 5e-5, 5e-5  # [m] ... what parts come off the wall, and what their size is off
+TOTAL_MARGIN_M = MARGIN_M + PLAY_M + TOLERANCE_M  # [m]
 MOST_HOLES = 3  # cut-outs in one chain
-MORE = 1e-2  # [1] purity by which a chain of varied devices is better
+PURITY_GAIN = 1e-2  # [1] purity by which a chain of varied devices is better
 GAIN = 1.25  # turning devices are taken where they bring so many times the parts, if no efficiency is asked
 
 
-def design(every, shares, wanted, *, margin=WHOLE, search=None, goal=ALL, before=(), wishes=None):
+def design(every, shares, wanted, *, margin=TOTAL_MARGIN_M, search=None, goal=ALL, before=(), wishes=None):
     """Return the chain of fewest devices that isolates an orientation.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -136,7 +136,7 @@ def _plain(given, search):
         if found.isolated or not any(stage.values()):
             continue
         other = told_needed(given, *_chosen(given, weight, stage))
-        purer = stage.get("varied") and other.purity > found.purity + MORE
+        purer = stage.get("varied") and other.purity > found.purity + PURITY_GAIN
         found = other if other.isolated or purer else found
     if holes and not found.isolated:  # by far the longest search: only where nothing simpler isolates
         more = told_needed(given, *_with_holes(given, cuts, returned, search))
@@ -147,7 +147,7 @@ def _plain(given, search):
 
 def _purer(found, other):
     """Whether a design leaves purer parts than another one."""
-    return bool(np.nan_to_num(found.purity) > np.nan_to_num(other.purity) + MORE)
+    return bool(np.nan_to_num(found.purity) > np.nan_to_num(other.purity) + PURITY_GAIN)
 
 
 def _chosen(given, weight, stage) -> tuple[Any, np.ndarray]:

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from feederscrew.tooling.devices.kinds import leaning
-from feederscrew.tooling.isolating.chain import WHERE
+from feederscrew.tooling.isolating.chain import DESIGN_KEY
 from feederscrew.tooling.isolating.proposal import plain_cut
 
 
@@ -29,7 +29,7 @@ def stretches(one, wall_friction, before, wishes):
     leans = one.track.bank > 0.0 or any(device.leans for device in before)
     if one.kind != "rolling" or leans:
         return ()
-    ways = (kind.holding(one, wall_friction, WHERE) for kind in leaning())
+    ways = (kind.holding(one, wall_friction, DESIGN_KEY) for kind in leaning())
     return min(_allowed(ways, wishes), key=len, default=())
 
 
@@ -53,7 +53,7 @@ def others(one, found, wishes):
     if one.track.bank > 0.0:
         return []
     known = {(cut.device.kind, cut.device.text) for cut in found.cuts}
-    ways = _allowed((way for kind in leaning() for way in kind.leanings(one, WHERE)), wishes)
+    ways = _allowed((way for kind in leaning() for way in kind.leanings(one, DESIGN_KEY)), wishes)
     ways = [way for way in ways if (way[0].kind, way[0].text) not in known]
     return sorted((way for way in ways if way[0].grooved or not found.isolated), key=len)
 

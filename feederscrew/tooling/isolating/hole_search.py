@@ -11,17 +11,17 @@ from feederscrew.tooling.devices import hole_shapes
 from feederscrew.tooling.devices.base import carried
 from feederscrew.tooling.devices.openings import CutOut
 from feederscrew.tooling.devices.values import crossed
-from feederscrew.tooling.isolating.chain import WHERE, judged
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, judged
 from feederscrew.tooling.verdicts import verdict
 
 STARTS = 220  # random holes tried
-CLIMBS = 6  # the best of them are improved
-STEPS = 100  # changes tried of each
-ROOM = 1.3  # holes reach so far beyond the foot
-STEP = 5e-5  # [m] to which a corner is rounded
-HALVINGS = 24
-ROUNDING = 1e-12  # [m] of a score
-VERDICTS = 30000  # in the search for the holes of one orientation
+IMPROVED_HOLES = 6  # the best of them are improved
+CHANGES_PER_CORNER = 100  # changes tried of each
+HOLE_REACH_FACTOR = 1.3  # holes reach so far beyond the foot
+CORNER_STEP_M = 5e-5  # [m] to which a corner is rounded
+CORNER_BISECTIONS = 24
+SCORE_TOLERANCE_M = 1e-12  # [m] of a score
+MAX_HOLE_VERDICTS = 30000  # in the search for the holes of one orientation
 
 
 @dataclass
@@ -29,7 +29,7 @@ class HoleSearch:
     """How long and from where holes are looked for: by a count of verdicts, the same on every machine."""
 
     seed: int = 1
-    verdicts: int = VERDICTS  # for one orientation; then the best so far is taken
+    verdicts: int = MAX_HOLE_VERDICTS  # for one orientation; then the best so far is taken
     until: float = math.inf  # [s] of time.monotonic(): the last resort
     late: bool = False  # whether that was reached
     spent: int = 0  # verdicts so far
@@ -114,7 +114,9 @@ class _Judge:
         self.search = search
         self.wanted, self.others = every[wanted].standing, [every[k] for k in others]
         self.radius, self.margin = every[wanted].track.radius, margin
-        self.length = ROOM * max(one.length for one in (every[wanted], *(every[k] for k in others)))
+        self.length = HOLE_REACH_FACTOR * max(
+            one.length for one in (every[wanted], *(every[k] for k in others))
+        )
         self.width = max(one.width for one in (every[wanted], *(every[k] for k in others)))
         self.scratch = {}
         self.order = list(range(len(others)))  # those that spoiled a hole last come first
@@ -154,7 +156,7 @@ class _Judge:
         if beaten == -math.inf:
             return math.inf
         nearly = [*margins[:k], math.nextafter(-self.margin, 0.0), *margins[k + 1 :]]  # not quite returned
-        return -self.margin + max(self._worth(passing, nearly) - beaten, 0.0) + ROUNDING
+        return -self.margin + max(self._worth(passing, nearly) - beaten, 0.0) + SCORE_TOLERANCE_M
 
     def searched(self, rng):
         """The best hole found, as (corners, margins), if it passes the wanted one and returns any other."""
@@ -164,9 +166,9 @@ class _Judge:
                 break
             corners = self._random(rng)
             if corners is not None:
-                beaten = found[-1][0] if len(found) == CLIMBS else -math.inf
+                beaten = found[-1][0] if len(found) == IMPROVED_HOLES else -math.inf
                 found.append((*self.score(corners, beaten), corners))
-                found = sorted(found, key=lambda one: -one[0])[:CLIMBS]
+                found = sorted(found, key=lambda one: -one[0])[:IMPROVED_HOLES]
         climbed = [self._climbed(one, rng) for one in found]
         best = max(climbed, key=lambda one: one[0], default=None)
         return (best[2], best[1]) if best is not None and self.is_enough(best[0]) else None
@@ -179,7 +181,7 @@ class _Judge:
         """One hole improved by moving a corner, or all of it, at random."""
         score, margins, corners = start
         size = 0.15 * self.width
-        for _ in range(STEPS):
+        for _ in range(CHANGES_PER_CORNER):
             if self.search.over() or margins is None:
                 break
             moved = corners.copy()
@@ -210,7 +212,7 @@ class _Judge:
         corners = corners.copy()
         corners[:, 1] = np.clip(corners[:, 1], 0.0, min(1.2 * self.width, 0.9 * self.radius))
         corners[:, 0] -= corners[:, 0].min()
-        corners = np.round(corners / STEP) * STEP
+        corners = np.round(corners / CORNER_STEP_M) * CORNER_STEP_M
         pairs = [tuple(one) for one in corners.tolist()]
         sides = zip(pairs, (*pairs[1:], pairs[0]))
         area = 0.5 * abs(sum(x0 * y1 - y0 * x1 for (x0, y0), (x1, y1) in sides))
@@ -264,7 +266,7 @@ def _border(holds, inside, outside):
     """The last share for which something holds, from where it does towards where it may not."""
     if holds(outside) if outside > 0.0 else False:
         return outside
-    for _ in range(HALVINGS):
+    for _ in range(CORNER_BISECTIONS):
         middle = 0.5 * (inside + outside)
         if middle > 0.0 and holds(middle):
             inside = middle
@@ -276,4 +278,4 @@ def _border(holds, inside, outside):
 def device_of(corners):
     """Return the hole of some corners (K, 2) [m]."""
     shape = tuple((float(x), float(y)) for x, y in corners)
-    return CutOut(WHERE, corners=shape).rewritten()
+    return CutOut(DESIGN_KEY, corners=shape).rewritten()

@@ -5,7 +5,7 @@ import numpy as np
 from feederscrew.tooling.isolating.chain import margin_at
 from feederscrew.tooling.isolating.proposal import told
 
-SAME = 1e-4  # [1] shares that differ by less are printed alike
+PRINTED_SHARE_STEP = 1e-4  # [1] shares that differ by less are printed alike
 
 
 def told_needed(given, cuts, returned, same=None, late=False):
@@ -56,6 +56,6 @@ def _alike(one, other):
     stands = [{name for cut in design.cuts for name in cut.stops} for design in (one, other)]
     return (
         one.isolated >= other.isolated
-        and bool((np.abs(first - second) < SAME).all())
+        and bool((np.abs(first - second) < PRINTED_SHARE_STEP).all())
         and stands[0] <= stands[1]
     )

@@ -11,8 +11,8 @@ from feederscrew.tooling.isolating.chain import Cut, Wishes
 
 LEAST_SHARE = 5e-3  # [1] orientations that come less often need not be returned
 ISOLATED_PURITY = 0.98  # [1] of what leaves, from which an orientation is said to be isolated
-SLIGHT = 1e-9  # [1] of an orientation: less comes of rounding
-NEVER = 1e-4  # [1] those that come less often change no number: no device is added for them
+MIN_ORIENTATION_SHARE = 1e-9  # [1] of an orientation: less comes of rounding
+NEGLIGIBLE_SHARE = 1e-4  # [1] those that come less often change no number: no device is added for them
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +120,7 @@ def task(every, shares, wanted, margin, purity, before, turners=(), wishes=None)
 def weights(given):
     """Return how much it matters to return each orientation, (M,) [1]: those that come often enough first."""
     weight = np.where(given.often, 1.0 + given.coming, 1e-3 * given.coming)
-    weight = np.where(given.coming < NEVER, 0.0, weight)
+    weight = np.where(given.coming < NEGLIGIBLE_SHARE, 0.0, weight)
     return np.where(given.stays, weight, 0.0)
 
 
@@ -149,7 +149,7 @@ def told(given, cuts, returned, same=None, late=False):
     flow = course((*given.before, *(cut.device for cut in cuts)), every)
     states = sorted({flow.leaves_as(k) for k in np.flatnonzero(given.same)})
     out = (shares[:, None] * flow.leaving).sum(axis=0)
-    unsure = np.where(given.same | (flow.doubtful < SLIGHT), 0.0, shares * flow.doubtful)
+    unsure = np.where(given.same | (flow.doubtful < MIN_ORIENTATION_SHARE), 0.0, shares * flow.doubtful)
     doubt = float(unsure.sum())  # may leave as well: no trial has said
     total, leaving = shares.sum(), out.sum()
     cuts = _with_stops(given, flow, cuts)

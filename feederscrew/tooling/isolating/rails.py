@@ -11,14 +11,14 @@ from feederscrew.tooling.isolating.shop_values import fine, snapped
 from feederscrew.tooling.verdicts import verdict
 
 PLAY, MOST = 4e-4, 6e-4  # [m] by which a slot is wider than the shank: 0.2 to 0.6 mm
-CLEAR = 4e-4  # [m] between a hanging head and the wall, wherever the shank stands in its slot
+HEAD_WALL_CLEARANCE_M = 4e-4  # [m] between a hanging head and the wall, wherever the shank stands in its slot
 # drops first, then what clears itself, then what sees
 STAGES: tuple[dict[str, bool], ...] = ({"clearing": False}, {}, {"sensed": True})
 RAIL = 1e-3  # [m] least width of a rail, and of the sheet it is cut from
 # a part that lies along the wall is askew: its shank's tip lies nearer to the wall than its weight, and has
 # to be over the slot. The lead-in reaches so far under it, in radii of the shank, and so much at least
 SINKS, WIDER = 0.5, 3e-4  # [1], [m]
-HELD = 4e-4  # [m] by which the lead-in is narrower than the head at least
+LEAD_IN_MARGIN_M = 4e-4  # [m] by which the lead-in is narrower than the head at least
 CONE = 0.5  # a head whose underside rises by more is one
 STRAIGHT, TAPER = 1.5, 1.0  # lengths of the part in which it goes down, and in which the slot narrows
 
@@ -100,13 +100,13 @@ def _ends(one, device, step):
 
 def _rails(one, found, width, step):
     width = snapped(width, step, up=True)
-    middle = max(one.distance - one.shift, 0.5 * found.widest + CLEAR, 0.5 * width + RAIL)
+    middle = max(one.distance - one.shift, 0.5 * found.widest + HEAD_WALL_CLEARANCE_M, 0.5 * width + RAIL)
     first = snapped(middle - 0.5 * width, step, up=True)
     span = fine(first), fine(first + width)
     lead = _lead(one, found, span, step)
     if lead[1] >= one.track.width - RAIL or not lead[0] < one.distance - one.shift < lead[1]:
         return None
-    return Rails(chain.WHERE, span=span, lead=lead).rewritten()
+    return Rails(chain.DESIGN_KEY, span=span, lead=lead).rewritten()
 
 
 def _lead(one, found, span, step):
@@ -118,9 +118,11 @@ def _lead(one, found, span, step):
     tip = one.distance - one.shift + found.tip - SINKS * 0.5 * found.shank
     near = max(min(tip, span[0] - WIDER), RAIL)
     near = min(snapped(near, step, up=True), span[0])
-    far = max(span[1] + WIDER, found.widest + 2.0 * CLEAR - near)  # its middle as clear of the wall
+    far = max(
+        span[1] + WIDER, found.widest + 2.0 * HEAD_WALL_CLEARANCE_M - near
+    )  # its middle as clear of the wall
     held = 0.2 if found.rise > CONE else 0.5
-    far = min(far, near + found.head - max(HELD, held * (found.head - found.shank)))
+    far = min(far, near + found.head - max(LEAD_IN_MARGIN_M, held * (found.head - found.shank)))
     far = max(snapped(far, step, up=False), span[1])
     sizes = (snapped(share * one.length, step, up=True) for share in (STRAIGHT, TAPER))
     return tuple(fine(size) for size in (near, far, *sizes))

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-STEP = 5e-5  # [m] of values that a shop makes
-FINE = 1e-7  # [m] to which a value is rounded
+SHOP_STEP_M = 5e-5  # [m] of values that a shop makes
+SHOP_ROUNDING_M = 1e-7  # [m] to which a value is rounded
 
 
 def snapped(value, step, up):
@@ -19,4 +19,4 @@ def millimetres(value):
 
 def fine(value):
     """Return a length [m] rounded to what a bowl file says of it."""
-    return float(np.round(value / FINE)) * FINE
+    return float(np.round(value / SHOP_ROUNDING_M)) * SHOP_ROUNDING_M

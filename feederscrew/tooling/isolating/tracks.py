@@ -8,13 +8,13 @@ import numpy as np
 from feederscrew.tooling.devices.kinds import names
 from feederscrew.tooling.fates import at_entry, course
 from feederscrew.tooling.isolating import held
-from feederscrew.tooling.isolating.chain import WHERE, around
-from feederscrew.tooling.isolating.design import MORE, design
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, around
+from feederscrew.tooling.isolating.design import PURITY_GAIN, design
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE
 from feederscrew.tooling.orientations import placed
 from feederscrew.tooling.verdicts import Meeting
 
-CARRIED = (
+TRACK_REMARK = (
     "quasi-static: at the bowl's speed a part may be carried over a cut that returns it, laid over by a "
     "blade or wedged between rails - see feeder trial"
 )
@@ -24,8 +24,8 @@ ROCKS = (
 )
 # [rad] of a groove in which what rolls across it turns along it first. In trials of a dowel 4 of 4 did at 55
 # and 60 deg, 2 of 4 at 50; at 15 and 30 deg 12 of 12 rolled back
-TURNS = math.radians(55.0)
-OFTENER = 1.05  # times the efficiency for which a track leans that need not
+MAX_GROOVE_FACE_RAD = math.radians(55.0)
+LEAN_GAIN = 1.05  # times the efficiency for which a track leans that need not
 BESIDE, WHOLE = 1e-3, 1e-3  # [m] that a track is wider than what lies on it, and the step of its width
 
 
@@ -106,7 +106,7 @@ def coming(every, shares, leaning):
     What rolls back in a groove before it turns does not come.
     """
     there = at_entry(every, leaning)
-    flow, flat = course(leaning, there), leaning[0].grooved and leaning[0].angle < TURNS - 1e-9
+    flow, flat = course(leaning, there), leaning[0].grooved and leaning[0].angle < MAX_GROOVE_FACE_RAD - 1e-9
     comes = np.array([0.0 if flat and one.may_roll_back else 1.0 for one in there])
     return (comes[:, None] * np.asarray(shares)[:, None] * flow.leaving).sum(axis=0)[: len(every)]
 
@@ -116,9 +116,9 @@ def gains(other, best):
     if other is None or other.isolated != best.isolated:
         return other is not None and other.isolated
     pure, before = (np.nan_to_num(one.purity) for one in (other, best))
-    if abs(pure - before) > MORE:
+    if abs(pure - before) > PURITY_GAIN:
         return bool(pure > before)
-    return other.efficiency > OFTENER * best.efficiency
+    return other.efficiency > LEAN_GAIN * best.efficiency
 
 
 def widths(every, shares, wanted, margin):
@@ -142,7 +142,7 @@ def widths(every, shares, wanted, margin):
     one, found = every[wanted], []
     if one.falls_off:
         found.append(WHOLE * math.ceil((one.width + BESIDE) / WHOLE))
-    sensors = [kind(WHERE, like=(one.aspect, one.heading, float(margin))) for kind in around()]
+    sensors = [kind(DESIGN_KEY, like=(one.aspect, one.heading, float(margin))) for kind in around()]
     others = [k for k, share in enumerate(shares) if share >= LEAST_SHARE and k != wanted]
     blown = [every[k] for k in others if not every[k].returned]
     ways = [_blown(sensor, other, every) for sensor in sensors for other in blown]
@@ -189,4 +189,4 @@ def _isolating(every, shares, wanted, **asked):
         return found
     asked["wishes"] = replace(asked["wishes"], vary=False)
     still = design(placed(every), shares, wanted, **asked)
-    return replace(still, reasons=(*still.reasons, CARRIED)) if still.isolated else found
+    return replace(still, reasons=(*still.reasons, TRACK_REMARK)) if still.isolated else found

@@ -6,14 +6,14 @@ import numpy as np
 
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.fates import course
-from feederscrew.tooling.isolating.chain import WHERE, Cut
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, Cut
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE
 from feederscrew.tooling.verdicts import Meeting, verdict
 
-ROUND = 1e-4  # [m] to which a height or width is rounded
-MORE = 1.05  # a chain is tried if it brings so many times what the best shorter one does
+TURNER_STEP_M = 1e-4  # [m] to which a height or width is rounded
+TURNER_GAIN = 1.05  # a chain is tried if it brings so many times what the best shorter one does
 TRIED = 4  # chains of each length
-HIGHEST = 0.5  # of the part's greatest length: over a higher step it tumbles freely
+MAX_STEP_SHARE = 0.5  # of the part's greatest length: over a higher step it tumbles freely
 
 
 def chains(given):
@@ -36,7 +36,9 @@ def chains(given):
             (_brought(given, [matrices[device] for device in chosen]), chosen)
             for chosen in itertools.permutations(devices, count)
         ]
-        best = sorted((one for one in some if one[0] > MORE * start), key=lambda one: -round(one[0], 9))
+        best = sorted(
+            (one for one in some if one[0] > TURNER_GAIN * start), key=lambda one: -round(one[0], 9)
+        )
         found += [chosen for _, chosen in best[:TRIED]]
         start = max([start, *(brought for brought, _ in best)])
     return [_cuts(given, chosen) for chosen in found]
@@ -49,7 +51,7 @@ def _devices(given):
     longest = max((max(one.length, one.height) for one in often), default=0.0)
     kinds = [kind for kind in KINDS.values() if kind.turns]
     made = [_device(kind, one) for kind in kinds for one in _between(_changes(given, kind))]
-    return [one for one in made if one.inwards or one.limit <= HIGHEST * longest]
+    return [one for one in made if one.inwards or one.limit <= MAX_STEP_SHARE * longest]
 
 
 def _changes(given, kind):
@@ -62,11 +64,13 @@ def _between(known):
     """Rounded middles between ascending values, and one above them all."""
     middles = [0.5 * (low + high) for low, high in itertools.pairwise(known)]
     middles += [1.1 * known[-1]] if known else []
-    return sorted({round(round(one / ROUND) * ROUND, 9) for one in middles if one > 2.0 * ROUND})
+    return sorted(
+        {round(round(one / TURNER_STEP_M) * TURNER_STEP_M, 9) for one in middles if one > 2.0 * TURNER_STEP_M}
+    )
 
 
 def _device(kind, limit):
-    return kind(WHERE).valued(float(limit))
+    return kind(DESIGN_KEY).valued(float(limit))
 
 
 def _sure(given, device):

@@ -9,7 +9,7 @@ from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.isolating import chain
 from feederscrew.tooling.isolating.shop_values import snapped
 
-SWEEPS = (20.0, 45.0, 55.0)  # [deg] beside the 30 deg of the first design
+VARIED_SWEEPS_DEG = (20.0, 45.0, 55.0)  # [deg] beside the 30 deg of the first design
 
 
 def varied(every, wanted, margin, wishes, same=()):
@@ -35,7 +35,10 @@ def varied(every, wanted, margin, wishes, same=()):
     for kind in (kind for kind in chain.numbered() if kind.overhead and wishes.allows(kind.kind)):
         highest = every[chain.pivot(kind, every, wanted, same)].height
         limit = snapped(highest + margin, wishes.step, up=True)
-        swept = [replace(kind.proposal(chain.WHERE, limit), sweep=math.radians(sweep)) for sweep in SWEEPS]
+        swept = [
+            replace(kind.proposal(chain.DESIGN_KEY, limit), sweep=math.radians(sweep))
+            for sweep in VARIED_SWEEPS_DEG
+        ]
         found |= {one: _margins(one, every) for one in swept if one.clear_of(every[wanted].grip)}
     return found
 
