@@ -2,7 +2,7 @@
 
 Examples: python benchmarks/mutants.py --each 12 --seed 1
           python benchmarks/mutants.py rates.rocking.goes_over machine.sizing
-          python benchmarks/mutants.py tooling.holding.may_wedge --tests tests/tooling/test_holding.py
+          python benchmarks/mutants.py tooling.falling.may_wedge --tests tests/tooling/test_holding.py
 
 A name is that of a module, function, method or constant below `feederscrew`. The operators change numbers,
 signs, sums, products, comparisons, conditions, minima and sines of what has that name, in a copy of the
@@ -48,14 +48,14 @@ TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "resting.rules.recommended.LAUNCH_WIDTH": JUDGED,
     "resting.rules.recommended.WIDTH_FLOOR": JUDGED,
     "tooling.verdicts.WORN": HOLDING,
-    "tooling.strip._width": DEVICES,
-    "tooling.holding": f"tests/tooling/test_holding.py {HOLDING}",
-    "tooling.turning": f"tests/tooling/test_turning.py {HOLDING}",
+    "tooling.track_sections._width": DEVICES,
+    "tooling.falling": f"tests/tooling/test_holding.py {HOLDING}",
+    "tooling.verdicts": f"tests/tooling/test_turning.py {HOLDING}",
     "tooling.devices.blades": f"{VERDICTS} tests/tooling/test_clearing.py",
     "tooling.devices.ledges": LEDGES,
-    "tooling.devices.ledge_edges.Tip.judged": HOLDING,
+    "tooling.devices.ledges.Tip.judged": HOLDING,
     "tooling.devices.openings": LEDGES,
-    "tooling.devices.steady_jets.SteadyJet": DEVICES,
+    "tooling.devices.pneumatics.SteadyJet": DEVICES,
     "trial.course": "tests/studies/test_trial_numbers.py tests/trial/test_trial_course.py",
     "trial.result": "tests/studies/test_trial_numbers.py tests/cli/moving/test_cli_trial.py",
     "trial.queue.PartsQueue.enter": "tests/trial/test_trial_queue.py -k 'enter or wait'",
@@ -73,7 +73,7 @@ EXCUSED = {  # constants whose value within reason has no consequence, and why
     "rates.rocking.REST_ANGULAR_SPEED": "a part that comes down so slowly is at rest within the same instant",
     "rates.tipping.TIPPING_PHASES": "any number of instants that shows a stroke",
     "rates.tipping.MAX_FORCE_OFFSET_HEIGHTS": "any width beyond every force: it tips over the ends alone",
-    "tooling.holding.BEYOND_FOOT_M": "any length beyond every foot",
+    "tooling.falling.BEYOND_FOOT_M": "any length beyond every foot",
 }
 COPIED = (
     "feederscrew",

@@ -30,7 +30,7 @@ from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.rate import LEAST
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling.isolating import proposal as static
-from feederscrew.tooling.isolating.chain import Wishes
+from feederscrew.tooling.isolating.chain import DesignConstraints
 
 DRIVE = (
     ("frequency", 1.0, "Hz"),
@@ -78,11 +78,17 @@ def tooled(
     """
     if not proposal.cuts:
         return None
-    given = static.task(
-        ways.lying, weights, proposal.row, margin, 1.0, proposal.before, wishes=Wishes(up=request.up)
+    given = static.design_task(
+        ways.lying,
+        weights,
+        proposal.row,
+        margin,
+        1.0,
+        proposal.before,
+        constraints=DesignConstraints(up=request.up),
     )
     same = np.isin(ways.leaves_as, proposal.states(ways))
-    found = static.told(given, proposal.cuts, ways.through < 0.5, same)
+    found = static.propose(given, proposal.cuts, ways.through < 0.5, same)
     designs = tuple(found if k == proposal.row else None for k in range(len(weights)))
     return ToolingStudy(
         part, bowl, aspects, request.rule, margin, ways.lying, weights, designs, proposal.row, request.up

@@ -19,7 +19,7 @@ from feederscrew.rates.tipping import FLAT_KIND
 from feederscrew.studies import solidbowl
 from feederscrew.studies.rate import shares
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
-from feederscrew.tooling.hanging import neck
+from feederscrew.tooling.orientations import neck
 
 EACH = 2  # parts of each orientation in a short trial
 MENDED = 3  # times that one proposal is mended

@@ -19,7 +19,7 @@ from feederscrew.part.hull import convex_hull
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.named import place_of
+from feederscrew.tooling.devices.orientation_names import place_of
 from feederscrew.tooling.fates import at_entry
 
 FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side

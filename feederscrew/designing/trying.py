@@ -14,8 +14,7 @@ from feederscrew.rates import spacing, stream
 from feederscrew.resting.aspects import Aspects
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.hanging import Hanging
-from feederscrew.tooling.orientations import Orientation
+from feederscrew.tooling.orientations import Hanging, Orientation
 from feederscrew.trial import course, runs
 from feederscrew.trial.looks import AspectsBelow
 

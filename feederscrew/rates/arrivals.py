@@ -13,7 +13,7 @@ from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts.profiles import AspectProfile, Measured
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended, launched
-from feederscrew.tooling.devices.named import place
+from feederscrew.tooling.devices.orientation_names import place
 
 if TYPE_CHECKING:
     from feederscrew.dropping.plate.arrival import Arrival

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew.bowl.record import Bowl
 from feederscrew.rates import stretches
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.orientations import Orientation, speed
+from feederscrew.tooling.orientations import Orientation, travel_speed
 
 
 def needed(chain: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl) -> float:
@@ -29,11 +29,11 @@ def needed(chain: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl) ->
         as large.
     """
     here, gap = lying[0], 0.0
-    first = speed(stretches.queueing(bowl, lying))
+    first = travel_speed(stretches.queueing(bowl, lying))
     shortest = min(one.length for one in lying)
     for device in chain:
         here = device.onward(here)
-        now = speed(stretches.on_stretch(bowl, here))
+        now = travel_speed(stretches.on_stretch(bowl, here))
         free = max(device.gap(one, now) for one in lying)
         if free > 0.0:
             ratio = now / first if first > 0.0 else np.inf

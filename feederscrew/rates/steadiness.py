@@ -14,11 +14,10 @@ from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import Seat
 from feederscrew.rates.rocking import Rocker, goes_over, over_period
 from feederscrew.rates.tipping import FLAT_KIND, landing_energy, may_tip, plain, seated
-from feederscrew.tooling import foot as feet
-from feederscrew.tooling import touching
+from feederscrew.tooling import footprints
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.falling_through import surely_gone
-from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, speed
+from feederscrew.tooling.falling import surely_gone
+from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, travel_speed
 
 STEADINESS_PHASES = 12  # of one period
 LANDINGS = 8  # instants of the period at which it comes to lie on the far edge
@@ -118,7 +117,7 @@ def _lands(devices: Sequence[Device], one: Orientation, bowl: Bowl, margin: floa
     for device in _met(devices):
         span = device.span_on(one.track)
         if span is not None and _takes(device, one):
-            left = touching.beside(one.foot, span, one.distance, one.track.radius).corners
+            left = footprints.beside(one.foot, span, one.distance, one.track.radius).corners
             if may_tip(left, one, bowl, energy, margin):
                 return False
     return True
@@ -140,19 +139,24 @@ def _takes(device: Device, one: Orientation) -> bool:
         (first, last), radius = span, one.track.radius
         high = radius - first if first > 0.0 else 2.0 * radius
         return (
-            feet.over_ring(one.standing, max(radius - last, 0.0), high)
+            footprints.over_ring(one.standing, max(radius - last, 0.0), high)
             <= one.margin - SUPPORT_LOSS_TOLERANCE_M
         )
-    return hole is not None and feet.least(one.standing, hole)[0] <= one.margin - SUPPORT_LOSS_TOLERANCE_M
+    return (
+        hole is not None and footprints.least(one.standing, hole)[0] <= one.margin - SUPPORT_LOSS_TOLERANCE_M
+    )
 
 
 def _keeps_down(one: Orientation, span: tuple[float, float], offset: np.ndarray, margin: float) -> bool:
     """Whether the force of the track stays within what is left of a foot beside a hole along the track."""
     (first, last), radius = span, one.track.radius
     high = radius - first if first > 0.0 else 2.0 * radius
-    if feet.over_ring(one.standing, max(radius - last, 0.0), high) > one.margin - SUPPORT_LOSS_TOLERANCE_M:
+    if (
+        footprints.over_ring(one.standing, max(radius - last, 0.0), high)
+        > one.margin - SUPPORT_LOSS_TOLERANCE_M
+    ):
         return True
-    left = touching.beside(one.foot, span, one.distance, radius).corners
+    left = footprints.beside(one.foot, span, one.distance, radius).corners
     hull = left[convex(left)]
     return len(hull) > 2 and bool(inset(hull, offset).min() >= margin)
 
@@ -161,7 +165,7 @@ def _keeps_upright(
     one: Orientation, hole: Any, place: Seat, force: np.ndarray, offset: np.ndarray, bowl: Bowl
 ) -> bool:
     """Whether a part neither rocks over the edge that it leaves nor back over the one that it comes to."""
-    support, _ = feet.least(one.standing, hole)
+    support, _ = footprints.least(one.standing, hole)
     if support > one.margin - SUPPORT_LOSS_TOLERANCE_M:
         return True
     reach, period = one.foot.corners[:, 0], 1.0 / bowl.drive.frequency
@@ -173,6 +177,6 @@ def _keeps_upright(
         force=force,
         offset=offset[:, 0],
     )
-    coming = replace(leaving, far=float(reach.max()), offset=-offset[:, 0], growth=speed(bowl))
+    coming = replace(leaving, far=float(reach.max()), offset=-offset[:, 0], growth=travel_speed(bowl))
     starts = range(0, len(force), len(force) // LANDINGS)
     return not (goes_over(leaving, period) or any(goes_over(coming, period, start) for start in starts))

@@ -26,7 +26,7 @@ from feederscrew.mechanics.floor.balance import HOP, TIP
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import Seat, seat
 from feederscrew.rates.rocking import goes_over, rocker
-from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, speed, travelling
+from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, travel_speed, travelling
 from feederscrew.units import factor, listed
 
 TIPPING_PHASES = 12  # of one period
@@ -177,7 +177,7 @@ def landing_energy(bowl: Bowl) -> float:
     -------
     float [m]
     """
-    if speed(bowl) <= 0.0 or hop(bowl).height <= 0.0:
+    if travel_speed(bowl) <= 0.0 or hop(bowl).height <= 0.0:
         return 0.0
     return float(answer.answer(bowl).hardest_impact ** 2 / (2.0 * bowl.gravity))
 

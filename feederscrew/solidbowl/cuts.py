@@ -8,8 +8,8 @@ from shapely import affinity
 
 from feederscrew.solidbowl import leaning
 from feederscrew.solidbowl.leaning import TrackLedge
-from feederscrew.tooling.devices.hole_shapes import beyond_borders
-from feederscrew.tooling.strip import strip
+from feederscrew.tooling.devices.openings import beyond_borders
+from feederscrew.tooling.track_sections import build_section
 
 CUT_OVERRUN_M = 2e-3  # [m] by which what reaches an edge of the track is cut over it
 
@@ -91,7 +91,7 @@ def stretch(track, devices, every):
     -------
     Stretch
     """
-    section = strip(track, devices, every)
+    section = build_section(track, devices, every)
     stations, leans, ledges, grooves, more = leaning.laid_out(track, section.stations, every)
     beside = {ledge.start for ledge in ledges}
     cut = [one for one in stations if one.hole is not None and one.start not in beside]

@@ -21,7 +21,7 @@ from feederscrew.resting.counts.passed import DeviceCounts
 from feederscrew.studies.rate import shares
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import Orientation, orientations
-from feederscrew.tooling.tightest import Passage, until_returned
+from feederscrew.tooling.track_sections import Passage, until_returned
 
 
 @dataclass(frozen=True, eq=False)

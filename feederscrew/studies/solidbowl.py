@@ -22,7 +22,7 @@ from feederscrew.solidbowl.plan import ARC_CHORD_M, Asked, BowlPlan, TrackTooLow
 from feederscrew.solidbowl.ways_down import ways_down
 from feederscrew.studies.rate import Spacing, SpacingKeywords
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.hanging import hung, neck
+from feederscrew.tooling.orientations import hang, neck
 
 CLIMB_STEP_RAD = np.radians(0.25)  # in which a climb is sought that leaves room below the tooled stretch
 STEEPEST_RAD = np.radians(
@@ -273,7 +273,7 @@ def _riders(
     leaving = often * coming.through
     one = coming.lying[int(np.argmax(leaving if leaving.any() else often))]
     spans = [device.span for device in devices if device.hangs]
-    return tuple(riding.riders(plan, one, hung(one, spans[-1]) if spans and neck(one) else None))
+    return tuple(riding.riders(plan, one, hang(one, spans[-1]) if spans and neck(one) else None))
 
 
 def _tooled(devices: Sequence[Device]) -> bool:

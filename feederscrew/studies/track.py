@@ -126,7 +126,7 @@ def track(part: Part, bowl: Bowl, aspect: str | None = None, heading: float | No
 def _stands(
     posture: Posture, found: Headings, row: int, bowl: Bowl, cycle: balance.TrackMotion
 ) -> tipping.Stands:
-    one = orientations.at(posture, found, row, {}, bowl.track)
+    one = orientations.orientation_at(posture, found, row, {}, bowl.track)
     return tipping.stands(one, bowl, bool((cycle.state == HOP).any()))
 
 

@@ -25,7 +25,7 @@ from feederscrew.resting.rules.recommended import LAUNCH
 from feederscrew.running import RunKeywords, RunSettings
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.rate import shares as arriving
-from feederscrew.tooling.devices.named import rows
+from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.trial import course, outlet
 from feederscrew.trial import landing as landings
 from feederscrew.trial.outlet import Outlet

@@ -7,12 +7,11 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.bowl.devices import unfit
-from feederscrew.tooling import touching
+from feederscrew.tooling import footprints
 from feederscrew.tooling.devices.base import CARRIED, RETURNED, STOPPED, Device, Verdict
-from feederscrew.tooling.falling_through import surely_gone
-from feederscrew.tooling.hanging import Hanging, hung
-from feederscrew.tooling.orientations import Orientation
-from feederscrew.tooling.verdicts import Meeting, verdict
+from feederscrew.tooling.falling import surely_gone
+from feederscrew.tooling.orientations import Hanging, Orientation, hang
+from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +70,7 @@ class DeviceFlow:
                 [0.0 if k is None else 1.0 - k.passes for k in self.verdicts[step]]
             )
             for state in np.flatnonzero((lost > 0.0).any(axis=0)):
-                met = Meeting(self.came[step][state], self.came[0][:count])
+                met = DeviceEncounter(self.came[step][state], self.came[0][:count])
                 found[:, int(device.fate(met) == STOPPED), 1 + step] += lost[:, state]
         return check.frozen(found)
 
@@ -92,7 +91,7 @@ class DeviceFlow:
         device, one = self.devices[step], self.came[step][state]
         if one.along_a_bank:  # off the wall, where a device may miss it
             return True
-        stands = one.grip <= 0.0 or device.fate(Meeting(one, self.came[0])) == STOPPED
+        stands = one.grip <= 0.0 or device.fate(DeviceEncounter(one, self.came[0])) == STOPPED
         return not shown.sure or not (stands or surely_gone(device, one))
 
     @property
@@ -209,7 +208,7 @@ def _way(device, place, one, found, states):
     if not found.hangs:
         return [(place, found.passes)]
     known = [other for other in states if isinstance(other, Hanging)]
-    down = hung(one, device.span, known)
+    down = hang(one, device.span, known)
     if down not in states:
         states.append(down)
     return [(states.index(down), found.passes)]
@@ -228,7 +227,7 @@ def astride(one, span):
     """Return an orientation over the rails' slot, which goes on: lying, it stands on what is beside it."""
     if isinstance(one, Hanging) or one.falls_off:
         return one
-    foot = touching.beside(one.foot, span, one.distance, one.track.radius)
+    foot = footprints.beside(one.foot, span, one.distance, one.track.radius)
     if not len(foot.corners):  # it fell
         return one
     over = replace(one)

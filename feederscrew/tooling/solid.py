@@ -8,8 +8,8 @@ from shapely import affinity
 
 from feederscrew import check
 from feederscrew.tooling import whole_surface
-from feederscrew.tooling.devices.hole_shapes import beyond_borders
-from feederscrew.tooling.strip import DRAWN_CHORD_M, bent
+from feederscrew.tooling.devices.openings import beyond_borders
+from feederscrew.tooling.track_sections import DRAWN_CHORD_M, bend_ring
 from feederscrew.units import MM
 
 PLATE, WALL = 3e-3, 3e-3  # [m] thickness of track and wall
@@ -137,7 +137,7 @@ def _clear(ring, width):
 
 
 def _bent(ring, radius):
-    return shapely.make_valid(shapely.Polygon(bent(np.asarray(ring), radius)))
+    return shapely.make_valid(shapely.Polygon(bend_ring(np.asarray(ring), radius)))
 
 
 def _extruded(area, low, high):

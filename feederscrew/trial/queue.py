@@ -9,7 +9,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.rates import spacing
-from feederscrew.tooling.hanging import Hanging
+from feederscrew.tooling.orientations import Hanging
 from feederscrew.trial import course, crowd, runs, starts, whereabouts
 from feederscrew.trial.kernel.motion import BEHIND, BELOW
 from feederscrew.trial.looks import OTHER, AspectsBelow, Looks

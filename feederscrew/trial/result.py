@@ -11,8 +11,8 @@ from feederscrew.conveying.hop import hop
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.rates import stream
 from feederscrew.rates.steadiness import gone, steady
-from feederscrew.tooling.hanging import neck
-from feederscrew.tooling.holding import too_near
+from feederscrew.tooling.falling import too_near
+from feederscrew.tooling.orientations import neck
 from feederscrew.trial import course
 from feederscrew.trial.landing import Landing
 from feederscrew.trial.queue import QueuedParts

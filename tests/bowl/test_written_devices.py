@@ -18,7 +18,7 @@ from feederscrew.errors import FeederError
 from feederscrew.output.designs import design_file
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.devices.sensing import SENSOR_VIEWS
+from feederscrew.tooling.devices.pneumatics import SENSOR_VIEWS
 from feederscrew.tooling.isolating.chain import Cut
 
 NAMES = ("A", "b 2", "side: up", "x, y", "[C]", "Größe", "#1")

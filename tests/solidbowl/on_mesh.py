@@ -11,7 +11,7 @@ import shapely
 from shapely import affinity
 
 from feederscrew.solidbowl import facets, leaning, measuring
-from feederscrew.tooling.devices.pieces import Hole
+from feederscrew.tooling.devices.base import Hole
 
 MM = facets.MM
 UNDER = 3e-4  # [m] below the track's surface, where its plate is cut to see its holes

@@ -13,10 +13,9 @@ from feederscrew.geometry.polygons import outline
 from feederscrew.part import load
 from feederscrew.rates.steadiness import gone
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.between_edges import _at, _spans, may_rest
 from feederscrew.tooling.devices.base import UNSURE
 from feederscrew.tooling.devices.kinds import made
-from feederscrew.tooling.falling_through import fits_as_it_lies, lets_go, surely_gone
+from feederscrew.tooling.falling import _at, _spans, fits_as_it_lies, lets_go, may_rest, surely_gone
 from feederscrew.tooling.fates import course
 from feederscrew.tooling.isolating.chain import margin_at
 from feederscrew.tooling.orientations import orientations, travelling

@@ -23,9 +23,8 @@ from feederscrew.tooling import solid
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.fates import at_entry, course, leading
 from feederscrew.tooling.orientations import orientations, travelling
-from feederscrew.tooling.strip import strip
-from feederscrew.tooling.tightest import passage
-from feederscrew.tooling.verdicts import Meeting, verdict
+from feederscrew.tooling.track_sections import build_section, worst_passage
+from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
 PARTS = Path(__file__).resolve().parents[2] / "parts"
 BOWL = bowls.read(None, ["track.width=30 mm"])
@@ -82,7 +81,7 @@ def test_what_turns_is_not_sure_and_counts_as_what_it_turns_into(dowel):
     row, lying = (next(k for k, one in enumerate(every) if one.name == name) for name in ("B@86", "A@0"))
     assert not found.decided[row] and found.decided[lying]
     assert found.leaving[row, lying] == 1.0 and found.leaving[row, row] == 0.0
-    seen = passage(groove(30.0), upright[row], upright)
+    seen = worst_passage(groove(30.0), upright[row], upright)
     assert seen.after.name == "A@0" and seen.after.groove == 30.0 * DEG
     assert profile.turned_into(seen) == "turns into A@0, not sure"
 
@@ -90,9 +89,9 @@ def test_what_turns_is_not_sure_and_counts_as_what_it_turns_into(dowel):
 def test_a_place_is_known_though_the_track_leans_otherwise(dowel):
     _, every = dowel
     for k, one in enumerate(every):
-        assert Meeting(groove(20.0).onward(one), every).place == k
+        assert DeviceEncounter(groove(20.0).onward(one), every).place == k
     with pytest.raises(ValueError, match="is not one of the orientations"):
-        _ = Meeting(replace(every[0], heading=1.0), every).place
+        _ = DeviceEncounter(replace(every[0], heading=1.0), every).place
 
 
 def test_both_faces_hold_what_rolls_along_them_only(dowel):
@@ -189,7 +188,7 @@ def test_it_is_read_as_written_and_a_bank_lets_devices_follow(tmp_path):
 def test_its_section_is_closed_and_has_the_other_face(dowel):
     _, every = dowel
     chain = (groove(30.0), made("bank", "b", angle=6.0 * DEG), made("gap", "g", limit=5e-3, text="5 mm"))
-    section = strip(BOWL.track, chain, every)
+    section = build_section(BOWL.track, chain, every)
     (begin, first, lean), (_, end, upright) = section.walls
     assert (begin, end, upright) == (0.0, section.length, 0.0) and lean == pytest.approx(30.0 * DEG)
     vertices, faces = solid.solid(section)
@@ -207,7 +206,7 @@ def test_its_section_is_closed_and_has_the_other_face(dowel):
 
 def test_its_drawing_has_a_line_and_its_angle(dowel):
     _, every = dowel
-    section = strip(BOWL.track, (groove(30.0),), every)
+    section = build_section(BOWL.track, (groove(30.0),), every)
     layers = {one.name: one for one in drawing.layers(section)}
     assert len(layers["SLOPE"].rings) == 1
     assert any("groove {angle: 30 deg}" in text for text, _ in layers["TEXT"].texts)

@@ -1,7 +1,7 @@
 """A bowl file with the devices of a design, which every command reads back."""
 
 from feederscrew.bowl.devices import DEVICES_SECTION, check_written, value_text
-from feederscrew.tooling.isolating.shop_values import millimetres
+from feederscrew.tooling.isolating.chain import in_mm
 
 TRACK, WIDTH = "track", "track.width"
 
@@ -38,7 +38,7 @@ def bowl_file(study, settings):
 
 
 def _wide(width):
-    return f"  width: {millimetres(width)}  # as the design asks for"
+    return f"  width: {in_mm(width)}  # as the design asks for"
 
 
 def _mark(cut):

@@ -1,4 +1,4 @@
-"""Blades over the track: wiper, height bar and hold-down."""
+"""Blades over the track: wiper, height bar and hold-down; and the gate with an opening, profile."""
 
 import itertools
 import math
@@ -9,11 +9,14 @@ import numpy as np
 
 from feederscrew import value_forms as forms
 from feederscrew.errors import ConfigError
-from feederscrew.tooling.devices import values
+from feederscrew.tooling.devices import orientation_names, values
 from feederscrew.tooling.devices.base import (
+    GATE_FRAME_M,
     RETURNED,
     STOPPED,
+    Blade,
     Device,
+    Standing,
     angle_text,
     corners_text,
     degrees_words,
@@ -22,7 +25,6 @@ from feederscrew.tooling.devices.base import (
     mapping_text,
     room_of,
 )
-from feederscrew.tooling.devices.pieces import GATE_FRAME_M, Blade, Standing
 
 SQUARE_FACE_RAD = 0.5 * math.pi  # [rad] of the face to the direction of travel: straight across the track
 PROPOSED_SWEEP_RAD = math.radians(
@@ -199,3 +201,58 @@ class HoldDown(_Overhead):
     trade = "hold-down"
     example = "6 mm"
     meaning = "bar above the queue that keeps parts down; orientations that do not fit below stop before it"
+
+
+MAX_OPENING_HEIGHT_M = 1.0  # [m] no opening is higher
+
+
+class Profile(Device):
+    """A gate across the track with an opening."""
+
+    kind = "profile"
+    trade = "profile gate"
+    form = forms.either(forms.POLYGON, forms.mapping(of=forms.NAMED, play=forms.LENGTH_FORM))
+    example = "{of: A@90, play: 0.2 mm}"
+    meaning = (
+        "gate with an opening: a polygon of distances from the wall and heights, or an orientation's own "
+        "outline with play; what does not fit stops before it: for parts that come one by one"
+    )
+    feature = "outline seen along the track"
+    picture = "ahead"
+
+    @classmethod
+    def read(cls, entry):
+        return values.opening(entry)
+
+    def value_text(self):
+        if not self.like:
+            return corners_text(self.corners)
+        aspect, heading, play = self.like
+        return mapping_text((("of", orientation_names.written(aspect, heading)), ("play", length_text(play))))
+
+    @property
+    def across(self):
+        return 0.0
+
+    def opening(self, every, width):
+        import shapely
+
+        free = self.free(every)
+        return free.intersection(shapely.box(0.0, 0.0, width, MAX_OPENING_HEIGHT_M)) if self.like else free
+
+    def free(self, every):
+        """Return the opening however wide the track is, in distances from the wall and heights [m]."""
+        import shapely
+
+        if not self.like:
+            return shapely.Polygon(self.corners)
+        aspect, heading, play = self.like
+        return every[
+            orientation_names.place_of(every, aspect, heading, self.where, "profile names")
+        ].seen.buffer(play)
+
+    def fate(self, met):
+        return STOPPED
+
+    def judged(self, met):
+        return met.verdict(met.through(self.free(met.every)))

@@ -1,15 +1,38 @@
-"""The fewest devices of one number that let one orientation pass and return the others."""
+"""The fewest devices of one number that let one orientation pass and return the others, in lengths of a shop;
+and why two orientations cannot be separated, and what change of the part would help.
+"""
 
 import itertools
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 
+from feederscrew.mechanics.wall import sameness
 from feederscrew.tooling.devices.base import STOPPED, UNSURE, Device
 from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.falling_through import surely_gone
-from feederscrew.tooling.isolating.shop_values import SHOP_ROUNDING_M, SHOP_STEP_M, fine, snapped
-from feederscrew.tooling.verdicts import Meeting, verdict
+from feederscrew.tooling.falling import surely_gone
+from feederscrew.tooling.verdicts import DeviceEncounter, opening_margin, verdict
+
+SHOP_STEP_M = 5e-5  # [m] of values that a shop makes
+SHOP_ROUNDING_M = 1e-7  # [m] to which a value is rounded
+
+
+def snap_to_shop_step(value, step, up):
+    """Return the nearest multiple of a step [m] that is not below a value, or not above it."""
+    count = value / step
+    return float((np.ceil(count - 1e-6) if up else np.floor(count + 1e-6)) * step)
+
+
+def in_mm(value):
+    """Return a length [m] as a bowl file has it: '9.25 mm'."""
+    return f"{1e3 * round_finely(value):.9g} mm"
+
+
+def round_finely(value):
+    """Return a length [m] rounded to what a bowl file says of it."""
+    return float(np.round(value / SHOP_ROUNDING_M)) * SHOP_ROUNDING_M
+
 
 DESIGN_KEY = "design"
 CUT_BISECTIONS = 10  # of the way from the value nearest to the wanted orientation to the middle
@@ -30,7 +53,7 @@ class Cut:
 
 
 @dataclass(frozen=True)
-class Wishes:
+class DesignConstraints:
     """What a design may use, and how finely it is made."""
 
     outcome: str = "any"  # how parts leave: 'lying', 'hanging' or 'any'
@@ -50,7 +73,7 @@ class Wishes:
     @property
     def sensed(self):
         """Whether a sensor may be used."""
-        return any(self.allows(kind.kind) for kind in around())
+        return any(self.allows(kind.kind) for kind in values_around())
 
     @property
     def clearing(self):
@@ -58,7 +81,7 @@ class Wishes:
         return any(self.allows(kind.kind) for kind in numbered() if kind.overhead)
 
 
-def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=False, same=()):
+def candidates(every, wanted, margin, constraints=None, *, clearing=True, sensed=False, same=()):
     """Return every device of one number that the wanted orientation passes by a margin.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -69,7 +92,7 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
     wanted : int
         Its place among them.
     margin : float [m]
-    wishes : Wishes, optional
+    constraints : DesignConstraints, optional
     same : sequence of int
         Those that count as the wanted one: a device of one number lets all of them pass.
     clearing, sensed : bool
@@ -81,27 +104,31 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
         The device at which it returns the most, with the margin of each orientation at it; NaN of one that
         would come to stand there. What drops parts comes first, then what clears itself.
     """
-    found, wishes = {}, wishes or Wishes()
+    found, constraints = {}, constraints or DesignConstraints()
     for kind in numbered():
         values, lower = limits(kind, every), kind.bound == "lower"
         first = pivot(kind, every, wanted, same)
-        if not wishes.allows(kind.kind) or not np.isfinite(values[first]) or (kind.overhead and not clearing):
+        if (
+            not constraints.allows(kind.kind)
+            or not np.isfinite(values[first])
+            or (kind.overhead and not clearing)
+        ):
             continue
         play = margin + kind(DESIGN_KEY).hop_blur(every[first])
         if lower and values[first] <= 2.0 * play:
             continue
-        limit = snapped(values[first] + (-play if lower else play), wishes.step, up=not lower)
+        limit = snap_to_shop_step(values[first] + (-play if lower else play), constraints.step, up=not lower)
         device = kind.proposal(DESIGN_KEY, limit)
         if limit > 0.0 and device.acts(every[wanted].track):
             found[device] = np.array([margin_at(device, one, every) for one in every])
 
     def unlike(view):
         others = [every[k] for k in same if k != wanted]
-        return [one for one in others if Meeting(one).differs(every[wanted], view) > margin]
+        return [one for one in others if DeviceEncounter(one).differs(every[wanted], view) > margin]
 
-    for kind in around() if sensed else ():
-        if wishes.allows(kind.kind):
-            for device in kind.around(Meeting(every[wanted], every), margin, DESIGN_KEY, unlike):
+    for kind in values_around() if sensed else ():
+        if constraints.allows(kind.kind):
+            for device in kind.around(DeviceEncounter(every[wanted], every), margin, DESIGN_KEY, unlike):
                 found[device] = np.array([margin_at(device, one, every) for one in every])
     return found
 
@@ -113,7 +140,7 @@ def pivot(kind, every, wanted, same=()):
     return (max if kind.bound == "upper" else min)(rows, key=lambda k: values[k])
 
 
-def around():
+def values_around():
     """Return the kinds that a design tries with the wanted orientation's own outline."""
     return [kind for kind in KINDS.values() if kind.proposed and kind.senses]
 
@@ -126,7 +153,7 @@ def margin_at(device, one, every):
     margin = verdict(device, one, every).margin
     if not margin < 0.0:
         return margin
-    if device.fate(Meeting(one, every)) == STOPPED:
+    if device.fate(DeviceEncounter(one, every)) == STOPPED:
         return np.nan
     return margin if one.grip <= 0.0 or surely_gone(device, one) else max(margin, -UNSURE)
 
@@ -185,7 +212,7 @@ def jams(found, chosen, others, margin):
     return False
 
 
-def placed(every, wanted, devices, must, least=np.inf, step=SHOP_ROUNDING_M, same=()):
+def place_devices(every, wanted, devices, must, least=np.inf, step=SHOP_ROUNDING_M, same=()):
     """Return the cuts of a chain, each value in the middle of what it may be.
 
     Source: own; docs/tooling.md, "5. Where it ends".
@@ -231,7 +258,11 @@ def _cut(every, wanted, device, must, least, step):
     middle = float(0.5 * (values[wanted] + nearest))
 
     def at(value):
-        value = fine(snapped(value, step, up=not upper)) if step > SHOP_ROUNDING_M else fine(value)
+        value = (
+            round_finely(snap_to_shop_step(value, step, up=not upper))
+            if step > SHOP_ROUNDING_M
+            else round_finely(value)
+        )
         return device.valued(value)
 
     chosen = _surest(every, must, at, middle if np.isfinite(nearest) else device.limit, device.limit)
@@ -239,26 +270,26 @@ def _cut(every, wanted, device, must, least, step):
         eased = max(chosen.limit, nearest - least) if upper else min(chosen.limit, nearest + least)
         chosen = _surest(every, must, at, float(eased), chosen.limit, least - 2.0 * SHOP_ROUNDING_M)
     ends = [device.valued(float(end)) for end in (nearest, values[wanted])]
-    return judged(every, wanted, chosen, must, *ends)
+    return judge_cut(every, wanted, chosen, must, *ends)
 
 
 def _sensor(every, wanted, device, must, step):
     least = device.like[2]
-    outside = [device.differs(Meeting(one, every)) for one, some in zip(every, must) if some]
+    outside = [device.differs(DeviceEncounter(one, every)) for one, some in zip(every, must) if some]
     widest = min(outside, default=2.0 * least)
 
     def at(play):
-        play = fine(max(snapped(play, step, up=False), least))
+        play = round_finely(max(snap_to_shop_step(play, step, up=False), least))
         return device.with_play(play)
 
-    own = device.differs(Meeting(every[wanted], every))
+    own = device.differs(DeviceEncounter(every[wanted], every))
     chosen = _surest(every, must, at, 0.5 * (own + widest), least)
-    return judged(every, wanted, chosen, must, at(widest), at(least))
+    return judge_cut(every, wanted, chosen, must, at(widest), at(least))
 
 
 def _more(device, every):
     """By how much more [m] than placed each orientation passes a device as it travels, (M,)."""
-    return np.array([device.more(Meeting(one)) for one in every])
+    return np.array([device.more(DeviceEncounter(one)) for one in every])
 
 
 def _surest(every, must, at, middle, near, by=UNSURE):
@@ -275,7 +306,7 @@ def _surest(every, must, at, middle, near, by=UNSURE):
     return at(near)
 
 
-def judged(every, wanted, device, must, smallest, largest):
+def judge_cut(every, wanted, device, must, smallest, largest):
     """Return a device as a Cut, with its true margins and what it returns."""
     margins = np.array([verdict(device, one, every).margin for one in every])
     return Cut(
@@ -286,3 +317,122 @@ def judged(every, wanted, device, must, smallest, largest):
         largest=largest,
         returns=tuple(one.name for one, margin in zip(every, margins) if margin < 0.0),
     )
+
+
+HULL_FIT_ROUNDS = 4  # of the fit of one hull over the other
+SIDE_NAMES = (("ahead", "behind"), ("on the inner side", "at the wall"), ("on top", "at the bottom"))
+
+
+@dataclass(frozen=True)
+class Difference:
+    """How two orientations differ as they lie on the track."""
+
+    shape: float  # [m] greatest distance between their hulls, laid over each other as well as can be
+    side: str  # where that is
+    shift: tuple[float, float, float]  # [m] of the centre of mass within the hull: ahead, inwards, up
+
+
+def inseparable_reason(wanted, other, margin):
+    """Return in one sentence why a chain leaves another orientation, and the smallest change that helps.
+
+    Parameters
+    ----------
+    wanted, other : Orientation
+    margin : float [m]
+        Asked for on either side.
+
+    Returns
+    -------
+    str
+    """
+    names = f"{wanted.name} and {other.name}"
+    if wanted.mirror == other.name:
+        return (
+            f"{names} are mirror images fore and aft: no device of one number parts "
+            f"them and no hole was found; a feature on one side only would, of {2e3 * margin:.2g} mm or more"
+        )
+    apart, need = find_difference(wanted, other), smallest_change(wanted, other, margin)
+    if apart.shape < min(margin, 0.5 * max(map(abs, apart.shift))):
+        same = f"have the same outside to {1e3 * max(apart.shape, 1e-5):.2f} mm"
+        return f"{names} {same}, {_inside(apart)}; {need}"
+    if apart.shape < 4.0 * margin:
+        return (
+            f"{names} differ by {1e3 * apart.shape:.2g} mm at most, {apart.side}, as by a chamfer or a "
+            f"rounding; {need}"
+        )
+    if carries_more(other, wanted, margin):
+        return (
+            f"whatever carries {wanted.name} carries {other.name}, which stands on a larger foot and is no "
+            f"higher or wider: only turning it over helps; {need}"
+        )
+    return (
+        f"{names} differ by {1e3 * apart.shape:.2g} mm {apart.side}, which no device of one number, gate or "
+        f"hole that was tried can use; {need}"
+    )
+
+
+def _inside(apart):
+    """What differs of two orientations with the same outside."""
+    ahead, inwards, up = (1e3 * abs(by) for by in apart.shift)
+    return (
+        f"only the inside differs, as by a bore off the middle or a closed end: the centre of mass lies "
+        f"elsewhere by {ahead:.2f} mm along the track, {inwards:.2f} mm across it and {up:.2f} mm in height; "
+        "needs a feature on the outside"
+    )
+
+
+def smallest_change(wanted, other, margin):
+    """Return in words the least [m] that has to be added to what some device measures of a part."""
+    feature, step = _nearest(wanted, other)
+    if step >= 2.0 * margin:
+        return f"{feature} differs by {1e3 * step:.2g} mm, but no chain that was tried can use it"
+    return f"{1e3 * (2.0 * margin - step):.2g} mm more in {feature} would part them"
+
+
+def carries_more(one, other, margin):
+    """Return whether one orientation stands on all that another stands on, and is no higher or wider."""
+    lower = one.height <= other.height + margin and one.width <= other.width + 2.0 * margin
+    return lower and stands_on_all(one, other, margin)
+
+
+def stands_on_all(one, other, margin):
+    """Return whether one orientation stands on all that another stands on: no hole lets it fall alone."""
+    foot, within = (shapely.MultiPoint(k.foot.corners).convex_hull for k in (one, other))
+    near = abs(one.distance - other.distance) < 2.0 * margin
+    return bool(near and foot.buffer(margin).covers(within))
+
+
+def find_difference(wanted, other):
+    """Return how two orientations differ as they lie on the track: a Difference.
+
+    Parameters
+    ----------
+    wanted, other : Orientation
+    """
+    (first, _), (second, _) = (sameness.looks(one.posture, [one.heading]) for one in (wanted, other))
+    sizes = [np.ptp(one.posture.corners, axis=0).max() for one in (wanted, other)]
+    away, there = first[0, 0] * sizes[0] - second[0, 0] * sizes[1], sameness.directions()
+    shift = np.zeros(3)
+    for _ in range(HULL_FIT_ROUNDS):  # least squares: the directions are spread evenly
+        left = away - (there * shift).sum(axis=1)
+        shift = shift + 3.0 * (there * left[:, None]).mean(axis=0)
+    left = np.abs(away - (there * shift).sum(axis=1))
+    where = there[int(np.argmax(np.round(left, 9)))]
+    axis = int(np.argmax(np.abs(where)))
+    x, y, z = map(float, shift)
+    return Difference(float(left.max()), SIDE_NAMES[axis][int(where[axis] < 0.0)], (x, y, z))
+
+
+def _nearest(wanted, other):
+    """What some device measures in which two orientations are farthest apart, and by how much [m]."""
+    found = [
+        (-opening_margin(wanted.seen, other), kind.kind, kind.feature)
+        for kind in KINDS.values()
+        if hasattr(kind, "free")
+    ]
+    for kind in numbered():
+        first, second = limits(kind, (wanted, other))
+        step = second - first if kind.bound == "upper" else first - second
+        found.append((float(step) if np.isfinite(step) else -np.inf, kind.kind, kind.feature))
+    step, _, feature = max(found)
+    return feature, max(step, 0.0)

@@ -1,17 +1,21 @@
-"""Holes of three to six corners that part orientations which devices of one number cannot."""
+"""Holes of three to six corners that separate orientations which devices of one number cannot.
+
+Their corners are round, as a cutter or a laser leaves them.
+"""
 
 import math
 import time
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import shapely
 
-from feederscrew.tooling import foot as feet
-from feederscrew.tooling.devices import hole_shapes
+from feederscrew.tooling import footprints
+from feederscrew.tooling.devices import openings
 from feederscrew.tooling.devices.base import carried
 from feederscrew.tooling.devices.openings import CutOut
 from feederscrew.tooling.devices.values import crossed
-from feederscrew.tooling.isolating.chain import DESIGN_KEY, judged
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, judge_cut
 from feederscrew.tooling.verdicts import verdict
 
 STARTS = 220  # random holes tried
@@ -67,7 +71,7 @@ def cut_out(every, wanted, others, margin, search):
     (Cut, sequence of int) or None
         The hole and those of the others that it returns by the margin.
     """
-    best = _found(every, wanted, others, margin, search)
+    best = _search(every, wanted, others, margin, search)
     if best is None and any(every[k].name == every[wanted].mirror for k in others):
         best = _mirrored(every, wanted, others, margin, search)
     if best is None:
@@ -77,7 +81,7 @@ def cut_out(every, wanted, others, margin, search):
     return _as_cut(every, wanted, held, corners), held
 
 
-def _found(every, wanted, others, margin, search):
+def _search(every, wanted, others, margin, search):
     """The best hole, as (corners, margins of the others), or None; a whole search is made once."""
     asked = (wanted, *others, margin, *(every[k].carry for k in others))
     best, spent = search.known.get(asked, (None, math.inf))
@@ -97,7 +101,7 @@ def _mirrored(every, wanted, others, margin, search):
     """The same of the mirror images, fore and aft: a hole that parts those, mirrored, parts these."""
     places = {one.name: k for k, one in enumerate(every)}
     image = [places.get(one.mirror, k) for k, one in enumerate(every)]
-    best = _found(every, image[wanted], sorted(image[k] for k in others), margin, search)
+    best = _search(every, image[wanted], sorted(image[k] for k in others), margin, search)
     if best is None:
         return None
     corners = best[0] * [-1.0, 1.0]
@@ -123,7 +127,7 @@ class _Judge:
 
     def score(self, corners, beaten=-math.inf):
         """(score, margins of the others); (-infinity, None) where it does not pass or is not better."""
-        hole = hole_shapes.polygon(corners, self.radius)
+        hole = openings.polygon(corners, self.radius)
         self.search.spent += 1
         passing = self._least(-1, self.wanted, hole, -self.margin, 2.0 * self.margin)[0]
         if passing < -self.margin:
@@ -226,15 +230,15 @@ class _Judge:
         margin, work = self._least(k, one.standing, hole, -enough, high)
         if margin > -self.margin or not one.carry > 0.0:
             return margin
-        return carried(margin, feet.unheld(one.standing, hole, work, one.carry + enough), one.carry)
+        return carried(margin, footprints.unheld(one.standing, hole, work, one.carry + enough), one.carry)
 
     def _least(self, k, foot, hole, low, high):
         """Least margin as far as it lies between two values, and the arrays kept for holes of that size."""
         key = k, len(hole.edges), 64 * (1 + len(hole.nodes) // 64)
         if key not in self.scratch:
             room = hole._replace(nodes=np.empty((key[2], 3)))
-            self.scratch[key] = feet.scratch(foot, room)
-        return feet.least(foot, hole, self.scratch[key], low, high)[0], self.scratch[key]
+            self.scratch[key] = footprints.scratch(foot, room)
+        return footprints.least(foot, hole, self.scratch[key], low, high)[0], self.scratch[key]
 
 
 def _as_cut(every, wanted, held, corners):
@@ -255,11 +259,13 @@ def _as_cut(every, wanted, held, corners):
 
     least = _border(returns, 1.0, 0.0)
     most = _border(passes, 1.0, 2.0)
-    return judged(every, wanted, device_of(corners), must, device_of(scaled(least)), device_of(scaled(most)))
+    return judge_cut(
+        every, wanted, device_of(corners), must, device_of(scaled(least)), device_of(scaled(most))
+    )
 
 
 def _margin(one, corners):
-    return feet.least(one.standing, hole_shapes.polygon(corners, one.track.radius))[0]
+    return footprints.least(one.standing, openings.polygon(corners, one.track.radius))[0]
 
 
 def _border(holds, inside, outside):
@@ -279,3 +285,31 @@ def device_of(corners):
     """Return the hole of some corners (K, 2) [m]."""
     shape = tuple((float(x), float(y)) for x, y in corners)
     return CutOut(DESIGN_KEY, corners=shape).rewritten()
+
+
+ARC = 6  # chords of a quarter of a round corner
+BEYOND_HOLE_M = 1.0  # [m] beyond any hole
+
+
+def round_corners(given, made, radius):
+    """Return a hole with corners of a radius [m], as a cutter leaves them, or None where it then does not do.
+
+    Source: own; docs/tooling.md, "1. The method".
+
+    Parameters
+    ----------
+    given : DesignTask
+    made : (Cut, sequence of int)
+        From ``cut_out``.
+    radius : float [m]
+    """
+    cut, held = made
+    open_ = [(x, y if y > 0.0 else -BEYOND_HOLE_M) for x, y in cut.device.corners]  # it goes on into the wall
+    round_ = shapely.Polygon(open_).buffer(-radius).buffer(radius, quad_segs=ARC)
+    round_ = round_.intersection(shapely.box(-BEYOND_HOLE_M, 0.0, BEYOND_HOLE_M, BEYOND_HOLE_M))
+    if round_.geom_type != "Polygon" or round_.is_empty:
+        return None
+    corners = np.round(shapely.get_coordinates(round_.exterior)[:-1] / SHOP_ROUNDING_M) * SHOP_ROUNDING_M
+    must, ends = np.isin(np.arange(len(given.every)), held), (cut.smallest, cut.largest)
+    found = judge_cut(given.every, given.wanted, device_of(corners), must, *ends)
+    return (found, held) if min(found.margin_pass, found.margin_reject) >= given.margin else None

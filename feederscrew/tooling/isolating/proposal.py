@@ -6,8 +6,8 @@ import numpy as np
 
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.fates import course
-from feederscrew.tooling.isolating import apart
-from feederscrew.tooling.isolating.chain import Cut, Wishes
+from feederscrew.tooling.isolating import chain
+from feederscrew.tooling.isolating.chain import Cut, DesignConstraints, margin_at
 
 LEAST_SHARE = 5e-3  # [1] orientations that come less often need not be returned
 ISOLATED_PURITY = 0.98  # [1] of what leaves, from which an orientation is said to be isolated
@@ -79,7 +79,7 @@ class DesignTask:
     before: tuple[Device, ...]  # of the bowl
     coming: np.ndarray  # (M,) [1] share that comes to the design lying so
     turners: tuple[Cut, ...] = ()  # turning devices of the design, before all that return
-    wishes: Wishes = field(default_factory=Wishes)  # what it may use
+    constraints: DesignConstraints = field(default_factory=DesignConstraints)  # what it may use
 
     @property
     def stays(self):
@@ -89,7 +89,7 @@ class DesignTask:
     @property
     def same(self):
         """(M,) bool, which count as the wanted one: itself, and what lies on an aspect that may be up too."""
-        up = {name.casefold() for name in self.wishes.up}
+        up = {name.casefold() for name in self.constraints.up}
         alike = np.array([one.aspect.casefold() in up for one in self.every])
         return alike | (np.arange(len(self.every)) == self.wanted)
 
@@ -108,12 +108,12 @@ class DesignTask:
         return float(self.coming[same].sum() * (1.0 / self.purity - 1.0))
 
 
-def task(every, shares, wanted, margin, purity, before, turners=(), wishes=None):
+def design_task(every, shares, wanted, margin, purity, before, turners=(), constraints=None):
     """Return what a design has to do behind the devices of the bowl and its own turning devices."""
     every = tuple(every)
     flow = course((*before, *(cut.device for cut in turners)), every)
     coming = (shares[:, None] * flow.leaving).sum(axis=0)[: len(every)]
-    own = tuple(turners), wishes or Wishes()
+    own = tuple(turners), constraints or DesignConstraints()
     return DesignTask(every, shares, wanted, margin, purity, tuple(before), coming, *own)
 
 
@@ -124,7 +124,7 @@ def weights(given):
     return np.where(given.stays, weight, 0.0)
 
 
-def told(given, cuts, returned, same=None, late=False):
+def propose(given, cuts, returned, same=None, late=False):
     """Return the record of a chain, by what all of its devices do with every orientation.
 
     Parameters
@@ -174,7 +174,7 @@ def told(given, cuts, returned, same=None, late=False):
         left_over=tuple(one.name for k, one in enumerate(flow.states) if out[k] > 0.0 and k not in states),
         reasons=(
             *(f"{' '.join(cut.stops)} come to stand at the {cut.device.name}" for cut in cuts if cut.stops),
-            *(apart.reason(every[wanted], every[k], given.margin) for k in left),
+            *(chain.inseparable_reason(every[wanted], every[k], given.margin) for k in left),
             *impure,
             *_against(np.array([one.name for one in every])[(unsure > 0.0) & given.often]),
         ),
@@ -214,7 +214,7 @@ def _separated(given, cuts):
 
     Before rails the track climbs as it did: where it falls, a head that comes first has no time to turn down.
     """
-    steeper, one = given.wishes.separation, given.every[given.wanted]
+    steeper, one = given.constraints.separation, given.every[given.wanted]
     first = next((k for k, cut in enumerate(cuts) if cut.device.gap(one, one.speed) > 0.0), None)
     if steeper is None or first is None or any(device.leans for device in given.before):
         return tuple(cuts)
@@ -240,7 +240,7 @@ def _with_stops(given, flow, cuts):
     )
 
 
-def without(given, why):
+def without_device(given, why):
     """Return the record of an orientation that nothing isolates, and why."""
     return Design(
         wanted=given.wanted,
@@ -252,4 +252,60 @@ def without(given, why):
         purity=np.nan,
         left_over=(),
         reasons=(f"{given.every[given.wanted].name} {why}",),
+    )
+
+
+PRINTED_SHARE_STEP = 1e-4  # [1] shares that differ by less are printed alike
+
+
+def propose_needed(given, cuts, returned, same=None, late=False):
+    """Return the record of a chain as ``told`` does, without the devices that change nothing of it.
+
+    Source: own; docs/tooling.md, "What a design takes".
+
+    Parameters
+    ----------
+    given : DesignTask
+    cuts : sequence of Cut
+    returned : (M,) bool
+        Which are returned by the margin: by the track and the devices of the bowl too.
+    same : (M,) bool, optional
+        Which leave like the wanted one, hanging.
+    late : bool
+
+    Returns
+    -------
+    Design
+        Of as many of the cuts as it takes to keep what is isolated, efficiency and purity.
+
+    Notes
+    -----
+    The last ones are left out first: what drops parts stands before what has to clear itself or to see. Rails
+    are what parts leave in, and stay.
+    """
+    cuts, found = list(cuts), propose(given, cuts, returned, same, late)
+    gone = returned & ~np.any([_returns(given, cut) for cut in cuts], axis=0) if cuts else returned
+    for cut in [cut for cut in reversed(cuts) if not cut.device.hangs]:
+        rest = [other for other in cuts if other is not cut]
+        by_rest = np.any([gone, *(_returns(given, other) for other in rest)], axis=0)
+        other = propose(given, rest, by_rest, same, late)
+        if _same_numbers(other, found):
+            cuts, found = rest, other
+    return found
+
+
+def _returns(given, cut):
+    """(M,) bool, which orientations a cut returns by the margin that is asked for."""
+    margins = [margin_at(cut.device, one, given.every) for one in given.every]
+    return np.array([margin <= -given.margin for margin in margins], dtype=bool)
+
+
+def _same_numbers(one, other):
+    """Whether a design says the same of what leaves as another, and no more stands in it."""
+    first, second = (np.nan_to_num([k.efficiency, k.purity, k.hopeful], nan=-1.0) for k in (one, other))
+    stands = [{name for cut in design.cuts for name in cut.stops} for design in (one, other)]
+    return (
+        one.isolated >= other.isolated
+        and bool((np.abs(first - second) < PRINTED_SHARE_STEP).all())
+        and stands[0] <= stands[1]
     )

@@ -1,18 +1,86 @@
-"""The track as part of a design: level, banked or a groove, and how wide."""
+"""The track as part of a design: level, banked or a groove that holds what rolls, and how wide."""
 
 import math
 from dataclasses import replace
 
 import numpy as np
 
-from feederscrew.tooling.devices.kinds import names
+from feederscrew.tooling.devices.kinds import leaning, names
 from feederscrew.tooling.fates import at_entry, course
-from feederscrew.tooling.isolating import held
-from feederscrew.tooling.isolating.chain import DESIGN_KEY, around
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, values_around
 from feederscrew.tooling.isolating.design import PURITY_GAIN, design
-from feederscrew.tooling.isolating.proposal import LEAST_SHARE
-from feederscrew.tooling.orientations import placed
-from feederscrew.tooling.verdicts import Meeting
+from feederscrew.tooling.isolating.proposal import LEAST_SHARE, plain_cut
+from feederscrew.tooling.orientations import place
+from feederscrew.tooling.verdicts import DeviceEncounter
+
+
+def holding_stretches(one, wall_friction, before, constraints):
+    """Return the stretches of track that hold an orientation which rolls on the level, devices in order.
+
+    Source: own; docs/tooling.md, "What a design takes".
+
+    Parameters
+    ----------
+    one : Orientation
+        As it comes.
+    wall_friction : float [1]
+    before : sequence of Device
+        Of the bowl file: where one leans the track already, nothing is added.
+    constraints : DesignConstraints
+
+    Returns
+    -------
+    tuple of Device
+        A bank; where it would have to be steep, a groove and a low bank behind it; none where it holds.
+    """
+    leans = one.track.bank > 0.0 or any(device.leans for device in before)
+    if one.kind != "rolling" or leans:
+        return ()
+    ways = (kind.holding(one, wall_friction, DESIGN_KEY) for kind in leaning())
+    return min(_allowed(ways, constraints), key=len, default=())
+
+
+def other_stretches(one, found, constraints):
+    """Return other stretches of track that may give an orientation more than a design does, one by one.
+
+    Source: own; docs/tooling.md, "What a design takes".
+
+    Parameters
+    ----------
+    one : Orientation
+        As it comes.
+    found : Design
+        Where it isolates, only what may turn more parts into the orientation is worth another track.
+    constraints : DesignConstraints
+
+    Returns
+    -------
+    list of tuple of Device
+    """
+    if one.track.bank > 0.0:
+        return []
+    known = {(cut.device.kind, cut.device.text) for cut in found.cuts}
+    ways = _allowed((way for kind in leaning() for way in kind.leanings(one, DESIGN_KEY)), constraints)
+    ways = [way for way in ways if (way[0].kind, way[0].text) not in known]
+    return sorted((way for way in ways if way[0].grooved or not found.isolated), key=len)
+
+
+def _allowed(ways, constraints):
+    """Those of some ways to lean the track that are any, and whose kinds of devices may be used."""
+    return [way for way in ways if way and constraints.allows(*(device.kind for device in way))]
+
+
+def led_on(every, leaning):
+    """Return orientations as they are behind some stretches of track."""
+    for device in leaning:
+        every = tuple(device.onward(one) for one in every)
+    return tuple(every)
+
+
+def with_stretches(found, leaning):
+    """Return a design with those stretches before its own devices."""
+    return replace(found, cuts=(*(plain_cut(device) for device in leaning), *found.cuts))
+
 
 TRACK_REMARK = (
     "quasi-static: at the bowl's speed a part may be carried over a cut that returns it, laid over by a "
@@ -29,7 +97,7 @@ LEAN_GAIN = 1.05  # times the efficiency for which a track leans that need not
 BESIDE, WHOLE = 1e-3, 1e-3  # [m] that a track is wider than what lies on it, and the step of its width
 
 
-def designed(every, shares, wanted, bowl, *, steady, cache=None, **asked):
+def design_with_track(every, shares, wanted, bowl, *, steady, cache=None, **asked):
     """Return the design of an orientation, on the track as it is or as it leans best.
 
     Source: own; docs/tooling.md, "What a design takes".
@@ -45,7 +113,7 @@ def designed(every, shares, wanted, bowl, *, steady, cache=None, **asked):
     cache : dict, optional
         Of orientations on tracks that lean, kept for other designs of the same part.
     **asked
-        As of ``design``: margin, search, goal, before and wishes.
+        As of ``design``: margin, search, goal, before and constraints.
 
     Returns
     -------
@@ -53,28 +121,27 @@ def designed(every, shares, wanted, bowl, *, steady, cache=None, **asked):
     """
     cache = {} if cache is None else cache
     best = _held(every, shares, wanted, bowl, steady, cache, asked)
-    if not asked["wishes"].vary or asked["before"] or every[wanted].returned:
+    if not asked["constraints"].vary or asked["before"] or every[wanted].returned:
         return best
-    wishes = asked["wishes"]
-    quick = replace(
-        wishes, turn=False, without=(*wishes.without, *names(searched=True))
-    )  # on tracks that lean
-    there = bowl, steady, cache, asked | {"wishes": quick}
-    for leaning in held.others(every[wanted], best, wishes):
-        other = _leaning(every, shares, wanted, leaning, there, quick=True)
+    constraints = asked["constraints"]
+    # on tracks that lean
+    quick = replace(constraints, turn=False, without=(*constraints.without, *names(searched=True)))
+    there = bowl, steady, cache, asked | {"constraints": quick}
+    for stretch in other_stretches(every[wanted], best, constraints):
+        other = _leaning(every, shares, wanted, stretch, there, quick=True)
         if gains(other, best):
-            whole = _leaning(every, shares, wanted, leaning, there)
+            whole = _leaning(every, shares, wanted, stretch, there)
             best = whole if gains(whole, best) and whole.steady >= best.steady else best
     return best
 
 
 def _held(every, shares, wanted, bowl, steady, cache, asked):
     """The design of an orientation; one that rolls on the level comes on a bank or out of a groove."""
-    leaning = held.stretches(every[wanted], bowl.friction.wall, asked["before"], asked["wishes"])
+    leaning = holding_stretches(every[wanted], bowl.friction.wall, asked["before"], asked["constraints"])
     if leaning:
         found = _on_this_track(_led(every, leaning, cache), shares, wanted, bowl, steady, asked)
         if found.isolated or found.cuts:
-            return held.with_stretches(found, leaning)
+            return with_stretches(found, leaning)
     return _on_this_track(every, shares, wanted, bowl, steady, asked)
 
 
@@ -89,14 +156,14 @@ def _leaning(every, shares, wanted, leaning, there, quick=False):
     else:
         found = _on_this_track(behind, come, wanted, bowl, steady, asked)
     found = replace(found, efficiency=found.efficiency * float(come.sum() / shares.sum()))
-    return held.with_stretches(found, leaning if found.cuts else leaning[:1])
+    return with_stretches(found, leaning if found.cuts else leaning[:1])
 
 
 def _led(every, leaning, cache):
     """Orientations behind some stretches of track, from a cache of those made before."""
     key = tuple((device.kind, device.angle) for device in leaning)
     if key not in cache:
-        cache[key] = held.led_on(every, leaning)
+        cache[key] = led_on(every, leaning)
     return cache[key]
 
 
@@ -142,7 +209,7 @@ def widths(every, shares, wanted, margin):
     one, found = every[wanted], []
     if one.falls_off:
         found.append(WHOLE * math.ceil((one.width + BESIDE) / WHOLE))
-    sensors = [kind(DESIGN_KEY, like=(one.aspect, one.heading, float(margin))) for kind in around()]
+    sensors = [kind(DESIGN_KEY, like=(one.aspect, one.heading, float(margin))) for kind in values_around()]
     others = [k for k, share in enumerate(shares) if share >= LEAST_SHARE and k != wanted]
     blown = [every[k] for k in others if not every[k].returned]
     ways = [_blown(sensor, other, every) for sensor in sensors for other in blown]
@@ -155,7 +222,7 @@ def widths(every, shares, wanted, margin):
 
 def _blown(sensor, one, every):
     """How far from the wall [m] the pulse of a sensor's nozzles carries an orientation."""
-    met = Meeting(one, every)
+    met = DeviceEncounter(one, every)
     outwards, down = sensor.jet.push(one, every)
     return one.track.width + met.blown(outwards, down, sensor.time)
 
@@ -171,7 +238,7 @@ def _on_this_track(every, shares, wanted, bowl, steady, asked):
     if stays(found):
         return found
     cut = any(one.device.corners for one in found.cuts)
-    asked = asked | {"wishes": replace(asked["wishes"], gentle=True)}
+    asked = asked | {"constraints": replace(asked["constraints"], gentle=True)}
     gentle = found if cut else _isolating(every, shares, wanted, **asked)
     same = (gentle.isolated, gentle.efficiency, gentle.purity) == (
         found.isolated, found.efficiency, found.purity,
@@ -187,6 +254,6 @@ def _isolating(every, shares, wanted, **asked):
     found = design(every, shares, wanted, **asked)
     if found.isolated or not any(one.carry > 0.0 for one in every):
         return found
-    asked["wishes"] = replace(asked["wishes"], vary=False)
-    still = design(placed(every), shares, wanted, **asked)
+    asked["constraints"] = replace(asked["constraints"], vary=False)
+    still = design(place(every), shares, wanted, **asked)
     return replace(still, reasons=(*still.reasons, TRACK_REMARK)) if still.isolated else found
