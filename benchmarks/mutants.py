@@ -1,7 +1,7 @@
 """Small changes to the physics, one at a time, and whether the tests notice: `make mutants`.
 
 Examples: python benchmarks/mutants.py --each 12 --seed 1
-          python benchmarks/mutants.py rates.rocking.goes_over machine.sizing
+          python benchmarks/mutants.py rates.tipping.goes_over machine.sizing
           python benchmarks/mutants.py tooling.falling.may_wedge --tests tests/tooling/test_holding.py
 
 A name is that of a module, function, method or constant below `feederscrew`. The operators change numbers,
@@ -32,16 +32,14 @@ LEDGES = f"{VERDICTS} tests/tooling/test_holding.py tests/rates/test_steadiness.
 RATES = "tests/rates/test_rate_noticed.py"
 CONDITION = "tests/machine/test_condition.py"
 JUDGED = "tests/resting/test_judged_by_measurement.py"
+TIPPING = "tests/rates/test_tipping.py tests/rates/test_steadiness.py tests/rates/test_rocking.py"
 SIGNS = "tests/trial/test_trial_signs.py"
 TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "machine.sizing": f"{SIZING} tests/cli/moving/test_cli_bowl.py",
-    "machine.throughput": f"{SIZING} tests/cli/moving/test_cli_bowl.py",
     "machine.condition._of_stroke": CONDITION,
     "machine.condition._why": CONDITION,
-    "rates.rocking": f"tests/rates/test_rocking.py {ROCKING}",
-    "rates.rocking.goes_over": ROCKING,
-    "rates.steadiness": f"{RATES} {ROCKING} tests/rates/test_steadiness.py",
-    "rates.tipping": f"{RATES} {ROCKING} tests/rates/test_tipping.py",
+    "rates.tipping.goes_over": ROCKING,
+    "rates.tipping": f"{RATES} {ROCKING} {TIPPING}",
     "rates.well_oriented": f"tests/rates/test_rate.py {RATES} tests/rates/test_passing.py",
     "rates.stream.Orientations.sure": "tests/rates/test_steadiness.py -k round",
     "resting.rules.recommended.HOP_SHARES": JUDGED,
@@ -69,8 +67,8 @@ TESTS = {  # by name; more than one file, or `-k`, as on a command line
 EXCUSED = {  # constants whose value within reason has no consequence, and why
     "machine.sizing.DIAMETER_TOLERANCE_M": "a bound below every length that is printed",
     "machine.sizing.MAX_SIZING_ITERATIONS": "the search ends by itself long before",
-    "machine.throughput.STROKE_SAMPLES": "strokes so near each other find the same one",
-    "rates.rocking.REST_ANGULAR_SPEED": "a part that comes down so slowly is at rest within the same instant",
+    "machine.sizing.STROKE_SAMPLES": "strokes so near each other find the same one",
+    "rates.tipping.REST_ANGULAR_SPEED": "a part that comes down so slowly is at rest within the same instant",
     "rates.tipping.TIPPING_PHASES": "any number of instants that shows a stroke",
     "rates.tipping.MAX_FORCE_OFFSET_HEIGHTS": "any width beyond every force: it tips over the ends alone",
     "tooling.falling.BEYOND_FOOT_M": "any length beyond every foot",

@@ -11,7 +11,7 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from feederscrew.bowl import documentation, json_schema
+from feederscrew.bowl import documentation
 from feederscrew.bowl.schema import BOWL_KEYS
 from feederscrew.dropping import conditions
 
@@ -24,7 +24,7 @@ HEAD = "| Key | Default | From | To | Units | Meaning |\n|---|---|---|---|---|--
 
 def filled(text):
     """Return the page with its tables as the schema has them."""
-    made = json_schema.schema()["properties"]
+    made = documentation.json_schema()["properties"]
     kinds = made.pop("devices")["items"]["properties"]
     alone = {name: value for name, value in made.items() if "properties" not in value}
     parts = [HEAD, *(_row(name, value) for name, value in alone.items())]
@@ -71,7 +71,7 @@ def main():
         PAGE: filled,
         KEYWORDS: with_keywords,
         CONFIGS / "bowl.yaml": lambda _: documentation.template(),
-        CONFIGS / "feeder.schema.json": lambda _: json_schema.text(),
+        CONFIGS / "feeder.schema.json": lambda _: documentation.schema_text(),
     }
     for path, make in written.items():
         old = path.read_text(encoding="utf-8")

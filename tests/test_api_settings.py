@@ -11,7 +11,7 @@ import feederscrew as fs
 from feederscrew import api
 from feederscrew.api.bowl_settings import BowlSettings
 from feederscrew.bowl.schema import BOWL_KEYS
-from feederscrew.bowl.unbalance import UNBALANCE_KEYS as TOGETHER
+from feederscrew.bowl.schema import UNBALANCE_KEYS as TOGETHER
 
 ROOT = Path(__file__).parent.parent
 FILE = """

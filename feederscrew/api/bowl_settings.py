@@ -13,7 +13,7 @@ from typing import Any, TypeAlias, TypedDict, TypeVar, cast
 from feederscrew import bowl as bowls
 from feederscrew import check, units
 from feederscrew.bowl import Bowl
-from feederscrew.bowl.reading import checked, named
+from feederscrew.bowl.reading import checked, find_key
 from feederscrew.bowl.schema import BOWL_KEYS, Key
 from feederscrew.errors import ArgumentError
 
@@ -206,7 +206,7 @@ def _by_key(overrides: Overrides) -> list[tuple[Key, str | float]]:
         return []
     for name in overrides:
         check.kind("overrides", name, str, OVERRIDES_MEND)
-    return [(named(name, f"overrides {units.one_line(name)}"), value) for name, value in overrides.items()]
+    return [(find_key(name, f"overrides {units.one_line(name)}"), value) for name, value in overrides.items()]
 
 
 def _override(key: Key, value: object, argument: str) -> str:

@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 
 from feederscrew import units
-from feederscrew.bowl import unbalance
+from feederscrew.bowl import schema
 from feederscrew.bowl.devices import DEVICES_SECTION
-from feederscrew.bowl.direction import vibration_angle
-from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track
+from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track, vibration_angle
 from feederscrew.bowl.schema import BOWL_KEYS, BY_NAME, OPTIONAL, Key, rival
 from feederscrew.tooling.devices.base import Device
 
@@ -95,7 +94,7 @@ def record(settings: Sequence[Setting]) -> Bowl:
     for name, value in fields.items():
         section, _, word = name.rpartition(".")
         sections.setdefault(section, {})[word] = value
-    sections["machine"] = unbalance.known(sections["machine"], sections["sizing"]["hand"])
+    sections["machine"] = schema.with_unbalance(sections["machine"], sections["sizing"]["hand"])
     top_level = sections.pop("")
     bowl = Bowl(
         **{name: RECORDS[name](**values) for name, values in sections.items()},
@@ -216,7 +215,7 @@ def _of_the_machine(key: Key, given: Mapping[str, Setting]) -> Setting:
     own = [
         one
         for one in BOWL_KEYS
-        if one.field.startswith("machine.") and one.word not in unbalance.UNBALANCE_NAMES
+        if one.field.startswith("machine.") and one.word not in schema.UNBALANCE_NAMES
     ]
     names = [one.name for one in own]
     machine = Machine(**{name.partition(".")[2]: _effective(BY_NAME[name], given).value for name in names})

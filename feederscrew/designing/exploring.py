@@ -14,7 +14,7 @@ from feederscrew.designing.record import DEVICE, DRIVE, PART, Attempt
 from feederscrew.designing.robust import denied, robust_run
 from feederscrew.designing.searching import Candidate
 from feederscrew.dropping.plate.drive import throw_number
-from feederscrew.rates import arrivals, spacing, stream
+from feederscrew.rates import arrivals, stream
 from feederscrew.rates.tipping import FLAT_KIND
 from feederscrew.studies import solidbowl
 from feederscrew.studies.rate import shares
@@ -527,7 +527,7 @@ def _at_velocity(search, made, proposal, ways, weights, gain):
     for _ in range(2):
         velocity = max(asked(search, ways, weights, gain, apart), search.least)
         bowl = calm_drive.driven(made, velocity, hops=not proposal.devices)
-        apart = spacing.needed(proposal.devices, ways.lying, bowl)
+        apart = stream.needed_spacing(proposal.devices, ways.lying, bowl)
         if not apart > 0.0:
             break
     return bowl

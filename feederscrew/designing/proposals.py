@@ -393,4 +393,4 @@ def lost_at(tried, kind):
 
 def known_through(part, aspects, bowl):
     """Return what becomes of every orientation on the track and through the devices of a bowl."""
-    return stream.orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
+    return stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)

@@ -14,7 +14,7 @@ from feederscrew.designing.hazards.risks import Risk
 from feederscrew.designing.long_rides import LongRide
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import ArgumentError
-from feederscrew.machine.feasibility import DriveMismatch, is_two_axis
+from feederscrew.machine.drive_sizing import DriveMismatch, is_two_axis
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.records import Shown

@@ -233,7 +233,7 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading,
     chosen = drawn_rows(known, shares, wanted, rng, spared)
     try:
         aspects = find(other)
-        bare = stream.orientations(other, aspects, bowl.track, (), bowl=driven)
+        bare = stream.follow_orientations(other, aspects, bowl.track, (), bowl=driven)
         driven = replace(driven, devices=_named(driven.devices, known.lying, bare.lying))
         lying = at_entry(bare.lying, driven.devices)
         rows = [matched(known.lying[k], lying) for k in chosen]

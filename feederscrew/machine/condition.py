@@ -73,7 +73,7 @@ def read(text: str) -> dict[str, float]:
     return found
 
 
-def found(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
+def diagnose(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
     """Return a machine as it was found beside what it should do.
 
     Source: docs/bowl.md, "How it is computed" and "Why it feeds 220 for half a minute and then 165".

@@ -5,10 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.direction import vibration_angle
-from feederscrew.bowl.record import Bowl, Machine
+from feederscrew.bowl.record import Bowl, Machine, vibration_angle
 from feederscrew.errors import ArgumentError
-from feederscrew.machine import building, drive_sought
+from feederscrew.machine import drive_sizing
 from feederscrew.units import listed
 
 SPRING_CIRCLE = 0.7  # [1] radius of the springs over that of the bowl (assumption)
@@ -109,7 +108,7 @@ def _bowl(one: DriveUnit) -> Bowl:
     circle = round(SPRING_CIRCLE * track.radius, 3)
     under = replace(plain.machine, spring_angle=one.spring_angle, spring_radius=circle, supply=one.frequency)
     plain = replace(plain, track=track, machine=under)
-    guess = building.machine_on(plain, ("machine.spring_angle", "machine.spring_radius"))
+    guess = drive_sizing.machine_on(plain, ("machine.spring_angle", "machine.spring_radius"))
     under = replace(
         guess,
         bowl_mass=_rounded(guess.bowl_mass),
@@ -124,7 +123,7 @@ def _bowl(one: DriveUnit) -> Bowl:
         vibration_angle=float(vibration_angle(under, track.radius, track.climb)),
     )
     driven = replace(plain, drive=drive, machine=under)
-    return replace(driven, machine=drive_sought.on_leaves(driven, ()))
+    return replace(driven, machine=drive_sizing.on_leaves(driven, ()))
 
 
 def _rounded(value: float) -> float:

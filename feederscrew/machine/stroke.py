@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.bowl.direction import direction, shares
-from feederscrew.bowl.record import Bowl, Machine, Track
+from feederscrew.bowl.record import Bowl, Machine, Track, direction, shares
 
 FULL_TURN_RAD = 2.0 * np.pi  # [rad]
 INNERMOST = 0.5  # of the track's radius, where the list of angles starts

@@ -8,9 +8,8 @@ import shapely
 from feederscrew.bowl.record import Unbalance
 from feederscrew.errors import FeederError
 from feederscrew.part import mass
-from feederscrew.solidbowl import facets, grooves_wall, stairs, track
-from feederscrew.solidbowl.bolting import BOLT_CLEARANCE_M
-from feederscrew.solidbowl.plan import FULL_TURN, BowlPlan
+from feederscrew.solidbowl import facets, stairs, track
+from feederscrew.solidbowl.plan import BOLT_CLEARANCE_M, FULL_TURN, BowlPlan
 from feederscrew.solidbowl.segments import Segments
 from feederscrew.tooling import whole_surface
 
@@ -172,12 +171,12 @@ def pieces(plan, kit=facets):
     wall, *ends = [_wall(plan, kit)] if plan.stairs is None else stairs.shell(plan, kit)
     notches = [_notch(plan, kit, one) for one in _gates(plan)]
     ring = kit.without(
-        wall, [*_opening(plan, kit), *notches, *_bores(plan, kit), *grooves_wall.cuts(plan, kit)]
+        wall, [*_opening(plan, kit), *notches, *_bores(plan, kit), *track.groove_wall_cuts(plan, kit)]
     )
     slab = kit.without(track.slab(plan, kit), [_hole(plan, kit, cut) for cut in _holes(plan)])
     blades = [_plate(plan, kit, one) for one in _blades(plan) if not one.alone]
     added = [*track.sides(plan, kit), *track.yokes(plan, kit), *blades, *track.ledges(plan, kit)]
-    added += grooves_wall.faces(plan, kit)
+    added += track.groove_faces(plan, kit)
     whole = kit.united([*_floor(plan, kit), ring, *ends, slab, *added])
     whole = kit.without(whole, [*track.slots(plan, kit), *_drilled(plan, kit)])
     gates = [(f"gate_{k + 1}", _plate(plan, kit, one)) for k, one in enumerate(_gates(plan))]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew.geometry.vectors import product
-from feederscrew.solidbowl import grooves_wall
+from feederscrew.solidbowl import track
 from feederscrew.solidbowl.plan import FULL_TURN
 from feederscrew.solidbowl.stairs import CONICAL
 
@@ -80,10 +80,10 @@ def leaning(plan, s):
     if plan.stairs is not None and plan.stairs.shape == CONICAL:
         return np.where(plan.way.angle(s) < -FULL_TURN, 1.0 / np.tan(plan.stairs.slope), 0.0)  # upright above
     found = np.zeros(np.shape(s))
-    for groove in grooves_wall.spans(plan):
+    for groove in track.groove_spans(plan):
         start, end, _, opens = groove
         there = (s >= start) & (s <= end + opens)
-        found = np.where(there, np.tan(grooves_wall.lean_at(groove, s)), found)
+        found = np.where(there, np.tan(track.lean_at(groove, s)), found)
     return found
 
 

@@ -15,8 +15,7 @@ from feederscrew.errors import ArgumentError
 from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
-from feederscrew.rates.steadiness import steady
-from feederscrew.rates.tipping import marked, remark
+from feederscrew.rates.tipping import marked, remark, steady
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import arriving

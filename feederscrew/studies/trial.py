@@ -183,7 +183,7 @@ def trial(
     stopped = False
     for bowl in bowls:
         answer.answer(bowl)  # refuses a drive that cannot convey
-        ways = stream.orientations(part, found, bowl.track, bowl.devices, bowl=bowl)
+        ways = stream.follow_orientations(part, found, bowl.track, bowl.devices, bowl=bowl)
         ways = arrivals.oriented(ways, known.measured)
         tried = _tried(part, found, ways, aspect)
         shares = _shares(ways, rule, tried)

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from feederscrew import bowl, units
-from feederscrew.bowl import documentation, json_schema, schema
+from feederscrew.bowl import documentation, schema
 from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
 from feederscrew.mechanics import limits
@@ -89,7 +89,7 @@ def test_the_shipped_files():
 
 
 def test_the_schema_beside_it_is_as_the_program_has_it():
-    assert (ROOT / "configs" / documentation.SCHEMA_FILE).read_text() == json_schema.text()
+    assert (ROOT / "configs" / documentation.SCHEMA_FILE).read_text() == documentation.schema_text()
 
 
 @pytest.mark.parametrize(
@@ -261,7 +261,9 @@ def test_a_sweep_leaves_what_is_given_alone():
 
 
 def test_ranges():
-    angle, stroke = bowl.ranges(["drive.vibration_angle=5:60:12", "drive.peak_to_peak = 0.1mm : 2 mm : 3"])
+    angle, stroke = bowl.key_ranges(
+        ["drive.vibration_angle=5:60:12", "drive.peak_to_peak = 0.1mm : 2 mm : 3"]
+    )
     assert np.allclose(np.degrees(angle.values), np.arange(5, 61, 5), rtol=1e-15, atol=0)
     assert stroke.values == pytest.approx((1e-4, 1.05e-3, 2e-3), rel=1e-15)
     assert (angle.key.column, stroke.key.column) == ("vibration_angle_deg", "peak_to_peak_mm")
@@ -293,13 +295,13 @@ def test_ranges():
 )
 def test_a_fault_in_a_range(text, line):
     with pytest.raises(FeederError) as caught:
-        bowl.ranges([text])
+        bowl.key_ranges([text])
     assert caught.value.lines == (f"vary {line}",)
 
 
 def test_one_field_is_varied_once():
     with pytest.raises(FeederError) as caught:
-        bowl.ranges(["drive.amplitude=0:1:3", "drive.peak_to_peak=0:1:3"])
+        bowl.key_ranges(["drive.amplitude=0:1:3", "drive.peak_to_peak=0:1:3"])
     assert caught.value.lines == ("vary drive.peak_to_peak: is varied twice - vary two different keys",)
 
 

@@ -6,13 +6,13 @@ import pytest
 import yaml
 
 from feederscrew import units
-from feederscrew.bowl import documentation, json_schema, settings
+from feederscrew.bowl import documentation, settings
 from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS
 from feederscrew.errors import Faults, FeederError
 
 jsonschema = pytest.importorskip("jsonschema")
 ROOT = Path(__file__).parents[2]
-VALIDATOR = jsonschema.Draft7Validator(json_schema.schema())
+VALIDATOR = jsonschema.Draft7Validator(documentation.json_schema())
 
 
 def accepted(text):
@@ -34,11 +34,11 @@ def line(key, value):
 
 
 def test_the_schema_is_one():
-    jsonschema.Draft7Validator.check_schema(json_schema.schema())
+    jsonschema.Draft7Validator.check_schema(documentation.json_schema())
 
 
 def test_it_has_every_section_key_and_device_with_its_meaning():
-    made = json_schema.schema()["properties"]
+    made = documentation.json_schema()["properties"]
     assert {"devices", *BOWL_SECTIONS} <= set(made)
     for key in BOWL_KEYS:
         told = made[key.section]["properties"][key.word] if key.section else made[key.word]

@@ -10,8 +10,8 @@ import shapes
 from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import seat
-from feederscrew.rates import rocking, steadiness, stream, tipping
-from feederscrew.rates.rocking import ROCKING_STEPS, Rocker, goes_over
+from feederscrew.rates import stream, tipping
+from feederscrew.rates.tipping import ROCKING_STEPS, Rocker, goes_over
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import made
 
@@ -31,7 +31,7 @@ def sliding(ahead, back, push, instants):
 @pytest.mark.parametrize(("push", "sense", "brake"), [(7.0, 1, 1.0), (-7.0, 2, 0.5)])
 def test_a_part_slides_on_until_the_friction_of_its_direction_has_stopped_it(push, sense, brake):
     """From a push it slides for push over brake instants, each way with a brake of its own."""
-    found = rocking._senses(sliding(1.0, 0.5, push, [5]), 1e-3)
+    found = tipping._senses(sliding(1.0, 0.5, push, [5]), 1e-3)
     lasts = int(abs(push) / brake)
     assert np.flatnonzero(found).tolist() == list(range(5, 5 + lasts))
     assert set(found[5 : 5 + lasts]) == {sense}
@@ -39,7 +39,7 @@ def test_a_part_slides_on_until_the_friction_of_its_direction_has_stopped_it(pus
 
 def test_the_sliding_of_a_settled_period_does_not_begin_at_rest():
     """Pushed late in a period, a part comes sliding into the next one."""
-    found = rocking._senses(sliding(1.0, 0.5, 9.0, [ROCKING_STEPS - 4]), 1e-3)
+    found = tipping._senses(sliding(1.0, 0.5, 9.0, [ROCKING_STEPS - 4]), 1e-3)
     assert found[:5].all() and found[-4:].all() and not found[5:-4].any()
 
 
@@ -49,8 +49,8 @@ def test_seen_at_any_instant_a_settled_part_slides_as_the_point_mass_does():
     one = next(one for one in awkward.lying("track.radius=100 m", "track.bank=0 deg") if one.kind == "flat")
     place = seat(one.posture, one.heading, one.touching, 0.0)
     phase = phases(ROCKING_STEPS)
-    motions = [balance.motion(place, bowl, phase, np.full(ROCKING_STEPS, sense)) for sense in rocking.SENSES]
-    found = rocking._senses(motions, 1.0 / bowl.drive.frequency / ROCKING_STEPS)
+    motions = [balance.motion(place, bowl, phase, np.full(ROCKING_STEPS, sense)) for sense in tipping.SENSES]
+    found = tipping._senses(motions, 1.0 / bowl.drive.frequency / ROCKING_STEPS)
     assert {0, 1, 2} >= set(found) and (found == 1).any()
     drive, climb = bowl.drive, bowl.track.climb
     fine, speed, settled = 400, 0.0, {}
@@ -91,8 +91,8 @@ def test_an_impact_keeps_the_angular_momentum_about_the_side_it_lands_on(share, 
     time = np.sqrt((spread + far**2 + height**2) / (GRAVITY * height))
     rate = share * far / (height * time) / kept
     count, step = 16000, 5e-5
-    monkeypatch.setattr(rocking, "ROCKING_STEPS", count)
-    monkeypatch.setattr(rocking, "FOLLOWED", 1)
+    monkeypatch.setattr(tipping, "ROCKING_STEPS", count)
+    monkeypatch.setattr(tipping, "FOLLOWED", 1)
     offset = np.zeros(count)
     offset[0] = rate / step * (spread + near**2 + height**2) / GRAVITY + near
     pushed = Rocker(near, far, height, spread, force=np.full(count, GRAVITY), offset=offset)
@@ -129,8 +129,8 @@ def flat():
 def followed(monkeypatch, one, bowl, limit):
     """What is asked of rocking for a part over a gap, answered by never: (Rocker, start) in their order."""
     asked = []
-    monkeypatch.setattr(steadiness, "goes_over", lambda *args: asked.append(args) or False)
-    steadiness.steady([made("gap", "test", limit=limit)], [one], bowl, 2.5e-4)
+    monkeypatch.setattr(tipping, "goes_over", lambda *args: asked.append(args) or False)
+    tipping.steady([made("gap", "test", limit=limit)], [one], bowl, 2.5e-4)
     return asked
 
 
@@ -160,8 +160,8 @@ def test_a_part_rocks_over_the_side_about_which_the_moment_is_greatest(monkeypat
     contact = 1e-3 * np.array([[-3.0, -2.0], [5.0, -2.0], [5.0, 4.0], [-3.0, 4.0]])
     force, offset = np.full(ROCKING_STEPS, 9.81), np.zeros((ROCKING_STEPS, 2))
     force[:2], offset[0], offset[1] = [20.0, 5.0], [5.5e-3, 0.0], [0.0, -5e-3]
-    monkeypatch.setattr(rocking, "over_period", lambda *_: (force, offset))
-    found = rocking.rocker(SimpleNamespace(contact=contact, height=6e-3), lambda angle: angle, None)
+    monkeypatch.setattr(tipping, "over_period", lambda *_: (force, offset))
+    found = tipping.rocker(SimpleNamespace(contact=contact, height=6e-3), lambda angle: angle, None)
     assert (found.near, found.far) == pytest.approx((2e-3, 4e-3), rel=1e-9)
     assert np.sin(found.spread) == pytest.approx(0.0, abs=1e-9)  # about the direction along the track
     np.testing.assert_allclose(found.offset[:2], [0.0, 5e-3], atol=1e-12)
@@ -192,6 +192,6 @@ def test_what_is_late_for_the_next_stroke_is_followed(monkeypatch):
 def told(part, bowl):
     """Each orientation and what tipping says of it."""
     found = find(part)
-    known = stream.orientations(part, found, bowl.track)
+    known = stream.follow_orientations(part, found, bowl.track)
     rows = tipping.tipping(known.lying, bowl)
     return zip(known.lying, rows.tips, rows.tilt, rows.balance, rows.over)

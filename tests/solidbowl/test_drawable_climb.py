@@ -12,8 +12,7 @@ from feederscrew.designing import calm_drive, exploring, proposals
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.searching import Search
 from feederscrew.resting.aspects import find
-from feederscrew.solidbowl.materials import STEEL_NAME
-from feederscrew.solidbowl.plan import ARC_CHORD_M, TrackTooLow
+from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME, TrackTooLow
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import solidbowl
 from feederscrew.studies.rate import shares

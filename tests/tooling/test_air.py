@@ -17,7 +17,7 @@ from feederscrew.bowl.verified import fingerprint
 from feederscrew.errors import Faults
 from feederscrew.geometry.polygons import turned
 from feederscrew.part import load
-from feederscrew.rates import spacing
+from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.studies import tooling
 from feederscrew.tooling import sensor_views, verdicts
@@ -67,19 +67,19 @@ def test_the_force_that_tips_is_weight_times_foot_over_height():
 
 def test_a_sorter_needs_room_that_a_steeper_way_makes():
     sorter = made("sorter", "here", like=(FLAT.aspect, FLAT.heading, 5e-4))
-    alone = spacing.needed([sorter], EVERY, BOWL)
+    alone = stream.needed_spacing([sorter], EVERY, BOWL)
     widest = max(one.width for one in EVERY)
     assert alone == pytest.approx(2e-3 + 2 * math.tan(math.radians(11)) * widest + travel_speed(BOWL) * 0.05)
     steep = made("separation", "here", angle=math.radians(-6.0))
     faster = travel_speed(replace(BOWL, track=replace(BOWL.track, climb=math.radians(-6.0))))
-    behind = spacing.needed([steep, sorter], EVERY, BOWL)
+    behind = stream.needed_spacing([steep, sorter], EVERY, BOWL)
     shortest = min(one.length for one in EVERY)
     needs = max(sorter.gap(one, faster) for one in EVERY)
     assert (
         behind == pytest.approx((needs + shortest) * travel_speed(BOWL) / faster - shortest)
         and behind < alone
     )
-    assert spacing.needed([sorter, steep], EVERY, BOWL) == alone  # behind it, it is too late
+    assert stream.needed_spacing([sorter, steep], EVERY, BOWL) == alone  # behind it, it is too late
 
 
 def test_a_bank_that_comes_first_begins_at_the_entry_and_holds_what_rolls():

@@ -8,8 +8,8 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.output.tooling import bowl_file, tables
-from feederscrew.rates import well_oriented
-from feederscrew.rates.steadiness import steady
+from feederscrew.rates import stream, well_oriented
+from feederscrew.rates.tipping import steady
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
@@ -149,7 +149,7 @@ def test_a_bowl_of_the_design_is_as_pure_and_efficient(bracket, tmp_path):
     path = tmp_path / "tooling.yaml"
     path.write_text(f"track: {{radius: 150 mm, width: 200 mm}}\ndevices:\n{lines}")
     bowl = bowls.read(path)
-    known = well_oriented.orientations(part, aspects, bowl.track, bowl.devices)
+    known = stream.follow_orientations(part, aspects, bowl.track, bowl.devices)
     target = every[wanted].aspect, every[wanted].heading
     made = well_oriented.rate(known, well_oriented.Range(0.02, 0.02, 0.02), target, "recommended")
     assert made.purity == pytest.approx(found.purity, rel=1e-9)

@@ -15,7 +15,7 @@ from feederscrew.mechanics.wall import lying_in_groove
 from feederscrew.output.rate.tables import remarks
 from feederscrew.output.tooling import drawing, profile
 from feederscrew.part import load
-from feederscrew.rates import spacing, stretches
+from feederscrew.rates import stream
 from feederscrew.rates.well_oriented import velocity
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate, shares
@@ -126,14 +126,14 @@ def test_a_bank_brings_to_the_wall_only_what_does_not_roll_along_it(dowel):
 @pytest.mark.parametrize("angle", [10.0, 30.0, 50.0])
 def test_friction_acts_as_over_the_cosine(angle):
     one = groove(angle).onward(named(known(shapes.part(shapes.box(20, 12, 5))), "A@0"))
-    there = stretches.on_stretch(BOWL, one)
+    there = stream.on_stretch(BOWL, one)
     more = 1.0 / math.cos(angle * DEG)
     mu = BOWL.friction
     assert there.friction.static == pytest.approx(mu.static * more)
     assert there.friction.kinetic == pytest.approx(mu.kinetic * more)
     assert there.friction.backward == pytest.approx([one * more for one in mu.backward])
     assert there.track.bank == 0.0 and there.track.climb == BOWL.track.climb
-    back = stretches.on_stretch(BOWL, made("bank", "b", angle=5.0 * DEG).onward(one))
+    back = stream.on_stretch(BOWL, made("bank", "b", angle=5.0 * DEG).onward(one))
     assert back.friction is BOWL.friction and back.track.bank == 5.0 * DEG
 
 
@@ -141,10 +141,10 @@ def test_a_queue_travels_as_in_the_groove_that_is_listed_first(dowel):
     _, every = dowel
     steep = made("separation", "s", angle=-6.0 * DEG)
     lying = at_entry(every, [groove(40.0), steep])
-    assert stretches.queueing(BOWL, lying).track.climb == BOWL.track.climb
-    there = replace(BOWL, friction=stretches.on_stretch(BOWL, lying[0]).friction)
-    assert velocity(stretches.queueing(BOWL, lying)).value == pytest.approx(velocity(there).value)
-    assert spacing.needed([groove(40.0)], lying, BOWL) == 0.0
+    assert stream.queueing(BOWL, lying).track.climb == BOWL.track.climb
+    there = replace(BOWL, friction=stream.on_stretch(BOWL, lying[0]).friction)
+    assert velocity(stream.queueing(BOWL, lying)).value == pytest.approx(velocity(there).value)
+    assert stream.needed_spacing([groove(40.0)], lying, BOWL) == 0.0
 
 
 def test_a_groove_begins_at_the_entry_and_a_bank_ends_it():

@@ -88,7 +88,7 @@ def test_the_margin_of_what_returns_is_that_of_the_first_device_that_does():
     part = shapes.part(shapes.box(20, 12, 5))
     kinds = (("wiper", 8e-3), ("gap", 10.5e-3), ("wiper", 4e-3))
     chain = [made(kind, "here", limit=limit) for kind, limit in kinds]
-    known = stream.orientations(part, find(part), TRACK, chain)
+    known = stream.follow_orientations(part, find(part), TRACK, chain)
     along = next(k for k, one in enumerate(known.lying) if one.height < 6e-3 and one.length > 0.015)
     assert known.margins[along, 1:] == pytest.approx([3e-3, -0.5e-3, -1e-3], rel=1e-2)
     assert known.margin[along] == pytest.approx(-0.5e-3, rel=1e-2)

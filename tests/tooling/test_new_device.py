@@ -9,7 +9,7 @@ import trimesh
 from click.testing import CliRunner
 
 from feederscrew.bowl import read
-from feederscrew.bowl.json_schema import schema
+from feederscrew.bowl.documentation import json_schema
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.tooling import devices
@@ -87,7 +87,7 @@ def test_a_device_added_in_one_file_is_known_everywhere(ravine):
     assert mesh.is_watertight
     over = mesh.triangles_center[np.abs(mesh.triangles_center[:, 2]) < 1e-6]
     assert len(over) and files["tooling.png"].stat().st_size > 1000
-    made = schema()["properties"]["devices"]["items"]["properties"]["ravine"]
+    made = json_schema()["properties"]["devices"]["items"]["properties"]["ravine"]
     assert (made["title"], made["pattern"]) == ("its width", pattern("length"))
     tried = json.loads(ran("trial", part, "--parts", "8", "--rule", "csa", "--format", "json"))[
         "orientations"

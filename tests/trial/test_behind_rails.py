@@ -25,7 +25,7 @@ T_NUT = shapes.part(shapes.t_nut())
 def tried(part, bowl, devices, which, parts=4):
     """The orientations of a part through devices, and what became of parts of some of them."""
     aspects = find(part)
-    known = stream.orientations(part, aspects, bowl.track, devices, bowl=bowl)
+    known = stream.follow_orientations(part, aspects, bowl.track, devices, bowl=bowl)
     rows = [k for k, one in enumerate(known.lying) if which(one)]
     seen = course.course(
         part, bowl, known.lying, course.Sending(rows, parts), devices,

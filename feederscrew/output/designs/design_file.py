@@ -4,7 +4,7 @@ import datetime
 
 from feederscrew import __version__, units
 from feederscrew import bowl as bowls
-from feederscrew.bowl import devices, reading, unbalance
+from feederscrew.bowl import devices, reading, schema
 from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.verified import NOTHING_LEFT, Verified, body_fingerprint, fingerprint
 from feederscrew.designing.record import NOT_PROVED
@@ -55,7 +55,7 @@ def bowl_file(study, settings, sheet=None):
     own = {"drive": study.bowl.drive, "track": study.bowl.track}
     own |= {} if sheet is None else {"machine": sheet.bowl.machine, "sizing": sheet.bowl.sizing}
     set_here = {f"{section}.{row[0]}" for section in own for row in OWN[section]} | {"drive.peak_to_peak"}
-    set_here |= {f"machine.{word}" for word in unbalance.UNBALANCE_NAMES if "machine" in own}
+    set_here |= {f"machine.{word}" for word in schema.UNBALANCE_NAMES if "machine" in own}
     given = [s for s in settings if s.given and s.key.field != DEVICES_SECTION and s.key.name not in set_here]
     lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
     if study.drive_mismatch is not None:
@@ -100,8 +100,8 @@ def _read_back(lines, study, own):
 
 
 def _unbalance(machine):
-    for word, value in unbalance.told(machine).items():
-        length = word in unbalance.CENTRE
+    for word, value in schema.unbalance_values(machine).items():
+        length = word in schema.CENTRE
         yield word, f"{value / MM:.9g} mm" if length else f"{value:.9g} kg m2"
 
 

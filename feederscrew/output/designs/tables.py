@@ -8,7 +8,7 @@ from feederscrew import units
 from feederscrew.conveying.answer import answer, throw_number
 from feederscrew.conveying.hop import hop
 from feederscrew.designing import record
-from feederscrew.machine.feasibility import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
+from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import columns, tables
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from feederscrew.errors import FeederError
 from feederscrew.solidbowl.closed_body import pieces
-from feederscrew.solidbowl.exact import exact_body, exact_faces
+from feederscrew.solidbowl.exact import exact_body
 from feederscrew.units import MM
 
 STEP_TIMESTAMP = re.compile(rb"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'")  # in the file's head: the same bytes twice
@@ -61,12 +61,12 @@ def _tried(made):
     bodies = [whole, *(one for _, one in gates)]
     data = _written([exact_body.placed_as(one, mirrored=plan.left, turned=plan.turned) for one in bodies])
     found = _opened(data)
-    sizes = [exact_faces.volume(one) * MM**3 for one in found]
-    if len(found) != len(bodies) or not all(exact_faces.valid(one) for one in found):
+    sizes = [exact_body.volume(one) * MM**3 for one in found]
+    if len(found) != len(bodies) or not all(exact_body.valid(one) for one in found):
         raise _refused(f"finds {len(found)} bodies, or one that is not closed")
     if abs(sizes[0] / made.volume - 1.0) > STEP_VOLUME_TOLERANCE:
         raise _refused(f"makes a bowl of {sizes[0] / MM**3:.6g} mm3, not {made.volume / MM**3:.6g}")
-    return StepFile(data, sizes[0], exact_faces.kinds(found[0]), _off(plan, found[0]))
+    return StepFile(data, sizes[0], exact_body.kinds(found[0]), _off(plan, found[0]))
 
 
 def _refused(what):
@@ -100,7 +100,7 @@ def _opened(data):
         reader = STEPControl_Reader()
         reader.ReadFile(str(path))
         reader.TransferRoots()
-        return exact_faces.parts(reader.OneShape(), TopAbs_SOLID)
+        return exact_body.parts(reader.OneShape(), TopAbs_SOLID)
 
 
 def _off(plan, body):
@@ -112,7 +112,7 @@ def _off(plan, body):
     for k in range(STEP_HEIGHT_SAMPLES):
         s, y = last * (k + 1.0) / (STEP_HEIGHT_SAMPLES + 2.0), plan.width * (0.1 + 0.8 * (k * 0.618 % 1.0))
         place = plan.way.places(s, y)
-        met = exact_faces.below(body, (place + [0.0, 0.0, 0.5 * plan.headroom]) / MM)
+        met = exact_body.below(body, (place + [0.0, 0.0, 0.5 * plan.headroom]) / MM)
         found.append(np.inf if met is None else abs(met * MM - place[2]))
     return float(max(found))
 
