@@ -29,7 +29,7 @@ from feederscrew.tooling.devices.base import Device
 
 class Ravine(Device):
     kind = "ravine"
-    form = forms.LENGTH | {"title": "its width"}
+    form = forms.LENGTH_FORM | {"title": "its width"}
     example = "8 mm"
     meaning = "strip along the wall"
     picture = "above"
