@@ -19,7 +19,7 @@ LEVER = 0.1  # of the length, from the head to the weight: in trials those with 
 OFF_WALL = 9e-5  # [m] by which a head that hangs stays off the wall at least
 
 
-def may_lay_over(one, low):
+def may_lay_over(orientation, low):
     """Return whether a blade across the track may lay a part over instead of holding it up.
 
     Source: moments about the rear side of the foot, Coulomb's friction; docs/tooling.md,
@@ -27,7 +27,7 @@ def may_lay_over(one, low):
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
         That travels: it knows the friction of its track.
     low : float [m]
         Height of the blade's edge, or from which on an opening is too narrow.
@@ -45,23 +45,23 @@ def may_lay_over(one, low):
     weight, where F (z - mu L) + h sin(climb) > b cos(climb), F (1 - mu^2) = mu cos(climb) - sin(climb) in
     weights. More than the mean no drive can push for long; a real one pushes less.
     """
-    ahead, height = _first_contact(one, low)
-    behind = _behind(one)
-    mu, c, s = one.grip, math.cos(one.track.climb), math.sin(one.track.climb)
+    ahead, height = _first_contact(orientation, low)
+    behind = _behind(orientation)
+    mu, c, s = orientation.grip, math.cos(orientation.track.climb), math.sin(orientation.track.climb)
     lever = height - mu * (behind + ahead)
     if mu >= 1.0 or mu * c <= s:  # nothing limits the push, or there is none
         return mu * c > s and lever > 0.0
-    return (mu * c - s) / (1.0 - mu * mu) * lever + one.posture.height * s > behind * c
+    return (mu * c - s) / (1.0 - mu * mu) * lever + orientation.posture.height * s > behind * c
 
 
-def may_lay_aside(one, low, sweep):
+def may_lay_aside(orientation, low, sweep):
     """Return whether a swept blade may lay a part over towards the free edge as it slides along the face.
 
     Source: moments about a side of the foot, Coulomb's friction; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
         That travels.
     low : float [m]
         Height of the blade's edge.
@@ -74,22 +74,22 @@ def may_lay_aside(one, low, sweep):
     Over a side of the foot, b from the weight and with its normal at an angle a to that push, the part tips
     where mu z cos(a) > b, z the height of the edge.
     """
-    found = _foot_sides(one)
-    if found is None:
+    foot_sides = _foot_sides(orientation)
+    if foot_sides is None:
         return True
-    away, reach = found
+    away, reach = foot_sides
     push = away[:, 1] * math.cos(sweep) - away[:, 0] * math.sin(sweep)
-    return bool((one.grip * low * push > reach).any())
+    return bool((orientation.grip * low * push > reach).any())
 
 
-def may_turn_and_lie_over(one, low):
+def may_turn_and_lie_over(orientation, low):
     """Return whether a swept blade may lay a part over once it has turned along the face.
 
     Source: ``may_lay_aside`` with a side of the foot along the face; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
         That travels.
     low : float [m]
         Height of the blade's edge.
@@ -99,13 +99,13 @@ def may_turn_and_lie_over(one, low):
     What slides along a blade turns until a side of it lies there, whichever comes: the push of
     ``may_lay_aside`` is then square to some side of the foot, and tips it over the nearest where mu z > b.
     """
-    found = _foot_sides(one)
-    return found is None or bool((one.grip * low > found[1]).any())
+    foot_sides = _foot_sides(orientation)
+    return foot_sides is None or bool((orientation.grip * low > foot_sides[1]).any())
 
 
-def _foot_sides(one):
+def _foot_sides(orientation):
     """Normals (K, 2) of the sides of a foot and their distances (K,) [m] from its weight; None of a line."""
-    hull = shapely.MultiPoint(one.foot.corners).convex_hull
+    hull = shapely.MultiPoint(orientation.foot.corners).convex_hull
     if hull.geom_type != "Polygon":
         return None
     corners = shapely.get_coordinates(shapely.geometry.polygon.orient(hull))
@@ -114,14 +114,14 @@ def _foot_sides(one):
     return away, away[:, 0] * corners[:-1, 0] + away[:, 1] * corners[:-1, 1]
 
 
-def may_wedge(one, span):
+def may_wedge(orientation, span):
     """Return whether a head that comes first may stick between rails as a wedge.
 
     Source: a wedge between two angles of friction; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
         That travels, its head ahead of the shank.
     span : (float, float) [m]
         Of the slot, from the wall.
@@ -132,29 +132,29 @@ def may_wedge(one, span):
         Whether both sides on which the head rests are steep enough together: friction then holds whatever
         presses it in, and the shank's weight need not turn it down.
     """
-    seen = turned(one.posture.surface[:, :2], one.heading)[:, 1]
-    ring = outline(np.column_stack([seen, one.posture.surface[:, 2]]))
+    outward = turned(orientation.posture.surface[:, :2], orientation.heading)[:, 1]
+    ring = outline(np.column_stack([outward, orientation.posture.surface[:, 2]]))
     after = np.roll(ring, -1, axis=0)
     under = after[:, 0] > ring[:, 0]  # counter-clockwise: the lower half runs to the right
     start, end = ring[under], after[under]
     lean = 0.0
     for side in span:
-        edge = side - one.distance
-        met = (start[:, 0] <= edge) & (edge < end[:, 0])
-        if not met.any():
+        edge = side - orientation.distance
+        spans_edge = (start[:, 0] <= edge) & (edge < end[:, 0])
+        if not spans_edge.any():
             return False
-        (run, rise) = (end - start)[np.argmax(met)]
+        (run, rise) = (end - start)[np.argmax(spans_edge)]
         lean += math.atan2(run, abs(rise))
-    return lean <= 2.0 * math.atan(one.grip)
+    return lean <= 2.0 * math.atan(orientation.grip)
 
 
-def hangs_free(one, span):
+def hangs_free(orientation, span):
     """Return whether a head that hangs in a slot stays off the wall, and its weight turns the shank down.
 
     Source: own; docs/tooling.md, "1. The method": what touches rail and wall at once may wedge.
     """
-    found = neck(one)
-    return found is not None and too_near(found, span) <= 0.0 and found.lever >= LEVER * one.length
+    headed = neck(orientation)
+    return headed is not None and too_near(headed, span) <= 0.0 and headed.lever >= LEVER * orientation.length
 
 
 def too_near(headed, span):
@@ -162,14 +162,14 @@ def too_near(headed, span):
     return max(OFF_WALL - span[0] - 0.5 * (headed.shank - headed.widest), 0.0)
 
 
-def wall_holds(one, width):
+def wall_holds(orientation, width):
     """Return by how much [m] a canyon may be wider than a part passes by its foot, and still let it through.
 
     Source: own; docs/tooling.md, "1. The method": the wall holds what turns towards it.
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
         That travels.
     width : float [m]
         Of the strip removed along the wall.
@@ -182,20 +182,20 @@ def wall_holds(one, width):
     with friction sooner. So it dips into the strip by ``width`` times that, and is held at the strip's end
     unless that is less than ``one.climbs``.
     """
-    points = one.posture.surface
-    across = turned(points[:, :2], one.heading)[:, 1]
-    high = points[across <= across.min() + WALL_CONTACT_SHARE * one.height, 2].max()
-    return max(one.climbs * (2.0 * high - one.posture.height) / width, 0.0)
+    points = orientation.posture.surface
+    across = turned(points[:, :2], orientation.heading)[:, 1]
+    high = points[across <= across.min() + WALL_CONTACT_SHARE * orientation.height, 2].max()
+    return max(orientation.climbs * (2.0 * high - orientation.posture.height) / width, 0.0)
 
 
-def rides_over(one, width, length):
+def rides_over(orientation, width, length):
     """Return whether a part on its round side along the track rides over a hole by its sides.
 
     Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
         That travels.
     width, length : float [m]
         Of the hole across and along the track; infinite length of one that goes on.
@@ -207,13 +207,13 @@ def rides_over(one, width, length):
     dips, tilted over the edge that it leaves; its weight then rises by (length - ahead) / length of that, a
     part that reaches ahead of its weight by so much.
     """
-    radius = one.posture.height
-    if one.kind != "rolling" or rolls_across(one) or width >= 2.0 * radius:
+    radius = orientation.posture.height
+    if orientation.kind != "rolling" or rolls_across(orientation) or width >= 2.0 * radius:
         return False
-    places = one.foot.corners[:, 0]
+    places = orientation.foot.corners[:, 0]
     share = 1.0 - float(places.max()) / length if length < np.ptp(places) else 1.0
     sunk = radius - math.sqrt(radius**2 - 0.25 * width**2)
-    return share * (sunk - CUT_BORDER_RADIUS_M) < one.climbs - CUT_BORDER_RADIUS_M
+    return share * (sunk - CUT_BORDER_RADIUS_M) < orientation.climbs - CUT_BORDER_RADIUS_M
 
 
 def greatest_width(corners):
@@ -223,24 +223,28 @@ def greatest_width(corners):
     return max(area.intersection(line).length for line in lines)
 
 
-def _first_contact(one, low):
+def _first_contact(orientation, low):
     """How far ahead of the weight a part reaches over a height [m], and at which height it first does so."""
-    points, faces = one.posture.surface, one.posture.solid.faces
-    ahead, height = turned(points[:, :2], one.heading)[:, 0], points[:, 2]
+    points, faces = orientation.posture.surface, orientation.posture.solid.faces
+    ahead, height = turned(points[:, :2], orientation.heading)[:, 0], points[:, 2]
     a, b = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).T
     crossed = (height[a] > low) != (height[b] > low)
     a, b = a[crossed], b[crossed]
     share = (low - height[a]) / (height[b] - height[a])
     reach = np.concatenate([ahead[height >= low], ahead[a] + share * (ahead[b] - ahead[a])])
     level = np.concatenate([height[height >= low], np.full(len(a), low)])
-    return float(reach.max()), float(level[reach >= reach.max() - FOREMOST_TOLERANCE * one.height].min())
+    return float(reach.max()), float(
+        level[reach >= reach.max() - FOREMOST_TOLERANCE * orientation.height].min()
+    )
 
 
-def _behind(one):
+def _behind(orientation):
     """Way [m] from where the weight meets the track back to the border of the supported hull."""
-    hull = shapely.MultiPoint(one.foot.corners).convex_hull
-    back = hull.intersection(shapely.LineString([(0.0, -one.shift), (-BEYOND_FOOT_M, -one.shift)]))
-    least = one.foot.corners[:, 0].min() if back.is_empty else back.bounds[0]
+    hull = shapely.MultiPoint(orientation.foot.corners).convex_hull
+    rearward = hull.intersection(
+        shapely.LineString([(0.0, -orientation.shift), (-BEYOND_FOOT_M, -orientation.shift)])
+    )
+    least = orientation.foot.corners[:, 0].min() if rearward.is_empty else rearward.bounds[0]
     return max(float(-least), 0.0)
 
 
@@ -282,10 +286,10 @@ def may_rest(section, width, friction, wall=False):
         return True
     ring = outline(shapely.get_coordinates(hull))
     tilts = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 2 * REST_TILTS + 1)
-    met = [(_leans if wall else _bridges)(turned(ring, turn), width) for turn in tilts]
+    supports = [(_leans if wall else _bridges)(turned(ring, turn), width) for turn in tilts]
     if friction > 0.0:
-        return any(two is not None and _holds(two, friction) for two in met)
-    heights = np.array([np.inf if two is None else -two[1][0][1] for two in met])
+        return any(two is not None and _holds(two, friction) for two in supports)
+    heights = np.array([np.inf if two is None else -two[1][0][1] for two in supports])
     return _settles(np.where(np.isinf(heights), -np.inf, heights), 1e-9 * np.ptp(ring, axis=0).max())
 
 
@@ -332,22 +336,22 @@ def _spans(ring, levels):
     """Return how long (L,) the chords of a convex outline at some levels (L,) are: as ``_at`` has them."""
     along, start = sides(ring), ring[:, 1]
     low, high = np.minimum(start, start + along[:, 1]), np.maximum(start, start + along[:, 1])
-    met = (low <= levels[:, None]) & (levels[:, None] <= high)
+    crosses = (low <= levels[:, None]) & (levels[:, None] <= high)
     rise = np.where(along[:, 1] == 0.0, 1.0, along[:, 1])
     share = np.clip((levels[:, None] - start) / rise, 0.0, 1.0)
     places = ring[:, 0] + share * along[:, 0]
-    return np.where(met, places, -np.inf).max(axis=1) - np.where(met, places, np.inf).min(axis=1)
+    return np.where(crosses, places, -np.inf).max(axis=1) - np.where(crosses, places, np.inf).min(axis=1)
 
 
 def _at(ring, level):
     """Where the sides of a convex outline meet a level, and their normals into it."""
     along, start = sides(ring), ring[:, 1]
     low, high = np.minimum(start, start + along[:, 1]), np.maximum(start, start + along[:, 1])
-    met = (low <= level) & (level <= high)
-    rise = np.where(along[met, 1] == 0.0, 1.0, along[met, 1])
-    share = np.clip((level - start[met]) / rise, 0.0, 1.0)
-    normals = np.column_stack([-along[met, 1], along[met, 0]]) / np.hypot(*along[met].T)[:, None]
-    return ring[met, 0] + share * along[met, 0], normals
+    crosses = (low <= level) & (level <= high)
+    rise = np.where(along[crosses, 1] == 0.0, 1.0, along[crosses, 1])
+    share = np.clip((level - start[crosses]) / rise, 0.0, 1.0)
+    normals = np.column_stack([-along[crosses, 1], along[crosses, 0]]) / np.hypot(*along[crosses].T)[:, None]
+    return ring[crosses, 0] + share * along[crosses, 0], normals
 
 
 def _holds(two, friction):
@@ -396,14 +400,14 @@ FAR, ONE_LINE = 10.0, 1e-6  # [m] along any hole; half the width of a line acros
 PLACES, PIECES = 200, 8  # along a hole at which a part is tried; of a side of its outline
 
 
-def falls_through(one, cut):
+def falls_through(orientation, cut):
     """Return whether a hole lets an orientation through that it does not carry.
 
     Source: own; docs/tooling.md, "1. The method": what becomes of a part that does not pass.
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
     cut : (K, 2) float [m]
         Unrolled: lengths along the wall and distances from it.
 
@@ -414,27 +418,27 @@ def falls_through(one, cut):
         ``SHADOW_CLEARANCE_M`` around it. Where it is tipped by less than that way, it is still on its way
         down over the edge that it leaves. What goes over the track's free edge is gone.
     """
-    hole = shapely.make_valid(_open(np.asarray(cut, float), one.track.width)).buffer(
+    hole = shapely.make_valid(_open(np.asarray(cut, float), orientation.track.width)).buffer(
         -SHADOW_CLEARANCE_M, join_style="mitre"
     )
     if hole.is_empty:
         return False
-    shadows, sizes = _shadows(one)
+    shadows, sizes = _shadows(orientation)
     extent = np.subtract(hole.bounds[2:], hole.bounds[:2])
     may = np.flatnonzero((sizes <= extent).all(axis=1))
     if hole.area > (1.0 - RECTANGLE_TOLERANCE) * extent.prod():  # it is a rectangle
         return bool(len(may))
     parts = [(part, _sides(part)) for part in shapely.get_parts(hole)]
-    return any(_fits(shadows[k], *one) for k in may for one in parts)
+    return any(_fits(shadows[k], *part) for k in may for part in parts)
 
 
-def lets_go(device, one):
+def lets_go(device, orientation):
     """Return whether what a device cuts away lets an orientation go for certain that it does not carry.
 
     Parameters
     ----------
     device : Device
-    one : Orientation
+    orientation : Orientation
         That travels.
 
     Returns
@@ -443,19 +447,24 @@ def lets_go(device, one):
         Whether the part goes over the free edge, or through a hole along the track as it lies, or down
         between two edges where no tilt of it can rest on them. True of a device that cuts nothing.
     """
-    cut = device.outline_on(one.track, HOLE_LENGTHS * float(np.hypot(one.length, max(one.width, one.height))))
-    if cut is None or _over_the_edge(device, one.track):
+    cut = device.outline_on(
+        orientation.track,
+        HOLE_LENGTHS * float(np.hypot(orientation.length, max(orientation.width, orientation.height))),
+    )
+    if cut is None or _over_the_edge(device, orientation.track):
         return True
-    span = device.span_on(one.track)
-    if span is not None and span[0] > 0.0 and shoulder_margin(one, span) >= 0.0:
+    span = device.span_on(orientation.track)
+    if span is not None and span[0] > 0.0 and shoulder_margin(orientation, span) >= 0.0:
         return False
     if span is None:
-        return falls_through(one, cut) and _drops_between(one, cut)
-    return fits_as_it_lies(one, cut) or (falls_through(one, cut) and _slips(one, span))
+        return falls_through(orientation, cut) and _drops_between(orientation, cut)
+    return fits_as_it_lies(orientation, cut) or (
+        falls_through(orientation, cut) and _slips(orientation, span)
+    )
 
 
 @functools.lru_cache(maxsize=8192)
-def surely_gone(device, one):
+def surely_gone(device, orientation):
     """Return whether an orientation that a device does not let pass is surely returned by it.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -463,7 +472,7 @@ def surely_gone(device, one):
     Parameters
     ----------
     device : Device
-    one : Orientation
+    orientation : Orientation
         That travels.
 
     Returns
@@ -471,11 +480,11 @@ def surely_gone(device, one):
     bool
         Whether it is let go of for certain, and does not turn along a swept blade that then lays it over.
     """
-    turned = device.face is not None and may_turn_and_lie_over(one, device.limit)
-    return lets_go(device, one) and not turned
+    turned = device.face is not None and may_turn_and_lie_over(orientation, device.limit)
+    return lets_go(device, orientation) and not turned
 
 
-def fits_as_it_lies(one, cut):
+def fits_as_it_lies(orientation, cut):
     """Return whether an orientation fits through a hole as it lies, somewhere on its way over it.
 
     Parameters
@@ -483,14 +492,14 @@ def fits_as_it_lies(one, cut):
     one, cut
         As for ``falls_through``.
     """
-    hole = shapely.make_valid(_open(np.asarray(cut, float), one.track.width))
+    hole = shapely.make_valid(_open(np.asarray(cut, float), orientation.track.width))
     behind = shapely.affinity.translate(hole, 0.0, -WALL_OVERCUT_M) if hole.bounds[1] <= 0.0 else hole
     hole = hole.union(behind).buffer(-SHADOW_CLEARANCE_M, join_style="mitre")
-    border = shapely.segmentize(shapely.linearrings(one.outline), one.length / PIECES)
-    ahead, beside = shapely.get_coordinates(border).T
-    middle, radius = one.track.radius - one.distance, one.track.radius
-    away = np.hypot(ahead, middle - beside)
-    lies = np.column_stack([radius * np.arctan2(ahead, middle - beside), radius - away])
+    border = shapely.segmentize(shapely.linearrings(orientation.outline), orientation.length / PIECES)
+    ahead, across = shapely.get_coordinates(border).T
+    middle, radius = orientation.track.radius - orientation.distance, orientation.track.radius
+    away = np.hypot(ahead, middle - across)
+    lies = np.column_stack([radius * np.arctan2(ahead, middle - across), radius - away])
     if hole.is_empty or np.ptp(lies[:, 0]) > hole.bounds[2] - hole.bounds[0]:
         return False
     shifts = np.linspace(hole.bounds[0] - lies[:, 0].min(), hole.bounds[2] - lies[:, 0].max(), PLACES)
@@ -504,23 +513,28 @@ def _over_the_edge(device, track):
     return span is not None and span[1] >= track.extent - 1e-9
 
 
-def _slips(one, span):
+def _slips(orientation, span):
     """Whether no tilt of a part rests on both sides of a hole along the track, over which it slides on."""
-    seen = shapely.affinity.translate(one.seen, -one.distance, -one.posture.height)
+    silhouette = shapely.affinity.translate(
+        orientation.seen, -orientation.distance, -orientation.posture.height
+    )
     near = max(span[0], 0.0)
-    return not may_rest(seen, span[1] - near, 0.0, span[0] <= 0.0)
+    return not may_rest(silhouette, span[1] - near, 0.0, span[0] <= 0.0)
 
 
-def _drops_between(one, cut):
+def _drops_between(orientation, cut):
     """Whether no tilt of a part ahead rests on both edges across the track of a hole as wide as the part."""
-    hole = shapely.make_valid(_open(np.asarray(cut, float), one.track.width))
-    low, high = one.distance + one.outline[:, 1].min(), one.distance + one.outline[:, 1].max()
+    hole = shapely.make_valid(_open(np.asarray(cut, float), orientation.track.width))
+    low, high = (
+        orientation.distance + orientation.outline[:, 1].min(),
+        orientation.distance + orientation.outline[:, 1].max(),
+    )
     least = min(
         hole.intersection(shapely.box(-FAR, y - ONE_LINE, FAR, y + ONE_LINE)).area / (2.0 * ONE_LINE)
         for y in np.linspace(max(low, ONE_LINE), high - ONE_LINE, PIECES)
     )
-    seen = shapely.affinity.translate(one.aside, 0.0, -one.posture.height)
-    return least > 0.0 and not may_rest(seen, least, one.grip)
+    side_view = shapely.affinity.translate(orientation.aside, 0.0, -orientation.posture.height)
+    return least > 0.0 and not may_rest(side_view, least, orientation.grip)
 
 
 def _open(cut, width):
@@ -532,23 +546,23 @@ def _open(cut, width):
 
 
 @functools.lru_cache(maxsize=512)
-def _shadows(one):
+def _shadows(orientation):
     """Convex outlines (K, 2) [m] from above, as it lies and as it tips, and their sizes (S, 2) [m]."""
-    shadows = list(_tipped(one))
+    shadows = list(_tipped(orientation))
     return shadows, np.array([np.ptp(shadow, axis=0) for shadow in shadows])
 
 
-def _tipped(one):
-    points = one.posture.corners
+def _tipped(orientation):
+    points = orientation.posture.corners
     size = np.ptp(points, axis=0).max()
-    c, s = np.cos(one.heading), np.sin(one.heading)
+    c, s = np.cos(orientation.heading), np.sin(orientation.heading)
     x, y, z = c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1], points[:, 2]
     for tilt in np.linspace(0.0, 0.5 * np.pi, FALL_TILTS):
-        way = np.linspace(0.0, 2.0 * np.pi, AZIMUTHS, endpoint=False)[: None if tilt > 0.0 else 1, None]
-        a, b = np.cos(way), np.sin(way)
+        azimuths = np.linspace(0.0, 2.0 * np.pi, AZIMUTHS, endpoint=False)[: None if tilt > 0.0 else 1, None]
+        a, b = np.cos(azimuths), np.sin(azimuths)
         along = (a * x + b * y) * np.cos(tilt) + z * np.sin(tilt)
-        beside = -b * x + a * y
-        shadows = np.stack([a * along - b * beside, b * along + a * beside], axis=-1)
+        across = -b * x + a * y
+        shadows = np.stack([a * along - b * across, b * along + a * across], axis=-1)
         rings = shapely.simplify(
             shapely.convex_hull(shapely.multipoints(shadows)), SHADOW_DETAIL_SHARE * size
         )
@@ -575,11 +589,11 @@ def _fits_between(shadow, sides):
     """Whether it can be moved to lie within half-planes: some corner of where it may be moved to exists."""
     (a, b), c = sides[:, :2].T, sides[:, 2]
     room = c - (a[:, None] * shadow[:, 0] + b[:, None] * shadow[:, 1]).max(axis=1)
-    one, other = np.triu_indices(len(sides), 1)
-    turn = a[one] * b[other] - b[one] * a[other]
-    one, other, turn = (k[np.abs(turn) > PARALLEL_SINE] for k in (one, other, turn))
-    x = (room[one] * b[other] - b[one] * room[other]) / turn
-    y = (a[one] * room[other] - room[one] * a[other]) / turn
+    orientation, other = np.triu_indices(len(sides), 1)
+    turn = a[orientation] * b[other] - b[orientation] * a[other]
+    orientation, other, turn = (k[np.abs(turn) > PARALLEL_SINE] for k in (orientation, other, turn))
+    x = (room[orientation] * b[other] - b[orientation] * room[other]) / turn
+    y = (a[orientation] * room[other] - room[orientation] * a[other]) / turn
     return bool((a[:, None] * x + b[:, None] * y <= room[:, None] + FIT_TOLERANCE_M).all(axis=0).any())
 
 

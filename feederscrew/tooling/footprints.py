@@ -58,8 +58,8 @@ def standing(foot, distance, radius, shift=0.0):
     ends = [*(np.roll(ring, -1, axis=0) for ring in foot.rings), foot.edges[:, 1]]
     start, end = np.concatenate(starts), np.concatenate(ends)
     closed = np.arange(len(start)) < sum(len(ring) for ring in foot.rings)
-    kept = np.hypot(*(end - start).T) > 1e-12
-    start, end, closed = start[kept], end[kept], closed[kept]
+    has_length = np.hypot(*(end - start).T) > 1e-12
+    start, end, closed = start[has_length], end[has_length], closed[has_length]
     along = (end - start) * [1.0, -1.0]
     corners = np.column_stack([foot.corners[:, 0], middle - foot.corners[:, 1]])
     hull, insets = _hull(corners[:, 0], middle + shift - corners[:, 1])
@@ -72,7 +72,7 @@ def standing(foot, distance, radius, shift=0.0):
         polar=np.column_stack([np.arctan2(*corners.T), np.hypot(*corners.T)]),
         centre=middle + shift,
         reach=float(np.hypot(corners[:, 0], corners[:, 1] - middle - shift).max()),
-        every=np.arange(len(corners)),
+        all_corners=np.arange(len(corners)),
         sector=_sector(start[closed], end[closed], middle),
     )
 
@@ -110,13 +110,13 @@ def scratch(foot, hole):
         rows=np.empty((rows, 6)),
         events=np.empty(2 * rows),
         bounds=np.empty(2 * rows),
-        ways=np.empty(2 * rows),
+        movements=np.empty(2 * rows),
         cuts=np.empty(CUTS),
         keep=np.empty(len(foot.corners), dtype=np.int64),
         held=np.empty(len(hole.nodes), dtype=np.int64),
         active=np.empty(rows, dtype=np.int64),
         points=np.empty((points, 2)),
-        others=np.empty((points, 2)),
+        moved_points=np.empty((points, 2)),
     )
 
 
@@ -286,11 +286,11 @@ def area_below(plan, height, faces, depth, cut):
     """
     low = height[faces] < depth
     whole = plan[faces[low.all(axis=1)]]
-    made = [shapely.polygons(whole)] if len(whole) else []
+    polygons = [shapely.polygons(whole)] if len(whole) else []
     if cut:
         some = faces[low.any(axis=1) & ~low.all(axis=1)]
-        made.append(np.array([_below(plan[f], height[f], depth) for f in some], dtype=object))
-    pieces = np.concatenate(made) if made else np.array([])
+        polygons.append(np.array([_below(plan[f], height[f], depth) for f in some], dtype=object))
+    pieces = np.concatenate(polygons) if polygons else np.array([])
     pieces = pieces[shapely.area(pieces) > 0.0] if len(pieces) else pieces
     return shapely.union_all(shapely.make_valid(pieces), grid_size=1e-9) if len(pieces) else shapely.Polygon()
 
@@ -338,8 +338,10 @@ def rings(area, least=0.0):
     -------
     tuple of (K, 2) float [m]
     """
-    polygons = [one for one in shapely.get_parts(area) if one.geom_type == "Polygon" and one.area > least]
-    lines = [ring for one in polygons for ring in (one.exterior, *one.interiors)]
+    polygons = [
+        piece for piece in shapely.get_parts(area) if piece.geom_type == "Polygon" and piece.area > least
+    ]
+    lines = [ring for polygon in polygons for ring in (polygon.exterior, *polygon.interiors)]
     lines = [ring for ring in lines if shapely.Polygon(ring).area > least]
     return tuple(check.frozen(np.array(ring.coords)[:-1]) for ring in lines)
 
@@ -432,8 +434,10 @@ def _without(foot, off):
     for border in foot.rings:
         area = area.symmetric_difference(shapely.Polygon(border))
     lines = shapely.difference(shapely.linestrings(foot.edges), off) if len(foot.edges) else []
-    kept = [np.array(one.coords) for line in lines for one in shapely.get_parts(line) if not one.is_empty]
-    edges = np.array([[one[0], one[-1]] for one in kept]).reshape(-1, 2, 2)
+    pieces = [
+        np.array(piece.coords) for line in lines for piece in shapely.get_parts(line) if not piece.is_empty
+    ]
+    edges = np.array([[piece[0], piece[-1]] for piece in pieces]).reshape(-1, 2, 2)
     points = foot.points[~shapely.contains_xy(off, foot.points)] if len(foot.points) else foot.points
     return Footprint(rings=rings(area.difference(off)), edges=edges, points=points)
 
@@ -467,10 +471,10 @@ def silhouette(posture, heading, distance, radius):
     plan = turned(points[:, :2], heading)
     corners = np.column_stack([plan[:, 0], radius - distance - plan[:, 1], points[:, 2]])[faces]
     corners = _short(corners, np.sqrt(8.0 * radius * SILHOUETTE_STEP_M))
-    seen = np.stack([radius - np.hypot(corners[..., 0], corners[..., 1]), corners[..., 2]], axis=-1)
-    a, b, c = seen[:, 0], seen[:, 1], seen[:, 2]
+    profile = np.stack([radius - np.hypot(corners[..., 0], corners[..., 1]), corners[..., 2]], axis=-1)
+    a, b, c = profile[:, 0], profile[:, 1], profile[:, 2]
     twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    whole = shapely.union_all(shapely.polygons(seen[twice > 1e-14]), grid_size=FOOT_GRID_M)
+    whole = shapely.union_all(shapely.polygons(profile[twice > 1e-14]), grid_size=FOOT_GRID_M)
     size = np.ptp(points, axis=0).max()
     return rings(whole.simplify(FOOT_DETAIL_SHARE * size), SLIVER * size**2)
 

@@ -146,8 +146,8 @@ class Orientation:
         """Its outline seen from the bowl's axis: distances ahead of its weight and heights, shapely."""
         points = self.posture.surface
         plan = turned(points[:, :2], self.heading)
-        seen = area(np.column_stack([plan, points[:, 2]]), self.posture.facets, "side")
-        return shapely.affinity.translate(seen, plan[:, 0].max())
+        side_view = area(np.column_stack([plan, points[:, 2]]), self.posture.facets, "side")
+        return shapely.affinity.translate(side_view, plan[:, 0].max())
 
     @cached_property
     def balcony(self):
@@ -165,17 +165,25 @@ class Orientation:
         return footprints.longest_gap(self.standing, self.track.radius)
 
 
-def place(found):
+def place(orientations):
     """Return orientations as they are where nothing carries them on; what is known of them stays."""
-    return tuple(_place_one(one) for one in found)
+    return tuple(_place_one(orientation) for orientation in orientations)
 
 
-def _place_one(one):
+def _place_one(orientation):
     other = replace(
-        one, carry=0.0, carry_ahead=0.0, grip=0.0, speed=0.0, swing=0.0, climbs=0.0, hop=0.0, flight=0.0
+        orientation,
+        carry=0.0,
+        carry_ahead=0.0,
+        grip=0.0,
+        speed=0.0,
+        swing=0.0,
+        climbs=0.0,
+        hop=0.0,
+        flight=0.0,
     )
-    known = {name for name, value in vars(Orientation).items() if isinstance(value, cached_property)}
-    vars(other).update({name: value for name, value in vars(one).items() if name in known})
+    cached_names = {name for name, value in vars(Orientation).items() if isinstance(value, cached_property)}
+    vars(other).update({name: value for name, value in vars(orientation).items() if name in cached_names})
     return other
 
 
@@ -201,21 +209,23 @@ def orientations(part, aspects, track):
     FeederError
         If the part is a card without an outline, or larger than the bowl.
     """
-    found = []
+    orientations = []
     for row in np.flatnonzero(aspects.stable):
         lying = posture(part, aspects, aspects.names[row])
         chances = {rule: float(chance[row]) for rule, chance in aspects.chances.items()}
-        known = headings(lying, track)
-        found += [orientation_at(lying, known, k, chances, track) for k in range(len(known.headings))]
-    return tuple(found)
+        stable = headings(lying, track)
+        orientations += [
+            orientation_at(lying, stable, k, chances, track) for k in range(len(stable.headings))
+        ]
+    return tuple(orientations)
 
 
-def travelling(found, bowl):
+def travelling(orientations, bowl):
     """Return orientations that know how a bowl carries them on: over an edge, by friction, and rolling back.
 
     Parameters
     ----------
-    found : sequence of Orientation
+    orientations : sequence of Orientation
     bowl : Bowl
         Its velocity is that of the point mass; one that does not convey carries nothing.
 
@@ -240,9 +250,11 @@ def travelling(found, bowl):
     held = np.tan(track.climb) <= bowl.friction.wall * np.tan(track.bank)
     return tuple(
         replace(
-            one,
-            carry=FALLEN * along * _tipping_time(one, _greatest(one), bowl.gravity),
-            carry_ahead=FALLEN * along * _tipping_time(one, gyration(one, 0.5 * np.pi), bowl.gravity),
+            orientation,
+            carry=FALLEN * along * _tipping_time(orientation, _greatest(orientation), bowl.gravity),
+            carry_ahead=FALLEN
+            * along
+            * _tipping_time(orientation, gyration(orientation, 0.5 * np.pi), bowl.gravity),
             grip=float(bowl.friction.static),
             speed=along,
             hop=thrown.height,
@@ -251,95 +263,99 @@ def travelling(found, bowl):
             gravity=float(bowl.gravity),
             wall_grip=float(bowl.friction.wall),
             climbs=float(CUT_BORDER_RADIUS_M + fastest**2 / (2.0 * bowl.gravity)),
-            may_roll_back=bool(not held and rolls_across(one)),
+            may_roll_back=bool(not held and rolls_across(orientation)),
         )
-        for one in found
+        for orientation in orientations
     )
 
 
-def rolls_across(one):
+def rolls_across(orientation):
     """Return whether it rolls along the track: about an axis across it, round in a circle, or as a ball."""
-    return one.kind == "rolling" and bool(np.isfinite(one.posture.rolling_circle) or not one.rolls_along)
+    return orientation.kind == "rolling" and bool(
+        np.isfinite(orientation.posture.rolling_circle) or not orientation.rolls_along
+    )
 
 
 def travel_speed(bowl):
     """Return the velocity up the track [m/s]; 0 of a bowl that does not convey, if its gravity can be."""
     try:
-        found = answer.answer(bowl).velocity
+        velocity = answer.answer(bowl).velocity
     except ConfigError as fault:
         if fault.where == "gravity":
             raise
         return 0.0
-    return max(float(found), 0.0) if np.isfinite(found) else 0.0
+    return max(float(velocity), 0.0) if np.isfinite(velocity) else 0.0
 
 
-def _tipping_time(one, spread, gravity):
+def _tipping_time(orientation, spread, gravity):
     """Time constant [s] of tipping over an edge below the centre of mass; ``spread`` as from ``gyration``."""
-    height = one.posture.height
+    height = orientation.posture.height
     return float(np.sqrt((spread + height**2) / (gravity * height)))
 
 
-def _greatest(one):
+def _greatest(orientation):
     """Square of the greatest radius of gyration about a level axis [m2]."""
-    inertia = one.posture.inertia
+    inertia = orientation.posture.inertia
     mean, lean = 0.5 * (inertia[0, 0] + inertia[1, 1]), 0.5 * (inertia[0, 0] - inertia[1, 1])
-    return (mean + np.hypot(lean, inertia[0, 1])) / one.posture.mass
+    return (mean + np.hypot(lean, inertia[0, 1])) / orientation.posture.mass
 
 
-def gyration(one, angle):
+def gyration(orientation, angle):
     """Return the square of the radius of gyration [m2] about a level axis at an angle [rad] to the track.
 
     Source: Steiner's theorem about a level axis.
     """
-    inertia, turn = one.posture.inertia, angle - one.heading
+    inertia, turn = orientation.posture.inertia, angle - orientation.heading
     c, s = np.cos(turn), np.sin(turn)
     moment = c * c * inertia[0, 0] + s * s * inertia[1, 1] + 2.0 * s * c * inertia[0, 1]
-    return float(moment / one.posture.mass)
+    return float(moment / orientation.posture.mass)
 
 
-def orientation_at(lying, known, row, chances, track):
+def orientation_at(lying, headings_of, row, chances, track):
     """Return a Posture at row ``row`` of its Headings, with the chances of its aspect by rule."""
-    share = float(known.shares[row])
+    share = float(headings_of.shares[row])
     return Orientation(
         posture=lying,
         track=track,
         aspect=lying.name,
-        heading=float(known.headings[row]),
+        heading=float(headings_of.headings[row]),
         heading_share=share,
         chances={rule: chance * share for rule, chance in chances.items()},
-        length=float(known.lengths[row]),
-        width=float(known.widths[row]),
+        length=float(headings_of.lengths[row]),
+        width=float(headings_of.widths[row]),
         height=float(lying.corners[:, 2].max()),
-        distance=float(known.distances[row]),
-        falls_off=bool(known.falls_off[row] and known.overhangs[row] > 0.0),  # one that rolls stays on
+        distance=float(headings_of.distances[row]),
+        falls_off=bool(
+            headings_of.falls_off[row] and headings_of.overhangs[row] > 0.0
+        ),  # one that rolls stays on
         kind=lying.kind,
-        touching=known.touching[row],
+        touching=headings_of.touching[row],
     )
 
 
-def name_mirror_images(found):
+def name_mirror_images(orientations):
     """Return orientations with the names of their mirror images, fore and aft.
 
     Parameters
     ----------
-    found : sequence of Orientation
+    orientations : sequence of Orientation
 
     Returns
     -------
     tuple of Orientation
     """
-    looks = [_support_and_moment(one) for one in found]
+    looks = [_support_and_moment(orientation) for orientation in orientations]
     pairs = {}
-    for i in range(len(found)):
-        for j in range(len(found)):
-            near = abs(found[i].length - found[j].length) < 1e-2 * found[i].length
+    for i in range(len(orientations)):
+        for j in range(len(orientations)):
+            near = abs(orientations[i].length - orientations[j].length) < 1e-2 * orientations[i].length
             if i != j and near and sameness.looks_alike(looks[i], looks[j], mirrored=True):
-                pairs[i] = found[j].name
-    return tuple(replace(one, mirror=pairs.get(k, "")) for k, one in enumerate(found))
+                pairs[i] = orientations[j].name
+    return tuple(replace(orientation, mirror=pairs.get(k, "")) for k, orientation in enumerate(orientations))
 
 
-def _support_and_moment(one):
-    supports, moments = sameness.looks(one.posture, [one.heading])
+def _support_and_moment(orientation):
+    supports, moments = sameness.looks(orientation.posture, [orientation.heading])
     return supports[0], None if moments is None else moments[0]
 
 
@@ -417,26 +433,26 @@ class Hanging(Orientation):
         return area.difference(footprints.ring(self.span, self.distance, self.track.radius, 2.0 * reach))
 
 
-def neck(one):
+def neck(orientation):
     """Return shank and head of a part, as it lies.
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
 
     Returns
     -------
     Neck or None
         None where no end is wider than the rest of the part, or its long axis does not lie along the track.
     """
-    return _neck(_Lying(one))
+    return _neck(_Lying(orientation))
 
 
 class _Lying:
     """An orientation, equal to any other of the same solid that is turned alike, on whatever track."""
 
-    def __init__(self, one):
-        self.one, self.solid, self.axes = one, one.posture.solid, one.axes.tobytes()
+    def __init__(self, orientation):
+        self.one, self.solid, self.axes = orientation, orientation.posture.solid, orientation.axes.tobytes()
 
     def __eq__(self, other):
         return self.solid is other.solid and self.axes == other.axes
@@ -447,36 +463,38 @@ class _Lying:
 
 @lru_cache(maxsize=512)
 def _neck(lying):
-    one = lying.one
-    axis = _axis(one)
+    orientation = lying.one
+    axis = _axis(orientation)
     if abs(axis[2]) > np.sin(MAX_SHANK_ANGLE_RAD) or abs(axis[1]) > np.sin(MAX_SHANK_ANGLE_RAD) * np.hypot(
         axis[0], axis[1]
     ):
         return None
-    places, widths = _widths(one, axis)
-    found = []
+    places, widths = _widths(orientation, axis)
+    steps = []
     for sign, along, across in ((1.0, places, widths), (-1.0, -places[::-1], widths[::-1])):
         for k in range(1, len(across)):
             if along[k] > 0.0:  # the head must end before the centre of mass
                 break
             head, shank = across[:k].max(), across[k:].max()
-            found.append((head - shank, shank, head, sign, float(along[k])))
-    step, shank, head, sign, end = max(found, default=(0.0, 0.0, 0.0, 1.0, 0.0))
-    least, widest = _turned_about(one, sign * axis, end)
+            steps.append((head - shank, shank, head, sign, float(along[k])))
+    step, shank, head, sign, end = max(steps, default=(0.0, 0.0, 0.0, 1.0, 0.0))
+    least, widest = _turned_about(orientation, sign * axis, end)
     head = min(head, least)
     if not step > 0.0 or head <= shank:
         return None
-    down, tip = np.einsum("ij,i->j", one.axes, sign * axis), sign * axis[1] * max(sign * places)
+    down, tip = np.einsum("ij,i->j", orientation.axes, sign * axis), sign * axis[1] * max(sign * places)
     between = (sign * places <= end) & (widths > BARE * shank) & (widths < FULL * head)
     rise = float(between.sum() * np.ptp(places) / SLICES / (0.5 * step))
-    lever = max(-one[4] for one in found if one[3] == sign and one[0] > 0.95 * step)
+    lever = max(
+        -orientation[4] for orientation in steps if orientation[3] == sign and orientation[0] > 0.95 * step
+    )
     return Neck(float(shank), float(head), widest, float(tip), rise, lever, check.frozen(down))
 
 
-def _turned_about(one, axis, end):
+def _turned_about(orientation, axis, end):
     """Least width and diameter [m] of a head that turns about its axis: one that is flat turns edge on."""
-    solid = one.posture.solid
-    points = vectors.product(solid.vertices - solid.centre_of_mass, one.axes.T)
+    solid = orientation.posture.solid
+    points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
     points = points[vectors.product(points, axis) <= end]
     across = vectors.unit(np.array([-axis[1], axis[0], 0.0]))
     flat = np.column_stack([vectors.product(points, across), vectors.product(points, np.cross(axis, across))])
@@ -489,31 +507,31 @@ def _turned_about(one, axis, end):
     return least, 2.0 * float(np.hypot(*ring.T).max())
 
 
-def head_first(one):
+def head_first(orientation):
     """Return whether a part with a head that lies along the track comes with its head ahead of its shank."""
-    found = neck(one)
-    return found is not None and vectors.dot(one.axes[0], found.down) < 0.0
+    headed = neck(orientation)
+    return headed is not None and vectors.dot(orientation.axes[0], headed.down) < 0.0
 
 
-def hanging_margin(one, width, widest=None):
+def hanging_margin(orientation, width, widest=None):
     """Return by how much [m] a slot of some width lets the shank down and holds the head; negative if not.
 
     The head is held where the slot is ``widest``, if that is another width.
 
     Source: docs/tooling.md, "1. The method".
     """
-    found, widest = neck(one), width if widest is None else widest
-    return -np.inf if found is None else min(width - found.shank, found.head - widest)
+    headed, widest = neck(orientation), width if widest is None else widest
+    return -np.inf if headed is None else min(width - headed.shank, headed.head - widest)
 
 
-def tip_goes_down(one, near):
+def tip_goes_down(orientation, near):
     """Return whether the end of a shank that lies askew goes down beside the rail at the wall.
 
     Source: own; docs/tooling.md, "1. The method": rails begin with a lead-in.
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
     near : float [m]
         From the wall: where the slot begins.
 
@@ -523,13 +541,13 @@ def tip_goes_down(one, near):
     the less, the less it is pushed aside. In trials of four screws, six of each, those with up to 0.33 r
     lay askew over the slot to its end, or some of them, and those with 0.39 r and more went down.
     """
-    found = neck(one)
-    if found is None:
+    headed = neck(orientation)
+    if headed is None:
         return False
-    beyond = one.distance + found.tip - near
+    beyond = orientation.distance + headed.tip - near
     return (
-        abs(found.tip) <= STRAIGHT_SHANK_SHARE * found.shank
-        or beyond >= TIP_BEYOND_RAIL_SHARE * 0.5 * found.shank
+        abs(headed.tip) <= STRAIGHT_SHANK_SHARE * headed.shank
+        or beyond >= TIP_BEYOND_RAIL_SHARE * 0.5 * headed.shank
     )
 
 
@@ -544,14 +562,14 @@ class Shoulders:
     spare: float  # [m] from the foot to the border of what holds it: by how much it stands upright there
 
 
-def shoulders(one, width):
+def shoulders(orientation, width):
     """Return how a part goes down into a slot along the track as it lies and is held: a T-nut, stem down.
 
     Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
     width : float [m]
         Of the slot, in whose middle what goes down is taken to lie.
 
@@ -561,17 +579,19 @@ def shoulders(one, width):
         None where nothing goes down, or what rests on both sides then does not hold the centre of mass; of a
         part that has a head and a shank along the track, too.
     """
-    if isinstance(one, Hanging) or one.kind == "rolling" or neck(one) is not None:
+    if isinstance(orientation, Hanging) or orientation.kind == "rolling" or neck(orientation) is not None:
         return None
-    return _shoulders(_Lying(one), one.posture.height, one.track.radius, one.distance, width)
+    return _shoulders(
+        _Lying(orientation), orientation.posture.height, orientation.track.radius, orientation.distance, width
+    )
 
 
 @lru_cache(maxsize=512)
 def _shoulders(lying, height, radius, distance, width):
     """Shoulders of what lies so on a track of some radius at some distance from its wall [m]."""
-    one = lying.one
-    solid = one.posture.solid
-    points = vectors.product(solid.vertices - solid.centre_of_mass, one.axes.T)
+    orientation = lying.one
+    solid = orientation.posture.solid
+    points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
     points = points + [0.0, 0.0, height]
     size = float(np.ptp(points, axis=0).max())
     flat = footprints.TOUCHING * size
@@ -584,38 +604,38 @@ def _shoulders(lying, height, radius, distance, width):
         return None
     area = footprints.area_below(points[:, :2], points[:, 2] - drop, solid.faces, flat, True)
     half = 0.5 * width
-    beside = area.difference(shapely.box(-2.0 * size, middle - half, 2.0 * size, middle + half))
-    hull, weight = beside.convex_hull, shapely.Point(0.0, 0.0)
-    if beside.area <= footprints.SLIVER * size**2 or not hull.contains(weight):
+    resting = area.difference(shapely.box(-2.0 * size, middle - half, 2.0 * size, middle + half))
+    hull, weight = resting.convex_hull, shapely.Point(0.0, 0.0)
+    if resting.area <= footprints.SLIVER * size**2 or not hull.contains(weight):
         return None
     centre = radius - distance
     nearest = centre - np.hypot(foot[:, 0], centre - foot[:, 1]).max()  # the wall is curved
     return Shoulders(stem, float(nearest), middle, drop, float(hull.exterior.distance(weight)))
 
 
-def shoulder_margin(one, span):
+def shoulder_margin(orientation, span):
     """Return by how much [m] shoulders hold a part in a slot between two distances from the wall.
 
     0 where it has to move across the track before its stem goes down; -inf where none hold it.
     """
-    found = shoulders(one, span[1] - span[0])
-    if found is None:
+    stemmed = shoulders(orientation, span[1] - span[0])
+    if stemmed is None:
         return -np.inf
-    inner = one.distance + found.nearest - span[0]
-    outer = span[1] - one.distance - found.middle - 0.5 * found.stem
-    return float(max(min(inner, outer, found.spare), 0.0))
+    inner = orientation.distance + stemmed.nearest - span[0]
+    outer = span[1] - orientation.distance - stemmed.middle - 0.5 * stemmed.stem
+    return float(max(min(inner, outer, stemmed.spare), 0.0))
 
 
-def hang(one, span, known=()):
+def hang(orientation, span, hanging=()):
     """Return a part hanging between rails that it came to lying: docs/tooling.md, "1. The method".
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
         From which it goes down by its shank.
     span : (float, float) [m]
         Of the slot, from the wall.
-    known : sequence of Hanging
+    hanging : sequence of Hanging
         That hang in this slot already: parts that hang by the same head are one orientation, however they
         lay before and however they are turned about the vertical.
 
@@ -623,50 +643,57 @@ def hang(one, span, known=()):
     -------
     Hanging
     """
-    held = shoulders(one, span[1] - span[0])
-    found = neck(one) if held is None else _neck_of(one, held)
-    for other in known:
-        if vectors.dot(found.down, other.neck.down) > SAME_HEAD_COSINE:
+    held = shoulders(orientation, span[1] - span[0])
+    headed = neck(orientation) if held is None else _neck_of(orientation, held)
+    for other in hanging:
+        if vectors.dot(headed.down, other.neck.down) > SAME_HEAD_COSINE:
             return other
     if held is not None:
-        solid = one.posture.solid
-        points = vectors.product(solid.vertices - solid.centre_of_mass, one.axes.T)
-        rail = held.drop - one.posture.height
-        return _hanging_record(one, found, span, one.axes, points, rail, held.middle, len(known))
-    up = -found.down
-    across = one.axes[1] - up * vectors.dot(one.axes[1], up)
+        solid = orientation.posture.solid
+        points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
+        rail = held.drop - orientation.posture.height
+        return _hanging_record(
+            orientation, headed, span, orientation.axes, points, rail, held.middle, len(hanging)
+        )
+    up = -headed.down
+    across = orientation.axes[1] - up * vectors.dot(orientation.axes[1], up)
     across = vectors.unit(across)
     axes = np.array([np.cross(across, up), across, up])
-    points = vectors.product(one.posture.solid.vertices - one.posture.solid.centre_of_mass, axes.T)
+    points = vectors.product(
+        orientation.posture.solid.vertices - orientation.posture.solid.centre_of_mass, axes.T
+    )
     below = points[:, 2] < 0.0
     shank = float(0.5 * (points[below, 1].min() + points[below, 1].max()))
-    rail = _underside(points, one.posture.solid.faces, shank, 0.5 * (span[1] - span[0]))
-    return _hanging_record(one, found, span, axes, points, rail, shank, len(known))
+    rail = _underside(points, orientation.posture.solid.faces, shank, 0.5 * (span[1] - span[0]))
+    return _hanging_record(orientation, headed, span, axes, points, rail, shank, len(hanging))
 
 
-def _neck_of(one, held):
+def _neck_of(orientation, held):
     """The Neck of a part that its shoulders hold as it lies: its stem is the shank."""
-    solid = one.posture.solid
-    points = vectors.product(solid.vertices - solid.centre_of_mass, one.axes.T)
+    solid = orientation.posture.solid
+    points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
     head = points[
-        points[:, 2] > held.drop - one.posture.height - footprints.TOUCHING * np.ptp(points, axis=0).max()
+        points[:, 2]
+        > held.drop - orientation.posture.height - footprints.TOUCHING * np.ptp(points, axis=0).max()
     ]
     wide, lever = float(np.ptp(head[:, 1])), float(points[:, 2].max())
-    down = check.frozen(np.einsum("ij,i->j", one.axes, [0.0, 0.0, -1.0]))
+    down = check.frozen(np.einsum("ij,i->j", orientation.axes, [0.0, 0.0, -1.0]))
     return Neck(held.stem, wide, wide, held.middle, 0.0, lever, down)
 
 
-def _hanging_record(one, found, span, axes, points, rail, shank, count):
+def _hanging_record(orientation, headed, span, axes, points, rail, shank, count):
     """The record, from corners (V, 3) about the centre of mass and the height of the rails over it [m]."""
     points = points - [0.0, 0.0, rail]
     head = points[points[:, 2] > 0.0, 1]
     plan, distance = outline(points[:, :2]), 0.5 * sum(span) - shank
     lying = replace(
-        one.posture,
+        orientation.posture,
         name=HANGING,
         kind=HANGING,
         height=float(-rail),
-        inertia=check.frozen(vectors.product(vectors.product(axes, one.posture.solid.inertia), axes.T)),
+        inertia=check.frozen(
+            vectors.product(vectors.product(axes, orientation.posture.solid.inertia), axes.T)
+        ),
         contact=check.frozen(plan),
         outline=check.frozen(plan),
         corners=check.frozen(points),
@@ -674,7 +701,7 @@ def _hanging_record(one, found, span, axes, points, rail, shank, count):
     )
     return Hanging(
         posture=lying,
-        track=one.track,
+        track=orientation.track,
         aspect=HANGING if not count else f"{HANGING} {count + 1}",
         heading=0.0,
         heading_share=1.0,
@@ -685,7 +712,7 @@ def _hanging_record(one, found, span, axes, points, rail, shank, count):
         distance=float(distance),
         falls_off=False,
         kind=HANGING,
-        neck=found,
+        neck=headed,
         span=tuple(span),
         lies_on=(shank, float(0.5 * (head.min() + head.max()))),
     )
@@ -698,26 +725,26 @@ def _underside(points, faces, middle, half):
     a, b = points[ends[:, 0]], points[ends[:, 1]]
     heights = [points[away >= half, 2]]
     for side in (middle - half, middle + half):
-        met = (a[:, 1] > side) != (b[:, 1] > side)
-        share = (side - a[met, 1]) / (b[met, 1] - a[met, 1])
-        heights.append(a[met, 2] + share * (b[met, 2] - a[met, 2]))
+        crosses = (a[:, 1] > side) != (b[:, 1] > side)
+        share = (side - a[crosses, 1]) / (b[crosses, 1] - a[crosses, 1])
+        heights.append(a[crosses, 2] + share * (b[crosses, 2] - a[crosses, 2]))
     return float(np.concatenate(heights).min())
 
 
-def _axis(one):
+def _axis(orientation):
     """The part's own long axis (3,) in the track's axes: the principal one nearest to that of its outline."""
-    turn = _long_axis(one.outline)
+    turn = _long_axis(orientation.outline)
     near = np.array([np.cos(turn), np.sin(turn), 0.0])
-    _, found = vectors.eigen(one.posture.solid.inertia)
-    found = vectors.product(found.T, one.axes.T)
-    best = found[np.argmax(np.round(np.abs(vectors.product(found, near)), 9))]
+    _, principal = vectors.eigen(orientation.posture.solid.inertia)
+    principal = vectors.product(principal.T, orientation.axes.T)
+    best = principal[np.argmax(np.round(np.abs(vectors.product(principal, near)), 9))]
     return best if best[0] > 0.0 else -best
 
 
-def _widths(one, axis):
+def _widths(orientation, axis):
     """Places along an axis from the centre of mass (N,) [m], and the part's level width there (N,) [m]."""
-    solid = one.posture.solid
-    points = vectors.product(solid.vertices - solid.centre_of_mass, one.axes.T)
+    solid = orientation.posture.solid
+    points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
     across = vectors.unit(np.array([-axis[1], axis[0], 0.0]))
     along, level = vectors.product(points, axis), vectors.product(points, across)
     faces = solid.faces

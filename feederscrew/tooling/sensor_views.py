@@ -22,14 +22,14 @@ MIN_FEATURE_M = 1e-7  # [m] of what is not there
 SLIT = 2e-5  # [m] half the width of slits between facets that are closed
 
 
-def difference(one, other, sees):
+def difference(orientation, other, sees):
     """Return by how much [m] two orientations differ for a sensor.
 
     Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
-    one, other : Orientation
+    orientation, other : Orientation
     sees : str
         'outline' from above, 'side' from the bowl's axis, 'height', or 'relief' along the line over which
         the other one's centre of mass goes.
@@ -42,25 +42,25 @@ def difference(one, other, sees):
         turned until it fits, seen otherwise the first may come askew.
     """
     if sees == "height":
-        return abs(one.height - other.height)
-    if one is other:
+        return abs(orientation.height - other.height)
+    if orientation is other:
         return 0.0
-    return _difference(_lies(one, other.distance, sees), _lies(other, other.distance, sees), sees)
+    return _difference(_lies(orientation, other.distance, sees), _lies(other, other.distance, sees), sees)
 
 
 @functools.lru_cache(maxsize=4096)
-def _difference(one, other, sees):
+def _difference(orientation, other, sees):
     wanted = _outline(other, sees)
     if sees == "outline":
-        return fitted(_outline(one, sees), wanted)
-    return min(apart(_outline(one, sees, by), wanted) for by in VIEW_TURNS_RAD)
+        return fitted(_outline(orientation, sees), wanted)
+    return min(apart(_outline(orientation, sees, by), wanted) for by in VIEW_TURNS_RAD)
 
 
-def askew(one, sees):
+def askew(orientation, sees):
     """Return by how much [m] an orientation may differ from itself for a sensor, as parts come askew."""
     if sees in ("outline", "height"):
         return 0.0
-    return _askew(_lies(one, one.distance, sees), sees)
+    return _askew(_lies(orientation, orientation.distance, sees), sees)
 
 
 @functools.lru_cache(maxsize=512)
@@ -68,19 +68,19 @@ def _askew(lies, sees):
     return max(apart(_outline(lies, sees, by), _outline(lies, sees)) for by in VIEW_TURNS_RAD)
 
 
-def _lies(one, line, sees):
+def _lies(orientation, line, sees):
     """What a sensor sees depends on: the posture, the heading, and how far from its line it lies [m]."""
-    return one.posture, one.heading, one.distance - line if sees == "relief" else 0.0
+    return orientation.posture, orientation.heading, orientation.distance - line if sees == "relief" else 0.0
 
 
-def fitted(seen, wanted, enough=0.0):
+def fitted(view, wanted, enough=0.0):
     """Return by how much [m] an area seen from above differs from another one, turned until it fits best.
 
     Once they differ by no more than ``enough`` [m], or by more at any turn, no better fit is sought.
     """
 
     def off(turn):
-        other = shapely.affinity.rotate(seen, turn, (0.0, 0.0), use_radians=True) if turn else seen
+        other = shapely.affinity.rotate(view, turn, (0.0, 0.0), use_radians=True) if turn else view
         _, low, front, _ = other.bounds
         return apart(shapely.affinity.translate(other, -front, -low), wanted)
 
@@ -90,7 +90,7 @@ def fitted(seen, wanted, enough=0.0):
     turns = np.linspace(-MAX_VIEW_TURN_RAD, MAX_VIEW_TURN_RAD, COARSE)
     tried = [off(turn) for turn in turns]
     k = int(np.argmin(tried))
-    if tried[k] - _between(seen, turns[1] - turns[0]) > enough > 0.0:
+    if tried[k] - _between(view, turns[1] - turns[0]) > enough > 0.0:
         return min(best, tried[k])
     low, high = turns[max(k - 1, 0)], turns[min(k + 1, COARSE - 1)]
     first, second = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
@@ -107,13 +107,13 @@ def fitted(seen, wanted, enough=0.0):
     return min(best, here, there)
 
 
-def _between(seen, step):
+def _between(view, step):
     """By how much [m] an area may fit better than at the nearest of turns that are a step [rad] apart.
 
     A turn by half a step moves no place of it by more than its distance from the middle times that, and its
     front and its side, to which it is laid, as far again, each across the other.
     """
-    far = np.sqrt((shapely.get_coordinates(seen) ** 2).sum(axis=1)).max()
+    far = np.sqrt((shapely.get_coordinates(view) ** 2).sum(axis=1)).max()
     return float((1.0 + np.sqrt(2.0)) * far * 0.5 * step)
 
 
@@ -128,14 +128,14 @@ def _reach(area, other):
     return float(shapely.distance(shapely.points(places), other.boundary).max())
 
 
-def outline(one, sees, line=0.0, by=0.0):
+def outline(orientation, sees, line=0.0, by=0.0):
     """Return the area that a sensor sees of an orientation [m]: ahead from its front, and from its side.
 
     Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
     sees : str
         'outline' from above, 'side' from the bowl's axis, or 'relief'.
     line : float [m]
@@ -143,7 +143,7 @@ def outline(one, sees, line=0.0, by=0.0):
     by : float [rad]
         By which it comes turned from its heading.
     """
-    return _outline(_lies(one, line, sees), sees, by)
+    return _outline(_lies(orientation, line, sees), sees, by)
 
 
 @functools.lru_cache(maxsize=2048)
@@ -176,9 +176,9 @@ def area(points, faces, sees, resolution=0.0, line=0.0):
     """
     if sees == "relief":
         return _relief(points[faces], line, resolution)
-    seen = points[:, :2] if sees == "outline" else points[:, [0, 2]]
-    seen = seen - [seen[:, 0].max(), seen[:, 1].min() if sees == "outline" else 0.0]
-    whole = _without_slits(shaded.area(seen, faces)).simplify(
+    projected = points[:, :2] if sees == "outline" else points[:, [0, 2]]
+    projected = projected - [projected[:, 0].max(), projected[:, 1].min() if sees == "outline" else 0.0]
+    whole = _without_slits(shaded.area(projected, faces)).simplify(
         VIEW_DETAIL_SHARE * np.ptp(points, axis=0).max()
     )
     coarse = shapely.set_precision(whole, resolution) if resolution > 0.0 else whole
@@ -198,8 +198,8 @@ def _relief(facets, line, resolution):
     ends = _at(first, last, before[:, None], beyond[:, None]).reshape(-1, 2, 3)[:, :, [0, 2]]
     ends = ends - [ends[:, :, 0].max(), 0.0]
     ends = np.round(ends / resolution) * resolution if resolution > 0.0 else ends
-    seen = shaded.below(np.stack([ends[:, :, 0], np.maximum(ends[:, :, 1], 0.0)], axis=2), SECTION_GRID_M)
-    return nothing if seen.is_empty else seen  # the line may graze a corner
+    profile = shaded.below(np.stack([ends[:, :, 0], np.maximum(ends[:, :, 1], 0.0)], axis=2), SECTION_GRID_M)
+    return nothing if profile.is_empty else profile  # the line may graze a corner
 
 
 def _at(first, last, before, beyond):

@@ -42,7 +42,9 @@ def solid(section):
 def triangles(section):
     """Return the triangles (F, 3, 3) [m] of the section, counter-clockwise seen from outside."""
     radius, width = section.track.radius, section.width
-    holes = [_bent(_clear(one.hole, width), radius) for one in section.stations if one.hole is not None]
+    holes = [
+        _bent(_clear(station.hole, width), radius) for station in section.stations if station.hole is not None
+    ]
     levels = _levels(section)
     body = _walls(section, -WALL_OVERLAP_M + levels[-1][2], section.tallest + WALL_MARGIN_M)
     holes = shapely.union_all(holes)
@@ -61,15 +63,15 @@ def triangles(section):
 
 def _walls(section, low, high):
     """The wall, upright, or leaning back where it is the other face of a groove."""
-    made = []
+    walls = []
     for begin, end, lean in section.walls:
         start, stop = max(begin, WALL_OVERLAP_M), min(end + WALL_OVERLAP_M, section.length - WALL_OVERLAP_M)
         if lean:
-            made.append(_leaning(section.track.radius, start, stop, lean, high))
+            walls.append(_leaning(section.track.radius, start, stop, lean, high))
         else:
             ring = [[start, WALL_OVERLAP_M - WALL], [stop, WALL_OVERLAP_M - WALL], [stop, 0.0], [start, 0.0]]
-            made.append(_extruded(_bent(ring, section.track.radius), low, high))
-    return sum(made[1:], made[0])
+            walls.append(_extruded(_bent(ring, section.track.radius), low, high))
+    return sum(walls[1:], walls[0])
 
 
 def leaning_wall(radius, start, stop, lean, high):
@@ -115,13 +117,13 @@ def prism(area, low, high):
 
 def _levels(section):
     """Stretches of the track between steps: from, to (a little into the next one), height [m]."""
-    found, start, level = [], 0.0, 0.0
+    levels, start, level = [], 0.0, 0.0
     for station in section.stations:
         if station.drop > 0.0:
             middle = station.start + 0.5 * station.length
-            found.append((start, middle, level))
+            levels.append((start, middle, level))
             start, level = middle - WALL_OVERLAP_M, level - station.drop
-    return [*found, (start, section.length, level)]
+    return [*levels, (start, section.length, level)]
 
 
 def _level(levels, station):
@@ -174,7 +176,7 @@ def _across(angle, radius, lean):
 
 def _in_order(corners):
     """The triangles in one order, whatever the order they were made in."""
-    first = np.array([min(range(3), key=lambda k: tuple(one[k])) for one in corners])
+    first = np.array([min(range(3), key=lambda k: tuple(corner[k])) for corner in corners])
     rows = np.arange(len(corners))[:, None]
     turned = corners[rows, (first[:, None] + np.arange(3)) % 3]
     return turned[np.lexsort(turned.reshape(len(turned), 9).T[::-1])]

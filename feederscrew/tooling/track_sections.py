@@ -80,7 +80,7 @@ class TrackSection:
         return np.column_stack([c * x + s * up, self.track.radius + s * x - c * up])
 
 
-def build_section(track, devices, every, lead=0.5):
+def build_section(track, devices, orientations, lead=0.5):
     """Return the stretch of track that holds a chain of devices.
 
     Parameters
@@ -88,7 +88,7 @@ def build_section(track, devices, every, lead=0.5):
     track : Track
     devices : sequence of Device
         In the order parts meet them; measured yields need no place.
-    every : sequence of Orientation
+    orientations : sequence of Orientation
         Of the part.
     lead : float [1]
         Rooms, of a device each, before the first one.
@@ -97,14 +97,14 @@ def build_section(track, devices, every, lead=0.5):
     -------
     TrackSection
     """
-    made = [device for device in devices if device.placed]
-    room = room_of(every)
-    tallest = max(one.height for one in every)
-    bare = TrackSection(track, 0.0, _width(track, made, every), tallest, ())
+    placed = [device for device in devices if device.placed]
+    room = room_of(orientations)
+    tallest = max(orientation.height for orientation in orientations)
+    bare = TrackSection(track, 0.0, _width(track, placed, orientations), tallest, ())
     stations, start = [], lead * room
-    for device in made:
+    for device in placed:
         length = room + device.goes_on(bare.width)
-        stations.append(_station(device, start, length, bare, every))
+        stations.append(_station(device, start, length, bare, orientations))
         start += length + 0.5 * room
     return replace(bare, length=start, stations=tuple(stations))
 
@@ -133,19 +133,19 @@ def bend_ring(ring, radius, shift=0.0, chord=DRAWN_CHORD_M):
     return np.column_stack([r * np.sin(theta), radius - r * np.cos(theta)])
 
 
-def _width(track, devices, every):
+def _width(track, devices, orientations):
     """The track's own width, or as much of a very wide one as parts and cuts need."""
     if track.width <= track.extent:
         return track.width
-    needed = [one.width for one in every] + [device.across for device in devices]
+    needed = [orientation.width for orientation in orientations] + [device.across for device in devices]
     return min(max(needed) + DRAWN_TRACK_MARGIN_M, track.extent)
 
 
-def _station(device, start, length, section, every):
+def _station(device, start, length, section, orientations):
     """A device at its start; a gate stands in the middle of its length."""
     cut = device.outline_on(replace(section.track, width=section.width), length)
-    gate = device.opening(every, section.width)
-    lower = device.lower(every)
+    gate = device.opening(orientations, section.width)
+    lower = device.lower(orientations)
     middle, blade = start + 0.5 * length, None
     if gate is not None:
         middle -= 0.5 * device.goes_on(section.width)
@@ -160,13 +160,13 @@ def _station(device, start, length, section, every):
         top=0.0 if gate is None else max(section.tallest, gate.bounds[3]) + GATE_FRAME_M,
         drop=lower[0] if lower is not None and lower[1] <= 0.0 else 0.0,
         edge=device.edge(start, length, section.width),
-        wall=_wall_lean(device, section.track, every),
+        wall=_wall_lean(device, section.track, orientations),
     )
 
 
-def _wall_lean(device, track, every):
+def _wall_lean(device, track, orientations):
     """By how much [rad] the wall leans back from square to the track from a device on; None: as before."""
-    slopes = [one for one in device.standing(track, every).slopes if one.wall is not None]
+    slopes = [slope for slope in device.standing(track, orientations).slopes if slope.wall is not None]
     return (slopes[-1].wall - slopes[-1].bank if slopes[-1].wall else 0.0) if slopes else None
 
 
@@ -206,60 +206,60 @@ class Passage:
         station : Station
             Of this device.
         """
-        one, radius = self.orientation, self.orientation.track.radius
+        orientation, radius = self.orientation, self.orientation.track.radius
         if station.blade is not None and self.verdict.passes <= 0.0:
             ahead, from_wall = self.outline.T
             blade = station.blade[:, 0].min() / radius
             return blade - np.arctan2(ahead, radius - from_wall).max()  # it touches it
-        if self.device.hole_on(one.track) is not None:
-            return station.start / radius - _hole_shift(self.device, one)
+        if self.device.hole_on(orientation.track) is not None:
+            return station.start / radius - _hole_shift(self.device, orientation)
         return (station.start + 0.5 * station.length) / radius
 
 
-def worst_passage(device, one, every, known=()):
+def worst_passage(device, orientation, orientations, hanging=()):
     """Return an orientation at the place of a device where its margin is least.
 
     Parameters
     ----------
     device : Device
-    one : Orientation
-    every : sequence of Orientation
+    orientation : Orientation
+    orientations : sequence of Orientation
         Of the part, which a profile may name.
-    known : sequence of Hanging
+    hanging : sequence of Hanging
         What hangs already.
 
     Returns
     -------
     Passage
     """
-    found = verdict(device, one, every)
-    touching, weight = foot_area(one), (0.0, one.distance - one.shift)
-    holes = [_hole(device, one, by) for by in (0.0, -EDGE_OFFSET_RAD, EDGE_OFFSET_RAD)]
+    outcome = verdict(device, orientation, orientations)
+    touching, weight = foot_area(orientation), (0.0, orientation.distance - orientation.shift)
+    holes = [_hole(device, orientation, by) for by in (0.0, -EDGE_OFFSET_RAD, EDGE_OFFSET_RAD)]
     hulls = [(touching if cut is None else touching.difference(cut)).convex_hull for cut in holes]
     worst = int(np.argmin([_within(hull, weight) for hull in hulls]))
     return Passage(
         device=device,
-        orientation=one,
-        verdict=found,
-        fate=device.fate(DeviceEncounter(one, every)),
-        after=_orientation_after(device, one, found, every, known),
+        orientation=orientation,
+        verdict=outcome,
+        fate=device.fate(DeviceEncounter(orientation, orientations)),
+        after=_orientation_after(device, orientation, outcome, orientations, hanging),
         picture=device.picture,
-        outline=np.add(one.outline, [0.0, one.distance]),
+        outline=np.add(orientation.outline, [0.0, orientation.distance]),
         foot=touching,
         hole=holes[worst],
         supported=shapely.get_coordinates(hulls[worst]),
         weight=weight,
-        opening=device.opening(every, one.track.width),
+        opening=device.opening(orientations, orientation.track.width),
     )
 
 
-def foot_area(one):
+def foot_area(orientation):
     """Return what of an orientation touches the track, as a shapely geometry from the wall [m]."""
-    up = [0.0, one.distance]
-    areas = [shapely.Polygon(ring + up) for ring in one.foot.rings]
+    up = [0.0, orientation.distance]
+    areas = [shapely.Polygon(ring + up) for ring in orientation.foot.rings]
     parts = [reduce(shapely.symmetric_difference, areas)] if areas else []
-    parts += [shapely.LineString(edge + up) for edge in one.foot.edges]
-    parts += [shapely.Point(point + up) for point in one.foot.points]
+    parts += [shapely.LineString(edge + up) for edge in orientation.foot.edges]
+    parts += [shapely.Point(point + up) for point in orientation.foot.points]
     return shapely.union_all(parts)
 
 
@@ -269,71 +269,75 @@ def _within(hull, weight):
     return hull.boundary.distance(point) if hull.contains(point) else -hull.distance(point)
 
 
-def passage_fate(one, met):
+def passage_fate(orientation, passages):
     """Return in words what becomes of an orientation at the end of its passages.
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
         As it comes.
-    met : sequence of Passage
+    passages : sequence of Passage
         None of which returned it.
 
     Returns
     -------
     str
     """
-    last = met[-1].after if met else one
+    last = passages[-1].after if passages else orientation
     if last.returned:
         return "falls off the track" if last.falls_off else "tips over on the track"
     if last.kind == "hanging":
         return f"leaves {last.name}"
-    return "leaves" if last.name == one.name else f"leaves as {last.name}"
+    return "leaves" if last.name == orientation.name else f"leaves as {last.name}"
 
 
-def _orientation_after(device, one, found, every, known):
+def _orientation_after(device, orientation, outcome, orientations, hanging):
     """The orientation in which most parts go on from a device."""
-    if found.onto:
-        return device.onward(every[max(found.onto, key=lambda place: place[1])[0]])
-    if found.hangs:
-        return hang(one, device.span, known)
-    return astride(one, device.span) if device.hangs and found.passes > 0.0 else device.onward(one)
+    if outcome.onto:
+        return device.onward(orientations[max(outcome.onto, key=lambda place: place[1])[0]])
+    if outcome.hangs:
+        return hang(orientation, device.span, hanging)
+    return (
+        astride(orientation, device.span)
+        if device.hangs and outcome.passes > 0.0
+        else device.onward(orientation)
+    )
 
 
-def until_returned(devices, one, every):
+def until_returned(devices, orientation, orientations):
     """Return the passages of an orientation, as most parts go on, up to the device that returns it.
 
     Parameters
     ----------
     devices : sequence of Device
         In the order parts meet them.
-    one : Orientation
-    every : sequence of Orientation
+    orientation : Orientation
+    orientations : sequence of Orientation
 
     Returns
     -------
     list of Passage
         None of one that the bare track does not carry.
     """
-    found = []
-    for device in () if one.returned else devices:
-        found.append(worst_passage(device, one, every))
-        one = found[-1].after
-        if found[-1].verdict.passes <= 0.0 or one.returned:
+    passages = []
+    for device in () if orientation.returned else devices:
+        passages.append(worst_passage(device, orientation, orientations))
+        orientation = passages[-1].after
+        if passages[-1].verdict.passes <= 0.0 or orientation.returned:
             break
-    return found
+    return passages
 
 
-def _hole_shift(device, one):
+def _hole_shift(device, orientation):
     """By how much [rad] a hole with an edge across the track is ahead of the part where it bears least."""
-    hole = device.hole_on(one.track)
-    return None if hole is None else footprints.least(one.standing, hole)[1]
+    hole = device.hole_on(orientation.track)
+    return None if hole is None else footprints.least(orientation.standing, hole)[1]
 
 
-def _hole(device, one, by):
+def _hole(device, orientation, by):
     """What a device cuts away where the margin is least, about the radial line of the foot."""
-    track, length = one.track, SHOWN_HOLE_LENGTHS * one.length
-    ring, shift = device.outline_on(track, length), _hole_shift(device, one)
+    track, length = orientation.track, SHOWN_HOLE_LENGTHS * orientation.length
+    ring, shift = device.outline_on(track, length), _hole_shift(device, orientation)
     if ring is None:
         return None
     shift = -0.5 * length / track.radius if shift is None else shift + by

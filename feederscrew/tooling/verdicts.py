@@ -83,14 +83,14 @@ def drift_speed(push, friction, swing, gravity):
     return high
 
 
-def force_to_clear(one, wide, height):
+def force_to_clear(orientation, wide, height):
     """Return the least sideways force [N] that takes an orientation off the track as it passes.
 
     Source: docs/tooling.md, "1. The method".
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
         That travels.
     wide : float [m]
         Way along the track over which the force acts.
@@ -102,21 +102,23 @@ def force_to_clear(one, wide, height):
     It drifts to the free edge in the time it takes to pass, or slides outright; or it tips over the side of
     its foot, where force times height is beyond weight times the way from its centre of mass to that side.
     """
-    side, weight = one.foot_reach, one.posture.mass * one.gravity
+    side, weight = orientation.foot_reach, orientation.posture.mass * orientation.gravity
     tips = weight * side / height if height > 0.0 else math.inf
-    return min(_force_to_shift(one, wide), tips)
+    return min(_force_to_shift(orientation, wide), tips)
 
 
 @functools.lru_cache(maxsize=1024)
-def _force_to_shift(one, wide):
+def _force_to_shift(orientation, wide):
     """The least sideways force [N] that drifts an orientation off the track over a way, or slides it off."""
-    weight, friction = one.posture.mass * one.gravity, max(one.grip, 1e-3)
-    way = max(one.track.width - one.distance, 0.0)
+    weight, friction = orientation.posture.mass * orientation.gravity, max(orientation.grip, 1e-3)
+    distance = max(orientation.track.width - orientation.distance, 0.0)
     low, high = 0.0, friction * weight
     for _ in range(FORCE_BISECTIONS):
         middle = 0.5 * (low + high)
-        found = drift_speed(middle / one.posture.mass, friction, one.swing, one.gravity)
-        gone = found * wide >= way * one.speed
+        drift = drift_speed(
+            middle / orientation.posture.mass, friction, orientation.swing, orientation.gravity
+        )
+        gone = drift * wide >= distance * orientation.speed
         low, high = (low, middle) if gone else (middle, high)
     return high
 
@@ -139,24 +141,24 @@ class Turn:
     beyond: int  # ... and of that into which it goes if it is carried further
 
 
-def pitch_over(one, every):
+def pitch_over(orientation, orientations):
     """Return how an orientation turns over its leading edge, as a part does at a step: a Turn.
 
     Parameters
     ----------
-    one : Orientation
-    every : tuple of Orientation
+    orientation : Orientation
+    orientations : tuple of Orientation
         Of the part on the track.
     """
-    return _turn(one, tuple(every), False)
+    return _turn(orientation, tuple(orientations), False)
 
 
-def roll_over(one, every):
+def roll_over(orientation, orientations):
     """Return how an orientation turns over inwards, as a part does at a ledge: a Turn."""
-    return _turn(one, tuple(every), True)
+    return _turn(orientation, tuple(orientations), True)
 
 
-def over_step(one, every, height):
+def over_step(orientation, orientations, height):
     """Return what a step does with an orientation.
 
     A drop below the barrier leaves every part as it lies: what it falls through lifts it over no more, unless
@@ -169,8 +171,8 @@ def over_step(one, every, height):
 
     Parameters
     ----------
-    one : Orientation
-    every : tuple of Orientation
+    orientation : Orientation
+    orientations : tuple of Orientation
     height : float [m]
         Of the step.
 
@@ -181,25 +183,27 @@ def over_step(one, every, height):
     margin : float [m]
         Negative where momentum decides.
     """
-    turn = pitch_over(one, every)
+    turn = pitch_over(orientation, orientations)
     room = turn.sure - turn.lift
     share = (height - turn.lift) / room if room > 0.0 else float(height >= turn.lift)
-    stays = min(turn.lift - height, turn.back - _rear(one, height), _skew_lift(one) - height)
-    margin = max(stays, _certain(one, every, turn, height))
+    stays = min(turn.lift - height, turn.back - _rear(orientation, height), _skew_lift(orientation) - height)
+    margin = max(stays, _certain(orientation, orientations, turn, height))
     return _turned(turn, min(max(share, 0.0), 1.0), height), margin
 
 
-def _rear(one, height):
+def _rear(orientation, height):
     """Height [m] to which its momentum still lifts a part whose rear has followed it down a step."""
-    foot = one.foot.corners[:, 0]
+    foot = orientation.foot.corners[:, 0]
     if not len(foot):
         return math.inf
     tilt = math.asin(min(height / np.ptp(foot), 1.0)) if np.ptp(foot) > 0.0 else 0.5 * math.pi
-    fell = foot.max() * math.sin(tilt) - one.posture.height * (1.0 - math.cos(tilt))
-    return _carries_on(_arm(one, one.axes[1]), foot.max(), foot.min(), one.posture.height) * max(fell, 0.0)
+    fell = foot.max() * math.sin(tilt) - orientation.posture.height * (1.0 - math.cos(tilt))
+    return _carries_on(
+        _arm(orientation, orientation.axes[1]), foot.max(), foot.min(), orientation.posture.height
+    ) * max(fell, 0.0)
 
 
-def beyond_ledge(one, every, width):
+def beyond_ledge(orientation, orientations, width):
     """Return what becomes of an orientation whose weight lies beyond a ledge, over a second track.
 
     It tips about the edge until it leans on both tracks. If the second one lies so low that the part has
@@ -211,8 +215,8 @@ def beyond_ledge(one, every, width):
 
     Parameters
     ----------
-    one : Orientation
-    every : tuple of Orientation
+    orientation : Orientation
+    orientations : tuple of Orientation
     width : float [m]
         Of the ledge.
 
@@ -222,36 +226,38 @@ def beyond_ledge(one, every, width):
     margin : float [m]
         As for ``over_step``; of what stays, the height by which it misses its barriers.
     """
-    turn, drop = roll_over(one, every), below_ledge(every)
+    turn, drop = roll_over(orientation, orientations), below_ledge(orientations)
     if drop >= turn.sure:
-        return _turned(turn, 1.0, drop), _certain(one, every, turn, drop)
-    missed, left = _leaning(one, turn, width, drop)
+        return _turned(turn, 1.0, drop), _certain(orientation, orientations, turn, drop)
+    missed, left = _leaning(orientation, turn, width, drop)
     if missed > 0.0:
-        return (), min(missed, pitch_over(one, every).lift - left, _skew_lift(one) - drop)
+        return (), min(
+            missed, pitch_over(orientation, orientations).lift - left, _skew_lift(orientation) - drop
+        )
     return _turned(turn, 0.5, drop), drop - turn.sure
 
 
-def _certain(one, every, turn, drop):
+def _certain(orientation, orientations, turn, drop):
     """Margin [m] by which a part turns over at a drop and stays on the face below."""
-    landed = every[turn.onto]
-    fall = drop + one.posture.height - landed.posture.height
-    skew = min(_skew_lift(one) - drop, _skew_lift(landed) - fall)
+    landed = orientations[turn.onto]
+    fall = drop + orientation.posture.height - landed.posture.height
+    skew = min(_skew_lift(orientation) - drop, _skew_lift(landed) - fall)
     return min(drop - turn.sure, turn.holds - drop, skew)
 
 
-def _skew_lift(one):
+def _skew_lift(orientation):
     """Least rise [m] of the centre of mass over a side of the foot that is askew; infinite without one.
 
     A part that can leave its plane of motion over such a side is sure only where its whole fall is less.
     """
-    if len(one.foot.corners) < 3:
+    if len(orientation.foot.corners) < 3:
         return math.inf
-    ring = outline(one.foot.corners)
+    ring = outline(orientation.foot.corners)
     along = np.roll(ring, -1, axis=0) - ring
     size = np.hypot(*along.T)
     askew = np.abs(along).min(axis=1) > SKEW * size
-    beside = np.abs(cross(along, ring)) / size
-    lifts = np.hypot(beside, one.posture.height) - one.posture.height
+    offsets = np.abs(cross(along, ring)) / size
+    lifts = np.hypot(offsets, orientation.posture.height) - orientation.posture.height
     return float(lifts[askew].min(initial=math.inf))
 
 
@@ -262,7 +268,7 @@ def _turned(turn, share, drop):
     return ((turn.onto, 0.5 * share), (turn.beyond, 0.5 * share)) if share > 0.0 else ()
 
 
-def _leaning(one, turn, width, drop):
+def _leaning(orientation, turn, width, drop):
     """How a part leans over a ledge, one corner on the second track, onto which it has fallen.
 
     It turns about the edge, falls onto its inner corner and goes on about that, without rebound: its angular
@@ -272,13 +278,13 @@ def _leaning(one, turn, width, drop):
     -------
     height [m] by which it misses its barrier, negative where it may pass it; how far it has still to fall
     """
-    over, height = one.distance - width, one.posture.height
-    reach = (one.foot.corners[:, 1].max() if len(one.foot.corners) else 0.0) + over
+    over, height = orientation.distance - width, orientation.posture.height
+    reach = (orientation.foot.corners[:, 1].max() if len(orientation.foot.corners) else 0.0) + over
     tilt = math.asin(min(drop / reach, 1.0)) if reach > 0.0 else 0.5 * math.pi
     fell = height * (1.0 - math.cos(tilt)) + over * math.sin(tilt)
     if tilt >= turn.angle:
         return 0.0, drop - fell
-    left = _carries_on(_arm(one, one.axes[0]), over, over - reach, height) * fell
+    left = _carries_on(_arm(orientation, orientation.axes[0]), over, over - reach, height) * fell
     return turn.lift + fell - drop - left, drop - fell
 
 
@@ -293,31 +299,31 @@ def _carries_on(arm, first, last, height):
     return max(arm + first * last + height**2, 0.0) ** 2 / (near * far)
 
 
-def _arm(one, axis):
+def _arm(orientation, axis):
     """Square of the radius of gyration [m2] about an axis (3,) in the file's axes."""
-    solid = one.posture.solid
+    solid = orientation.posture.solid
     return float(np.einsum("i,ij,j->", axis, solid.inertia, axis)) / solid.mass
 
 
 @functools.lru_cache(maxsize=2048)
-def _turn(one, every, inwards):
-    solid = one.posture.solid
+def _turn(orientation, orientations, inwards):
+    solid = orientation.posture.solid
     hull = convex_hull(solid.vertices, solid.centre_of_mass, solid.source)
-    x, y, z = one.axes
+    x, y, z = orientation.axes
     lying = (y, x, -z) if inwards else (x, y, -z)
     angle, height, landed = _tipped(hull, lying, inwards)
-    lift = max(height - one.posture.height, 0.0)
+    lift = max(height - orientation.posture.height, 0.0)
     behind = barrier(vectors.product(hull.vertices, np.column_stack([-lying[0], lying[2]])))[1]
-    foot = one.foot.corners[:, int(inwards)]
-    long = float(np.ptp(foot)) if len(foot) else (one.width if inwards else one.length)
+    foot = orientation.foot.corners[:, int(inwards)]
+    long = float(np.ptp(foot)) if len(foot) else (orientation.width if inwards else orientation.length)
     return Turn(
         angle=angle,
         lift=lift,
-        back=max(behind - one.posture.height, 0.0),
+        back=max(behind - orientation.posture.height, 0.0),
         sure=max(long * math.sin(min(angle, 0.5 * math.pi)), lift),
-        holds=_holds(hull, one, landed),
-        onto=_landed(one, hull, _axes(landed, inwards), every),
-        beyond=_landed(one, hull, _axes(_tipped(hull, landed, inwards)[2], inwards), every),
+        holds=_holds(hull, orientation, landed),
+        onto=_landed(orientation, hull, _axes(landed, inwards), orientations),
+        beyond=_landed(orientation, hull, _axes(_tipped(hull, landed, inwards)[2], inwards), orientations),
     )
 
 
@@ -330,68 +336,68 @@ def _tipped(hull, frame, inwards):
     -------
     angle of the barrier, height of the centre of mass there, the frame in which it comes to rest
     """
-    side, kept, down = frame
+    side, rear, down = frame
     angle, height = barrier(vectors.product(hull.vertices, np.column_stack([side, down])))
     past = math.cos(angle + BARRIER_OVERSHOOT_RAD) * down + math.sin(angle + BARRIER_OVERSHOOT_RAD) * side
     rests = _end(hull, past)
-    kept = vectors.carried(kept, past, rests)
-    return angle, height, (np.cross(kept, rests) if inwards else np.cross(rests, kept), kept, rests)
+    rear = vectors.carried(rear, past, rests)
+    return angle, height, (np.cross(rear, rests) if inwards else np.cross(rests, rear), rear, rests)
 
 
 def _axes(frame, inwards):
     """Axes (3, 3) of the track, ahead, inwards and up, of a frame."""
-    side, kept, down = frame
-    return np.array([kept, side, -down] if inwards else [side, kept, -down])
+    side, rear, down = frame
+    return np.array([rear, side, -down] if inwards else [side, rear, -down])
 
 
-def _holds(hull, one, frame):
+def _holds(hull, orientation, frame):
     """Drop of the track [m] up to which a part that rolls onto a face stays on it; infinite for any drop."""
-    side, kept, down = frame
+    side, rear, down = frame
     points = vectors.product(hull.vertices, np.column_stack([side, down]))
     height = points[:, 1].max()
     below = points[points[:, 1] > height - TOUCHES * np.ptp(points, axis=0).max(), 0]
-    left = _carries_on(_arm(one, kept), below.min(), below.max(), height)
+    left = _carries_on(_arm(orientation, rear), below.min(), below.max(), height)
     rise = barrier(points)[1] - height
-    return max(rise / left + height - one.posture.height, 0.0) if left > 0.0 else math.inf
+    return max(rise / left + height - orientation.posture.height, 0.0) if left > 0.0 else math.inf
 
 
 def _end(hull, down):
     """The direction (3,) down in which a part comes to rest that is let go with another one down."""
-    found = tumbling.half_edges(hull)
+    edges = tumbling.half_edges(hull)
     ends = np.empty(1, dtype=np.int64)
-    fitting(walk.rolls, len(found.origins))(found, np.array([down]), ends)
-    return found.normals[ends[0]] if ends[0] >= 0 else down
+    fitting(walk.rolls, len(edges.origins))(edges, np.array([down]), ends)
+    return edges.normals[ends[0]] if ends[0] >= 0 else down
 
 
-def _landed(one, hull, axes, every):
+def _landed(orientation, hull, axes, orientations):
     """Place of the orientation that a part takes against the wall, set down with its axes (3, 3)."""
     corners = vectors.product(hull.vertices, axes.T)
     height = -corners[:, 2].min()
     corners[:, 2] += height
     lying = replace(
-        one.posture,
+        orientation.posture,
         height=float(height),
         outline=outline(corners[:, :2]),
         corners=check.frozen(corners),
         axes=check.frozen(axes),
     )
-    found = wall.headings(lying, one.track)
-    turn = found.headings[wall.settled(found, 0.0)]
+    stable = wall.headings(lying, orientation.track)
+    turn = stable.headings[wall.settled(stable, 0.0)]
     (supports,), _ = sameness.looks(lying, [turn])
-    apart = [np.abs(_look(other) - supports[0]).max() for other in every]
-    return int(np.argmin(np.round(apart, 6)))
+    differences = [np.abs(_look(other) - supports[0]).max() for other in orientations]
+    return int(np.argmin(np.round(differences, 6)))
 
 
 @functools.lru_cache(maxsize=1024)
-def _look(one):
-    return sameness.looks(one.posture, [one.heading])[0][0, 0]
+def _look(orientation):
+    return sameness.looks(orientation.posture, [orientation.heading])[0][0, 0]
 
 
 WORN = 2.5e-4  # [m] what an opening holds by less does not hold a part up
 BEYOND_OPENING_M = 10.0  # [m] an opening goes on so far below the track and behind the wall
 
 
-def verdict(device, one, every=(), sigma=0.0):
+def verdict(device, orientation, orientations=(), sigma=0.0):
     """Return what a device does with an orientation.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -399,8 +405,8 @@ def verdict(device, one, every=(), sigma=0.0):
     Parameters
     ----------
     device : Device
-    one : Orientation
-    every : sequence of Orientation
+    orientation : Orientation
+    orientations : sequence of Orientation
         Of the part, which a device may name.
     sigma : float [m]
         Standard deviation of play and tolerance together: the share that passes is then
@@ -415,28 +421,28 @@ def verdict(device, one, every=(), sigma=0.0):
     ConfigError
         If a device names an orientation that the part does not have.
     """
-    meeting = DeviceEncounter(one, every, sigma)
-    found, blur = device.judged(meeting), device.hop_blur(one)
-    return _less(found, blur, meeting) if blur > 0.0 else found
+    meeting = DeviceEncounter(orientation, orientations, sigma)
+    outcome, blur = device.judged(meeting), device.hop_blur(orientation)
+    return _less(outcome, blur, meeting) if blur > 0.0 else outcome
 
 
-def _less(found, blur, meeting):
+def _less(outcome, blur, meeting):
     """A verdict with its margin less what hopping takes of it [m]; within that it is not sure either way."""
-    if not np.isfinite(found.margin) or found.margin == 0.0 or -UNSURE <= found.margin < 0.0:
-        return found
-    left = np.copysign(max(abs(found.margin) - blur, 0.0), found.margin)
-    left = left if found.margin > 0.0 else min(left, -UNSURE)
-    passes = found.passes if found.onto else meeting.share(left)
-    if found.onto and found.margin > 0.0 and left == 0.0:
+    if not np.isfinite(outcome.margin) or outcome.margin == 0.0 or -UNSURE <= outcome.margin < 0.0:
+        return outcome
+    left = np.copysign(max(abs(outcome.margin) - blur, 0.0), outcome.margin)
+    left = left if outcome.margin > 0.0 else min(left, -UNSURE)
+    passes = outcome.passes if outcome.onto else meeting.share(left)
+    if outcome.onto and outcome.margin > 0.0 and left == 0.0:
         left = -UNSURE
-    return replace(found, passes=passes, margin=float(left))
+    return replace(outcome, passes=passes, margin=float(left))
 
 
 class DeviceEncounter:
     """One orientation at a device: what a device asks of it, and how it says what becomes of it."""
 
-    def __init__(self, one, every=(), sigma=0.0):
-        self.one, self.every, self.sigma = one, tuple(every), sigma
+    def __init__(self, orientation, orientations=(), sigma=0.0):
+        self.one, self.every, self.sigma = orientation, tuple(orientations), sigma
 
     @property
     def size(self):
@@ -478,8 +484,8 @@ class DeviceEncounter:
         if left <= 0.0:
             return self.one.distance - self.one.track.width
         speed = left * seconds / self.one.posture.mass
-        way = 0.5 * speed * seconds + speed**2 / (2.0 * gravity * self.grip)
-        return float(way - (self.one.track.width - self.one.distance))
+        distance = 0.5 * speed * seconds + speed**2 / (2.0 * gravity * self.grip)
+        return float(distance - (self.one.track.width - self.one.distance))
 
     @property
     def hanging(self):
@@ -489,11 +495,13 @@ class DeviceEncounter:
     @property
     def place(self):
         """Its place among the orientations, also where the track leans otherwise by now."""
-        one = self.one
+        orientation = self.one
         for k, other in enumerate(self.every):
-            if other is one or (other.posture is one.posture and other.heading == one.heading):
+            if other is orientation or (
+                other.posture is orientation.posture and other.heading == orientation.heading
+            ):
                 return k
-        raise ValueError(f"{one.name} is not one of the orientations")
+        raise ValueError(f"{orientation.name} is not one of the orientations")
 
     def passing(self):
         """Return the verdict of a device that does nothing."""
@@ -591,26 +599,26 @@ class DeviceEncounter:
 
         What turns there, or comes to lie as none of the known does, is not sure.
         """
-        here, found = self.place, becomes(self.one, self.every, angle)
-        if found == ((here, 1.0),):
+        here, landed = self.place, becomes(self.one, self.every, angle)
+        if landed == ((here, 1.0),):
             return self.passing()
-        return Verdict(1.0, -UNSURE, onto=tuple((here if k < 0 else k, part) for k, part in found))
+        return Verdict(1.0, -UNSURE, onto=tuple((here if k < 0 else k, part) for k, part in landed))
 
     def rolled_over(self, width):
         """Return what a ledge of some width [m] turns it into if its weight lies beyond, and the margin."""
         return beyond_ledge(self.one, self.every, width)
 
 
-def gate_margin(opening, one):
+def gate_margin(opening, orientation):
     """Return ``opening_margin`` [m] of an orientation that travels: none where the gate may lay it over."""
-    margin = opening_margin(opening, one)
-    if margin >= 0.0 or one.grip <= 0.0:
+    margin = opening_margin(opening, orientation)
+    if margin >= 0.0 or orientation.grip <= 0.0:
         return margin
     worn = opening.buffer(min(WORN, -0.5 * margin))
-    return DeviceEncounter(one).unless_laid_over(margin, _beside_opening(worn, one).bounds[1])
+    return DeviceEncounter(orientation).unless_laid_over(margin, _beside_opening(worn, orientation).bounds[1])
 
 
-def opening_margin(opening, one):
+def opening_margin(opening, orientation):
     """Return by how much [m] what is seen of a part over the track stays within an opening.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -619,16 +627,16 @@ def opening_margin(opening, one):
     ----------
     opening : shapely geometry
         In distance from the wall and height [m]; track and wall themselves are no border of it.
-    one : Orientation
+    orientation : Orientation
         What of it is beyond the track's free edge meets no gate.
     """
-    shown = one.seen.intersection(
-        shapely.box(-BEYOND_OPENING_M, -BEYOND_OPENING_M, one.track.width, BEYOND_OPENING_M)
+    silhouette = orientation.seen.intersection(
+        shapely.box(-BEYOND_OPENING_M, -BEYOND_OPENING_M, orientation.track.width, BEYOND_OPENING_M)
     )
-    inside = shown.distance(_gate_area(opening, one.track.width))
+    inside = silhouette.distance(_gate_area(opening, orientation.track.width))
     if inside > 0.0:
         return inside
-    corners = shapely.get_coordinates(shown)
+    corners = shapely.get_coordinates(silhouette)
     return -float(shapely.distance(shapely.points(corners), opening).max())
 
 
@@ -638,6 +646,6 @@ def _gate_area(opening, width):
     return gate.difference(opening)
 
 
-def _beside_opening(opening, one):
+def _beside_opening(opening, orientation):
     """What is seen of an orientation beside an opening."""
-    return one.seen.intersection(_gate_area(opening, one.track.width))
+    return orientation.seen.intersection(_gate_area(opening, orientation.track.width))

@@ -93,11 +93,11 @@ class Standing:
     settles: float = 0.0  # of the part's size: how far behind the device parts go on until they are looked at
 
 
-def across(gate, width, every, place):
+def across(gate, width, orientations, place):
     """Return a Blade square across a track of some width [m], with an opening, at a place [m] along it."""
     import shapely
 
-    tall = 2.0 * max(max(one.height for one in every), gate.bounds[3]) + GATE_FRAME_M
+    tall = 2.0 * max(max(orientation.height for orientation in orientations), gate.bounds[3]) + GATE_FRAME_M
     return Blade(shapely.box(0.0, 0.0, width, tall).difference(gate), foot=(place, 0.0))
 
 
@@ -239,35 +239,35 @@ class Device:
         gate, lower = kind.opening is not Device.opening, kind.lower is not Device.lower
         return self.cuts or self.overhead or self.hangs or self.turns or gate or lower
 
-    def opening(self, every, width):
+    def opening(self, orientations, width):
         """Return the opening of a gate, in distances from the wall and heights [m]: shapely, or None.
 
         Parameters
         ----------
-        every : sequence of Orientation
+        orientations : sequence of Orientation
             Of the part, which an opening may name.
         width : float [m]
             Of the track.
         """
         return None
 
-    def onward(self, one):
+    def onward(self, orientation):
         """Return an orientation that it lets pass as it goes on behind it."""
-        return one
+        return orientation
 
-    def hop_blur(self, one):
+    def hop_blur(self, orientation):
         """Return what the hop of an orientation takes of its margin [m].
 
         Over an edge across the track its flight. Beside an edge along it, and where the margin is a height,
         how high it hops: a part off the track by so much is as far off its place.
         """
-        return one.flight if type(self).hole_on is not Device.hole_on else one.hop
+        return orientation.flight if type(self).hole_on is not Device.hole_on else orientation.hop
 
-    def gap(self, one, speed):
+    def gap(self, orientation, speed):
         """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
         return 0.0
 
-    def lower(self, every):
+    def lower(self, orientations):
         """Return the track that goes on lower, (drop, from where off the wall) [m], or None."""
         return None
 
@@ -275,48 +275,48 @@ class Device:
         """Return the edge over which parts turn, unrolled, two corners (2, 2) [m], or None."""
         return None
 
-    def fate(self, met):
+    def fate(self, encounter):
         """Return what becomes of an orientation that it does not let pass: RETURNED, or STOPPED before it.
 
         Parameters
         ----------
-        met : Meeting
+        encounter : Meeting
         """
         cut, span = (
-            self.outline_on(met.one.track, ENDLESS_HOLE_LENGTHS * met.size),
-            self.span_on(met.one.track),
+            self.outline_on(encounter.one.track, ENDLESS_HOLE_LENGTHS * encounter.size),
+            self.span_on(encounter.one.track),
         )
-        if span is not None and span[0] > 0.0 and met.held_by_shoulders(span) >= 0.0:
+        if span is not None and span[0] > 0.0 and encounter.held_by_shoulders(span) >= 0.0:
             return STOPPED  # it hangs in the slot up to its end
-        return RETURNED if cut is None or met.falls_through(cut) else STOPPED
+        return RETURNED if cut is None or encounter.falls_through(cut) else STOPPED
 
-    def judged(self, met):
+    def judged(self, encounter):
         """Return what it does with an orientation, by what statics knows of it, a Verdict.
 
         Parameters
         ----------
-        met : Meeting
+        encounter : Meeting
         """
-        return met.passing()
+        return encounter.passing()
 
-    def standing(self, track, every):
+    def standing(self, track, orientations):
         """Return all that stands along the track at it, a Standing: for the trial, drawings and solids.
 
         Parameters
         ----------
         track : Track
-        every : sequence of Orientation
+        orientations : sequence of Orientation
             Of the part: the longest sets how long one is that goes on along the track.
         """
-        room, width = room_of(every), track.extent
-        gate = self.opening(every, width)
+        room, width = room_of(orientations), track.extent
+        gate = self.opening(orientations, width)
         if gate is not None:
-            return Standing(0.5 * room, blades=(across(gate, width, every, 0.5 * room),))
+            return Standing(0.5 * room, blades=(across(gate, width, orientations, 0.5 * room),))
         cut = self.outline_on(track, room)
         return Standing(room) if cut is None else Standing(float(cut[:, 0].max()), holes=(Hole(cut),))
 
     @classmethod
-    def needed(cls, one):
+    def needed(cls, orientation):
         """Return the value [m] of a device of this kind that an orientation just passes."""
         raise NotImplementedError(f"{cls.kind} is not one number")
 
@@ -346,7 +346,7 @@ class Device:
         """Return whether it does anything at all on a track."""
         return True
 
-    def more(self, met):
+    def more(self, encounter):
         """Return by how much more [m] an orientation that travels passes it than one that is placed."""
         return 0.0
 
@@ -449,9 +449,9 @@ def mapping_text(entries):
     return f"{{{', '.join(f'{key}: {text}' for key, text in entries if text)}}}"
 
 
-def room_of(every):
+def room_of(orientations):
     """Return the length of track [m] that one has to itself, by the longest orientation."""
-    return ROOM_PER_DEVICE * max(one.length for one in every)
+    return ROOM_PER_DEVICE * max(orientation.length for orientation in orientations)
 
 
 def share(margin, sigma):
@@ -464,7 +464,7 @@ def share(margin, sigma):
     return float(margin >= -LIMIT_TOLERANCE_M)
 
 
-def carried(margin, way, carry):
+def carried(margin, travel, carry):
     """Return the margin [m] of an orientation that travels, from that of one that is placed.
 
     Source: own; docs/tooling.md, "1. The method": a part that travels needs time to tip.
@@ -472,12 +472,12 @@ def carried(margin, way, carry):
     Parameters
     ----------
     margin : float [m]
-    way : float [m]
+    travel : float [m]
         Over which it is not supported.
     carry : float [m]
         What it travels on before it has tipped is taken from that; within it the verdict has no margin.
     """
-    return margin if margin >= 0.0 else min(max(margin, carry - way), -UNSURE)
+    return margin if margin >= 0.0 else min(max(margin, carry - travel), -UNSURE)
 
 
 class Yield(Device):
@@ -501,6 +501,6 @@ class Yield(Device):
     def value_words(self):
         return "passes " + ", ".join(f"{100.0 * share:.4g} % of {name}" for name, share in self.shares)
 
-    def judged(self, met):
+    def judged(self, encounter):
         shares = {name.casefold(): share for name, share in self.shares}
-        return Verdict(shares.get(met.one.aspect.casefold(), 1.0), math.nan)
+        return Verdict(shares.get(encounter.one.aspect.casefold(), 1.0), math.nan)

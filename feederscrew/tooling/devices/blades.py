@@ -51,7 +51,7 @@ class _Overhead(Device):
     def read(cls, entry):
         return values.length(entry)
 
-    def opening(self, every, width):
+    def opening(self, orientations, width):
         import shapely
 
         return shapely.box(0.0, 0.0, width, self.limit)
@@ -61,14 +61,14 @@ class _Overhead(Device):
         return f"{length_words(self.limit)} over the track"
 
     @classmethod
-    def needed(cls, one):
-        return one.height
+    def needed(cls, orientation):
+        return orientation.height
 
-    def fate(self, met):
+    def fate(self, encounter):
         return STOPPED
 
-    def judged(self, met):
-        return met.verdict(met.unless_laid_over(self.limit - met.one.height, self.limit))
+    def judged(self, encounter):
+        return encounter.verdict(encounter.unless_laid_over(self.limit - encounter.one.height, self.limit))
 
 
 @dataclass(frozen=True)
@@ -133,30 +133,35 @@ class Wiper(_Overhead):
         friction = grip if self.friction is None else self.friction
         return self.face is not None and self.sweep < SQUARE_FACE_RAD - math.atan(friction)
 
-    def fate(self, met):
-        clears = self.clear_of(met.grip) and not met.hanging  # rails hold what hangs
-        return RETURNED if clears else super().fate(met)
+    def fate(self, encounter):
+        clears = self.clear_of(encounter.grip) and not encounter.hanging  # rails hold what hangs
+        return RETURNED if clears else super().fate(encounter)
 
-    def opening(self, every, width):
+    def opening(self, orientations, width):
         if not self.contour:
-            return super().opening(every, width)
+            return super().opening(orientations, width)
         import shapely
 
         return shapely.Polygon([(0.0, 0.0), *self._edge(width), (width, 0.0)])
 
-    def judged(self, met):
+    def judged(self, encounter):
         if not self.contour:
             sweep = self.sweep if self.face else 0.0
-            return met.verdict(met.unless_laid_over(self.limit - met.one.height, self.limit, sweep))
-        return met.verdict(met.through(self.opening(met.every, BEYOND_TRACK_M)))
+            return encounter.verdict(
+                encounter.unless_laid_over(self.limit - encounter.one.height, self.limit, sweep)
+            )
+        return encounter.verdict(encounter.through(self.opening(encounter.every, BEYOND_TRACK_M)))
 
-    def standing(self, track, every):
+    def standing(self, track, orientations):
         """Return its blade, which goes on over the free edge."""
         import shapely
 
-        room, lean = room_of(every), math.sin(self.sweep)
+        room, lean = room_of(orientations), math.sin(self.sweep)
         edge = np.array(self._edge(track.extent))
-        tall = 2.0 * max(max(one.height for one in every), edge[:, 1].max()) + GATE_FRAME_M
+        tall = (
+            2.0 * max(max(orientation.height for orientation in orientations), edge[:, 1].max())
+            + GATE_FRAME_M
+        )
         ring = [*((y / lean, z) for y, z in edge), (edge[-1, 0] / lean, tall), (0.0, tall)]
         long = track.extent / math.tan(self.sweep) if self.sweep < SQUARE_FACE_RAD else 0.0
         blade = Blade(shapely.Polygon(ring), (0.5 * room, 0.0), self.sweep, friction=self.friction)
@@ -234,25 +239,25 @@ class Profile(Device):
     def across(self):
         return 0.0
 
-    def opening(self, every, width):
+    def opening(self, orientations, width):
         import shapely
 
-        free = self.free(every)
+        free = self.free(orientations)
         return free.intersection(shapely.box(0.0, 0.0, width, MAX_OPENING_HEIGHT_M)) if self.like else free
 
-    def free(self, every):
+    def free(self, orientations):
         """Return the opening however wide the track is, in distances from the wall and heights [m]."""
         import shapely
 
         if not self.like:
             return shapely.Polygon(self.corners)
         aspect, heading, play = self.like
-        return every[
-            orientation_names.place_of(every, aspect, heading, self.where, "profile names")
+        return orientations[
+            orientation_names.place_of(orientations, aspect, heading, self.where, "profile names")
         ].seen.buffer(play)
 
-    def fate(self, met):
+    def fate(self, encounter):
         return STOPPED
 
-    def judged(self, met):
-        return met.verdict(met.through(self.free(met.every)))
+    def judged(self, encounter):
+        return encounter.verdict(encounter.through(self.free(encounter.every)))

@@ -32,12 +32,12 @@ class Lean(Device):
     angle: float = 0.0  # [rad]
 
     @classmethod
-    def holding(cls, one, wall_friction, where):
+    def holding(cls, orientation, wall_friction, where):
         """Return what holds an orientation that rolls on the level, devices in order; none where it does not.
 
         Parameters
         ----------
-        one : Orientation
+        orientation : Orientation
         wall_friction : float [1]
         where : str
             What asks for it.
@@ -45,7 +45,7 @@ class Lean(Device):
         return ()
 
     @classmethod
-    def leanings(cls, one, where):
+    def leanings(cls, orientation, where):
         """Return other ways to lean the track for an orientation, a list of tuples of Device."""
         return []
 
@@ -88,8 +88,8 @@ class Groove(Lean):
 
     @classmethod
     def read(cls, entry):
-        given = values.mapping(entry, ("angle",), "write {angle: 30 deg}")
-        return {"angle": values.within(given, "angle", "angle", FLATTEST, STEEPEST_FACE_RAD)}
+        arguments = values.mapping(entry, ("angle",), "write {angle: 30 deg}")
+        return {"angle": values.within(arguments, "angle", "angle", FLATTEST, STEEPEST_FACE_RAD)}
 
     def value_text(self):
         return mapping_text((("angle", angle_text(self.angle)),))
@@ -105,25 +105,32 @@ class Groove(Lean):
         return groove.rewritten(), Bank.of(LEAST, where)
 
     @classmethod
-    def holding(cls, one, wall_friction, where):
-        return cls.of(HOLDS, where) if one.rolls_along else ()
+    def holding(cls, orientation, wall_friction, where):
+        return cls.of(HOLDS, where) if orientation.rolls_along else ()
 
     @classmethod
-    def leanings(cls, one, where):
-        return [cls.of(angle, where) for angle in ANGLES] if one.kind == "rolling" and one.rolls_along else []
+    def leanings(cls, orientation, where):
+        return (
+            [cls.of(angle, where) for angle in ANGLES]
+            if orientation.kind == "rolling" and orientation.rolls_along
+            else []
+        )
 
-    def onward(self, one):
+    def onward(self, orientation):
         """Return an orientation as it goes on: both faces hold what lies along them."""
-        track, rolls = replace(one.track, bank=self.angle), one.may_roll_back and not one.rolls_along
-        return replace(one, track=track, groove=self.angle, may_roll_back=rolls)
+        track, rolls = (
+            replace(orientation.track, bank=self.angle),
+            orientation.may_roll_back and not orientation.rolls_along,
+        )
+        return replace(orientation, track=track, groove=self.angle, may_roll_back=rolls)
 
-    def judged(self, met):
+    def judged(self, encounter):
         """Return what it does: it passes what lies in it as it came, and turns the rest."""
-        return met.laid_in_groove(self.angle)
+        return encounter.laid_in_groove(self.angle)
 
-    def standing(self, track, every):
+    def standing(self, track, orientations):
         slope = Slope(0.0, bank=self.angle, wall=0.5 * math.pi - self.angle)
-        return Standing(GROOVE_ROOMS * room_of(every), slopes=(slope,))
+        return Standing(GROOVE_ROOMS * room_of(orientations), slopes=(slope,))
 
 
 @dataclass(frozen=True)
@@ -160,24 +167,26 @@ class Bank(Lean):
         return f"{degrees_words(self.angle)} towards the wall"
 
     @classmethod
-    def holding(cls, one, wall_friction, where):
+    def holding(cls, orientation, wall_friction, where):
         """Return the bank at which the wall's friction holds an orientation, if that is none too steep."""
-        steep = math.degrees(math.atan2(math.tan(max(one.track.climb, 0.0)), max(wall_friction, 0.0)))
+        steep = math.degrees(math.atan2(math.tan(max(orientation.track.climb, 0.0)), max(wall_friction, 0.0)))
         bank = max(LEAST, math.ceil(steep + MORE))
         return (cls.of(bank, where),) if wall_friction > 0.0 and bank <= MOST else ()
 
     @classmethod
-    def leanings(cls, one, where):
+    def leanings(cls, orientation, where):
         return [(cls.of(bank, where),) for bank in PROPOSED_BANKS_DEG]
 
-    def onward(self, one):
+    def onward(self, orientation):
         """Return an orientation as it goes on: its weight meets the track nearer to the wall."""
-        track = replace(one.track, bank=self.angle)
-        held = math.tan(track.climb) <= one.wall_grip * math.tan(self.angle)
-        return replace(one, track=track, groove=0.0, may_roll_back=one.may_roll_back and not held)
+        track = replace(orientation.track, bank=self.angle)
+        held = math.tan(track.climb) <= orientation.wall_grip * math.tan(self.angle)
+        return replace(
+            orientation, track=track, groove=0.0, may_roll_back=orientation.may_roll_back and not held
+        )
 
-    def standing(self, track, every):
-        return Standing(0.5 * room_of(every), slopes=(Slope(0.0, bank=self.angle, wall=0.0),))
+    def standing(self, track, orientations):
+        return Standing(0.5 * room_of(orientations), slopes=(Slope(0.0, bank=self.angle, wall=0.0),))
 
 
 @dataclass(frozen=True)
@@ -197,8 +206,8 @@ class Separation(Lean):
 
     @classmethod
     def read(cls, entry):
-        given = values.mapping(entry, ("climb",), "write {climb: -4 deg}")
-        return {"angle": values.within(given, "climb", "angle", -MAX_BANK_RAD, MAX_BANK_RAD)}
+        arguments = values.mapping(entry, ("climb",), "write {climb: -4 deg}")
+        return {"angle": values.within(arguments, "climb", "angle", -MAX_BANK_RAD, MAX_BANK_RAD)}
 
     @classmethod
     def parting(cls, where):
@@ -216,12 +225,12 @@ class Separation(Lean):
         """What it is for: on the way down parts come apart, on the way up rails begin."""
         return "makes the gaps a vision reject needs" if self.angle < 0.0 else "climbs again, as rails need"
 
-    def onward(self, one):
+    def onward(self, orientation):
         """Return an orientation as it goes on, on the steeper track."""
-        return replace(one, track=replace(one.track, climb=self.angle))
+        return replace(orientation, track=replace(orientation.track, climb=self.angle))
 
-    def standing(self, track, every):
-        return Standing(room_of(every), slopes=(Slope(0.0, climb=self.angle),))
+    def standing(self, track, orientations):
+        return Standing(room_of(orientations), slopes=(Slope(0.0, climb=self.angle),))
 
 
 FLATTEST, STEEPEST_FACE_RAD = math.radians(10.0), math.radians(60.0)  # [rad]

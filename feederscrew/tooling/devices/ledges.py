@@ -39,11 +39,15 @@ class _Turner(Device):
     def read(cls, entry):
         return values.length(entry)
 
-    def standing(self, track, every):
-        drop, aside = self.lower(every)
+    def standing(self, track, orientations):
+        drop, aside = self.lower(orientations)
         width, far = (
             track.extent,
-            LOWER_TRACK_LENGTHS * max(np.hypot(one.length, max(one.width, one.height)) for one in every),
+            LOWER_TRACK_LENGTHS
+            * max(
+                np.hypot(orientation.length, max(orientation.width, orientation.height))
+                for orientation in orientations
+            ),
         )
         cut = Hole(np.array([[0.0, aside], [far, aside], [far, width], [0.0, width]]))
         return Standing(holes=(cut,), drop=drop, aside=aside, settles=SETTLES)
@@ -60,7 +64,7 @@ class Step(_Turner):
     )
     layer = "STEP"
 
-    def lower(self, every):
+    def lower(self, orientations):
         return self.limit, 0.0
 
     def edge(self, start, length, width):
@@ -69,14 +73,14 @@ class Step(_Turner):
             [[middle, 0.0], [middle + DRAWN_EDGE_M, 0.0], [middle + DRAWN_EDGE_M, width], [middle, width]]
         )
 
-    def judged(self, met):
-        turned, margin = met.pitched_over(self.limit)
-        return met.turning(turned, margin)
+    def judged(self, encounter):
+        turned, margin = encounter.pitched_over(self.limit)
+        return encounter.turning(turned, margin)
 
     @classmethod
     def changes(cls, often):
         """Return the values [m] at which it changes what it does with some orientations, a Meeting each."""
-        turns = [met.pitched() for met in often]
+        turns = [encounter.pitched() for encounter in often]
         return sorted({x for turn in turns for x in (turn.lift, turn.sure, turn.holds) if np.isfinite(x)})
 
 
@@ -97,36 +101,36 @@ class Tip(_Turner):
     def span_on(self, track):
         return (self.limit, track.extent) if self.limit < track.extent else None
 
-    def lower(self, every):
-        return below_ledge(every), self.limit
+    def lower(self, orientations):
+        return below_ledge(orientations), self.limit
 
     def edge(self, start, length, width):
         low, high = self.limit, self.limit + DRAWN_EDGE_M
         return np.array([[start, low], [start + length, low], [start + length, high], [start, high]])
 
-    def judged(self, met):
-        needed = met.one.balcony
-        margin = self.limit - needed if np.isfinite(needed) else -met.one.standing.reach
-        beyond = 1.0 - met.share(margin)
+    def judged(self, encounter):
+        needed = encounter.one.balcony
+        margin = self.limit - needed if np.isfinite(needed) else -encounter.one.standing.reach
+        beyond = 1.0 - encounter.share(margin)
         turned: tuple[tuple[int, float], ...] = ()
         if beyond > 0.0:
-            turned, certain = met.rolled_over(self.limit)
+            turned, certain = encounter.rolled_over(self.limit)
             turned = tuple((place, beyond * part) for place, part in turned)
             margin = margin if margin >= 0.0 else min(-margin, certain)
-        return met.turning(turned, margin)
+        return encounter.turning(turned, margin)
 
     @classmethod
     def changes(cls, often):
         """Return the values [m] at which it changes what it does with some orientations, a Meeting each."""
-        return sorted({met.one.balcony for met in often if np.isfinite(met.one.balcony)})
+        return sorted({encounter.one.balcony for encounter in often if np.isfinite(encounter.one.balcony)})
 
 
-def below_ledge(every):
+def below_ledge(orientations):
     """Return how far below a ledge the second track lies [m]: half the part's greatest length.
 
     Source: own; docs/tooling.md, "4. Turning parts over".
     """
-    return LOWER * max(max(one.length, one.height) for one in every)
+    return LOWER * max(max(orientation.length, orientation.height) for orientation in orientations)
 
 
 SHOP_STEP_M = 5e-5  # [m] of which a value that is proposed is a whole multiple
@@ -159,19 +163,21 @@ class NarrowedTrack(_OneNumber):
     def acts(self, track):
         return self.limit < track.width
 
-    def fate(self, met):
+    def fate(self, encounter):
         return RETURNED
 
     def span_on(self, track):
         return (self.limit, track.extent) if self.limit < track.extent else None
 
     @classmethod
-    def needed(cls, one):
-        return one.balcony
+    def needed(cls, orientation):
+        return orientation.balcony
 
-    def judged(self, met):
-        needed = met.one.balcony
-        return met.verdict(self.limit - needed if math.isfinite(needed) else -met.one.standing.reach)
+    def judged(self, encounter):
+        needed = encounter.one.balcony
+        return encounter.verdict(
+            self.limit - needed if math.isfinite(needed) else -encounter.one.standing.reach
+        )
 
 
 class PressureBreak(_OneNumber):
@@ -193,12 +199,12 @@ class PressureBreak(_OneNumber):
     def span_on(self, track):
         return (self.limit, track.extent) if self.limit < track.extent else None
 
-    def fate(self, met):
+    def fate(self, encounter):
         return RETURNED
 
     @classmethod
-    def needed(cls, one):
-        return one.balcony
+    def needed(cls, orientation):
+        return orientation.balcony
 
     @classmethod
     def relieving(cls, wanted, margin, where):
@@ -217,14 +223,16 @@ class PressureBreak(_OneNumber):
         PressureBreak or None
             None where one of them would not reach over the ledge.
         """
-        least = max(one.balcony + margin + cls(where).hop_blur(one) for one in wanted)
+        least = max(orientation.balcony + margin + cls(where).hop_blur(orientation) for orientation in wanted)
         limit = math.ceil(least / SHOP_STEP_M - 1e-6) * SHOP_STEP_M
-        reach = min(one.width for one in wanted)
+        reach = min(orientation.width for orientation in wanted)
         return cls(where).valued(limit) if limit + margin <= reach else None
 
-    def judged(self, met):
-        needed = met.one.balcony
-        return met.verdict(self.limit - needed if math.isfinite(needed) else -met.one.standing.reach)
+    def judged(self, encounter):
+        needed = encounter.one.balcony
+        return encounter.verdict(
+            self.limit - needed if math.isfinite(needed) else -encounter.one.standing.reach
+        )
 
 
 class Canyon(_OneNumber):
@@ -246,15 +254,15 @@ class Canyon(_OneNumber):
         return 0.0, self.limit
 
     @classmethod
-    def needed(cls, one):
-        return one.canyon
+    def needed(cls, orientation):
+        return orientation.canyon
 
-    def more(self, met):
-        return met.leans(self.limit)
+    def more(self, encounter):
+        return encounter.leans(self.limit)
 
-    def judged(self, met):
-        margin = met.one.canyon - self.limit
-        return met.verdict(carried(margin, -margin, self.more(met) if margin < 0.0 else 0.0))
+    def judged(self, encounter):
+        margin = encounter.one.canyon - self.limit
+        return encounter.verdict(carried(margin, -margin, self.more(encounter) if margin < 0.0 else 0.0))
 
 
 class Slot(Device):
@@ -280,10 +288,10 @@ class Slot(Device):
     def span_on(self, track):
         return self.span
 
-    def judged(self, met):
-        margin = met.over_span(self.span)
+    def judged(self, encounter):
+        margin = encounter.over_span(self.span)
         first, last = self.span
-        return met.verdict(max(margin, -UNSURE) if met.rides(last - first, np.inf) else margin)
+        return encounter.verdict(max(margin, -UNSURE) if encounter.rides(last - first, np.inf) else margin)
 
 
 def span_text(span):
@@ -294,8 +302,8 @@ def span_text(span):
 def between(device, width):
     """Return the faults [ConfigError] of a hole between two distances off the wall of a track."""
     first, last = device.span
-    found = [device.whole(width)] if first <= 0.0 and last >= width else []
-    return found + ([device.beside(width)] if first >= width else [])
+    pieces = [device.whole(width)] if first <= 0.0 and last >= width else []
+    return pieces + ([device.beside(width)] if first >= width else [])
 
 
 MAX_LEAD_IN_M = 1.0  # [m] of a lead-in
@@ -325,17 +333,17 @@ class Rails(Device):
 
     @classmethod
     def read(cls, entry):
-        found, given = values.span_and(entry, ("lead_in",))
-        if "lead_in" not in given:
-            return found
-        lead = given["lead_in"]
+        span, arguments = values.span_and(entry, ("lead_in",))
+        if "lead_in" not in arguments:
+            return span
+        lead = arguments["lead_in"]
         wide, more = values.span_and(lead, needed=("length", "taper"))
         ends = (values.within(more, name, "length", 0.0, MAX_LEAD_IN_M) for name in ("length", "taper"))
-        own, slot = wide["span"], found["span"]
+        own, slot = wide["span"], span["span"]
         if own[0] > slot[0] + 1e-9 or own[1] < slot[1] - 1e-9:
             what = "lead_in is narrower than the slot"
             raise ConfigError(lead.value.where, what, "let it reach as far to both sides, or leave it out")
-        return found | {"lead": (*own, *ends)}
+        return span | {"lead": (*own, *ends)}
 
     def misfits(self, width):
         return between(self, width) + (between(self.entry, width) if self.lead else [])
@@ -377,31 +385,41 @@ class Rails(Device):
     def value_text(self):
         return written(self.span, self.lead)
 
-    def hop_blur(self, one):
+    def hop_blur(self, orientation):
         """Return nothing: its margins are widths of head, shank and slot, which a hop does not change."""
         return 0.0
 
-    def standing(self, track, every):
+    def standing(self, track, orientations):
         """Return its slot, which goes on behind it: those that hang do not come back onto the track."""
-        room, size = room_of(every), max(np.hypot(one.length, max(one.width, one.height)) for one in every)
+        room, size = (
+            room_of(orientations),
+            max(
+                np.hypot(orientation.length, max(orientation.width, orientation.height))
+                for orientation in orientations
+            ),
+        )
         length = room + self.goes_on(track.extent)
         holes = (Hole(self.outline_on(track, length + 2.0 * size)),)
         return Standing(length, holes=holes, hangs=True, slot=self.span)
 
-    def judged(self, met):
-        if met.hanging:
-            return met.verdict(met.one.over(self.span))
+    def judged(self, encounter):
+        if encounter.hanging:
+            return encounter.verdict(encounter.one.over(self.span))
         first = self.entry.span
-        over = met.over_slot(first)
-        stem = met.held_by_shoulders(self.span) if over < -UNSURE else -np.inf
+        over = encounter.over_slot(first)
+        stem = encounter.held_by_shoulders(self.span) if over < -UNSURE else -np.inf
         if stem >= 0.0:
-            return met.verdict(stem, hangs=True)
-        held = met.held_by_head(self.span[1] - self.span[0], first[1] - first[0]) if over < 0.0 else -np.inf
-        free = met.goes_down(first[0]) and met.hangs_free(self.span)
-        if held > 0.0 and (met.wedges(first) or not free):
-            return met.verdict(0.0, hangs=True)
+            return encounter.verdict(stem, hangs=True)
+        held = (
+            encounter.held_by_head(self.span[1] - self.span[0], first[1] - first[0])
+            if over < 0.0
+            else -np.inf
+        )
+        free = encounter.goes_down(first[0]) and encounter.hangs_free(self.span)
+        if held > 0.0 and (encounter.wedges(first) or not free):
+            return encounter.verdict(0.0, hangs=True)
         margin = min(held, -over) if held > 0.0 else over
-        return met.verdict(margin, hangs=margin >= 0.0 and over < 0.0)
+        return encounter.verdict(margin, hangs=margin >= 0.0 and over < 0.0)
 
     @property
     def short(self):
@@ -425,6 +443,6 @@ class Rails(Device):
 def written(span, lead=()):
     """Return a slot [m] and its lead-in as a bowl file has them."""
     names = ("from", "to", "length", "taper")
-    told = ", ".join(f"{name}: {size / MM:.9g} mm" for name, size in zip(names, lead))
-    more = f", lead_in: {{{told}}}" if lead else ""
+    lengths = ", ".join(f"{name}: {size / MM:.9g} mm" for name, size in zip(names, lead))
+    more = f", lead_in: {{{lengths}}}" if lead else ""
     return f"{{from: {span[0] / MM:.9g} mm, to: {span[1] / MM:.9g} mm{more}}}"

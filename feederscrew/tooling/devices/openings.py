@@ -75,9 +75,10 @@ def gap_outline(length, radius, width):
         As for ``gap``.
     """
     across = np.linspace(width, 0.0, GAP_EDGE_POINTS)
-    left, met = gap(length, radius, width).edges[:2]
+    left, trailing = gap(length, radius, width).edges[:2]
     sides = [
-        radius * (edge[1] + np.arcsin(np.minimum(edge[3] / (radius - across), 1.0))) for edge in (left, met)
+        radius * (edge[1] + np.arcsin(np.minimum(edge[3] / (radius - across), 1.0)))
+        for edge in (left, trailing)
     ]
     return np.vstack([[[sides[0][0], width], [sides[0][-1], 0.0]], np.column_stack([sides[1], across])[::-1]])
 
@@ -190,15 +191,17 @@ class Gap(Device):
         return 0.0
 
     @classmethod
-    def needed(cls, one):
-        return one.gap
+    def needed(cls, orientation):
+        return orientation.gap
 
-    def more(self, met):
-        return met.one.carry_ahead
+    def more(self, encounter):
+        return encounter.one.carry_ahead
 
-    def judged(self, met):
-        one = met.one
-        return met.verdict(carried(one.gap - self.limit, self.limit - one.gap, one.carry_ahead))
+    def judged(self, encounter):
+        orientation = encounter.one
+        return encounter.verdict(
+            carried(orientation.gap - self.limit, self.limit - orientation.gap, orientation.carry_ahead)
+        )
 
 
 class CutOut(Device):
@@ -236,11 +239,13 @@ class CutOut(Device):
     def goes_on(self, width):
         return max(x for x, _ in self.corners)
 
-    def judged(self, met):
-        one, hole = met.one, self.hole_on(met.one.track)
-        margin, shift = met.over_hole(hole)
-        if margin < 0.0 < one.carry:
-            margin = carried(margin, met.unheld(hole), one.carry)
+    def judged(self, encounter):
+        orientation, hole = encounter.one, self.hole_on(encounter.one.track)
+        margin, shift = encounter.over_hole(hole)
+        if margin < 0.0 < orientation.carry:
+            margin = carried(margin, encounter.unheld(hole), orientation.carry)
             length = float(np.ptp(np.array(self.corners)[:, 0]))
-            margin = max(margin, -UNSURE) if met.rides(met.widest(self.corners), length) else margin
-        return met.verdict(margin, shift)
+            margin = (
+                max(margin, -UNSURE) if encounter.rides(encounter.widest(self.corners), length) else margin
+            )
+        return encounter.verdict(margin, shift)

@@ -77,67 +77,75 @@ class Nozzles:
         """Thrust [N] of one."""
         return thrust(self.diameter, self.pressure)
 
-    def heights(self, every):
+    def heights(self, orientations):
         """Return their heights [m] over the track, (N,), upwards.
 
         Where nothing is said of it, one nozzle blows at the lowest centre of mass. Several blow where each
         orientation has something before its centre of mass that is not a mere slope, as far as they are
         enough for that; the others are spread between those and the top of the tallest.
         """
-        return np.array(_heights(self, tuple(every)))
+        return np.array(_heights(self, tuple(orientations)))
 
-    def _placed(self, every):
-        low, top = self.height, max(one.height for one in every)
+    def _placed(self, orientations):
+        low, top = self.height, max(orientation.height for orientation in orientations)
         if low is None and self.count > 1:
-            met = _meeting([_solid_at_middle(one) for one in every], 0.5 * self.diameter)
-            if len(met) <= self.count:
-                return _spread(self._at_slopes(met, every), top, self.count)
+            impulses = _meeting(
+                [_solid_at_middle(orientation) for orientation in orientations], 0.5 * self.diameter
+            )
+            if len(impulses) <= self.count:
+                return _spread(self._at_slopes(impulses, orientations), top, self.count)
         if low is None:
-            low = max(min(one.posture.height for one in every), 0.5 * self.diameter)
+            low = max(min(orientation.posture.height for orientation in orientations), 0.5 * self.diameter)
         high = max(top - low, low)
         return np.linspace(low, high, self.count) if high > low else np.full(self.count, low)
 
-    def _at_slopes(self, heights, every):
+    def _at_slopes(self, heights, orientations):
         """Some heights [m], and those at which what they blow at slopes of is pushed most, of the rest."""
-        found = list(heights)
-        for one in every:
-            if len(found) < self.count and self._moves(one, found) < ENOUGH:
-                tried = one.height * (np.arange(TRIED) + 0.5) / TRIED
-                best = max(tried, key=lambda height: self._moves(one, [height]))
-                found += [float(best)] if self._moves(one, [best]) > self._moves(one, found) else []
-        return found
+        candidates = list(heights)
+        for orientation in orientations:
+            if len(candidates) < self.count and self._moves(orientation, candidates) < ENOUGH:
+                tried = orientation.height * (np.arange(TRIED) + 0.5) / TRIED
+                best = max(tried, key=lambda height: self._moves(orientation, [height]))
+                candidates += (
+                    [float(best)]
+                    if self._moves(orientation, [best]) > self._moves(orientation, candidates)
+                    else []
+                )
+        return candidates
 
-    def _moves(self, one, heights):
+    def _moves(self, orientation, heights):
         """The force outwards, less the friction of that down, over the thrust of a nozzle [1]."""
-        pushes = [_share(one, self.diameter, float(height)) for height in heights]
-        return sum(out - (one.grip or GRIP) * down for out, down in pushes)
+        pushes = [_share(orientation, self.diameter, float(height)) for height in heights]
+        return sum(out - (orientation.grip or GRIP) * down for out, down in pushes)
 
-    def push(self, one, every, ahead=0.0):
+    def push(self, orientation, orientations, ahead=0.0):
         """Return the force [N] outwards, and down, on an orientation whose centre of mass is before them.
 
         Or ``ahead`` [m] of them. Air gives a facet what of its momentum goes into that, so a slope is pressed
         down or lifted as well.
         """
-        pushes = [_share(one, self.diameter, float(height), ahead) for height in self.heights(every)]
+        pushes = [
+            _share(orientation, self.diameter, float(height), ahead) for height in self.heights(orientations)
+        ]
         return tuple(self.thrust * sum(push[k] for push in pushes) for k in range(2))
 
-    def jets(self, place, every, seconds=math.inf):
+    def jets(self, place, orientations, seconds=math.inf):
         """Return their Jets at a place [m] along the device."""
         return tuple(
             Jet((place, 0.0, height), ACROSS, 0.5 * self.diameter, SPREAD, self.thrust, JET_REACH_M, seconds)
-            for height in self.heights(every)
+            for height in self.heights(orientations)
         )
 
 
 @functools.lru_cache(maxsize=256)
-def _heights(nozzles, every):
+def _heights(nozzles, orientations):
     """As `Nozzles.heights`."""
-    return tuple(nozzles._placed(every))
+    return tuple(nozzles._placed(orientations))
 
 
-def _share(one, diameter, height, ahead=0.0):
+def _share(orientation, diameter, height, ahead=0.0):
     """What of a jet's thrust an orientation takes [1]: outwards from the wall, and down."""
-    return _taken(one.posture, one.heading, (ahead, one.distance), diameter, height)
+    return _taken(orientation.posture, orientation.heading, (ahead, orientation.distance), diameter, height)
 
 
 @functools.lru_cache(maxsize=4096)
@@ -149,27 +157,27 @@ def _taken(posture, heading, place, diameter, height):
     corners, sides = corners[sides[:, 1] < 0.0], sides[sides[:, 1] < 0.0]  # those that face the wall
     turn, off = GOLDEN * np.arange(RAYS), np.sqrt((np.arange(RAYS) + 0.5) / RAYS)
     places = off[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
-    ways = np.column_stack([SPREAD * places[:, 0], np.ones(RAYS), SPREAD * places[:, 1]])
+    directions = np.column_stack([SPREAD * places[:, 0], np.ones(RAYS), SPREAD * places[:, 1]])
     mouths = 0.5 * diameter * places + [0.0, height]
     mouths = np.column_stack([mouths[:, 0], np.zeros(RAYS), mouths[:, 1]])
     out = down = 0.0
-    for way, k in zip(ways, _first_met(corners, sides, mouths, ways)):
+    for direction, k in zip(directions, _first_met(corners, sides, mouths, directions)):
         if k >= 0:
             size = np.sqrt((sides[k] ** 2).sum())
-            into = (sides[k] * way).sum() / (size * np.sqrt((way**2).sum()))
+            into = (sides[k] * direction).sum() / (size * np.sqrt((direction**2).sum()))
             out, down = out + into * sides[k, 1] / size, down - into * sides[k, 2] / size
     return float(out) / RAYS, float(down) / RAYS
 
 
-def _first_met(corners, sides, mouths, ways):
+def _first_met(corners, sides, mouths, directions):
     """Which (R,) of some triangles (F, 3, 3) [m] with normals (F, 3) each ray meets first; -1 of none."""
     if not len(sides):
-        return np.full(len(ways), -1)
-    slope = (sides * ways[:, None]).sum(axis=2)
+        return np.full(len(directions), -1)
+    slope = (sides * directions[:, None]).sum(axis=2)
     fall = ((corners[:, 0] - mouths[:, None]) * sides).sum(axis=2)
     far = np.divide(fall, slope, out=np.full(slope.shape, np.inf), where=slope < 0.0)
     ray, facet = np.nonzero(np.isfinite(far) & (far >= 0.0))
-    spots = mouths[ray] + far[ray, facet][:, None] * ways[ray]
+    spots = mouths[ray] + far[ray, facet][:, None] * directions[ray]
     inside = np.ones(len(ray), bool)
     for a in range(3):
         along, to = (corners[:, (a + 1) % 3] - corners[:, a])[facet], spots - corners[facet, a]
@@ -179,30 +187,30 @@ def _first_met(corners, sides, mouths, ways):
     return np.where(np.isfinite(nearest.min(axis=1)), nearest.argmin(axis=1), -1)
 
 
-def _solid_at_middle(one):
+def _solid_at_middle(orientation):
     """From which height [m] to which the lowest goes that an orientation has at its centre of mass."""
-    upright = shapely.LineString([(0.0, -one.height), (0.0, 2.0 * one.height)])
-    spans = [piece.bounds for piece in shapely.get_parts(one.aside.intersection(upright))]
-    return min(((span[1], span[3]) for span in spans), default=(0.0, one.height))
+    upright = shapely.LineString([(0.0, -orientation.height), (0.0, 2.0 * orientation.height)])
+    spans = [piece.bounds for piece in shapely.get_parts(orientation.aside.intersection(upright))]
+    return min(((span[1], span[3]) for span in spans), default=(0.0, orientation.height))
 
 
 def _meeting(spans, radius):
     """Return the fewest heights [m] of which each span (low, high) has one, a radius within its ends."""
-    found: list[float] = []
+    met_shares: list[float] = []
     for low, high in sorted(spans, key=lambda span: span[1]):
-        if not any(low <= height <= high for height in found):
-            found.append(max(high - radius, 0.5 * (low + high)))
-    return found
+        if not any(low <= height <= high for height in met_shares):
+            met_shares.append(max(high - radius, 0.5 * (low + high)))
+    return met_shares
 
 
 def _spread(heights, top, count):
     """Return some heights [m] and as many more as make a count, each amid the widest space up to a top."""
-    found = sorted(heights)
-    while len(found) < count:
-        spaces = np.diff([*found, top])
+    spread_heights = sorted(heights)
+    while len(spread_heights) < count:
+        spaces = np.diff([*spread_heights, top])
         k = int(np.argmax(np.round(spaces, 9)))
-        found.insert(k + 1, found[k] + 0.5 * float(spaces[k]))
-    return np.array(found)
+        spread_heights.insert(k + 1, spread_heights[k] + 0.5 * float(spaces[k]))
+    return np.array(spread_heights)
 
 
 SENSOR_VIEWS = ("outline", "side", "height", "relief")
@@ -279,18 +287,22 @@ class Sorter(Device):
         return RESOLUTION[self.sees] if self.resolution is None else self.resolution
 
     @classmethod
-    def around(cls, met, margin, where, unlike=lambda view: ()):
+    def around(cls, encounter, margin, where, unlike=lambda view: ()):
         """Return the sorters of an orientation, with the play [m] by which what they pass may differ.
 
         Those that ``unlike`` gives for a view are named beside it: they pass too, though they look otherwise.
         """
-        one, made = met.one, []
+        orientation, sorters = encounter.one, []
         for view in SENSOR_VIEWS:
             also = tuple((other.aspect, other.heading) for other in unlike(view))
-            like = one.aspect, one.heading, float(margin) + RESOLUTION[view] + met.askew(view)
+            like = (
+                orientation.aspect,
+                orientation.heading,
+                float(margin) + RESOLUTION[view] + encounter.askew(view),
+            )
             device = cls(where, like=like, sees=view, also=also)
-            made.append(replace(device, like=(*like[:2], like[2] + device.hop_blur(one))))
-        return made
+            sorters.append(replace(device, like=(*like[:2], like[2] + device.hop_blur(orientation))))
+        return sorters
 
     def with_play(self, play):
         """Return the same sorter with other play [m], and headings as its text has them."""
@@ -302,15 +314,15 @@ class Sorter(Device):
     def canonical_text(self):
         """Its value with what it lets pass in one order."""
         (aspect, heading, play), *also = self.like, *self.also
-        first, *others = sorted([(aspect, heading), *also])
-        return replace(self, like=(*first, play), also=tuple(others)).value_text()
+        first, *rest = sorted([(aspect, heading), *also])
+        return replace(self, like=(*first, play), also=tuple(rest)).value_text()
 
     def with_pulse(self, time):
         """Return the same sorter with a pulse of some time [s]."""
         return replace(self, time=time).rewritten()
 
     def value_text(self):
-        names = [orientation_names.written(*one) for one in (self.like[:2], *self.also)]
+        names = [orientation_names.written(*orientation) for orientation in (self.like[:2], *self.also)]
         return mapping_text(
             (
                 ("of", names[0] if len(names) == 1 else f"[{', '.join(names)}]"),
@@ -340,24 +352,28 @@ class Sorter(Device):
             ("time", f"{self.time / MS:.9g} ms", self.time != PULSE),
             ("nozzles", f"{self.nozzles:.9g}", self.nozzles != NOZZLE_COUNT),
         ]
-        told = [(key, text) for key, text, changed in nozzles if changed and text]
-        return mapping_text(told) if told else ""
+        entries = [(key, text) for key, text, changed in nozzles if changed and text]
+        return mapping_text(entries) if entries else ""
 
-    def differs(self, met):
+    def differs(self, encounter):
         """Return by how much [m] an orientation is seen to differ from the nearest of the wanted ones.
 
         At least, of what is not wanted; at most, of what is: either may come askew.
         """
-        wanted = self.wanted(met.every)
-        if any((one.aspect, one.heading) == (met.one.aspect, met.one.heading) for one in wanted):
-            return met.askew(self.sees)
-        return min(met.differs(one, self.sees) for one in wanted)
+        wanted = self.wanted(encounter.every)
+        if any(
+            (orientation.aspect, orientation.heading) == (encounter.one.aspect, encounter.one.heading)
+            for orientation in wanted
+        ):
+            return encounter.askew(self.sees)
+        return min(encounter.differs(orientation, self.sees) for orientation in wanted)
 
-    def wanted(self, every):
+    def wanted(self, orientations):
         """Return the orientations that it passes."""
-        said = self.where, f"{self.kind} names"
+        source = self.where, f"{self.kind} names"
         return tuple(
-            every[orientation_names.place_of(every, *one, *said)] for one in (self.like[:2], *self.also)
+            orientations[orientation_names.place_of(orientations, *orientation, *source)]
+            for orientation in (self.like[:2], *self.also)
         )
 
     @property
@@ -365,35 +381,39 @@ class Sorter(Device):
         """Its Nozzles."""
         return Nozzles(self.nozzle, self.pressure, self.height, round(self.nozzles))
 
-    def standing(self, track, every):
+    def standing(self, track, orientations):
         """Return the sensor half a room behind its begin, and the nozzles in the wall behind it."""
-        room = room_of(every)
+        room = room_of(orientations)
         middle = 0.5 * room
-        sensor = Sensor(middle, self.sees, self.wanted(every), self.like[2], self.blur)
+        sensor = Sensor(middle, self.sees, self.wanted(orientations), self.like[2], self.blur)
         return Standing(
             room + SENSOR_TO_NOZZLE_M,
-            jets=self.jet.jets(middle + SENSOR_TO_NOZZLE_M, every, self.time),
+            jets=self.jet.jets(middle + SENSOR_TO_NOZZLE_M, orientations, self.time),
             sensor=sensor,
         )
 
-    def hop_blur(self, one):
+    def hop_blur(self, orientation):
         """Return what the hop of an orientation takes of its margin [m]: nothing as it is seen from above."""
-        return 0.0 if self.sees == "outline" else one.hop
+        return 0.0 if self.sees == "outline" else orientation.hop
 
-    def gap(self, one, speed):
+    def gap(self, orientation, speed):
         """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
-        beam = self.nozzle + 2.0 * SPREAD * one.width
+        beam = self.nozzle + 2.0 * SPREAD * orientation.width
         return max(beam + speed * (REACTION + self.time), self.blur)
 
-    def fate(self, met):
+    def fate(self, encounter):
         return RETURNED
 
-    def judged(self, met):
-        margin = self.like[2] - self.differs(met)
+    def judged(self, encounter):
+        margin = self.like[2] - self.differs(encounter)
         margin = math.copysign(max(abs(margin) - self.blur, 0.0), margin)
-        if margin < 0.0 and met.blown(*self.jet.push(met.one, met.every or (met.one,)), self.time) <= 0.0:
-            return met.verdict(0.0)  # it is carried on, whatever is seen
-        return met.verdict(margin)
+        if (
+            margin < 0.0
+            and encounter.blown(*self.jet.push(encounter.one, encounter.every or (encounter.one,)), self.time)
+            <= 0.0
+        ):
+            return encounter.verdict(0.0)  # it is carried on, whatever is seen
+        return encounter.verdict(margin)
 
     def edge(self, start, length, width):
         """Return what it sees, unrolled: the track as far as the longest part."""
@@ -457,44 +477,46 @@ class SteadyJet(Device):
         """Its Nozzles, one."""
         return Nozzles(self.nozzle, self.pressure, self.height)
 
-    def fate(self, met):
+    def fate(self, encounter):
         return RETURNED
 
-    def factor(self, met):
+    def factor(self, encounter):
         """Return its mean force on an orientation that passes, over the one that just moves it off [1]."""
-        return float(np.mean(self._factors(met)))
+        return float(np.mean(self._factors(encounter)))
 
-    def most(self, met):
+    def most(self, encounter):
         """Return the greatest such factor [1] at any place along an orientation."""
-        return float(self._factors(met).max())
+        return float(self._factors(encounter).max())
 
-    def _factors(self, met):
+    def _factors(self, encounter):
         """The same (PLACES,) at places along its length: it may offer more ahead or behind than amid."""
-        one = met.one
-        wide = self.nozzle + SPREAD * one.width + one.length
-        ends = one.outline[:, 0].min(), one.outline[:, 0].max()
+        orientation = encounter.one
+        wide = self.nozzle + SPREAD * orientation.width + orientation.length
+        ends = orientation.outline[:, 0].min(), orientation.outline[:, 0].max()
         shares = (np.arange(JET_POSITIONS) + 0.5) / JET_POSITIONS
         pushes = [
-            self.jet.push(one, met.every or (one,), -float(ends[0] + share * (ends[1] - ends[0])))
+            self.jet.push(
+                orientation, encounter.every or (orientation,), -float(ends[0] + share * (ends[1] - ends[0]))
+            )
             for share in shares
         ]
-        force = met.force_to_clear(wide, self.height)
-        return np.array([out - met.grip * max(down, 0.0) for out, down in pushes]) / force
+        force = encounter.force_to_clear(wide, self.height)
+        return np.array([out - encounter.grip * max(down, 0.0) for out, down in pushes]) / force
 
-    def judged(self, met):
+    def judged(self, encounter):
         """Return what it does: what hangs between rails is held by them, and may be pressed on them."""
-        if met.hanging:
-            return met.verdict(0.0)
-        factor, most = self.factor(met), self.most(met)
-        way = met.one.track.width - met.one.distance
-        margin = way * (1.0 - (most if factor < 1.0 else factor))
+        if encounter.hanging:
+            return encounter.verdict(0.0)
+        factor, most = self.factor(encounter), self.most(encounter)
+        distance = encounter.one.track.width - encounter.one.distance
+        margin = distance * (1.0 - (most if factor < 1.0 else factor))
         if most > 1.0 / SURE_FORCE_RATIO and factor < SURE_FORCE_RATIO:
             margin = 0.0 if factor < 1.0 else -UNSURE
-        return met.verdict(max(margin, -way))
+        return encounter.verdict(max(margin, -distance))
 
-    def standing(self, track, every):
-        room = room_of(every)
-        return Standing(room, jets=self.jet.jets(0.5 * room, every))
+    def standing(self, track, orientations):
+        room = room_of(orientations)
+        return Standing(room, jets=self.jet.jets(0.5 * room, orientations))
 
     def edge(self, start, length, width):
         """Return its beam, unrolled."""

@@ -23,8 +23,8 @@ def carried(foot, hole, scratch, i, margin):
     found = kept_inset(foot, scratch, foot.hull)
     if found > margin + MARGIN_ROUNDING_M or (whole and found >= max(margin, 0.0)):
         return True
-    keep_corners(foot, hole, scratch, i, foot.every)
-    return kept_inset(foot, scratch, foot.every) > margin + MARGIN_ROUNDING_M
+    keep_corners(foot, hole, scratch, i, foot.all_corners)
+    return kept_inset(foot, scratch, foot.all_corners) > margin + MARGIN_ROUNDING_M
 
 
 @apart
