@@ -8,8 +8,8 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.dropping.kernel import body
-from feederscrew.rates import spacing
-from feederscrew.tooling.hanging import Hanging
+from feederscrew.rates import stream
+from feederscrew.tooling.orientations import Hanging
 from feederscrew.trial import course, crowd, runs, starts, whereabouts
 from feederscrew.trial.kernel.motion import BEHIND, BELOW
 from feederscrew.trial.looks import OTHER, AspectsBelow, Looks
@@ -143,7 +143,7 @@ class PartsQueue:
         self.track = crowd.crowded(bowl, every, bowl.devices, room)
         self.placed = [device for device in bowl.devices if device.placed]
         self.outlet, self.windows = self.track.outlet / known.length, self.track.windows / known.length
-        self.apart = spacing.needed(bowl.devices, every, bowl) / known.length
+        self.apart = stream.needed_spacing(bowl.devices, every, bowl) / known.length
         self.crowd = crowd.PartsOnTrack(known, self.track, parts)
         self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
         self.mark, self.since, self.on_others = np.zeros(parts), np.zeros(parts), np.zeros(parts, bool)

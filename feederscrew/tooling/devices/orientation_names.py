@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.errors import ConfigError, FeederError
 
-WITHIN = np.radians(3.0)  # so near to a heading that the part can have, a named one is that
+HEADING_TOLERANCE_RAD = np.radians(3.0)  # so near to a heading that the part can have, a named one is that
 HEADING = re.compile(r"@(\d+\.\d+)")  # [deg] with decimals
 
 
@@ -37,18 +37,18 @@ def place(aspects, headings, aspect, heading, where, named="", kind=FeederError)
     FeederError
         If the part has no such orientation.
     """
-    known = _places(aspects, aspect)
-    found = nearest(aspects, headings, aspect, heading) if known else None
-    if found is not None and abs(_turn(headings[found] - heading)) <= WITHIN:
-        return found
+    rows_of_aspect = _places(aspects, aspect)
+    nearest_place = nearest(aspects, headings, aspect, heading) if rows_of_aspect else None
+    if nearest_place is not None and abs(_turn(headings[nearest_place] - heading)) <= HEADING_TOLERANCE_RAD:
+        return nearest_place
     if named:
-        some = known or range(len(aspects))
+        some = rows_of_aspect or range(len(aspects))
         listed = ", ".join(f"{aspects[k]}@{round(np.degrees(headings[k])) % 360}" for k in some)
         what = f"{named} orientation {aspect}@{np.degrees(heading):.4g}, which the part does not have"
         raise kind(where, what, f"known are {listed}")
     rows(aspects, aspect, where, kind)
-    listed = ", ".join(f"{np.degrees(headings[k]):.4g}" for k in known)
-    what = f"aspect {aspects[known[0]]} has no stable heading {np.degrees(heading):.4g} deg"
+    listed = ", ".join(f"{np.degrees(headings[k]):.4g}" for k in rows_of_aspect)
+    what = f"aspect {aspects[rows_of_aspect[0]]} has no stable heading {np.degrees(heading):.4g} deg"
     raise kind(where, what, f"choose one of {listed} deg")
 
 
@@ -59,20 +59,26 @@ def nearest(aspects, headings, aspect, heading):
 
 def rows(aspects, aspect, where, kind=FeederError):
     """Return the places (list of int) of an aspect's orientations; a FeederError where there is none."""
-    known = _places(aspects, aspect)
-    if not known:
+    rows_of_aspect = _places(aspects, aspect)
+    if not rows_of_aspect:
         raise kind(where, f"there is no aspect {aspect[:20]!r}", f"choose one of {_once(aspects)}")
-    return known
+    return rows_of_aspect
 
 
 def _places(aspects, aspect):
     return [k for k, name in enumerate(aspects) if name.casefold() == aspect.strip().casefold()]
 
 
-def place_of(every, aspect, heading, where, named="", kind=ConfigError):
+def place_of(orientations, aspect, heading, where, named="", kind=ConfigError):
     """Return the same among orientations (M,)."""
     return place(
-        [one.aspect for one in every], [one.heading for one in every], aspect, heading, where, named, kind
+        [orientation.aspect for orientation in orientations],
+        [orientation.heading for orientation in orientations],
+        aspect,
+        heading,
+        where,
+        named,
+        kind,
     )
 
 
@@ -83,7 +89,7 @@ def written(aspect, heading):
 
 def whole_degrees(text):
     """Return a text such as '{of: A@90.4021}' with its headings in whole degrees, as people read them."""
-    return HEADING.sub(lambda found: f"@{round(float(found[1])) % 360}", text)
+    return HEADING.sub(lambda degrees: f"@{round(float(degrees[1])) % 360}", text)
 
 
 def _turn(angle):
