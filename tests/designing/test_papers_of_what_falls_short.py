@@ -62,7 +62,7 @@ def built():
 
 
 def offered(one, built=None):
-    return {offer.name: offer for offer in designs.offers(one, (), built)}
+    return {offer.name: offer for offer in design_pages.offers(one, (), built)}
 
 
 def test_a_design_says_which_machine_it_asks_for(sensing):
@@ -115,7 +115,7 @@ def test_a_family_says_the_machine_and_the_warnings_of_each_part():
     both = FamilyStudy((study(), other), False)
     page = design_pages.family_page(both)
     assert page.lower().count("throw number") == 2 and "other: the magnet strikes" in page
-    rows = design_pages.summary(both)
+    rows = design_pages.family_summary(both)
     text = " ".join(rows["value"])
     assert text.count("leaf-spring drive") == 2 and "machine of other" in list(rows["quantity"])
 

@@ -13,7 +13,7 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl import reading
 from feederscrew.designing import beside
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
-from feederscrew.output import designs
+from feederscrew.output import design_pages, designs
 from feederscrew.output.machine import figures
 from feederscrew.output.machine import tables as machine_tables
 from feederscrew.output.solidbowl import drawing_sheet
@@ -45,7 +45,7 @@ def papers(tmp_path_factory):
     built = beside.built(study, ())
     assert not built.why, built.why
     study = beside.with_machine(study, built)
-    offered = {one.name: one for one in designs.offers(study, (), built)}
+    offered = {one.name: one for one in design_pages.offers(study, (), built)}
     (path.parent / "design.yaml").write_text(offered["design.yaml"].make())
     return {
         "study": study,
