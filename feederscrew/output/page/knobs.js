@@ -376,7 +376,10 @@ const conveying = (() => {
     const data = JSON.parse(block.querySelector("script.knob-values").textContent);
     const sliders = Object.fromEntries([...block.querySelectorAll("input")].map((input) => [input.name, input]));
     const own = Object.fromEntries(Object.entries(sliders).map(([name, input]) => [name, Number(input.dataset.own)]));
-    const shown = (name, text) => (block.querySelector(`[data-shows="${name}"]`).textContent = text);
+    const shown = (name, text) => {
+      const place = block.querySelector(`[data-shows="${name}"]`);
+      if (place) place.textContent = text;
+    };
     let typed = { ...own };
     function follow() {
       const bowl = bowlOf(data, typed), found = conveying.answer(bowl);

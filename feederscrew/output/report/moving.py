@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.errors import FeederError
 from feederscrew.output import proof, tables
 from feederscrew.output.convey import figures as convey_plots
 from feederscrew.output.convey import files as convey_files
@@ -16,6 +17,7 @@ from feederscrew.output.headings import tables as heading_tables
 from feederscrew.output.page.blocks import Chapter, Notes, Picture, Table, Text, Tile
 from feederscrew.output.page.numbers import NOTHING, SHORT, number, percent
 from feederscrew.output.rate import tables as rate_tables
+from feederscrew.output.report.knobs import knobs
 from feederscrew.output.report.on_the_track import on_track
 from feederscrew.output.slide import files as slide_files
 from feederscrew.output.slide import tables as slide_tables
@@ -59,7 +61,7 @@ def convey(case):
         (cycle,) = _taken(convey_files.offers(study, bowls.texts(case.settings)), "convey")
         title = convey_plots.cycle_title(study.trace(), study.answer)
         blocks.append(replace(cycle, alt=f"Plate and part: {title}"))
-    blocks.append(_velocity_map(case))
+    blocks += [*_knobs(case), _velocity_map(case)]
     return Chapter(
         tuple(blocks),
         tiles=(_velocity_tile(document),),
@@ -140,6 +142,15 @@ def _velocity_map(case):
     if not np.isfinite(study.grid.values["velocity"]).any():
         return Text("No drive of 5 to 60 deg and up to 2.5 times this stroke has a steady velocity here.")
     return _taken(convey_files.map_offers(study), "convey_map")[0]
+
+
+def _knobs(case):
+    """The knobs; without a rate where there is none."""
+    try:
+        rate = case.rate.rate
+    except FeederError:  # the chapter on the rate says why
+        rate = None
+    return knobs(case, rate)
 
 
 def _velocity_tile(document):
