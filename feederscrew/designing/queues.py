@@ -25,7 +25,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
-from feederscrew.tooling.hanging import Hanging
+from feederscrew.tooling.orientations import Hanging
 from feederscrew.trial.queue import GAPS, PartsQueue, QueuedParts, QueuePlan
 
 FILLS = (("low", trying.LOW), ("normal", GAPS), ("high", 0.0))  # free way between parts over their length

@@ -20,7 +20,7 @@ from feederscrew.part.hull import convex_hull
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.named import place_of
+from feederscrew.tooling.devices.orientation_names import place_of
 from feederscrew.tooling.fates import at_entry
 
 FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side
@@ -231,7 +231,7 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, any_heading, spare
     chosen = drawn_rows(known, shares, wanted, rng, spared)
     try:
         aspects = find(other)
-        bare = stream.orientations(other, aspects, bowl.track, (), bowl=driven)
+        bare = stream.follow_orientations(other, aspects, bowl.track, (), bowl=driven)
         driven = replace(driven, devices=_named(driven.devices, known.lying, bare.lying))
         lying = at_entry(bare.lying, driven.devices)
         rows = [matched(known.lying[k], lying) for k in chosen]
