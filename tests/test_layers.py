@@ -14,7 +14,6 @@ ORDER = [
     "errors", "check", "units", "value_forms", "records", "running", "documents", "dxf",
     "geometry", "part", "resting", "tooling.devices", "bowl", "screw", "mechanics", "conveying", "dropping",
     "tooling", "rates", "trial", "machine", "solidbowl", "studies", "designing", "output", "thesis", "batch",
-    "api",
 ]  # fmt: skip
 DOORS = {
     "trimesh": {"feederscrew/part"},
