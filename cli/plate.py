@@ -80,8 +80,8 @@ def _bowls(plate):
 
     paths = plate["paths"] or (None,)
     settings = [bowls.settings(path, plate["overrides"]) for path in paths]
-    every = [bowls.strokes(bowls.record(one), plate["amplitudes"]) for one in settings]
-    names = [name for name, plates in zip(bowls.named(paths), every) for _ in plates]
+    every = [bowls.at_strokes(bowls.record(one), plate["amplitudes"]) for one in settings]
+    names = [name for name, plates in zip(bowls.bowl_names(paths), every) for _ in plates]
     files = {source: digest for path in paths for source, digest in bowls.identity(path).items()}
-    values = {name: bowls.texts(one) for name, one in zip(bowls.named(paths), settings)}
+    values = {name: bowls.texts(one) for name, one in zip(bowls.bowl_names(paths), settings)}
     return [bowl for plates in every for bowl in plates], names, files, values

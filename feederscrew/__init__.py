@@ -110,7 +110,7 @@ def __getattr__(name: str) -> object:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(import_module(HOME[name]), name)
-    if name in ROOMS:  # `import feederscrew.tooling.mirrored as x` looks for `mirrored` in the function
+    if name in ROOMS:  # `import feederscrew.tooling.fates as x` looks for `fates` in the function
         folder = import_module(f"{__name__}.{name}").__dict__
         folder.update(value.__dict__)
         value.__dict__ = folder

@@ -7,8 +7,8 @@ import numpy as np
 
 from feederscrew import __version__, units
 from feederscrew import bowl as bowls
-from feederscrew.bowl import devices, reading, unbalance
-from feederscrew.bowl.devices import SECTION
+from feederscrew.bowl import devices, reading, schema
+from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.verified import NOTHING_LEFT, Verified, body_fingerprint, fingerprint
 from feederscrew.conveying.answer import answer, throw_number
 from feederscrew.conveying.hop import hop
@@ -16,7 +16,7 @@ from feederscrew.designing import record
 from feederscrew.designing.record import NOT_PROVED
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
-from feederscrew.machine.feasibility import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
+from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import columns, style, tables
 from feederscrew.output.heavy import heavy
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
@@ -558,8 +558,8 @@ def bowl_file(study, settings, sheet=None):
     own = {"drive": study.bowl.drive, "track": study.bowl.track}
     own |= {} if sheet is None else {"machine": sheet.bowl.machine, "sizing": sheet.bowl.sizing}
     set_here = {f"{section}.{row[0]}" for section in own for row in OWN[section]} | {"drive.peak_to_peak"}
-    set_here |= {f"machine.{word}" for word in unbalance.WORDS if "machine" in own}
-    given = [s for s in settings if s.given and s.key.field != SECTION and s.key.name not in set_here]
+    set_here |= {f"machine.{word}" for word in schema.UNBALANCE_NAMES if "machine" in own}
+    given = [s for s in settings if s.given and s.key.field != DEVICES_SECTION and s.key.name not in set_here]
     lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
     if study.drive_mismatch is not None:
         lines += [f"# Its drive: {study.drive_mismatch.text}."]
@@ -572,7 +572,7 @@ def bowl_file(study, settings, sheet=None):
         if section == "machine" and section in own:
             lines += [f"  {word}: {text}" for word, text in _unbalance(own[section])]
     if study.bowl.devices:
-        lines += [f"{SECTION}:  # along the track, in the order parts meet them"]
+        lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
         lines += [f"  - {one.kind}: {devices.value_text(one)}" for one in study.bowl.devices]
     bowl = _read_back(lines, study, own)
     if study.status == NOT_PROVED:
@@ -603,8 +603,8 @@ def _read_back(lines, study, own):
 
 
 def _unbalance(machine):
-    for word, value in unbalance.told(machine).items():
-        length = word in unbalance.CENTRE
+    for word, value in schema.unbalance_values(machine).items():
+        length = word in schema.CENTRE
         yield word, f"{value / MM:.9g} mm" if length else f"{value:.9g} kg m2"
 
 

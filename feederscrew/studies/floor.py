@@ -17,7 +17,7 @@ from feederscrew.records import Shown
 from feederscrew.resting.posture import Posture
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
-from feederscrew.studies.rate import arriving
+from feederscrew.studies.rate import likeliest
 
 TOP_ANGLE, TOP_FRICTION = np.pi / 2.0, 1.0  # [rad], [1] as Figure 5-6
 LEAST_FREQUENCY, TOP_FREQUENCY, TOP_AMPLITUDE = 10.0, 120.0, 0.5e-3  # [Hz], [Hz], [m] as Figure 5-7, or more
@@ -152,7 +152,7 @@ def floor(
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
     angle = arguments.amount("heading", heading, "angle")
     limits.plain(bowl)
-    stand, why = standing(part, aspect, "floor", partial(arriving, bowl=bowl))
+    stand, why = standing(part, aspect, "floor", partial(likeliest, bowl=bowl))
     cycle, course = balance.over_cycle(stand, bowl, angle)
     return FloorStudy(
         part=part,

@@ -15,9 +15,8 @@ from feederscrew.errors import ArgumentError
 from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
-from feederscrew.rates.steadiness import steady
-from feederscrew.rates.tipping import marked, remark
-from feederscrew.rates.well_oriented import RECOMMENDED
+from feederscrew.rates.tipping import marked, remark, steady
+from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies import arguments
@@ -27,13 +26,11 @@ from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.kinds import KINDS, leaning, names
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import tracks
-from feederscrew.tooling.isolating.chain import WHERE, Wishes
-from feederscrew.tooling.isolating.design import MARGIN, PLAY, TOLERANCE, place
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, DesignConstraints
+from feederscrew.tooling.isolating.design import MARGIN_M, PLAY_M, TOLERANCE_M, place
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Design, Goal
-from feederscrew.tooling.isolating.shop_values import FINE
-from feederscrew.tooling.mirrored import named
-from feederscrew.tooling.orientations import Orientation, orientations, speed
+from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations, travel_speed
 from feederscrew.units import shown
 
 SEARCH_SECONDS = 600.0  # [s] the last resort: a search that it ends may differ from machine to machine
@@ -49,12 +46,12 @@ def _usable(
     without: str | Sequence[str],
     up: str | Sequence[str],
     **wishes: Any,
-) -> Wishes:
+) -> DesignConstraints:
     """What a design may use, checked."""
     if outcome not in OUTCOMES:
         raise ArgumentError("outcome", f"{outcome!r} is unknown", f"choose {', '.join(OUTCOMES)}")
     kinds = may_be_left_out(without)
-    usable = Wishes(outcome=outcome, without=kinds, up=may_be_up(part, aspects, up), **wishes)
+    usable = DesignConstraints(outcome=outcome, without=kinds, up=may_be_up(part, aspects, up), **wishes)
     return replace(usable, separation=_separation(bowl, usable))
 
 
@@ -83,11 +80,11 @@ def may_be_up(part: Part, found: Aspects, up: str | Sequence[str]) -> tuple[str,
     return listed(up)
 
 
-def _separation(bowl: Bowl, wishes: Wishes) -> Device | None:
+def _separation(bowl: Bowl, wishes: DesignConstraints) -> Device | None:
     """The stretch that makes gaps in this bowl; None where it may not be used or makes none."""
     for kind in leaning():
-        steeper = kind.parting(WHERE) if wishes.allows(kind.kind) else None
-        if steeper is not None and speed(steeper.onward(bowl)) > speed(bowl):
+        steeper = kind.parting(DESIGN_KEY) if wishes.allows(kind.kind) else None
+        if steeper is not None and travel_speed(steeper.onward(bowl)) > travel_speed(bowl):
             return steeper
     return None
 
@@ -110,8 +107,8 @@ class ToolingStudy(Shown):
     designs: tuple[Design | None, ...]  # (M,) None where it was not asked for
     wanted: int | None  # the orientation asked for; None for all of them
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
-    play: float = PLAY  # [m] of the part from the wall, within the margin
-    tolerance: float = TOLERANCE  # [m] of its size, within the margin
+    play: float = PLAY_M  # [m] of the part from the wall, within the margin
+    tolerance: float = TOLERANCE_M  # [m] of its size, within the margin
     trials: tuple[Any, ...] = ()  # designing.own_trial.TriedDesign of what was tried, that of `design` first
 
     def trial_of(self, place: int) -> Any:
@@ -170,19 +167,19 @@ def tooling(
     aspect: str | None = None,
     *,
     heading: Quantity | None = None,
-    rule: str = RECOMMENDED,
-    margin: Quantity = MARGIN,
+    rule: str = RECOMMENDED_RULE,
+    margin: Quantity = MARGIN_M,
     purity: float = Goal.purity,
     efficiency: float = Goal.efficiency,
-    outcome: str = Wishes.outcome,
-    up: str | Sequence[str] = Wishes.up,
-    without: str | Sequence[str] = Wishes.without,
-    turn: bool = Wishes.turn,
-    vary: bool = Wishes.vary,
-    step: Quantity = Wishes.step,
-    cutter: Quantity = Wishes.cutter,
-    play: Quantity = PLAY,
-    tolerance: Quantity = TOLERANCE,
+    outcome: str = DesignConstraints.outcome,
+    up: str | Sequence[str] = DesignConstraints.up,
+    without: str | Sequence[str] = DesignConstraints.without,
+    turn: bool = DesignConstraints.turn,
+    vary: bool = DesignConstraints.vary,
+    step: Quantity = DesignConstraints.step,
+    cutter: Quantity = DesignConstraints.cutter,
+    play: Quantity = PLAY_M,
+    tolerance: Quantity = TOLERANCE_M,
     seed: int = HoleSearch.seed,
     verdicts: int = HoleSearch.verdicts,
     seconds: Quantity = SEARCH_SECONDS,
@@ -278,10 +275,10 @@ def tooling(
     may_use = _usable(
         part, bowl, found,
         outcome=outcome, without=without, up=up, vary=bool(vary), turn=turn,
-        step=arguments.amount("step", step, "length", FINE),
+        step=arguments.amount("step", step, "length", SHOP_ROUNDING_M),
         cutter=arguments.amount("cutter", cutter, "length", 0.0),
     )  # fmt: skip
-    asked_of_each = {"goal": goal, "before": bowl.devices, "wishes": may_use}
+    asked_of_each = {"goal": goal, "before": bowl.devices, "constraints": may_use}
     asked_of_each |= {"margin": clear, "search": search}
     asked = range(len(every)) if wanted is None else [wanted]
     designs: list[Design | None] = [None] * len(every)
@@ -322,7 +319,7 @@ class _Track:
 
 def _coming(part: Part, found: Aspects, bowl: Bowl) -> tuple[Orientation, ...]:
     """Every orientation of a part as it comes in a bowl."""
-    every, _ = marked(named(orientations(part, found, bowl.track)), bowl)
+    every, _ = marked(name_mirror_images(orientations(part, found, bowl.track)), bowl)
     return at_entry(every, bowl.devices)
 
 
@@ -332,7 +329,7 @@ def _best(
     """The design of an orientation on the bowl's track, or on one of another width that gives more."""
     own = next(iter(cache.values()))
     best = _designed(own, wanted, asked)
-    if best.isolated or not asked["wishes"].vary or asked["before"]:
+    if best.isolated or not asked["constraints"].vary or asked["before"]:
         return best
     for width in tracks.widths(own.orientations, own.shares, wanted, asked["margin"]):
         if width not in cache:
@@ -347,7 +344,7 @@ def _best(
 
 def _designed(there: _Track, wanted: int, asked: dict[str, Any]) -> Design:
     given = there.orientations, there.shares, wanted, there.bowl
-    return tracks.designed(*given, steady=steady, cache=there.cache, **asked)
+    return tracks.design_with_track(*given, steady=steady, cache=there.cache, **asked)
 
 
 def tooling_without(

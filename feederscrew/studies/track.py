@@ -8,9 +8,9 @@ from typing import Any, ClassVar, Unpack
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.reading import KeyRange
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting
-from feederscrew.bowl.vary import KeyRange
 from feederscrew.geometry import grids
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.cycle import Cycle
@@ -26,7 +26,7 @@ from feederscrew.records import Shown
 from feederscrew.resting.posture import Posture
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
-from feederscrew.studies.rate import arriving
+from feederscrew.studies.rate import likeliest
 from feederscrew.tooling import orientations
 
 USUAL = ("track.bank=0deg:30deg:41", "track.climb=0deg:8deg:41")  # of a map
@@ -68,7 +68,7 @@ class TrackStudy(Shown):
         Grid
             Columns as ``mechanics.track.cells`` names them, in SI; NaN where the part does not fit.
         """
-        first, second = ranges or bowls.ranges(USUAL)
+        first, second = ranges or bowls.key_ranges(USUAL)
 
         def function(x: np.ndarray, y: np.ndarray) -> dict[str, np.ndarray]:
             bowl = limits.plain(bowls.swept(settings, {first.key.name: x, second.key.name: y}))
@@ -114,7 +114,7 @@ def track(
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
     angle = arguments.angle("heading", heading)
     limits.plain(bowl)
-    posture, why = standing(part, aspect, "track", partial(arriving, bowl=bowl))
+    posture, why = standing(part, aspect, "track", partial(likeliest, bowl=bowl))
     seat, found, row = cells.seated(posture, bowl, angle)
     now, held_across = _from_rest(seat, bowl)
     cycle, course = balance.over_cycle(seat, bowl)
@@ -140,7 +140,7 @@ def track(
 def _stands(
     posture: Posture, found: Headings, row: int, bowl: Bowl, cycle: balance.TrackMotion
 ) -> tipping.Stands:
-    one = orientations.at(posture, found, row, {}, bowl.track)
+    one = orientations.orientation_at(posture, found, row, {}, bowl.track)
     return tipping.stands(one, bowl, bool((cycle.state == HOP).any()))
 
 

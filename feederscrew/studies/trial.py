@@ -16,7 +16,7 @@ from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.rates import arrivals, stream
-from feederscrew.rates.well_oriented import RECOMMENDED
+from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
@@ -26,7 +26,7 @@ from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
 from feederscrew.studies.rate import Shares, the_shares
 from feederscrew.studies.rate import shares as arriving
-from feederscrew.tooling.devices.named import rows
+from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.trial import course, outlet
 from feederscrew.trial import landing as landings
 from feederscrew.trial.outlet import Outlet
@@ -56,13 +56,13 @@ class TrialStudy(Shown):
     def answer(self) -> str:
         """Say whose shares parts arrive in: 'hops, launch feed', 'csa'."""
         known = self.aspects.recommended
-        return known.rule if self.rule == RECOMMENDED and known is not None else self.rule
+        return known.rule if self.rule == RECOMMENDED_RULE and known is not None else self.rule
 
     @property
     def launch(self) -> str | None:
         """What is done to the parts: 'feed', 'drop'; None where a rule knows no launch."""
         known = self.aspects.recommended
-        return known.launch if self.rule == RECOMMENDED and known is not None else None
+        return known.launch if self.rule == RECOMMENDED_RULE and known is not None else None
 
     def outlet(self, run: TrialRun) -> Outlet | None:
         """Return what left one run's queue by aspect, an Outlet; None without a queue."""
@@ -109,7 +109,8 @@ def trial(
     queue: int | None = None,
     poured: bool = False,
     seconds: Quantity = QUEUE_SECONDS,
-    rule: str = RECOMMENDED,
+    frames: int = 0,
+    rule: str = RECOMMENDED_RULE,
     known: Shares | None = None,
     measured: profiles.Measured | None = None,
     seed: int = 1,
@@ -187,13 +188,13 @@ def trial(
     count = parts or (FEW if queue else PARTS)
     launch = LAUNCH if found.recommended is None else found.recommended.launch
     fall = None if landing is None else {"launch": launch, "parts": landing}
-    crowd = None if queue is None else QueuePlan(queue, followed, None if poured else GAPS)
+    crowd = None if queue is None else QueuePlan(queue, followed, None if poured else GAPS, frames)
     run = RunSettings(seed, jobs, progress)
     made: list[TrialRun] = []
     stopped = False
     for bowl in driven:
         answer.answer(bowl)  # refuses a drive that cannot convey
-        ways = stream.orientations(part, found, bowl.track, bowl.devices, bowl=bowl)
+        ways = stream.follow_orientations(part, found, bowl.track, bowl.devices, bowl=bowl)
         ways = arrivals.oriented(ways, known.measured)
         tried = _tried(part, found, ways, aspect)
         shares = _shares(ways, rule, tried)

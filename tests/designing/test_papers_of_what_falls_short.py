@@ -26,7 +26,7 @@ from feederscrew.output.page.blocks import Chapter, Page
 from feederscrew.output.solidbowl import turnable
 from feederscrew.output.tooling import drawing
 from feederscrew.part import load
-from feederscrew.tooling.strip import strip
+from feederscrew.tooling.track_sections import build_section
 
 PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
 SHORT = "FALLS SHORT"
@@ -150,7 +150,7 @@ def test_a_mark_is_laid_over_a_picture_of_pixels():
 def test_drawings_of_cuts_bear_a_mark_on_a_layer_of_its_own(sensing):
     gap = replace(sensing, devices=sensing.devices[1:])
     every = beside.machines.orientations(PART, loop.find(PART), gap.track)
-    made = strip(gap.track, gap.devices, every)
+    made = build_section(gap.track, gap.devices, every)
     read = ezdxf.read(io.StringIO(drawing.dxf(made, mark=marking.MARK).decode()))
     across = [one for one in read.modelspace() if one.dxf.layer == "MARK"]
     assert [one.dxftype() for one in across] == ["TEXT"] and SHORT in across[0].dxf.text

@@ -11,7 +11,7 @@ from feederscrew.errors import FeederError
 from feederscrew.part import load
 from feederscrew.studies import tooling as tooling_study
 from feederscrew.studies import trial
-from feederscrew.tooling.hanging import neck
+from feederscrew.tooling.orientations import neck
 from feederscrew.tooling.verdicts import verdict
 from feederscrew.trial import course
 
