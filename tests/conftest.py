@@ -18,8 +18,7 @@ from hypothesis import settings
 from feederscrew.dropping.plate import arrival
 from feederscrew.output import shading as shading_output
 from feederscrew.output import style
-from feederscrew.studies import aspects, tune
-from feederscrew.studies.simulated import memory
+from feederscrew.studies import aspects, simulation_cache, tune
 from feederscrew_cli.main import feeder
 
 # A shell that starts the tests in the background ignores these, and so would every command they start.
@@ -154,7 +153,7 @@ def fewer():
     @contextlib.contextmanager
     def context():
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(memory, "_RECORDS", OrderedDict())
+            patch.setattr(simulation_cache, "_RECORDS", OrderedDict())
             _set(patch, FEWEST)
             yield
 
@@ -165,10 +164,10 @@ def fewer():
 def many(request, monkeypatch):
     """As many as for a user in a test that is marked ``thorough``."""
     if request.node.get_closest_marker("thorough"):
-        memory.forget()
+        simulation_cache.forget()
         _set(monkeypatch, MANY)
         yield
-        memory.forget()
+        simulation_cache.forget()
     else:
         yield
 
