@@ -104,7 +104,7 @@ bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minut
 
 PICTURES := aspects regimes drop bowl bowl_solid design tooling trial report conveying_map glossary
 
-docs: $(PICTURES:%=docs/%.png) $(READY) ## pictures, outputs and tables of the pages
+docs: $(PICTURES:%=docs/%.png) docs/trial_film.gif $(READY) ## pictures, outputs and tables of the pages
 	$(BIN)/python docs/readme.py
 	$(BIN)/python docs/commands.py
 	$(BIN)/python docs/equations.py
@@ -140,6 +140,9 @@ docs/tooling.png: docs/design.png
 docs/trial.png: parts/$(DEMO).stl docs/measured/example/bowl.yaml | $(READY)
 	$(FEEDER) trial $< --config docs/measured/example/bowl.yaml --parts 24 -o results --quiet > /dev/null
 	cp results/$(DEMO)/trial_stills.png $@
+
+docs/trial_film.gif: parts/$(DEMO).stl docs/measured/example/bowl.yaml | $(READY)
+	$(FEEDER) trial $< --config docs/measured/example/bowl.yaml --aspect A --parts 12 --queue 10 --seconds 25 --film $@ --quiet > /dev/null
 
 docs/design.png: parts/$(BOLT).stl | $(READY)
 	$(FEEDER) tooling $< --aspect A -o results --quiet > /dev/null

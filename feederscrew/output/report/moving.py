@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.errors import FeederError
 from feederscrew.output import convey as convey_output
 from feederscrew.output import floor as floor_output
 from feederscrew.output import headings as headings_output
@@ -14,6 +15,7 @@ from feederscrew.output import slide as slide_output
 from feederscrew.output import track as track_output
 from feederscrew.output.page.blocks import Chapter, Notes, Picture, Table, Text, Tile
 from feederscrew.output.page.numbers import NOTHING, SHORT, number, percent
+from feederscrew.output.report.knobs import knobs
 from feederscrew.output.report.on_the_track import on_track
 from feederscrew.units import MM
 
@@ -52,7 +54,7 @@ def convey(case):
         (cycle,) = _taken(convey_output.offers(study, bowls.texts(case.settings)), "convey")
         title = convey_output.cycle_title(study.trace(), study.answer)
         blocks.append(replace(cycle, alt=f"Plate and part: {title}"))
-    blocks.append(_velocity_map(case))
+    blocks += [*_knobs(case), _velocity_map(case)]
     return Chapter(
         tuple(blocks),
         tiles=(_velocity_tile(document),),
@@ -133,6 +135,15 @@ def _velocity_map(case):
     if not np.isfinite(study.grid.values["velocity"]).any():
         return Text("No drive of 5 to 60 deg and up to 2.5 times this stroke has a steady velocity here.")
     return _taken(convey_output.map_offers(study), "convey_map")[0]
+
+
+def _knobs(case):
+    """The knobs; without a rate where there is none."""
+    try:
+        rate = case.rate.rate
+    except FeederError:  # the chapter on the rate says why
+        rate = None
+    return knobs(case, rate)
 
 
 def _velocity_tile(document):

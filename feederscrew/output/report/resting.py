@@ -1,5 +1,7 @@
 """The part, and how it comes to rest."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from feederscrew import units
@@ -19,6 +21,8 @@ from feederscrew.output.page.blocks import (
 )
 from feederscrew.output.page.numbers import percent
 from feederscrew.output.report.scene import scene
+from feederscrew.part.record import Part
+from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.units import MM
 
 MOST_VIEWS = aspects_output.MOST_DRAWN_ASPECTS
@@ -49,8 +53,9 @@ def aspects(case):
     found = study.aspects
     table, said = aspects_output.aspects(study), aspects_output.remarks(study)
     offered = by_name(aspects_output.offers(study))
-    rows = range(min(len(found.names), MOST_VIEWS))
-    views = (Text(CARD, quiet=True),) if part.vertices is None else (*_views(case, rows, offered),)
+    views = tuple(aspect_views(part, study))
+    if part.vertices is not None:
+        views = (*views[:1], _picture(offered["aspects.png"], printed=True), *views[1:])
     chart = _picture(offered["probabilities.png"])
     lines = (Notes(tuple(said)),) if said and part.vertices is not None else ()
     straight = () if np.isfinite(table["rolling_circle_mm"]).any() else ("rolling_circle_mm",)
@@ -96,12 +101,14 @@ def numbers(case):
     return CsvSheet("aspects.csv", tables.text(aspects_output.aspects(case.resting), "csv"))
 
 
-def _views(case, rows, offered):
-    """Turnable views, the picture that replaces them on paper, and what is simplified."""
-    drawn = scene(case.part, case.resting.aspects, rows)
-    captions = tuple(_caption(case.resting.aspects, row) for row in rows)
-    yield Views(drawn, captions)
-    yield _picture(offered["aspects.png"], printed=True)
+def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
+    """Yield the views of a part on each aspect, to be turned, and what is simplified of its surface."""
+    if part.vertices is None:
+        yield Text(CARD, quiet=True)
+        return
+    rows = range(min(len(study.aspects.names), MOST_VIEWS))
+    drawn = scene(part, study.aspects, rows)
+    yield Views(drawn, tuple(_caption(study.aspects, row) for row in rows))
     if drawn["facets"] < drawn["all"]:
         yield Text(
             f"The views show a coarser surface of {drawn['facets']} facets; "
