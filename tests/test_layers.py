@@ -118,7 +118,7 @@ def module(path):
 
 
 def test_every_own_module_that_is_imported_exists():
-    """mypy takes a module that is missing for one without types, and an import within a function runs late."""
+    """mypy takes a missing module for one without types, and an import within a function runs late."""
     names = {module(path) for path in FILES if path.parts[-2] != "cli"}
     every = [*FILES, *ROOT.glob("tests/**/*.py"), *ROOT.glob("docs/**/*.py"), *ROOT.glob("benchmarks/*.py")]
     froms = (
