@@ -12,6 +12,7 @@ from feederscrew.bowl.devices import strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import hop
 from feederscrew.conveying.answer import conveying
+from feederscrew.dropping.ensemble import wilson
 from feederscrew.machine import checks
 from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
@@ -145,8 +146,8 @@ def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED) -> Aspects:
 def likeliest(part: Part, bowl: Bowl) -> Aspects:
     """Return the aspects of a part with what arrives, of as few parts as show which aspect is the likeliest.
 
-    CHOOSING parts are fed first. Where the interval of the most frequent aspect is apart from that of every
-    other one, they decide. Else the answer is that of ``arriving``.
+    CHOOSING parts are fed first. Where the 95 % interval of the most frequent aspect is above those of all
+    others, they decide. Else the answer is that of ``arriving``.
 
     Parameters
     ----------
@@ -162,9 +163,12 @@ def likeliest(part: Part, bowl: Bowl) -> Aspects:
     answer = sample.aspects.recommended
     if not sample.fed or answer is None:
         return sample.aspects
+    low, high = wilson(
+        np.nan_to_num(answer.p) * CHOOSING, CHOOSING
+    )  # of the sample alone
     first = int(np.argmax(answer.p))
-    others = np.delete(answer.high, first)
-    return sample.aspects if answer.low[first] > others.max(initial=0.0) else arriving(part, bowl)
+    is_clear = low[first] > np.delete(high, first).max(initial=0.0)
+    return sample.aspects if is_clear else arriving(part, bowl)
 
 
 def _on_the_floor(part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed: int, run: OnCores) -> Any:
