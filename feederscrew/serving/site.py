@@ -20,7 +20,7 @@ from werkzeug.exceptions import HTTPException
 from werkzeug.wrappers import Request, Response
 
 from feederscrew.errors import FeederError, printable
-from feederscrew.output.aspects import tables as aspects_tables
+from feederscrew.output import aspects as aspects_output
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, Page, Table
 from feederscrew.output.report.resting import aspect_views
@@ -340,7 +340,7 @@ def _design_options(values: dict[str, Any]) -> list[str]:
 
 def _aspects_page(name: str, study: AspectsStudy) -> str:
     """The aspects as a page: views to be turned, and their table."""
-    table = aspects_tables.aspects(study).only(("aspect", "lies", "stable", "height_mm"))
+    table = aspects_output.aspects(study).only(("aspect", "lies", "stable", "height_mm"))
     chapter = Chapter(
         (*aspect_views(study.part, study), Table(table)), warnings=tuple(study.aspects.warnings)
     )

@@ -14,7 +14,7 @@ from feederscrew.machine.building import machine_for
 from feederscrew.machine.sizing import Size
 from feederscrew.machine.springs import centred_mass, springs
 from feederscrew.machine.unbalanced import rocking
-from feederscrew.output.designs import design_file
+from feederscrew.output import designs
 from feederscrew.solidbowl.closed_body import body
 
 
@@ -34,7 +34,7 @@ def test_a_solid_s_springs_are_the_same_when_its_bowl_file_is_read_back(hand):
         np.testing.assert_allclose(getattr(again.unbalance, name), getattr(under.unbalance, name), rtol=1e-5)
     assert springs(again).effective_mass == pytest.approx(springs(under).effective_mass, rel=1e-5)
     assert rocking(again, 0.15, 0.05).greatest == pytest.approx(rocking(under, 0.15, 0.05).greatest, rel=1e-6)
-    lines = dict(design_file._unbalance(under))
+    lines = dict(designs._unbalance(under))
     assert list(lines) == list(unbalance.WORDS)
     assert lines["centre_z"] == f"{1e3 * (solid.centre[2] - solid.plan.underside):.9g} mm"
     assert lines["product_xy"] == f"{under.unbalance.products[2]:.9g} kg m2"
@@ -51,7 +51,7 @@ def test_what_a_file_says_of_the_mass_is_kept():
 
 def test_a_balanced_machine_has_nothing_to_write():
     machine = bowls.read(None, ()).machine
-    assert unbalance.told(machine) == {} and list(design_file._unbalance(machine)) == []
+    assert unbalance.told(machine) == {} and list(designs._unbalance(machine)) == []
     assert unbalance.known({"bowl_mass": 2.0, **dict.fromkeys(unbalance.WORDS, 0.0)}, "left") == {
         "bowl_mass": 2.0
     }
