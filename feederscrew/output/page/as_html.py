@@ -207,8 +207,8 @@ def _table(frame):
     )
     pads = [_paddings(column) if n else [""] * len(rows) for n, column in zip(numeric, zip(*rows))]
     lines = [
-        f"<tr>{''.join(f'<td{m}{pad}>{escape(cell)}</td>' for m, pad, cell in zip(marks, row_pads, row))}</tr>"
-        for row_pads, row in zip(zip(*pads), rows)
+        f"<tr>{''.join(f'<td{m}{pad}>{escape(cell)}</td>' for m, pad, cell in zip(marks, own, row))}</tr>"
+        for own, row in zip(zip(*pads), rows)
     ]
     kind = ' class="pairs"' if _pairs(kinds.Table(frame)) else ' class="many"' if len(heads) > MANY else ""
     return _grid(kind, head, lines)
