@@ -16,7 +16,7 @@ NAMES := $(basename $(notdir $(PARTS)))
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .SUFFIXES:
-.PHONY: help demo test check test-lowest test-newest test-without lint format all-aspects inertia maps bench mutants docs release fuzz clean distclean
+.PHONY: help demo test check test-lowest test-newest test-without lint format all-aspects inertia maps bench mutants docs site wheels release fuzz clean distclean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -158,18 +158,27 @@ docs/conveying_map.png: docs/conveying_map.py | $(READY)
 docs/glossary.png: docs/glossary.py | $(READY)
 	$(BIN)/python docs/glossary.py
 
-release: ## what a release is, step by step; checks version and changelog
-	@$(PYTHON) docs/release.py
+# Its own environment: mkdocs and its theme are needed for nothing else. site/ needs no server and no network.
+site: $(READY) ## the pages as a site in site/, with search, API pages and a gallery that is made anew
+	$(PYTHON) -m venv .venv-site
+	.venv-site/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	.venv-site/bin/python -m mkdocs build --quiet --strict --config-file docs/site/mkdocs.yml
+
+wheels: ## sdist and wheel in dist/, tried in fresh environments on each Python at hand
+	$(PYTHON) docs/release.py --build
+
+release: ## what a release is, step by step; checks, builds, tries and tags it
+	@$(PYTHON) docs/release.py --tag
 
 fuzz: $(READY_TO_TEST) ## 2,000 round bodies, then ten minutes of damaged files, on from where the last run stopped
 	PYTHONPATH=tests $(BIN)/python -m fuzz.rounds 2000
 	PYTHONPATH=tests $(BIN)/python -m fuzz 600
 
 clean: ## remove results and caches
-	rm -rf results build .pytest_cache .ruff_cache .mypy_cache .hypothesis
+	rm -rf results build dist site .pytest_cache .ruff_cache .mypy_cache .hypothesis
 
 distclean: clean ## remove .venv as well
-	rm -rf .venv .venv-lowest .venv-newest *.egg-info
+	rm -rf .venv .venv-lowest .venv-newest .venv-site *.egg-info
 
 $(READY): pyproject.toml
 	$(PYTHON) -m venv .venv

@@ -39,7 +39,7 @@ def convey(bowl, spans, curve, best_phase, pictures, out):
     from feederscrew import bowl as bowls
 
     _fitting(spans, curve, best_phase)
-    settings, ranges, path = out.settings(bowl), bowls.ranges(spans), bowl["path"]
+    settings, ranges, path = out.settings(bowl), bowls.key_ranges(spans), bowl["path"]
     alone = "convey radius" if curve else "convey phase" if best_phase else "convey"
     out = replace(out, command=WAYS[len(ranges)] if ranges else alone)
     with out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings)) as folder:

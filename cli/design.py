@@ -220,7 +220,7 @@ def _folder(out, solid, inputs, settings):
 def _written(out, folder, found, settings, pictures):
     """What one design leaves in its folder; returns the design with what its machine is out of limits in."""
     from feederscrew.designing import beside
-    from feederscrew.output import designs, offers
+    from feederscrew.output import design_pages, designs, offers
 
     made = beside.Built() if found.partial else beside.built(found, settings)
     found = beside.with_machine(found, made)
@@ -228,7 +228,7 @@ def _written(out, folder, found, settings, pictures):
         designs.bowl_file(found, settings, made.sheet)
     out.warn(*found.warnings, *([f"no solid of the bowl is made: {made.why}"] if made.why else []))
     if not (found.partial and _keeps_earlier(out, folder, "design.html")):
-        offers.write(folder, designs.offers(found, settings, made), pictures=pictures)
+        offers.write(folder, design_pages.offers(found, settings, made), pictures=pictures)
     return found
 
 
@@ -259,6 +259,6 @@ def _family(out, parts, asked, written):
     inputs = {name: value for part in parts for name, value in part.inputs.items()}
     with out.folder("family", inputs | bowls.identity(path), bowls.texts(settings)) as folder:
         if not (found.partial and _keeps_earlier(out, folder, "family.html")):
-            offers.write(folder, design_pages.offers(found), pictures=pictures)
-        out.show(design_pages.summary(found), design_pages.document(found))
+            offers.write(folder, design_pages.family_offers(found), pictures=pictures)
+        out.show(design_pages.family_summary(found), design_pages.family_document(found))
     _ended(found)

@@ -44,7 +44,7 @@ def run(part, plate, launch, own, test, pictures, out):
     with held_back():
         from feederscrew.output import columns, offers
         from feederscrew.output import plate as plate_output
-        from feederscrew.studies.simulated.plate import plate as plate_study
+        from feederscrew.studies.plate import shake
 
     bowls, names, inputs, values = _bowls(plate)
     out = replace(out, command="drop plate")
@@ -54,8 +54,8 @@ def run(part, plate, launch, own, test, pictures, out):
     with out.folder(solid.name, inputs, columns.conditions(solid) | values) as folder:
         with waiting.bar(out, "parts") as bar:
             document = {"progress": bar.reach, "before": lambda: waiting.plate(out)}
-            study = plate_study(
-                solid, bowls, launch, own, names=names, seconds=plate["seconds"], **document, **test
+            study = shake(
+                solid, bowls, launch, **own, names=names, seconds=plate["seconds"], **document, **test
             )
         out.say(*plate_output.summary(study))
         out.warn(*plate_output.remarks(study))
@@ -80,8 +80,8 @@ def _bowls(plate):
 
     paths = plate["paths"] or (None,)
     settings = [bowls.settings(path, plate["overrides"]) for path in paths]
-    every = [bowls.strokes(bowls.record(one), plate["amplitudes"]) for one in settings]
-    names = [name for name, plates in zip(bowls.named(paths), every) for _ in plates]
+    every = [bowls.at_strokes(bowls.record(one), plate["amplitudes"]) for one in settings]
+    names = [name for name, plates in zip(bowls.bowl_names(paths), every) for _ in plates]
     files = {source: digest for path in paths for source, digest in bowls.identity(path).items()}
-    values = {name: bowls.texts(one) for name, one in zip(bowls.named(paths), settings)}
+    values = {name: bowls.texts(one) for name, one in zip(bowls.bowl_names(paths), settings)}
     return [bowl for plates in every for bowl in plates], names, files, values

@@ -146,7 +146,7 @@ def trial(part, sent, taken, amplitudes, film, bowl, pictures, out):
 
             films.require_writer(film)
     solid, settings = out.part(part), out.settings(bowl)
-    driven = bowls.strokes(bowls.record(settings), amplitudes)
+    driven = bowls.at_strokes(bowls.record(settings), amplitudes)
     effective = columns.conditions(solid) | bowls.texts(settings)
     known = orientation.shares(out, solid, driven[0], taken, sent["rule"])
     measured = sent.pop("measured")

@@ -2,6 +2,7 @@
 
 import io
 import re
+from typing import Any
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
@@ -83,7 +84,8 @@ class ShownFigure(Figure):
     def png(self):
         """Return its bytes without a time or a version: the same figure gives the same bytes."""
         buffer = io.BytesIO()
-        self.canvas.print_png(buffer, metadata={"Software": None})  # savefig would draw it twice
+        canvas: Any = self.canvas
+        canvas.print_png(buffer, metadata={"Software": None})  # savefig would draw it twice
         return buffer.getvalue()
 
     def _repr_png_(self):

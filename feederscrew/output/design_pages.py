@@ -4,7 +4,7 @@ from itertools import zip_longest
 
 from feederscrew import units
 from feederscrew.designing import record
-from feederscrew.output import designs, marking
+from feederscrew.output import designs, machine, marking, solidbowl
 from feederscrew.output import offers as offer
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import (
@@ -19,9 +19,11 @@ from feederscrew.output.page.blocks import (
     Tile,
     Views,
 )
+from feederscrew.output.solidbowl import tables as tables_of_solid
 from feederscrew.output.solidbowl import turnable
 from feederscrew.output.style import png
 from feederscrew.output.tables import frame, text
+from feederscrew.output.tooling import files as tooling_files
 from feederscrew.output.trial import playback
 
 MEASURE = (
@@ -177,7 +179,66 @@ SET, TAUGHT, SWAPPED = "set", "taught", "swapped"  # at the controller, at the s
 NOTHING = "-"
 
 
-def document(study):
+def offers(study, settings, built=None):
+    """Offer the files of a DesignStudy, as a list of Offer.
+
+    Parameters
+    ----------
+    study : DesignStudy
+    settings : sequence of Setting
+        As the user gave them.
+    built : designing.beside.Built, optional
+        The machine below the bowl, and the bowl as a solid.
+
+    Returns
+    -------
+    list of Offer
+        Document, page and acceptance sheet; of a design with a bowl the bowl file, and everything of the
+        tooling, of the machine and of the bowl as a solid. Of one that is not proved, or that delivers
+        nothing, what was tried only: nothing to build from. Drawings of what falls short bear a mark.
+    """
+    if study.status == record.NOT_PROVED:
+        return list(_unproved(study, settings))
+    sheet, drawn = (None, None) if built is None else (built.sheet, built.drawn)
+    found = [
+        offer.document("design.json", designs.document, study),
+        offer.text("design.html", page, study, built),
+        offer.table("design_trials.csv", designs.attempts, study),
+        offer.table("alternatives.csv", designs.alternatives, study),
+        offer.picture("design_history.png", "Each short trial of the loop", designs.history_figure, study),
+    ]
+    for one in study.risks:
+        if one.pair is not None:
+            found.append(
+                offer.picture(f"risk_{one.kind}.png", one.text, designs.risk_picture, study.part, one)
+            )
+    if study.bowl is None:
+        return found
+    found.append(offer.text("design.yaml", designs.bowl_file, study, settings, sheet))
+    if not study.delivers:
+        return found
+    tried = designs.trial_of(study)
+    found.append(offer.table("acceptance.csv", designs.acceptance, study))
+    if sheet is not None:
+        found += machine.offers(sheet, tried)
+    if drawn is not None:
+        found += solidbowl.offers(drawn, tried)
+        found.append(offer.document("bowl_solid.json", tables_of_solid.document, drawn.solid))
+    if study.tooling is not None:
+        own = tooling_files.offers(study.tooling, settings, mark=marking.of_trial(tried))
+        found += [one for one in own if one.name != "tooling.yaml"]  # design.yaml has the devices
+    return found
+
+
+def _unproved(study, settings):
+    """What is handed over of a design that was stopped."""
+    yield offer.document("design.json", designs.document, study)
+    yield offer.table("design_trials.csv", designs.attempts, study)
+    if study.bowl is not None:
+        yield offer.text("design.yaml", designs.bowl_file, study, settings)
+
+
+def family_document(study):
     """Return a FamilyStudy as the JSON document."""
     return {
         "status": study.status,
@@ -229,7 +290,7 @@ def changeover(study):
     return columns
 
 
-def summary(study):
+def family_summary(study):
     """Return what is printed: a row for each part, then what is changed."""
     minute = units.PER_MINUTE
     rows = [("status", study.status), ("one bowl for all", "yes" if study.shared else "no")]
@@ -337,12 +398,12 @@ def parts(study):
     return {name: [row[name] for row in rows] for name in rows[0]}
 
 
-def offers(study):
+def family_offers(study):
     """Offer the files of a FamilyStudy itself, as a list of Offer; each part has its own folder."""
     if study.partial:  # nothing to build from
-        return [offer.document("family.json", document, study)]
+        return [offer.document("family.json", family_document, study)]
     return [
-        offer.document("family.json", document, study),
+        offer.document("family.json", family_document, study),
         offer.table("changeover.csv", changeover, study),
         offer.text("family.html", family_page, study),
     ]

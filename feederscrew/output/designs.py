@@ -7,8 +7,8 @@ import numpy as np
 
 from feederscrew import __version__, units
 from feederscrew import bowl as bowls
-from feederscrew.bowl import devices, reading, unbalance
-from feederscrew.bowl.devices import SECTION
+from feederscrew.bowl import devices, reading, schema
+from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.verified import NOTHING_LEFT, Verified, body_fingerprint, fingerprint
 from feederscrew.conveying.answer import answer, throw_number
 from feederscrew.conveying.hop import hop
@@ -16,12 +16,9 @@ from feederscrew.designing import record
 from feederscrew.designing.record import NOT_PROVED
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
-from feederscrew.machine.feasibility import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
-from feederscrew.output import columns, machine, marking, solidbowl, style, tables
-from feederscrew.output import offers as offer
+from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
+from feederscrew.output import columns, style, tables
 from feederscrew.output.heavy import heavy
-from feederscrew.output.solidbowl import tables as tables_of_solid
-from feederscrew.output.tooling import files as tooling_files
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
@@ -561,8 +558,8 @@ def bowl_file(study, settings, sheet=None):
     own = {"drive": study.bowl.drive, "track": study.bowl.track}
     own |= {} if sheet is None else {"machine": sheet.bowl.machine, "sizing": sheet.bowl.sizing}
     set_here = {f"{section}.{row[0]}" for section in own for row in OWN[section]} | {"drive.peak_to_peak"}
-    set_here |= {f"machine.{word}" for word in unbalance.WORDS if "machine" in own}
-    given = [s for s in settings if s.given and s.key.field != SECTION and s.key.name not in set_here]
+    set_here |= {f"machine.{word}" for word in schema.UNBALANCE_NAMES if "machine" in own}
+    given = [s for s in settings if s.given and s.key.field != DEVICES_SECTION and s.key.name not in set_here]
     lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
     if study.drive_mismatch is not None:
         lines += [f"# Its drive: {study.drive_mismatch.text}."]
@@ -575,7 +572,7 @@ def bowl_file(study, settings, sheet=None):
         if section == "machine" and section in own:
             lines += [f"  {word}: {text}" for word, text in _unbalance(own[section])]
     if study.bowl.devices:
-        lines += [f"{SECTION}:  # along the track, in the order parts meet them"]
+        lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
         lines += [f"  - {one.kind}: {devices.value_text(one)}" for one in study.bowl.devices]
     bowl = _read_back(lines, study, own)
     if study.status == NOT_PROVED:
@@ -606,8 +603,8 @@ def _read_back(lines, study, own):
 
 
 def _unbalance(machine):
-    for word, value in unbalance.told(machine).items():
-        length = word in unbalance.CENTRE
+    for word, value in schema.unbalance_values(machine).items():
+        length = word in schema.CENTRE
         yield word, f"{value / MM:.9g} mm" if length else f"{value:.9g} kg m2"
 
 
@@ -818,66 +815,3 @@ def camera_from(place):
     back = vectors.unit(place)
     right = vectors.unit(np.cross((0.0, 0.0, 1.0), back))
     return shading.Camera(right=right, up=np.cross(back, right), back=back)
-
-
-def offers(study, settings, built=None):
-    """Offer the files of a DesignStudy, as a list of Offer.
-
-    Parameters
-    ----------
-    study : DesignStudy
-    settings : sequence of Setting
-        As the user gave them.
-    built : designing.beside.Built, optional
-        The machine below the bowl, and the bowl as a solid.
-
-    Returns
-    -------
-    list of Offer
-        Document, page and acceptance sheet; of a design with a bowl the bowl file, and everything of the
-        tooling, of the machine and of the bowl as a solid. Of one that is not proved, or that delivers
-        nothing, what was tried only: nothing to build from. Drawings of what falls short bear a mark.
-    """
-    if study.status == record.NOT_PROVED:
-        return list(_unproved(study, settings))
-    sheet, drawn = (None, None) if built is None else (built.sheet, built.drawn)
-    found = [
-        offer.document("design.json", document, study),
-        offer.text("design.html", _page, study, built),
-        offer.table("design_trials.csv", attempts, study),
-        offer.table("alternatives.csv", alternatives, study),
-        offer.picture("design_history.png", "Each short trial of the loop", history_figure, study),
-    ]
-    for one in study.risks:
-        if one.pair is not None:
-            found.append(offer.picture(f"risk_{one.kind}.png", one.text, risk_picture, study.part, one))
-    if study.bowl is None:
-        return found
-    found.append(offer.text("design.yaml", bowl_file, study, settings, sheet))
-    if not study.delivers:
-        return found
-    tried = trial_of(study)
-    found.append(offer.table("acceptance.csv", acceptance, study))
-    if sheet is not None:
-        found += machine.offers(sheet, tried)
-    if drawn is not None:
-        found += solidbowl.offers(drawn, tried)
-        found.append(offer.document("bowl_solid.json", tables_of_solid.document, drawn.solid))
-    if study.tooling is not None:
-        own = tooling_files.offers(study.tooling, settings, mark=marking.of_trial(tried))
-        found += [one for one in own if one.name != "tooling.yaml"]  # design.yaml has the devices
-    return found
-
-
-def _unproved(study, settings):
-    """What is handed over of a design that was stopped."""
-    yield offer.document("design.json", document, study)
-    yield offer.table("design_trials.csv", attempts, study)
-    if study.bowl is not None:
-        yield offer.text("design.yaml", bowl_file, study, settings)
-
-
-def _page(study, built):
-    from feederscrew.output import design_pages
-
-    return design_pages.page(study, built)

@@ -376,7 +376,7 @@ def cycle(found, course, title):
     lower.axhline(0, color=style.INK, linewidth=0.8)
     lower.text(
         2, course.mean / MM, f" mean on a level floor {course.mean / MM:.3g} mm/s",
-        fontsize=8, color=MOTION, va="bottom", path_effects=style.HALO,
+        fontsize=8, color=MOTION, va="bottom", path_effects=style.halo(),
     )  # fmt: skip
     for axes in (upper, lower):
         phase_axis(axes)

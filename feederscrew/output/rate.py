@@ -5,8 +5,8 @@ import numpy as np
 from feederscrew import units
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
-from feederscrew.rates.shares_on_track import entering
 from feederscrew.rates.tipping import remark
+from feederscrew.rates.well_oriented import entering
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 SCARCE = 0.25  # share of the parts at the entry that stay on the track, below which it is said

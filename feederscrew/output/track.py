@@ -327,7 +327,7 @@ def own_point(grid, bowl):
 
 
 def _value(bowl, axis):
-    key = next(key for key in bowls.schema.KEYS if key.column == axis.column)
+    key = next(key for key in bowls.schema.BOWL_KEYS if key.column == axis.column)
     section, _, word = key.field.rpartition(".")
     value = getattr(getattr(bowl, section) if section else bowl, word)
     return value / key.share / axis.unit

@@ -7,7 +7,7 @@ from feederscrew.conveying.hop import hop
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.words import regime_words
-from feederscrew.rates.drive_settings import WITHIN
+from feederscrew.rates.drive_settings import ACCEPTED_RATE_ERROR
 from feederscrew.units import MM, MM_S, PER_MINUTE
 
 SEVERAL = ", several"  # velocities, depending on how the part arrives
@@ -60,7 +60,7 @@ def remarks(study):
     """Return what a reader must not overlook: parts that are turned over, and targets that are passed."""
     tipping = [_solution_words(one) for one in study.settings if one.over]
     said = [f"{line} can tip over on the track and count as returned" for line in tipping]
-    if any(one.solution.rate > (1.0 + WITHIN) * study.target for one in study.settings):
+    if any(one.solution.rate > (1.0 + ACCEPTED_RATE_ERROR) * study.target for one in study.settings):
         said.append("no setting gives that rate: the velocity jumps over it, and these give more")
     return said
 

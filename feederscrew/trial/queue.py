@@ -8,8 +8,8 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.dropping.kernel import body
-from feederscrew.rates import spacing
-from feederscrew.tooling.hanging import Hanging
+from feederscrew.rates import stream
+from feederscrew.tooling.orientations import Hanging
 from feederscrew.trial import course, crowd, runs, starts, whereabouts
 from feederscrew.trial.kernel.motion import BEHIND, BELOW
 from feederscrew.trial.looks import OTHER, AspectsBelow, Looks
@@ -150,7 +150,7 @@ class PartsQueue:
         self.track = crowd.crowded(bowl, every, bowl.devices, room)
         self.placed = [device for device in bowl.devices if device.placed]
         self.outlet, self.windows = self.track.outlet / known.length, self.track.windows / known.length
-        self.apart = spacing.needed(bowl.devices, every, bowl) / known.length
+        self.apart = stream.needed_spacing(bowl.devices, every, bowl) / known.length
         self.crowd = crowd.PartsOnTrack(known, self.track, parts)
         self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
         self.mark, self.since, self.on_others = np.zeros(parts), np.zeros(parts), np.zeros(parts, bool)
@@ -245,16 +245,17 @@ class PartsQueue:
         self.periods += 1
         ways = whereabouts.ways(self.crowd.arrays.states, self.known.radius)
         self.crowd.watch(lying, before, ways, turn + 1)
-        on = [n for n in lying if not self.crowd.blown_off(n)]
-        if on:
+        fallen = self.fallen()
+        on = lying[~self.crowd.blown_off()[lying]]
+        if len(on):
             self.way.append((ways - before)[on].mean())
         reach = self.crowd.reaches(lying)
-        order = sorted(lying, key=lambda n: -ways[n])
+        order = lying[np.argsort(-ways[lying], kind="stable")].tolist()
         self.free += [max(reach[a][0] - reach[b][1], 0.0) for a, b in itertools.pairwise(order)]
         self.touch.append((self.crowd.forces[lying, BEHIND] > 0.0).mean())
         self.carried(lying, reach)
         for n in order:
-            self.look(n, ways[n], reach, order)
+            self.look(n, ways[n], reach, order, fallen[n])
         self.enter()
 
     def note(self):
@@ -272,10 +273,9 @@ class PartsQueue:
             self.climbs += bool(on and not self.on_others[n])
             self.on_others[n] = on
 
-    def look(self, n, way, reach, order):
+    def look(self, n, way, reach, order, fell):
         """What became of one part: left, fell, stands at a device, goes on."""
         rear, front, _ = reach[n]
-        fell = self.fell(n)
         if self.first is None and front > self.outlet and not fell:
             self.first = self.time
             self.start = self.outside(rear, front)
@@ -330,12 +330,10 @@ class PartsQueue:
             self.jams += 1
             self.again(n)
 
-    def fell(self, n):
-        """Whether a part has fallen off the track it is at, or was blown off it."""
-        return (
-            self.crowd.blown_off(n)
-            or self.crowd.arrays.states[n, body.Z] * self.known.length < self.track.levels.min() - self.deep
-        )
+    def fallen(self):
+        """Which parts, (N,) bool, have fallen off the track they are at, or were blown off it."""
+        heights = self.crowd.arrays.states[:, body.Z] * self.known.length
+        return self.crowd.blown_off() | (heights < self.track.levels.min() - self.deep)
 
     def at_outlet(self, n):
         """The state of a part as if the track were at the level at which it began."""

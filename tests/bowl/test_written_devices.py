@@ -18,7 +18,7 @@ from feederscrew.errors import FeederError
 from feederscrew.output import designs
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.devices.sensing import VIEWS
+from feederscrew.tooling.devices.pneumatics import SENSOR_VIEWS
 from feederscrew.tooling.isolating.chain import Cut
 
 NAMES = ("A", "b 2", "side: up", "x, y", "[C]", "Größe", "#1")
@@ -68,7 +68,7 @@ def draw(kind, rng):
         "jet": lambda: jet,
         "sorter": lambda: {
             "like": (pick(NAMES), turn(), length()),
-            "sees": pick(VIEWS),
+            "sees": pick(SENSOR_VIEWS),
             **some(
                 also=tuple((pick(NAMES), turn()) for _ in range(2)), resolution=length(), **jet,
                 time=float(rng.uniform(1e-3, 1.0)), nozzles=float(rng.integers(1, 21)),

@@ -62,7 +62,7 @@ def test_one_track_and_one_chain_are_shared_whatever_the_drive():
     gap = cut("gap", 4.0, 3.0, 5.0)
     study = families.FamilyStudy((design(SMALL, gap), design(LARGE, gap, bowl=slow)))
     assert study.shared and study.status == "holds"
-    (row,) = design_pages.document(study)["changeover"]
+    (row,) = design_pages.family_document(study)["changeover"]
     assert (row["what"], row["how"]) == ("drive.amplitude", "set") and set(row["values"]) == {
         "small",
         "large",
@@ -70,7 +70,7 @@ def test_one_track_and_one_chain_are_shared_whatever_the_drive():
     wide = replace(BOWL, track=replace(BOWL.track, width=1.5 * BOWL.track.width))
     other = families.FamilyStudy((design(SMALL, gap), design(LARGE, gap, bowl=wide, held=10)))
     assert not other.shared and other.status == "falls short"
-    assert [row["what"] for row in design_pages.document(other)["changeover"]] == ["track.width"]
+    assert [row["what"] for row in design_pages.family_document(other)["changeover"]] == ["track.width"]
 
 
 def test_what_is_swapped_is_listed_device_by_device():
@@ -82,7 +82,7 @@ def test_what_is_swapped_is_listed_device_by_device():
         "large": ["6 mm", "9 mm"],
     }  # fmt: skip
     assert not study.shared
-    said = dict(zip(*design_pages.summary(study).values(), strict=True))
+    said = dict(zip(*design_pages.family_summary(study).values(), strict=True))
     assert said["one bowl for all"] == "no" and said["swapped: gap 1"] == "4 mm; 6 mm"
 
 

@@ -26,7 +26,7 @@ from feederscrew.output.page.blocks import Chapter, Page
 from feederscrew.output.solidbowl import turnable
 from feederscrew.output.tooling import drawing
 from feederscrew.part import load
-from feederscrew.tooling.strip import strip
+from feederscrew.tooling.track_sections import build_section
 
 PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
 SHORT = "FALLS SHORT"
@@ -62,7 +62,7 @@ def built():
 
 
 def offered(one, built=None):
-    return {offer.name: offer for offer in designs.offers(one, (), built)}
+    return {offer.name: offer for offer in design_pages.offers(one, (), built)}
 
 
 def test_a_design_says_which_machine_it_asks_for(sensing):
@@ -115,7 +115,7 @@ def test_a_family_says_the_machine_and_the_warnings_of_each_part():
     both = FamilyStudy((study(), other), False)
     page = design_pages.family_page(both)
     assert page.lower().count("throw number") == 2 and "other: the magnet strikes" in page
-    rows = design_pages.summary(both)
+    rows = design_pages.family_summary(both)
     text = " ".join(rows["value"])
     assert text.count("leaf-spring drive") == 2 and "machine of other" in list(rows["quantity"])
 
@@ -150,7 +150,7 @@ def test_a_mark_is_laid_over_a_picture_of_pixels():
 def test_drawings_of_cuts_bear_a_mark_on_a_layer_of_its_own(sensing):
     gap = replace(sensing, devices=sensing.devices[1:])
     every = beside.machines.orientations(PART, loop.find(PART), gap.track)
-    made = strip(gap.track, gap.devices, every)
+    made = build_section(gap.track, gap.devices, every)
     read = ezdxf.read(io.StringIO(drawing.dxf(made, mark=marking.MARK).decode()))
     across = [one for one in read.modelspace() if one.dxf.layer == "MARK"]
     assert [one.dxftype() for one in across] == ["TEXT"] and SHORT in across[0].dxf.text

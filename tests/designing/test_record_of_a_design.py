@@ -92,7 +92,7 @@ def test_a_queue_that_was_stopped_is_no_verdict_in_any_output(tmp_path):
         printed = tables_of.text(designs.summary(some), "table")
         assert "not proved" in printed and "20 of 20 draws sort" in " ".join(printed.split())
         assert not any(word in printed for word in ("holds", "falls short", "an hour", "nan"))
-        names = [one.name for one in designs.offers(some, ())]
+        names = [one.name for one in design_pages.offers(some, ())]
         assert names == ["design.json", "design_trials.csv", "design.yaml"]
         (tmp_path / "design.yaml").write_text(designs.bowl_file(some, ()))
         assert "\nverified:" not in (tmp_path / "design.yaml").read_text()

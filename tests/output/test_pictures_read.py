@@ -9,7 +9,7 @@ import pytest
 
 from feederscrew.batch import summary
 from feederscrew.bowl import read, settings
-from feederscrew.bowl.vary import ranges
+from feederscrew.bowl.reading import key_ranges
 from feederscrew.output import batch, style, tipping_graph
 from feederscrew.output import compare as compare_output
 from feederscrew.output import convey as convey_output
@@ -137,7 +137,7 @@ def test_no_cross_where_nothing_presses():
 
 
 def test_the_zero_line_of_a_map_of_velocities_is_named():
-    spans = ranges(["drive.vibration_angle=5:60:8", "track.climb=0:12:8"])
+    spans = key_ranges(["drive.vibration_angle=5:60:8", "track.climb=0:12:8"])
     found = convey_study.velocity_map(settings(None), spans)
     figure = convey_output.velocity_map(found.grid)
     named = "line: 0" in figure.axes[0].get_title(loc="left")
