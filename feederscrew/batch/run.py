@@ -261,7 +261,7 @@ def crew(jobs=None, scheduler=None):
     return Cluster(scheduler) if scheduler else Processes(jobs or processors())
 
 
-def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda kept: None):
+def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda run: None):
     """Compute every part and write the folder of the batch.
 
     Parameters
@@ -302,7 +302,9 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
             return _finished(store, requests, under_way.kept, workers)
         except KeyboardInterrupt:
             done = {
-                one.name for one in requests if one.name in under_way.finished or _stays(store, one, choices)
+                request.name
+                for request in requests
+                if request.name in under_way.finished or _stays(store, request, choices)
             }
             raise StoppedBatchError(len(done), len(requests), _stopped(store, requests, done)) from None
 
@@ -322,12 +324,12 @@ def count_stale(requests, directory, choices=None):
     dict of str to int
         The most frequent reason first; parts whose file cannot be read are not counted.
     """
-    store, found = Store(directory), Counter[str]()
+    store, stale = Store(directory), Counter[str]()
     for request in requests:
         with contextlib.suppress(FeederError):
             reason = _why_again(store, request, choices or Choices())
-            found.update([reason] if reason else [])
-    return dict(found.most_common())
+            stale.update([reason] if reason else [])
+    return dict(stale.most_common())
 
 
 def _why_again(store, request, choices):
@@ -393,7 +395,7 @@ def _stopped(store, requests, finished):
     return store.path / name
 
 
-def _finished(store, requests, kept, workers):
+def _finished(store, requests, complete, workers):
     """Write the summary, the contact sheets and the index page, from what lies on the disk."""
     from feederscrew.output.page.as_html import html
 
@@ -407,7 +409,7 @@ def _finished(store, requests, kept, workers):
     store.write(files, without=[SHEET.format("*"), summary.PARTIAL])
     return Batch(
         rows=rows,
-        kept=kept,
+        kept=complete,
         strangers=tuple(store.strangers([request.name for request in requests])),
         targets=(store.path / summary.SUMMARY_FILE, store.path / summary.INDEX_FILE),
         sources=tuple(dict.fromkeys(request.source for request in requests)),

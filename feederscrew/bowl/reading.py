@@ -108,24 +108,30 @@ def _overridden(
 ) -> tuple[Setting, ...]:
     """Every value in effect of what is given and of overrides; raises all faults together."""
     typed = _from_overrides(overrides, faults)
-    given = {name: s for name, s in in_file.items() if not replaced(s.key, typed)} | typed
-    found = effective(given)
-    faults += [*_kinetic_above_static(given), *devices.misplaced(chain(found), _width(found))]
+    settings_by_key = {name: s for name, s in in_file.items() if not replaced(s.key, typed)} | typed
+    in_effect = effective(settings_by_key)
+    faults += [
+        *_kinetic_above_static(settings_by_key),
+        *devices.misplaced(chain(in_effect), _width(in_effect)),
+    ]
     documents.raise_all(faults)
-    return found
+    return in_effect
 
 
 def settings_of_text(text: str, name: str) -> tuple[Setting, ...]:
     """Return every value in effect of the text of a bowl file; the rest as for ``settings``."""
-    given, faults = _given(*documents.load(text, name))
-    found = effective(given)
-    faults += [*_kinetic_above_static(given), *devices.misplaced(chain(found), _width(found))]
+    settings_by_key, faults = _given(*documents.load(text, name))
+    in_effect = effective(settings_by_key)
+    faults += [
+        *_kinetic_above_static(settings_by_key),
+        *devices.misplaced(chain(in_effect), _width(in_effect)),
+    ]
     documents.raise_all(faults)
-    return found
+    return in_effect
 
 
-def _width(found: Iterable[Setting]) -> float:
-    return next(s.value for s in found if s.key.name == "track.width")
+def _width(lines: Iterable[Setting]) -> float:
+    return next(s.value for s in lines if s.key.name == "track.width")
 
 
 def checked(
@@ -184,22 +190,22 @@ def _given(root: Node, faults: list[FeederError]) -> tuple[dict[str, Setting], l
     """Settings of the tree of a bowl file by key name, and what is wrong with it."""
     if root.kind != "mapping":
         raise ConfigError(root.where, "no 'key: value' line", "start from 'feeder config init'")
-    given: dict[str, Setting] = {}
+    settings_by_key: dict[str, Setting] = {}
     for entry in root.entries:
         if entry.key in BOWL_SECTIONS:
-            _read_section(entry, given, faults)
+            _read_section(entry, settings_by_key, faults)
         elif entry.key in BY_NAME and not BY_NAME[entry.key].section:
-            _read_value(BY_NAME[entry.key], entry, given, faults)
+            _read_value(BY_NAME[entry.key], entry, settings_by_key, faults)
         elif entry.key == devices.DEVICES_SECTION:
-            given |= {
+            settings_by_key |= {
                 s.key.name: s for s in map(of_device, itertools.count(1), devices.listed(entry, faults))
             }
         elif entry.key != verified.VERIFIED_SECTION:
             faults.append(_unknown(entry, "", TOP_LEVEL))
-    return given, faults
+    return settings_by_key, faults
 
 
-def _read_section(section: Entry, given: dict[str, Setting], faults: list[FeederError]) -> None:
+def _read_section(section: Entry, settings_by_key: dict[str, Setting], faults: list[FeederError]) -> None:
     value = section.value
     if value.kind == "list" or value.text:
         what = f"'{section.key}' is a section, not a value"
@@ -207,20 +213,22 @@ def _read_section(section: Entry, given: dict[str, Setting], faults: list[Feeder
     words = [key.word for key in BOWL_KEYS if key.section == section.key]
     for entry in value.entries:
         if entry.key in words:
-            _read_value(BY_NAME[f"{section.key}.{entry.key}"], entry, given, faults)
+            _read_value(BY_NAME[f"{section.key}.{entry.key}"], entry, settings_by_key, faults)
         else:
             faults.append(_unknown(entry, section.key, words))
 
 
-def _read_value(key: Key, entry: Entry, given: dict[str, Setting], faults: list[FeederError]) -> None:
+def _read_value(
+    key: Key, entry: Entry, settings_by_key: dict[str, Setting], faults: list[FeederError]
+) -> None:
     try:
         setting = _from_node(key, entry.value)
     except ConfigError as fault:
         faults.append(fault)
         return
-    if replaced(key, given):
+    if replaced(key, settings_by_key):
         faults.append(_both(key, rival(key), entry.where))
-    given[key.name] = setting
+    settings_by_key[key.name] = setting
 
 
 def _from_node(key: Key, node: Node) -> Setting:
@@ -233,10 +241,10 @@ def _from_node(key: Key, node: Node) -> Setting:
     return checked(key, node.text, node.where)
 
 
-def _unknown(entry: Entry, section: str, known: Sequence[str]) -> ConfigError:
+def _unknown(entry: Entry, section: str, key_names: Sequence[str]) -> ConfigError:
     """The fault of a key that does not exist here; it may exist elsewhere."""
     elsewhere = next((k for k in BOWL_KEYS if entry.key in (k.word, k.name) and k.section != section), None)
-    mend = documents.hint(entry.key, known)
+    mend = documents.hint(entry.key, key_names)
     if elsewhere is not None:
         mend = f"write {elsewhere.word} " + (
             f"below '{elsewhere.section}:'" if elsewhere.section else "without indent"
@@ -246,17 +254,17 @@ def _unknown(entry: Entry, section: str, known: Sequence[str]) -> ConfigError:
 
 def _from_overrides(overrides: Iterable[str], faults: list[FeederError]) -> dict[str, Setting]:
     """Settings of overrides by key name; what is wrong is added to ``faults``."""
-    given: dict[str, Setting] = {}
+    settings_by_key: dict[str, Setting] = {}
     for override in overrides:
         try:
             setting = _from_override(override)
         except ConfigError as fault:
             faults.append(fault)
             continue
-        if replaced(setting.key, given):
+        if replaced(setting.key, settings_by_key):
             faults.append(_both(setting.key, rival(setting.key), setting.where, ArgumentError))
-        given[setting.key.name] = setting
-    return given
+        settings_by_key[setting.key.name] = setting
+    return settings_by_key
 
 
 def _from_override(override: str) -> Setting:
@@ -298,13 +306,13 @@ def find_key(name: str, where: str) -> Key:
 
 
 def _both(key: Key, other: Key | None, where: str, kind: type[ConfigError] = ConfigError) -> ConfigError:
-    names = " and ".join(one.name for one in (key, other) if one is not None)
+    names = " and ".join(part.name for part in (key, other) if part is not None)
     return kind(where, f"{names} are both given", "keep one of them")
 
 
-def _kinetic_above_static(given: dict[str, Setting]) -> list[ConfigError]:
+def _kinetic_above_static(settings_by_key: dict[str, Setting]) -> list[ConfigError]:
     """The faults of kinetic coefficients above static ones, each reported at the last word on either."""
-    held = {s.key.name: s for s in effective(given)}
+    held = {s.key.name: s for s in effective(settings_by_key)}
     listed = []
     for suffix in ("", "_backward"):
         static, kinetic = held[f"friction.static{suffix}"], held[f"friction.kinetic{suffix}"]
@@ -420,18 +428,20 @@ def key_ranges(texts: Iterable[str]) -> tuple[KeyRange, ...]:
     Faults
         Every fault of every text, one a line; also a field varied twice.
     """
-    found: dict[str, KeyRange] = {}
+    ranges: dict[str, KeyRange] = {}
     faults: list[ConfigError] = []
     for text in texts:
         try:
-            one = _range(text)
-            if one.key.field in found:
-                raise ArgumentError(f"vary {one.key.name}", "is varied twice", "vary two different keys")
-            found[one.key.field] = one
+            key_range = _range(text)
+            if key_range.key.field in ranges:
+                raise ArgumentError(
+                    f"vary {key_range.key.name}", "is varied twice", "vary two different keys"
+                )
+            ranges[key_range.key.field] = key_range
         except ConfigError as fault:
             faults.append(fault)
     documents.raise_all(faults)
-    return tuple(found.values())
+    return tuple(ranges.values())
 
 
 def _range(text: str) -> KeyRange:

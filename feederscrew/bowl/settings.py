@@ -53,12 +53,12 @@ class Setting:
         return "--set" if self.overrides else self.where.rpartition(":")[0]
 
 
-def effective(given: Mapping[str, Setting]) -> tuple[Setting, ...]:
+def effective(own_settings: Mapping[str, Setting]) -> tuple[Setting, ...]:
     """Return complete settings.
 
     Parameters
     ----------
-    given : dict of str to Setting
+    own_settings : dict of str to Setting
         What the user gave, by key name; of two keys of one field at most one.
 
     Returns
@@ -66,8 +66,8 @@ def effective(given: Mapping[str, Setting]) -> tuple[Setting, ...]:
     tuple of Setting
         One a key, in the order of ``schema.KEYS``, then one a device.
     """
-    keyed = tuple(_effective(key, given) for key in BOWL_KEYS)
-    return (*keyed, *(s for name, s in given.items() if name not in BY_NAME))
+    keyed = tuple(_effective(key, own_settings) for key in BOWL_KEYS)
+    return (*keyed, *(s for name, s in own_settings.items() if name not in BY_NAME))
 
 
 def of_device(place: int, device: Device) -> Setting:
@@ -121,8 +121,8 @@ def swept(settings: Sequence[Setting], values: Mapping[str, Any]) -> Bowl:
         Varied fields are those arrays.
     """
     varied = {name: Setting(BY_NAME[name], "", value, "varied") for name, value in values.items()}
-    given = {s.key.name: s for s in settings if s.given and not replaced(s.key, varied)}
-    return record(effective(given | varied))
+    own_settings = {s.key.name: s for s in settings if s.given and not replaced(s.key, varied)}
+    return record(effective(own_settings | varied))
 
 
 def texts(settings: Sequence[Setting]) -> dict[str, str]:
@@ -132,15 +132,15 @@ def texts(settings: Sequence[Setting]) -> dict[str, str]:
     return {s.key.name: s.text for s in settings if s.key.section not in silent}
 
 
-def has_machine(given: Iterable[str]) -> bool:
+def has_machine(own_settings: Iterable[str]) -> bool:
     """Return whether a key of what moves the bowl is among those given; its bolts do not.
 
     Parameters
     ----------
-    given : dict of str to Setting
+    own_settings : dict of str to Setting
         By key name.
     """
-    return any(name in BY_NAME and BY_NAME[name].field.startswith("machine.") for name in given)
+    return any(name in BY_NAME and BY_NAME[name].field.startswith("machine.") for name in own_settings)
 
 
 def assumptions(settings: Sequence[Setting]) -> tuple[str, ...]:
@@ -159,17 +159,21 @@ def by_machine(settings: Sequence[Setting]) -> tuple[str, ...]:
     As soon as one key of the machine is given, its springs and its supply set the drive: whoever gives
     neither may not expect that.
     """
-    given = {s.key.name for s in settings if s.given}
-    kept = {"drive.frequency": "machine.supply", "drive.vibration_angle": "machine.spring_angle"}
+    own_settings = {s.key.name for s in settings if s.given}
+    set_by = {"drive.frequency": "machine.supply", "drive.vibration_angle": "machine.spring_angle"}
     moved = [
         f"{s.key.name} is {s.text} by the machine, not {default(s.key).text}"
         for s in settings
-        if has_machine(given) and s.where.startswith("from machine") and kept.get(s.key.name) not in given
+        if has_machine(own_settings)
+        and s.where.startswith("from machine")
+        and set_by.get(s.key.name) not in own_settings
     ]
     if not moved:
         return ()
-    one = next(name for name in BY_NAME if name in given and has_machine({name}))
-    return (f"{one}: is given, so {' and '.join(moved)} - write drive.frequency and drive.vibration_angle",)
+    first_key = next(name for name in BY_NAME if name in own_settings and has_machine({name}))
+    return (
+        f"{first_key}: is given, so {' and '.join(moved)} - write drive.frequency and drive.vibration_angle",
+    )
 
 
 def default(key: Key) -> Setting:
@@ -177,25 +181,25 @@ def default(key: Key) -> Setting:
     return _effective(key, {})
 
 
-def replaced(key: Key, given: Container[str]) -> bool:
+def replaced(key: Key, own_settings: Container[str]) -> bool:
     """Return whether another key of the same field is given."""
     other = rival(key)
-    return other is not None and other.name in given
+    return other is not None and other.name in own_settings
 
 
-def _effective(key: Key, given: Mapping[str, Setting]) -> Setting:
-    if key.name in given:
-        return given[key.name]
+def _effective(key: Key, own_settings: Mapping[str, Setting]) -> Setting:
+    if key.name in own_settings:
+        return own_settings[key.name]
     other = rival(key)
-    if other is not None and (replaced(key, given) or key.default == other.name):
-        return _converted(key, _effective(other, given))
-    if key.name in OF_THE_MACHINE and has_machine(given):
-        return _of_the_machine(key, given)
-    if key.name == "machine.supply" and "machine.mains" in given:
-        text = f"{given['machine.mains'].text} full wave"
+    if other is not None and (replaced(key, own_settings) or key.default == other.name):
+        return _converted(key, _effective(other, own_settings))
+    if key.name in OF_THE_MACHINE and has_machine(own_settings):
+        return _of_the_machine(key, own_settings)
+    if key.name == "machine.supply" and "machine.mains" in own_settings:
+        text = f"{own_settings['machine.mains'].text} full wave"
         return Setting(key, text, key.value(text), "from machine.mains", given=False)
     if key.default in BY_NAME:
-        source = _effective(BY_NAME[key.default], given)
+        source = _effective(BY_NAME[key.default], own_settings)
         return Setting(key, source.text, source.value, f"as {key.default}", given=False)
     return Setting(key, key.default, key.value(key.default), "default", given=False)
 
@@ -207,22 +211,26 @@ def _converted(key: Key, source: Setting) -> Setting:
     return Setting(key, text, value, f"from {source.key.name}", given=False)
 
 
-def _of_the_machine(key: Key, given: Mapping[str, Setting]) -> Setting:
+def _of_the_machine(key: Key, own_settings: Mapping[str, Setting]) -> Setting:
     """The value that a machine's springs or its supply give to a key of the drive."""
     if key.name == "drive.frequency":
-        supply = _effective(BY_NAME["machine.supply"], given)
+        supply = _effective(BY_NAME["machine.supply"], own_settings)
         return _derived(key, supply.value, "from machine.supply")
     own = [
-        one
-        for one in BOWL_KEYS
-        if one.field.startswith("machine.") and one.word not in schema.UNBALANCE_NAMES
+        key_of_machine
+        for key_of_machine in BOWL_KEYS
+        if key_of_machine.field.startswith("machine.") and key_of_machine.word not in schema.UNBALANCE_NAMES
     ]
-    names = [one.name for one in own]
-    machine = Machine(**{name.partition(".")[2]: _effective(BY_NAME[name], given).value for name in names})
-    radius, climb = (_effective(BY_NAME[name], given).value for name in ("track.radius", "track.climb"))
+    names = [key_of_machine.name for key_of_machine in own]
+    machine = Machine(
+        **{name.partition(".")[2]: _effective(BY_NAME[name], own_settings).value for name in names}
+    )
+    radius, climb = (
+        _effective(BY_NAME[name], own_settings).value for name in ("track.radius", "track.climb")
+    )
     return _derived(key, vibration_angle(machine, radius, climb), "from machine")
 
 
 def _derived(key: Key, value: Any, where: str) -> Setting:
-    shown = "" if np.ndim(value) else f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}"
-    return Setting(key, shown, value, where, given=False)
+    text = "" if np.ndim(value) else f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}"
+    return Setting(key, text, value, where, given=False)
