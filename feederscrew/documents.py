@@ -226,11 +226,11 @@ def raise_all(faults: Iterable[FeederError]) -> None:
         raise Faults(listed)
 
 
-def hint(word: str, known: Iterable[str]) -> str:
+def hint(word: str, candidates: Iterable[str]) -> str:
     """Return how to mend an unknown word: the nearest known one, or the list of them."""
-    folded = {name.lower(): name for name in known}
+    folded = {name.lower(): name for name in candidates}
     near = difflib.get_close_matches(word.lower(), folded, n=1, cutoff=0.6)
-    return f"did you mean {folded[near[0]]}?" if near else f"known are {', '.join(known)}"
+    return f"did you mean {folded[near[0]]}?" if near else f"known are {', '.join(candidates)}"
 
 
 class _Builder:
@@ -262,23 +262,23 @@ class _Builder:
         return Node(self.where(event), "text", text=getattr(event, "value", ""))
 
     def entries(self, events: Iterator[Any], depth: int) -> tuple[Entry, ...]:
-        found: dict[str, Entry] = {}
+        entries: dict[str, Entry] = {}
         while not isinstance(event := next(events), yaml.MappingEndEvent):
             key = self.node(event, events, depth + 1)
             value = self.node(next(events), events, depth + 1)
             if key.kind != "text":
                 self.faults.append(ConfigError(key.where, "a key is not plain text", "write 'key: value'"))
-            elif key.text in found:
-                self.faults.append(self.duplicate(key, found[key.text]))
+            elif key.text in entries:
+                self.faults.append(self.duplicate(key, entries[key.text]))
             else:
-                found[key.text] = Entry(key.text, key.where, value)
-        return tuple(found.values())
+                entries[key.text] = Entry(key.text, key.where, value)
+        return tuple(entries.values())
 
     def items(self, events: Iterator[Any], depth: int) -> tuple[Node, ...]:
-        found: list[Node] = []
+        items: list[Node] = []
         while not isinstance(event := next(events), yaml.SequenceEndEvent):
-            found.append(self.node(event, events, depth + 1))
-        return tuple(found)
+            items.append(self.node(event, events, depth + 1))
+        return tuple(items)
 
     def duplicate(self, key: Node, first: Entry) -> ConfigError:
         line = first.where.rsplit(":", 2)[1]

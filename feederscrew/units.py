@@ -170,16 +170,16 @@ def _without_comma(plain: str) -> str:
 
 
 def _wrong_unit(text: str, unit: str, dimension: str, suggest: str) -> QuantityError:
-    known = next((other for other, units in UNITS_BY_DIMENSION.items() if unit in units), None)
+    wrong_unit = next((other for other, units in UNITS_BY_DIMENSION.items() if unit in units), None)
     if dimension in ("number", "count"):
         what = f"{shown(text)} has a unit, and this is a plain number"
-        return QuantityError(what, "write the number alone") if known else _no_number(text)
+        return QuantityError(what, "write the number alone") if wrong_unit else _no_number(text)
     if unit == "":
         return QuantityError(f"{shown(text)} has no unit", f"write {text} {suggest}")
-    if known:
-        what = f"{shown(text)} is {_with_article(known)}, not {_with_article(dimension)}"
+    if wrong_unit:
+        what = f"{shown(text)} is {_with_article(wrong_unit)}, not {_with_article(dimension)}"
         longer = [
-            text + one[len(unit) :] for one in UNITS_BY_DIMENSION[dimension] if one.startswith(f"{unit} ")
+            text + item[len(unit) :] for item in UNITS_BY_DIMENSION[dimension] if item.startswith(f"{unit} ")
         ]
         return QuantityError(what, f"write {' or '.join(longer)}" if longer else f"give it in {suggest}")
     return QuantityError(
@@ -193,7 +193,7 @@ def _with_article(dimension: str) -> str:
 
 
 def _units_of(unit: str, dimension: str) -> str:
-    folded = {known.lower(): known for known in UNITS_BY_DIMENSION[dimension]}
+    folded = {item.lower(): item for item in UNITS_BY_DIMENSION[dimension]}
     if unit.lower() in folded:
         return f"did you mean {folded[unit.lower()]}?"
     return f"known are {', '.join(UNITS_BY_DIMENSION[dimension])}"

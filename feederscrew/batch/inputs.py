@@ -107,7 +107,7 @@ def _row(path, line, header, cells, faults):
     return [ListedPart(str(folder / texts[PART]), options, config, where, texts.get(ASPECT) or None, names)]
 
 
-MESHES = {suffix for name, file_format in FORMATS.items() if name != CARD for suffix in format_.suffixes}
+MESHES = {suffix for name, file_format in FORMATS.items() if name != CARD for suffix in file_format.suffixes}
 CARDS = set(FORMATS[CARD].suffixes)
 CARD_KEY = re.compile(rb"^(mass|inertia|aspects)\s*:", re.MULTILINE)
 LONGEST, MOST_BYTES = 80, 160  # letters and bytes of a folder's name

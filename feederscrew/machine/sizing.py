@@ -91,16 +91,16 @@ def find_lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = 
         If the part is a card without an outline.
     """
     stood = [posture(part, aspects, aspects.names[row]) for row in np.flatnonzero(aspects.stable)]
-    headings_of = [headings(stance, STRAIGHT_TRACK) for posture_ in stood]
+    stable = [headings(posed, STRAIGHT_TRACK) for posed in stood]
     rows = [
-        (stance.aspect, *row)
-        for stance in headings_of
-        for row in zip(stance.headings, posture_.lengths, posture_.widths)
+        (on_aspect.aspect, *row)
+        for on_aspect in stable
+        for row in zip(on_aspect.headings, on_aspect.lengths, on_aspect.widths)
     ]
     counted = rows if wanted is None else [rows[_place([row[:2] for row in rows], wanted)]]
     return Lying(
         longest=float(max(row[2] for row in rows)),
-        tallest=float(max(np.max(stance.corners[:, 2]) for posture_ in stood)),
+        tallest=float(max(np.max(posed.corners[:, 2]) for posed in stood)),
         length=float(max(row[2] for row in counted)),
         width=float(max(row[3] for row in counted)),
     )

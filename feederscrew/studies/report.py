@@ -218,7 +218,7 @@ def report(
     FeederError
         If there is no such aspect or rule, or the bowl file has faults.
     """
-    spacing = check.options("report", Spacing, options, beside=ANSWER | PAGE)
+    spacing = check.options("report", Spacing, options, extra=ANSWER | PAGE)
     settings = bowls.settings(path, overrides)
     bowl = bowls.record(settings)
     known = shares(part, bowl, rule=rule, **_of(options, ANSWER))
