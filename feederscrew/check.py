@@ -64,10 +64,10 @@ def kind(name: str, value: object, wanted: type | tuple[type, ...], mend: str) -
         What to give: 'give a part, as load returns it'.
     """
     if not isinstance(value, wanted):
-        raise ArgumentError(name, f"is {_said(value)}", mend)
+        raise ArgumentError(name, f"is {_shape_text(value)}", mend)
 
 
-def _said(value: object) -> str:
+def _shape_text(value: object) -> str:
     """A value as a line shows it; of a record its class."""
     plain = isinstance(value, (int, float, str, type(None), list))
     return f"{value!r:.40}" if plain else f"a {type(value).__name__}"
@@ -153,7 +153,7 @@ def argument(name: str, value: Any, low: float = -np.inf, high: float = np.inf) 
     try:
         number = float(value)
     except (TypeError, ValueError):
-        raise ArgumentError(name, f"is {_said(value)}, not a number", "give a number") from None
+        raise ArgumentError(name, f"is {_shape_text(value)}, not a number", "give a number") from None
     if low <= number <= high and np.isfinite(number):
         return number
     ends = [f"from {low:g}"] if np.isfinite(low) else []

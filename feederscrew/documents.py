@@ -11,7 +11,7 @@ from typing import Any, BinaryIO
 import yaml
 
 from feederscrew.errors import ArgumentError, ConfigError, Faults, FeederError
-from feederscrew.units import shown
+from feederscrew.units import quantity_text
 
 MAX_DOCUMENT_BYTES = (
     200_000  # [bytes]: a bowl file or part card has a few hundred; parsing time grows with size
@@ -282,16 +282,22 @@ class _Builder:
 
     def duplicate(self, key: Node, first: Entry) -> ConfigError:
         line = first.where.rsplit(":", 2)[1]
-        return ConfigError(key.where, f"key {shown(key.text)} is already in line {line}", "keep one of them")
+        return ConfigError(
+            key.where, f"key {quantity_text(key.text)} is already in line {line}", "keep one of them"
+        )
 
     def note_extras(self, event: Any) -> None:
         """Note what a plain settings file has no use for: aliases, anchors and tags."""
         if isinstance(event, yaml.AliasEvent):
-            self.note(event, f"alias {shown('*' + event.anchor)} is not allowed", "write the value itself")
+            self.note(
+                event, f"alias {quantity_text('*' + event.anchor)} is not allowed", "write the value itself"
+            )
         elif event.anchor is not None:
-            self.note(event, f"anchor {shown('&' + event.anchor)} is not allowed", "write the value alone")
+            self.note(
+                event, f"anchor {quantity_text('&' + event.anchor)} is not allowed", "write the value alone"
+            )
         elif event.tag is not None:
-            self.note(event, f"tag {shown(event.tag)} is not allowed", "write the value alone")
+            self.note(event, f"tag {quantity_text(event.tag)} is not allowed", "write the value alone")
 
     def note(self, event: Any, what: str, mend: str) -> None:
         self.faults.append(self.fault(event, what, mend))

@@ -124,14 +124,14 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
     except FileNotFoundError:
         raise ConfigError(where, f"{name}: no such file", "check the path") from None
     except _Unread as fault:
-        what = f"layer {units.shown(layer)} of {units.printable(path.name)} {fault.what}"
+        what = f"layer {units.quantity_text(layer)} of {units.printable(path.name)} {fault.what}"
         raise ConfigError(where, what, fault.mend) from None
     except (*REFUSED, ezdxf.DXFError):
         raise ConfigError(
             where, f"{name} cannot be read as DXF", "save it as ASCII DXF R2000 or later"
         ) from None
     if not outlines:
-        what = f"{units.printable(path.name)} has no closed outline on layer {units.shown(layer)}"
+        what = f"{units.printable(path.name)} has no closed outline on layer {units.quantity_text(layer)}"
         raise ConfigError(where, what, "draw the hole as one closed polyline (LWPOLYLINE)")
     return Outlines(outlines, _unit_code(drawing) != UNITLESS)
 
@@ -215,7 +215,7 @@ def _points(kind: str, entity: Any, sagitta: float) -> tuple[list[Point], bool]:
     if kind == "ELLIPSE":
         _near((*dxf.center, *dxf.major_axis))
         flattened = itertools.islice(entity.flattening(sagitta, MAX_CORNERS // 16), MAX_CORNERS + 2)
-        return [tuple(point) for point in islice], False
+        return [tuple(point) for point in flattened], False
     if kind == "SPLINE" and len(entity.control_points):
         return _spline(entity, sagitta), False
     if kind == "SPLINE":

@@ -21,12 +21,12 @@ MOST_LETTERS = 500  # of a text that says an answer
 VIEWS, LINES = "feederscrew.output.record_views", "feederscrew.output.record_lines"
 
 
-class Shown:
+class ReadableRecord:
     """A record whose text is short, and that has a table and, where its command draws, pictures."""
 
     def __init_subclass__(cls, **keywords: Any) -> None:
         super().__init_subclass__(**keywords)
-        cls.__repr__ = Shown.__repr__  # type: ignore[method-assign]  # or a dataclass makes its own
+        cls.__repr__ = ReadableRecord.__repr__  # type: ignore[method-assign]  # or a dataclass makes its own
 
     def __repr__(self) -> str:
         answer = import_module(LINES).answer(self)

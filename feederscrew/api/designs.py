@@ -155,7 +155,7 @@ def design(
     if request.outcome not in OUTCOMES:
         raise ArgumentError("outcome", f"is {request.outcome!r}", f"give {listed(list(OUTCOMES))}")
     plain = asked.a_bowl(bowls.default() if bowl is None else bowl, overrides, settings)
-    kept_keys = frozenset(given) | {setting.key.name for setting in plain.settings if setting.given}
+    kept_keys = frozenset(given) | {setting.key.name for setting in plain.settings if setting.is_own}
     kept_settings = beside.settings_of(plain, kept_keys)
     if isinstance(part, (list, tuple)) and part:
         parts = [asked.a_part(one, mesh=True) for one in part]

@@ -240,7 +240,7 @@ def _conditions(path, overrides, faults, line):
             bowls.name(path),
             bowl,
             texts,
-            given=path is not None,
+            has_file=path is not None,
             warnings=remarks,
             tried=bowls.verified(path),
         )

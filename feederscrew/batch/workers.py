@@ -18,7 +18,7 @@ from typing import Any
 from feederscrew import __version__
 from feederscrew.batch.task import Outcome, Task, libraries
 from feederscrew.errors import ArgumentError, FeederError, MissingPackage
-from feederscrew.units import shown
+from feederscrew.units import quantity_text
 
 ATTEMPTS = 3  # of a part whose worker dies under it
 LIFETIME = 200  # parts of one process: what libraries leak goes with it
@@ -239,7 +239,7 @@ class Cluster:
     def _client(self):
         distributed = _distributed()
         if not ADDRESS.fullmatch(self.address):
-            what = f"{shown(self.address)} is not an address of a scheduler"
+            what = f"{quantity_text(self.address)} is not an address of a scheduler"
             raise ArgumentError("scheduler", what, "write it as tcp://host:8786")
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # we tell what is lost, in one line
         try:

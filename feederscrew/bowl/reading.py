@@ -84,7 +84,7 @@ def adjust(bowl: Bowl, overrides: Iterable[str]) -> Bowl:
         its drive would be is not known.
     """
     if bowl.settings:
-        return record(_overridden({s.key.name: s for s in bowl.settings if s.given}, overrides, []))
+        return record(_overridden({s.key.name: s for s in bowl.settings if s.is_own}, overrides, []))
     faults: list[FeederError] = []
     for setting in _from_overrides(overrides, faults).values():
         section, _, word = setting.key.field.rpartition(".")
@@ -120,7 +120,7 @@ def _overridden(
 
 def settings_of_text(text: str, name: str) -> tuple[Setting, ...]:
     """Return every value in effect of the text of a bowl file; the rest as for ``settings``."""
-    settings_by_key, faults = _given(*documents.load(text, name))
+    settings_by_key, faults = _settings_of(*documents.load(text, name))
     in_effect = effective(settings_by_key)
     faults += [
         *_kinetic_above_static(settings_by_key),
@@ -175,18 +175,18 @@ def checked(
     value = 0.0 if abs(value) < SMALLEST else value
     low, high = (units.quantity(limit, key.dimension) for limit in (key.lowest, key.highest))
     if not low <= value <= high:
-        what = f"{subject}{units.shown(text)} is out of range"
+        what = f"{subject}{units.quantity_text(text)} is out of range"
         raise kind(where, what, f"give {key.lowest} to {key.highest}")
     if key.dimension == "count" and value % 1.0:
-        raise kind(where, f"{subject}{units.shown(text)} is not a whole number", "give 9 or 10")
+        raise kind(where, f"{subject}{units.quantity_text(text)} is not a whole number", "give 9 or 10")
     return Setting(key, " ".join(text.split()), value, where)
 
 
 def _from_file(path: str | PathLike[str]) -> tuple[dict[str, Setting], list[FeederError]]:
-    return _given(*documents.read(path))
+    return _settings_of(*documents.read(path))
 
 
-def _given(root: Node, faults: list[FeederError]) -> tuple[dict[str, Setting], list[FeederError]]:
+def _settings_of(root: Node, faults: list[FeederError]) -> tuple[dict[str, Setting], list[FeederError]]:
     """Settings of the tree of a bowl file by key name, and what is wrong with it."""
     if root.kind != "mapping":
         raise ConfigError(root.where, "no 'key: value' line", "start from 'feeder config init'")
@@ -249,7 +249,7 @@ def _unknown(entry: Entry, section: str, key_names: Sequence[str]) -> ConfigErro
         mend = f"write {elsewhere.word} " + (
             f"below '{elsewhere.section}:'" if elsewhere.section else "without indent"
         )
-    return ConfigError(entry.where, f"unknown key {units.shown(entry.key)}", mend)
+    return ConfigError(entry.where, f"unknown key {units.quantity_text(entry.key)}", mend)
 
 
 def _from_overrides(overrides: Iterable[str], faults: list[FeederError]) -> dict[str, Setting]:
@@ -302,7 +302,9 @@ def find_key(name: str, where: str) -> Key:
         raise ArgumentError(where, f"'{name}' is a section, not a key", f"write one of its keys, as {first}")
     if name == devices.DEVICES_SECTION:
         raise ArgumentError(where, "devices are a list", "write them in a bowl file")
-    raise ArgumentError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
+    raise ArgumentError(
+        where, f"unknown key {units.quantity_text(name)}", documents.hint(name, list(BY_NAME))
+    )
 
 
 def _both(key: Key, other: Key | None, where: str, kind: type[ConfigError] = ConfigError) -> ConfigError:
@@ -316,13 +318,13 @@ def _kinetic_above_static(settings_by_key: dict[str, Setting]) -> list[ConfigErr
     listed = []
     for suffix in ("", "_backward"):
         static, kinetic = held[f"friction.static{suffix}"], held[f"friction.kinetic{suffix}"]
-        if kinetic.value > static.value and (static.given or kinetic.given):
+        if kinetic.value > static.value and (static.is_own or kinetic.is_own):
             listed.append(_above(static, kinetic))
     return listed
 
 
 def _above(static: Setting, kinetic: Setting) -> ConfigError:
-    static_last = not kinetic.given or (static.overrides and not kinetic.overrides)
+    static_last = not kinetic.is_own or (static.overrides and not kinetic.overrides)
     last, other = (static, kinetic) if static_last else (kinetic, static)
     place = "given as well" if other.overrides else other.where
     what = f"{kinetic.key.name} {kinetic.text} is above {static.key.name} {static.text} ({place})"
@@ -393,7 +395,7 @@ def _amplitude(full: float, entry: str) -> float:
     if not 0.0 <= share <= FULL:
         raise ArgumentError(
             AMPLITUDES_KEY,
-            f"{units.shown(entry)} is out of range",
+            f"{units.quantity_text(entry)} is out of range",
             f"give 0% to {FULL:.0%} of drive.amplitude",
         )
     return share * full
@@ -452,7 +454,7 @@ def _range(text: str) -> KeyRange:
         raise ArgumentError(where, "is a word, not a number", f"set it to {key.bounds}")
     ends = span.split(":")
     if len(ends) != 3:
-        what = f"{units.shown(span)} is not a range"
+        what = f"{units.quantity_text(span)} is not a range"
         raise ArgumentError(where, what, f"write FROM:TO:COUNT, as in {name}={_example(key)}")
     low, high = (checked(key, end, where, bare=True, kind=ArgumentError).value for end in ends[:2])
     if low == high:
@@ -465,7 +467,9 @@ def _range_count(text: str, where: str) -> int:
     if text.strip().isascii() and text.strip().isdigit() and 2 <= int(text.strip()[:9]) <= MAX_RANGE_VALUES:
         return int(text.strip())
     raise ArgumentError(
-        where, f"{units.shown(text)} is not a count", f"give a whole number from 2 to {MAX_RANGE_VALUES}"
+        where,
+        f"{units.quantity_text(text)} is not a count",
+        f"give a whole number from 2 to {MAX_RANGE_VALUES}",
     )
 
 

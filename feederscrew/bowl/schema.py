@@ -52,7 +52,7 @@ class Key:
         words = {_plainly(choice): choice for choice in self.choices}
         word = words.get(_plainly(text))
         if word is None:
-            raise units.QuantityError(f"{units.shown(text)} is not known", f"write {self.bounds}")
+            raise units.QuantityError(f"{units.quantity_text(text)} is not known", f"write {self.bounds}")
         return word
 
     @property

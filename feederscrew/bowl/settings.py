@@ -33,7 +33,7 @@ class Setting:
     text: str  # as typed: '0.5 mm'
     value: Any  # [SI] a number, or an array while the key is varied; a word; a Device
     where: str  # 'bowl.yaml:2:14', 'overrides drive.amplitude', 'default', 'as friction.static'
-    given: bool = True  # by the user
+    is_own: bool = True  # by the user
 
     @property
     def size(self) -> Any:
@@ -43,12 +43,12 @@ class Setting:
     @property
     def overrides(self) -> bool:
         """Whether it goes over the file."""
-        return self.given and self.where == f"{OVERRIDES} {self.key.name}"
+        return self.is_own and self.where == f"{OVERRIDES} {self.key.name}"
 
     @property
     def origin(self) -> str:
         """Where it came from, for people: 'bowl.yaml:2', '--set', 'default'."""
-        if not self.given:
+        if not self.is_own:
             return self.where
         return "--set" if self.overrides else self.where.rpartition(":")[0]
 
@@ -89,7 +89,7 @@ def record(settings: Sequence[Setting]) -> Bowl:
     """
     keyed = [s for s in settings if s.key.field != DEVICES_SECTION]
     fields = {s.key.field: s.value if s.key.choices else s.size for s in keyed}
-    fields |= {s.key.field: None for s in keyed if s.key.field in DEPENDENT_KEYS and not s.given}
+    fields |= {s.key.field: None for s in keyed if s.key.field in DEPENDENT_KEYS and not s.is_own}
     sections: dict[str, dict[str, Any]] = {name: {} for name in RECORDS}
     for name, value in fields.items():
         section, _, word = name.rpartition(".")
@@ -121,13 +121,13 @@ def swept(settings: Sequence[Setting], values: Mapping[str, Any]) -> Bowl:
         Varied fields are those arrays.
     """
     varied = {name: Setting(BY_NAME[name], "", value, "varied") for name, value in values.items()}
-    own_settings = {s.key.name: s for s in settings if s.given and not replaced(s.key, varied)}
+    own_settings = {s.key.name: s for s in settings if s.is_own and not replaced(s.key, varied)}
     return record(effective(own_settings | varied))
 
 
 def texts(settings: Sequence[Setting]) -> dict[str, str]:
     """Return the settings by key name as text, for run.json; without an optional section not given."""
-    listed = {s.key.section for s in settings if s.given}
+    listed = {s.key.section for s in settings if s.is_own}
     silent = [name for name in OPTIONAL if name not in listed]
     return {s.key.name: s.text for s in settings if s.key.section not in silent}
 
@@ -159,7 +159,7 @@ def by_machine(settings: Sequence[Setting]) -> tuple[str, ...]:
     As soon as one key of the machine is given, its springs and its supply set the drive: whoever gives
     neither may not expect that.
     """
-    own_settings = {s.key.name for s in settings if s.given}
+    own_settings = {s.key.name for s in settings if s.is_own}
     set_by = {"drive.frequency": "machine.supply", "drive.vibration_angle": "machine.spring_angle"}
     moved = [
         f"{s.key.name} is {s.text} by the machine, not {default(s.key).text}"
@@ -197,18 +197,18 @@ def _effective(key: Key, own_settings: Mapping[str, Setting]) -> Setting:
         return _of_the_machine(key, own_settings)
     if key.name == "machine.supply" and "machine.mains" in own_settings:
         text = f"{own_settings['machine.mains'].text} full wave"
-        return Setting(key, text, key.value(text), "from machine.mains", given=False)
+        return Setting(key, text, key.value(text), "from machine.mains", is_own=False)
     if key.default in BY_NAME:
         source = _effective(BY_NAME[key.default], own_settings)
-        return Setting(key, source.text, source.value, f"as {key.default}", given=False)
-    return Setting(key, key.default, key.value(key.default), "default", given=False)
+        return Setting(key, source.text, source.value, f"as {key.default}", is_own=False)
+    return Setting(key, key.default, key.value(key.default), "default", is_own=False)
 
 
 def _converted(key: Key, source: Setting) -> Setting:
     """The same field said by its other key."""
     value = source.value * source.key.share / key.share
     text = f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}" if source.text else ""
-    return Setting(key, text, value, f"from {source.key.name}", given=False)
+    return Setting(key, text, value, f"from {source.key.name}", is_own=False)
 
 
 def _of_the_machine(key: Key, own_settings: Mapping[str, Setting]) -> Setting:
@@ -233,4 +233,4 @@ def _of_the_machine(key: Key, own_settings: Mapping[str, Setting]) -> Setting:
 
 def _derived(key: Key, value: Any, where: str) -> Setting:
     text = "" if np.ndim(value) else f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}"
-    return Setting(key, text, value, where, given=False)
+    return Setting(key, text, value, where, is_own=False)

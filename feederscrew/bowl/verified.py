@@ -136,13 +136,13 @@ def fingerprint(bowl: Bowl) -> str:
     str
         Sixteen digits; the last digits of numbers do not count.
     """
-    listed = [_told(getattr(bowl, name)) for name in ("drive", "friction", "track")]
+    listed = [_number_text(getattr(bowl, name)) for name in ("drive", "friction", "track")]
     listed += [f"{bowl.restitution:.5g}", f"{bowl.gravity:.5g}"]
     listed += [_device(device) for device in bowl.devices]
     return hashlib.sha256("\n".join(listed).encode()).hexdigest()[:16]
 
 
-def _told(record: object) -> str:
+def _number_text(record: object) -> str:
     return " ".join("-" if value is None else f"{value:.5g}" for value in vars(record).values())
 
 

@@ -312,7 +312,7 @@ class DriveSearch:
 
 def user_keys(settings: Iterable[Setting], section: str = "") -> set[str]:
     """Return the words of the keys of a section that the user gave, a set."""
-    return {s.key.word for s in settings if s.given and s.key.section == section}
+    return {s.key.word for s in settings if s.is_own and s.key.section == section}
 
 
 def bring_target(search: DriveSearch, flow: Callable[[Bowl | None], sizing.Flow]) -> tuple[Bowl, sizing.Flow]:

@@ -53,7 +53,7 @@ def _origin(bowl: Any) -> str:
     """Where a bowl is from: 'bowl.yaml, 2 overrides', 'defaults'; 'changed' after it was read."""
     if not bowl.settings:
         return "changed after it was read"
-    own = [setting for setting in bowl.settings if setting.given]
+    own = [setting for setting in bowl.settings if setting.is_own]
     files = list(dict.fromkeys(s.where.rsplit(":", 2)[0] for s in own if not s.overrides))
     overrides = sum(setting.overrides for setting in own)
     return ", ".join([*(files or ["defaults"]), *([counted(overrides, "override")] if overrides else [])])
@@ -95,7 +95,7 @@ def _orientation(one: Any) -> str:
 
 def _tune(study: Any) -> str:
     settings = [
-        f"{one.solution.key.name} {one.solution.shown:.4g} {one.solution.key.unit}".rstrip()
+        f"{one.solution.key.name} {one.solution.number:.4g} {one.solution.key.unit}".rstrip()
         for one in study.settings
     ]
     return f"{study.part.name}: {number(study.target * MINUTE)} parts/min with {' or '.join(settings)}"

@@ -112,7 +112,7 @@ def _view_uri(part):
 
 def _settings(bowl):
     """The keys of a bowl that somebody gave, with where they come from; all of them where none was."""
-    given = [setting for setting in bowl.settings if setting.given] or bowl.settings
+    given = [setting for setting in bowl.settings if setting.is_own] or bowl.settings
     columns = {"key": [s.key.name for s in given], "value": [s.text for s in given]}
     return tables.data_frame(tables.frame(columns | {"from": [s.origin for s in given]}))
 

@@ -50,7 +50,7 @@ class Solution:
     parts_per_metre: float  # [1/m] well-oriented parts on a length of track, with what arrives at that drive
 
     @property
-    def shown(self) -> float:
+    def number(self) -> float:
         """The value in the key's unit, as it is given back."""
         return float(f"{self.value / units.factor(self.key.unit, self.key.dimension):.12g}")
 
@@ -120,12 +120,12 @@ def solutions(
         )
         near = [
             solution
-            for solution in _apart(settings_tried, target)
+            for solution in _separate_solutions(settings_tried, target)
             if abs(solution.rate - target) <= ACCEPTED_RATE_ERROR * target
         ]
         if progress:
             progress(count + 1, len(likely + unlikely))
-    beyond = [solution for solution in _apart(settings_tried, target) if solution.rate > target]
+    beyond = [solution for solution in _separate_solutions(settings_tried, target) if solution.rate > target]
     if not near and not beyond:
         raise _unreachable(looks, target, density)
     return sorted(near or beyond, key=lambda solution: solution.order)
@@ -190,7 +190,7 @@ def _settled(
     return min(enough or away, key=lambda pair: pair[0])[1]
 
 
-def _apart(solutions: list[Solution], target: float) -> list[Solution]:
+def _separate_solutions(solutions: list[Solution], target: float) -> list[Solution]:
     """Those of each key that are no other's neighbour, the nearest to the target of such neighbours."""
     separate: list[Solution] = []
     for solution in sorted(solutions, key=lambda solution: abs(solution.rate - target)):

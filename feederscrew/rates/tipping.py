@@ -198,18 +198,18 @@ STAYS, ROCKS, OVER, BACK, THROWN = "stays on its aspect", "rocks", "turns over",
 class Stands:
     """What the drive does to one orientation on the track: the verdict that the rate reckons with."""
 
-    way: str  # STAYS, ROCKS, OVER, BACK or THROWN
+    verdict: str  # STAYS, ROCKS, OVER, BACK or THROWN
     tilt: float = 0.0  # [rad] that one stroke brings at most
     lean: float = np.inf  # [rad] from which it goes on by itself; infinite where it stays
 
     @property
-    def said(self) -> str:
+    def sentence(self) -> str:
         """The verdict in words, with its angles."""
-        if self.way == ROCKS:
+        if self.verdict == ROCKS:
             tilt, lean = np.degrees(self.tilt), np.degrees(self.lean)
             return f"rocks by {tilt:.2g} deg a stroke; turns over from {lean:.3g} deg on"
         return {OVER: "turns over, goes back into the bowl", BACK: "rolls back down the climb"}.get(
-            self.way, self.way
+            self.verdict, self.verdict
         )
 
 
@@ -298,7 +298,9 @@ def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
     the next one, or over already, its rocking is followed: ``rocking.goes_over``.
     """
     states = (
-        [_one(orientation, bowl) for orientation in lying] if plain_bowl(bowl) else [_NO_TIPPING] * len(lying)
+        [_tips_over(orientation, bowl) for orientation in lying]
+        if plain_bowl(bowl)
+        else [_NO_TIPPING] * len(lying)
     )
     return TrackTipping(*(check.frozen(np.array(column)) for column in zip(*states)))
 
@@ -420,7 +422,7 @@ def plain_bowl(bowl: Bowl) -> bool:
         return False
 
 
-def _one(orientation: Orientation, bowl: Bowl) -> tuple[bool, float, float, bool]:
+def _tips_over(orientation: Orientation, bowl: Bowl) -> tuple[bool, float, float, bool]:
     """Whether one orientation tips, how far a stroke tilts it, from where it goes on, if it goes over."""
     if (
         orientation.falls_off
@@ -550,12 +552,12 @@ def _steady(devices: Sequence[Device], orientation: Orientation, bowl: Bowl, mar
     if orientation.returned or orientation.touching is None:
         return True
     if orientation.kind != FLAT_KIND and rolls_across(orientation):
-        return not any(_takes(device, orientation) for device in _met(devices))
+        return not any(_takes(device, orientation) for device in _touched(devices))
     place = seat_in_groove(orientation, bowl.track.bank)
     if (balance.motion(place, bowl, phases(STEADINESS_PHASES)).state == HOP).any():
         return True
     force, offset = over_period(place, bowl)
-    for device in _met(devices):
+    for device in _touched(devices):
         span, hole = device.span_on(orientation.track), device.hole_on(orientation.track)
         if span is not None and not _keeps_down(orientation, span, offset, margin):
             return False
@@ -571,11 +573,11 @@ def _lands(
     if orientation.returned or orientation.touching is None:
         return True
     if orientation.kind != FLAT_KIND and rolls_across(orientation):
-        return not any(_takes(device, orientation) for device in _met(devices))
-    for device in _met(devices):
+        return not any(_takes(device, orientation) for device in _touched(devices))
+    for device in _touched(devices):
         span = device.span_on(orientation.track)
         if span is not None and _takes(device, orientation):
-            left = footprints.beside(
+            left = footprints.outside_slot(
                 orientation.foot, span, orientation.distance, orientation.track.radius
             ).corners
             if may_tip(left, orientation, bowl, energy, margin):
@@ -583,7 +585,7 @@ def _lands(
     return True
 
 
-def _met(devices: Sequence[Device]) -> Iterator[Device]:
+def _touched(devices: Sequence[Device]) -> Iterator[Device]:
     """Those that leave less of a foot, as far as parts come to them as they lie."""
     for device in devices:
         if device.turns or device.hangs:
@@ -619,7 +621,7 @@ def _keeps_down(
         > orientation.margin - SUPPORT_LOSS_TOLERANCE_M
     ):
         return True
-    left = footprints.beside(orientation.foot, span, orientation.distance, radius).corners
+    left = footprints.outside_slot(orientation.foot, span, orientation.distance, radius).corners
     hull = left[convex(left)]
     return len(hull) > 2 and bool(inset(hull, offset).min() >= margin)
 

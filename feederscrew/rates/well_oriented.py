@@ -9,7 +9,7 @@ from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.mechanics.wall.stable_headings import headings, stable_row
 from feederscrew.rates.stream import Orientations
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.posture import posture
 from feederscrew.tooling.orientations import Orientation
 
@@ -123,7 +123,7 @@ class Range:
 
 
 @dataclass(frozen=True, eq=False)
-class Rate(Shown):
+class Rate(ReadableRecord):
     """Well-oriented parts leaving the bowl, and each factor of the chain."""
 
     parts: Range  # [1/s] delivered: offered times efficiency, at most what fits behind the devices

@@ -65,7 +65,7 @@ class BowlSolid:
     @property
     def balanced_at(self):
         """Radius [m] at which that weight is: of the wall's outer face."""
-        return self.plan.way.radius + self.plan.material.wall
+        return self.plan.path.radius + self.plan.material.wall
 
     @property
     def weight(self):
@@ -185,7 +185,7 @@ def pieces(plan, kit=facets):
 
 def _floor(plan, kit):
     """Floor with its dome, and the hub below it."""
-    low, inner, outer = plan.underside, plan.ring, plan.way.radius + plan.material.wall
+    low, inner, outer = plan.underside, plan.ring, plan.path.radius + plan.material.wall
     edge = []
     if plan.stairs is not None:
         outer = inner + PIECE_OVERLAP_M
@@ -203,7 +203,7 @@ def _floor(plan, kit):
 
 
 def _wall(plan, kit):
-    inner, outer = plan.way.radius, plan.way.radius + plan.material.wall
+    inner, outer = plan.path.radius, plan.path.radius + plan.material.wall
     return kit.turned(
         [
             (inner, plan.underside + PIECE_OVERLAP_M),
@@ -217,10 +217,10 @@ def _wall(plan, kit):
 
 def _opening(plan, kit):
     """Where the outlet passes through the wall."""
-    end, far = plan.way.end, plan.way.end + 2.0 * plan.outlet
+    end, far = plan.path.end, plan.path.end + 2.0 * plan.outlet
     ring = np.array([[end, 0.0], [far, 0.0], [far, plan.width], [end, plan.width]])
-    low, lift = plan.outlet_height - 0.5 * plan.material.plate, plan.width * np.sin(plan.way.bank_at(end))
-    return [kit.over(plan.way, ring, low, plan.top + lift + BEYOND_BOWL_M, plan.chord)]
+    low, lift = plan.outlet_height - 0.5 * plan.material.plate, plan.width * np.sin(plan.path.bank_at(end))
+    return [kit.over(plan.path, ring, low, plan.top + lift + BEYOND_BOWL_M, plan.chord)]
 
 
 def _drilled(plan, kit):
@@ -244,9 +244,9 @@ def _bores(plan, kit):
     solid = []
     for item in () if plan.stretch is None else plan.stretch.bores:
         s = plan.first + item.place
-        theta = float(plan.way.angle(s))
+        theta = float(plan.path.angle(s))
         towards = np.array([np.cos(theta), np.sin(theta), 0.0])
-        near = plan.way.places(s, 0.0) + [0.0, 0.0, item.height] - PIECE_OVERLAP_M * towards
+        near = plan.path.places(s, 0.0) + [0.0, 0.0, item.height] - PIECE_OVERLAP_M * towards
         solid.append(kit.bore(near, towards, item.size, plan.material.wall + 2.0 * PIECE_OVERLAP_M))
     return solid
 
@@ -266,9 +266,9 @@ def _gates(plan):
 def _hole(plan, kit, cut):
     """The body that a cut takes out of the track."""
     ring = cut.ring + [plan.first, 0.0]
-    heights = plan.way.height(ring[:, 0], ring[:, 1])
+    heights = plan.path.height(ring[:, 0], ring[:, 1])
     deep = plan.material.plate + track.fillet(plan) + PIECE_OVERLAP_M
-    return kit.over(plan.way, ring, heights.min() - deep, heights.max() + PIECE_OVERLAP_M, 0.2 * plan.chord)
+    return kit.over(plan.path, ring, heights.min() - deep, heights.max() + PIECE_OVERLAP_M, 0.2 * plan.chord)
 
 
 def _plate(plan, kit, blade):
@@ -287,11 +287,11 @@ def _standing(plan, kit, s, thickness, area, lean=0.0):
 
     A swept one leans ahead with the distance; its edge keeps its height over the track at both ends.
     """
-    from_wall, theta = s + thickness, plan.way.angle(s)
-    far = plan.way.places(from_wall + lean * plan.width, plan.width)
-    across = (far - plan.way.places(from_wall, 0.0)) / plan.width
+    from_wall, theta = s + thickness, plan.path.angle(s)
+    far = plan.path.places(from_wall + lean * plan.width, plan.width)
+    across = (far - plan.path.places(from_wall, 0.0)) / plan.width
     ahead, upright = np.array([-np.sin(theta), np.cos(theta), 0.0]), np.array([0.0, 0.0, 1.0])
-    foot = np.array([*plan.way.plan(s, 0.0), float(plan.way.height(from_wall))])
+    foot = np.array([*plan.path.plan(s, 0.0), float(plan.path.height(from_wall))])
     return kit.plank(area, thickness, np.column_stack([across, upright, ahead]), foot)
 
 

@@ -102,7 +102,7 @@ def patch(ring, low, high):
 
 def over(path, ring, low, high, chord):
     """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m]."""
-    return prism(path.laid(ring, chord), low, high)
+    return prism(path.ring_in_bowl(ring, chord), low, high)
 
 
 def disc(at, size, low, high):
@@ -211,10 +211,10 @@ def as_planned(plan, points):
 
 def below(body, place, deep=10.0):
     """Return the height [m] of the first surface straight below a place (3,) [m]; None if there is none."""
-    return _met(body, place, (0.0, 0.0, -deep))
+    return _ray_hit(body, place, (0.0, 0.0, -deep))
 
 
-def _met(body, place, direction):
+def _ray_hit(body, place, direction):
     start = np.asarray(place) / MM
     hits = body.ray_cast(tuple(start), tuple(start + np.asarray(direction) / MM))
     return float(hits[0].position[2]) * MM if hits else None

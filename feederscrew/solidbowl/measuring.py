@@ -41,7 +41,7 @@ def measures(solid):
     Measures
     """
     plan, body = solid.plan, facets.unplaced(solid)
-    path, far = plan.way, 3.0 * plan.way.radius
+    path, far = plan.path, 3.0 * plan.path.radius
     high = plan.top - 1e-3
     at = _rim(plan)
     rim = facets.first_met(body, (0.0, 0.0, high), _towards(at, far, high))
@@ -64,17 +64,17 @@ def measures(solid):
 
 def _rim(plan):
     """An angle at which the rim is measured: before every groove, where the wall is open."""
-    starts = [float(plan.way.angle(groove_span[0])) - 0.1 for groove_span in track.groove_spans(plan)]
+    starts = [float(plan.path.angle(groove_span[0])) - 0.1 for groove_span in track.groove_spans(plan)]
     return min([RIM_SECTION_RAD, *starts])
 
 
 def _outlet_height(plan, body, outlet):
     """Height [m] of the outlet at the wall, seen where there is metal beside it: rails leave a slot."""
     for across in (1e-3, 5e-4, 0.5 * plan.width, plan.width - 1e-3):
-        below = facets.below(body, plan.way.places(outlet, across) + [0.0, 0.0, 1e-3])
+        below = facets.below(body, plan.path.places(outlet, across) + [0.0, 0.0, 1e-3])
         if below is not None:
-            return below - across * float(np.sin(plan.way.bank_at(outlet)))
-    return float(plan.way.height(outlet, 0.0))
+            return below - across * float(np.sin(plan.path.bank_at(outlet)))
+    return float(plan.path.height(outlet, 0.0))
 
 
 def track_width(plan, body, s):
@@ -83,7 +83,7 @@ def track_width(plan, body, s):
     Rays from the middle of the track along its surface to the wall, at two heights over it: a wall may lean,
     and is carried on straight to the surface. One from within, below the surface, to the free edge.
     """
-    path = plan.way
+    path = plan.path
     theta, half, bank = float(path.angle(s)), 0.5 * plan.width, float(path.bank_at(s))
     outward, middle = np.array([np.cos(theta), np.sin(theta), 0.0]), path.places(s, half)
     along = np.cos(bank) * outward - [0.0, 0.0, np.sin(bank)]
@@ -101,7 +101,7 @@ def track_width(plan, body, s):
 
 def track_heights(plan, body, s, y):
     """Return the height [m] of the first surface below a place a little over the track."""
-    place = plan.way.places(s, y)
+    place = plan.path.places(s, y)
     return facets.below(body, place + [0.0, 0.0, 0.5 * plan.headroom])
 
 
@@ -111,7 +111,7 @@ def _towards(theta, far, z):
 
 def _bare(plan):
     """An angle at which the floor lies bare by the wall, or about: opposite to the track's first rise."""
-    return float(plan.way.angle(0.0)) - 0.1
+    return float(plan.path.angle(0.0)) - 0.1
 
 
 CUT_RAYS = 7  # along and across each cut
@@ -154,7 +154,7 @@ def ways_down(solid):
 
 def _lies(plan, whole, cut, s, y):
     """Where what falls at a place of a cut comes to lie."""
-    place = plan.way.places(plan.first + s, y)
+    place = plan.path.places(plan.first + s, y)
     meet = facets.below(whole, place)
     if meet is not None and plan.stairs is not None:
         place, meet = _slid(plan, whole, place, meet)
@@ -182,7 +182,7 @@ def _slid(plan, whole, place, meet):
 
 def _on_the_turn_before(plan, place, meet):
     """Whether a place lies on the track a turn before, and that before the first device."""
-    path = plan.way
+    path = plan.path
     s = float(path.at(np.arctan2(place[1], place[0]) % -STAIRS_TURN - STAIRS_TURN))
     y = (float(path.wall_radius(s)) - np.hypot(*place[:2])) / float(np.cos(path.bank_at(s)))
     off = meet - float(path.height(s, y))

@@ -106,7 +106,7 @@ def check_bolts(track, options, extents, radius):
         if most <= 0.0:
             mend = "give a smaller machine.bolt_hole, or a larger bowl"
         raise FeederError("machine.bolt_circle", what, mend)
-    if _apart(options.bolts, 0.5 * across) < (1.0 + WEB) * options.bolt - 1e-9:
+    if _too_near(options.bolts, 0.5 * across) < (1.0 + WEB) * options.bolt - 1e-9:
         what = f"{options.bolts} and one in the middle, of {1e3 * options.bolt:.4g} mm,"
         what += f" leave no metal between them on a circle of {1e3 * across:.4g} mm"
         raise FeederError("machine.bolts", what, "take fewer, a smaller machine.bolt_hole, or a larger bowl")
@@ -116,7 +116,7 @@ def check_bolts(track, options, extents, radius):
         raise FeederError("sizing.drain_hole", what, f"give less than {1e3 * least:.4g} mm")
 
 
-def _apart(bolts, radius):
+def _too_near(bolts, radius):
     """Least distance [m] between the middles of two holes, one of them that in the middle."""
     if bolts == 0:
         return np.inf
@@ -124,7 +124,7 @@ def _apart(bolts, radius):
 
 
 @dataclass(frozen=True, eq=False)
-class Way:
+class TrackPath:
     """The foot of the wall as a line in space, and the track inwards of it.
 
     Lengths s [m] run along the wall from where the track leaves the floor, distances y [m] from the wall
@@ -215,7 +215,7 @@ class Way:
         z = np.broadcast_to(self.height(s, y), flat.shape[:-1])
         return np.concatenate([flat, z[..., None]], axis=-1)
 
-    def laid(self, ring, chord):
+    def ring_in_bowl(self, ring, chord):
         """Return a ring (K, 2) [m] of lengths and distances as a polygon seen from above.
 
         Parameters
@@ -268,7 +268,7 @@ class TrackTooLow(FeederError):
 class BowlPlan:
     """A bowl in lengths [m] and angles [rad]; heights over the floor's edge."""
 
-    way: Way
+    path: TrackPath
     width: float  # of the track, along its surface
     material: BowlMaterial
     stretch: Stretch | None  # None without devices
@@ -291,36 +291,38 @@ class BowlPlan:
     @property
     def across(self):
         """Width of the track, seen from above, where it is widest."""
-        return self.width * float(np.cos(self.way.least_bank))
+        return self.width * float(np.cos(self.path.least_bank))
 
     @property
     def segments(self):
         """How many facets a full turn has; where the track is steep across, more."""
-        banks = self.way.bank, *(bank for _, _, bank in self.way.leans)
+        banks = self.path.bank, *(bank for _, _, bank in self.path.leans)
         chord = self.chord / max(1.0, *(BANK_DROP_FACTOR * float(np.tan(bank)) for bank in banks))
-        return int(np.ceil(FULL_TURN / (2.0 * np.arccos(1.0 - chord / self.way.radius)) / 4.0)) * 4
+        return int(np.ceil(FULL_TURN / (2.0 * np.arccos(1.0 - chord / self.path.radius)) / 4.0)) * 4
 
     @property
     def outlet_height(self):
         """Height of the outlet's surface by the wall."""
-        return float(self.way.height(self.way.end))
+        return float(self.path.height(self.path.end))
 
     @property
     def turns(self):
         """Turns of the track from the floor to the outlet."""
-        return -float(self.way.angle(0.0)) / FULL_TURN
+        return -float(self.path.angle(0.0)) / FULL_TURN
 
     @property
     def room(self):
         """Radius of a cylinder that holds as much as the lowest third of the bowl's rise."""
-        return float(self.way.wall_radius(self.way.end / 6.0))
+        return float(self.path.wall_radius(self.path.end / 6.0))
 
     @property
     def ring(self):
         """Radius up to which the floor is level, a little more than the track covers; the dome is within."""
-        lowest = self.way.rises(self.width) - DIP * self.way.radius if self.stairs else 0.0
+        lowest = self.path.rises(self.width) - DIP * self.path.radius if self.stairs else 0.0
         return (
-            float(self.way.wall_radius(lowest)) - self.width * float(np.cos(self.way.bank)) - BOLT_CLEARANCE_M
+            float(self.path.wall_radius(lowest))
+            - self.width * float(np.cos(self.path.bank))
+            - BOLT_CLEARANCE_M
         )
 
     @property
@@ -386,7 +388,7 @@ def plan(size, track, made_of, tooled, options, *, extents):
     """
     _check(size, track)
     stepped = stairs(track, made_of, tooled, options, extents)
-    path, first = _way(size, track, made_of, tooled, options, stepped)
+    path, first = _track_path(size, track, made_of, tooled, options, stepped)
     lowest = float(path.wall_radius(0.0))
     check_bolts(track, options, extents, lowest)
     across = track.width * np.cos(path.least_bank)
@@ -397,7 +399,7 @@ def plan(size, track, made_of, tooled, options, *, extents):
     gates = [blade.area.bounds[3] for blade in tooled.blades] if tooled else []
     hangs = tooled is not None and any(cut.hangs for cut in tooled.cuts)
     return BowlPlan(
-        way=path,
+        path=path,
         width=track.width,
         material=made_of,
         stretch=tooled,
@@ -431,7 +433,7 @@ def _check(size, track):
         raise FeederError("track.climb", what, "give a climb, as 3.5 deg, or leave it out")
 
 
-def _way(size, track, made_of, tooled, options, stepped):
+def _track_path(size, track, made_of, tooled, options, stepped):
     """The way of the track, and where on it the tooled stretch begins."""
     needed = 0.0 if tooled is None else tooled.length + OUTLET_LEAD_M
     drops = () if tooled is None else tooled.drops
@@ -450,7 +452,7 @@ def _way(size, track, made_of, tooled, options, stepped):
     if first < 0.0:
         raise _too_short(options.outlet_height, end, needed, gained + rise * max(quarter - needed, 0.0))
     _check_long(options.outlet_height, end, quarter, gained - rise * needed, rise)
-    path = Way(
+    path = TrackPath(
         radius=track.radius, climb=track.climb, bank=track.bank, end=float(end),
         drops=tuple((first + at, drop) for at, drop in drops),
         bends=() if tooled is None else tuple((first + at, climb) for at, climb in tooled.bends),
@@ -481,7 +483,7 @@ def _gained(track, tooled, needed):
     """Height [m] by which the track's end lies over the begin of the tooled stretch."""
     if tooled is None:
         return 0.0
-    stretch = Way(track.radius, track.climb, track.bank, needed, tooled.drops, tooled.bends)
+    stretch = TrackPath(track.radius, track.climb, track.bank, needed, tooled.drops, tooled.bends)
     return float(stretch.height(needed))
 
 

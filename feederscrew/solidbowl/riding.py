@@ -14,7 +14,7 @@ RIDER_CONTACT_M = 5e-6  # [m]
 BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs, and does not touch the wall
 
 
-def laid(plan, orientation, vertices, s):
+def place_rider(plan, orientation, vertices, s):
     """Return a part on the track of a bowl, its side at the wall; one that hangs as it hangs.
 
     Parameters
@@ -39,14 +39,14 @@ def laid(plan, orientation, vertices, s):
         beyond, over = clearances(plan, _set(plan, points, s, y), s)
         if max(abs(beyond), abs(over)) < RIDER_CONTACT_M:
             break
-        y += beyond / float(np.cos(plan.way.bank_at(s)))
+        y += beyond / float(np.cos(plan.path.bank_at(s)))
         points[:, 2] -= over
     return as_filed(plan, _set(plan, points, s, y))
 
 
 def _set(plan, points, s, y):
     """Points (V, 3) in the track's axes, set down at a place."""
-    return plan.way.places(s, y) + product(points, np.stack(frame(plan, s, y)))
+    return plan.path.places(s, y) + product(points, np.stack(frame(plan, s, y)))
 
 
 def clearances(plan, points, near):
@@ -63,7 +63,7 @@ def clearances(plan, points, near):
     near : float [m]
         Length along the wall about which they lie.
     """
-    path, (x, y, z) = plan.way, points.T
+    path, (x, y, z) = plan.path, points.T
     theta = np.arctan2(y, x)
     theta = theta + FULL_TURN * np.round((float(path.angle(near)) - theta) / FULL_TURN)
     straight = theta > 0.0
@@ -78,7 +78,9 @@ def clearances(plan, points, near):
 def leaning(plan, s):
     """Return how far the wall leans outwards over its height [1], at lengths along it."""
     if plan.stairs is not None and plan.stairs.shape == CONICAL:
-        return np.where(plan.way.angle(s) < -FULL_TURN, 1.0 / np.tan(plan.stairs.slope), 0.0)  # upright above
+        return np.where(
+            plan.path.angle(s) < -FULL_TURN, 1.0 / np.tan(plan.stairs.slope), 0.0
+        )  # upright above
     leaning = np.zeros(np.shape(s))
     for groove in track.groove_spans(plan):
         start, end, _, opens = groove
@@ -89,7 +91,7 @@ def leaning(plan, s):
 
 def frame(plan, s, y):
     """Return the track's axes at a place, outlet at the angle 0: ahead, inwards and off its surface."""
-    path, d = plan.way, 1e-5
+    path, d = plan.path, 1e-5
     ahead = path.places(s + d, y) - path.places(s - d, y)
     inward = path.places(s, y + d) - path.places(s, y - d)
     up = np.cross(ahead, inward)
@@ -122,9 +124,9 @@ def riders(plan, orientation, hung):
         With the length along the wall of each centre of mass.
     """
     step = SPACED * orientation.length
-    last = plan.first if plan.stretch is not None else plan.way.end - orientation.length
-    riders = [(orientation, s) for s in np.arange(FIRST_RIDER_POSITION * plan.way.end, last, step)]
+    last = plan.first if plan.stretch is not None else plan.path.end - orientation.length
+    riders = [(orientation, s) for s in np.arange(FIRST_RIDER_POSITION * plan.path.end, last, step)]
     behind = orientation if hung is None else hung
     start = last if plan.stretch is None else plan.first + plan.stretch.length
-    end = plan.way.end + plan.outlet - 0.5 * behind.length
+    end = plan.path.end + plan.outlet - 0.5 * behind.length
     return riders + [(behind, s) for s in np.arange(start, end, SPACED * behind.length)]

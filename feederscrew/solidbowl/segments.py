@@ -233,14 +233,18 @@ def bed(text):
     unit = sides[-1].lstrip(" 0123456789.+-")
     try:
         if len(sides) != 3:
-            raise units.QuantityError(f"{units.shown(text)} is not three lengths", "write 220x220x250mm")
+            raise units.QuantityError(
+                f"{units.quantity_text(text)} is not three lengths", "write 220x220x250mm"
+            )
         for side in sides:
             has_unit = side.strip().lstrip("0123456789.+-")
             size.append(units.quantity(side if has_unit else f"{side}{unit}", "length"))
     except units.QuantityError as fault:
         raise ArgumentError("bed", fault.what, fault.mend) from None
     if min(size) <= 0.0:
-        raise ArgumentError("bed", f"{units.shown(text)} has a side of 0 or less", "write 220x220x250mm")
+        raise ArgumentError(
+            "bed", f"{units.quantity_text(text)} has a side of 0 or less", "write 220x220x250mm"
+        )
     return tuple(size)
 
 
@@ -293,8 +297,8 @@ def segments(solid, size, joint=DOWELS):
 def _lugs(solid, body, turn, planes):
     """The lugs for the screws of all seams, and how many ends of seams have none, of how many."""
     plan = solid.plan
-    s = np.linspace(_tooled(plan)[0], plan.way.end + plan.outlet, 120)
-    edges = [_filed(plan, plan.way.plan(s, y)) for y in (-plan.material.wall, plan.width)]
+    s = np.linspace(_tooled(plan)[0], plan.path.end + plan.outlet, 120)
+    edges = [_filed(plan, plan.path.plan(s, y)) for y in (-plan.material.wall, plan.width)]
     tooled_lines = shapely.MultiLineString([_turned(edge, -turn) for edge in edges])
     placed_lugs = place_lugs(body, planes, tooled_lines, _box(solid.vertices, turn))
     if planes and not placed_lugs[0]:
@@ -377,12 +381,12 @@ def _box_points(solid, turn):
     plan = solid.plan
     first, last = _tooled(plan)
     s, y = np.meshgrid(np.linspace(first, last, 30), [0.0, plan.width])
-    return _turned(_filed(plan, plan.way.plan(s.ravel(), y.ravel())), -turn)
+    return _turned(_filed(plan, plan.path.plan(s.ravel(), y.ravel())), -turn)
 
 
 def _tooled(plan):
     """From and to [m] along the wall where no dowel and, if it can be, no seam shall be."""
-    return (plan.first, plan.way.end) if plan.stretch is not None else (plan.way.end - 1e-3, plan.way.end)
+    return (plan.first, plan.path.end) if plan.stretch is not None else (plan.path.end - 1e-3, plan.path.end)
 
 
 def _filed(plan, flat):
@@ -441,14 +445,14 @@ def overhangs(solid):
 
 def _by_the_outlet(plan, places):
     """Whether places (N, 3) [m] belong to what is straight beyond the end of the track: (N,) bool."""
-    (x, y, z), far = places.T, plan.way.radius - plan.across - plan.material.wall
+    (x, y, z), far = places.T, plan.path.radius - plan.across - plan.material.wall
     high = z > plan.outlet_height - 2.0 * plan.material.plate - fillet(plan) - plan.hanging
     return (y > -SURFACE_DISTANCE_M) & (x > far - SURFACE_DISTANCE_M) & high
 
 
 def _where(plan, places):
     """What of a bowl places (N, 3) [m] belong to, outlet at the angle 0: words (N,)."""
-    path, (x, y, z) = plan.way, places.T
+    path, (x, y, z) = plan.path, places.T
     r, theta = np.hypot(x, y), np.arctan2(y, x)
     behind = theta - FULL_TURN * (theta > 0.0) - FULL_TURN * np.arange(int(plan.turns) + 2)[:, None]
     s = path.at(behind)  # of each turn of the track that is there

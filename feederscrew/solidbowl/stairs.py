@@ -151,7 +151,7 @@ def shell(plan, kit):
 def _leg(plan, kit, start, end):
     """Sections and frames of a quarter of the wall."""
     theta = np.linspace(start, end, (QUARTER_TURN_POINTS if kit.HAS_EXACT_CURVES else plan.segments // 4) + 1)
-    inner = plan.stairs.sections(plan.way, theta, plan.underside - 2e-3)
+    inner = plan.stairs.sections(plan.path, theta, plan.underside - 2e-3)
     inner = np.concatenate([inner, inner[:, -1:]], axis=1)
     inner[:, -1, 1] = plan.top
     outer = inner + [plan.material.wall, 0.0]
@@ -174,7 +174,7 @@ def _corners(steps, count):
 
 def _end(plan, kit):
     """The plate that closes the wall where its last turn ends, below the outlet."""
-    inner = plan.stairs.sections(plan.way, np.zeros(1), plan.underside - 2e-3)[0]
+    inner = plan.stairs.sections(plan.path, np.zeros(1), plan.underside - 2e-3)[0]
     low, rest = inner[-4], inner[-4:]
     under = plan.outlet_height - 0.5 * plan.material.plate
     half = 0.5 * plan.material.wall
@@ -190,6 +190,6 @@ def _end(plan, kit):
 def floor_edge(plan, kit):
     """Return the edge (K, 2) [m] of the floor, within the wall, seen from above."""
     theta = np.linspace(-STAIRS_TURN, 0.0, (64 if kit.HAS_EXACT_CURVES else plan.segments) + 1)[:-1]
-    inner = plan.stairs.sections(plan.way, theta, plan.underside - 2e-3)
+    inner = plan.stairs.sections(plan.path, theta, plan.underside - 2e-3)
     r = np.array([np.interp(0.0, item[:, 1], item[:, 0]) for item in inner]) + 0.3 * plan.material.wall
     return np.column_stack([r * np.cos(theta), r * np.sin(theta)])

@@ -39,7 +39,7 @@ def slab(plan, kit):
     -------
     body of that kit [mm]
     """
-    runs, path = [], plan.way
+    runs, path = [], plan.path
     borders = [
         path.rises(plan.width) - DIP * path.radius,
         *(at for at, _ in path.drops),
@@ -63,7 +63,7 @@ def _leg(plan, kit, leg, run):
     s = steps(plan, kit, *leg)
     inside = np.clip(s, run[0] + 1e-9, run[1] - 1e-9)
     strips = 1 if kit.HAS_EXACT_CURVES else _strips(plan)
-    return _sections(plan, s, plan.way.height(inside), strips), frames(plan, s)
+    return _sections(plan, s, plan.path.height(inside), strips), frames(plan, s)
 
 
 def steps(plan, kit, start, end):
@@ -75,22 +75,22 @@ def _smooth_steps(plan, start, end):
     """Lengths along the wall through which a curve is led; the two ends of what is straight."""
     count = (
         2
-        if start >= plan.way.end
-        else max(int((end - start) / plan.way.radius / TRACK_CURVE_STEP_RAD), 3) + 1
+        if start >= plan.path.end
+        else max(int((end - start) / plan.path.radius / TRACK_CURVE_STEP_RAD), 3) + 1
     )
     return np.linspace(start, end, count)
 
 
 def frames(plan, s):
     """Return place and outward direction (M, 2, 2) of the wall's foot at lengths s, seen from above."""
-    theta = plan.way.angle(s)
+    theta = plan.path.angle(s)
     outward = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
-    return np.stack([plan.way.plan(s, 0.0), outward], axis=1)
+    return np.stack([plan.path.plan(s, 0.0), outward], axis=1)
 
 
 def _steps(plan, start, end):
     """Lengths along the wall from facet to facet: those of the wall's own facets, and both ends."""
-    path, step = plan.way, plan.way.radius * 2.0 * np.pi / plan.segments
+    path, step = plan.path, plan.path.radius * 2.0 * np.pi / plan.segments
     first = np.ceil(float(path.angle(start)) / (2.0 * np.pi / plan.segments))
     inner = path.at(2.0 * np.pi / plan.segments * np.arange(first, 1.0))
     inner = inner[(inner > start + 0.01 * step) & (inner < end - 0.01 * step)]
@@ -103,7 +103,7 @@ def _steps(plan, start, end):
 
 def _strips(plan):
     """Into how many strips the track is divided across, so that its twist stays within the chord."""
-    path, inner = plan.way, plan.way.radius - plan.across
+    path, inner = plan.path, plan.path.radius - plan.across
     steepest = max(abs(climb) for climb in (path.climb, *(climb for _, climb in path.bends)))
     twist = path.radius * np.tan(steepest) * np.pi / plan.segments * plan.across / (path.radius + inner)
     banks = [path.bank, *(bank for _, _, bank in path.leans)]
@@ -117,7 +117,7 @@ def _strips(plan):
 
 def _sections(plan, s, heights, strips):
     """Sections (M, K, 2) of the plate with a fillet below it, by the wall."""
-    plate, bank = plan.material.plate, plan.way.bank_at(s)
+    plate, bank = plan.material.plate, plan.path.bank_at(s)
     r = fillet(plan)
     inward = np.arange(strips + 1) / strips * np.ones((len(s), 1)) * (plan.width * np.cos(bank))[:, None]
     edge = inward[:, -1:].copy()
@@ -159,8 +159,8 @@ def _riser(plan, kit, at, drop):
             [s[0], plan.width],
         ]
     )
-    low = float(plan.way.height(at))
-    return kit.over(plan.way, ring, low - plate, low + drop - 0.5 * plate, plan.chord)
+    low = float(plan.path.height(at))
+    return kit.over(plan.path, ring, low - plate, low + drop - 0.5 * plate, plan.chord)
 
 
 def ledges(plan, kit):
@@ -183,14 +183,14 @@ def _ledge(plan, kit, ledge):
     at, half = plan.first + ledge.start, 0.5 * plan.material.plate
     end = plan.first + ledge.end
     breaks = [at - half, at, end, end + ledge.ramp * (1.0 + 0.8 * half / ledge.drop)]
-    turned = plan.way.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
+    turned = plan.path.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
     legs = sorted({*breaks, *(item for item in turned if breaks[0] < item < breaks[-1])})
     return kit.swept([_ledge_leg(plan, kit, ledge, leg) for leg in itertools.pairwise(legs)])
 
 
 def _ledge_leg(plan, kit, ledge, leg):
     """Sections and frames of a piece of a ledge."""
-    path, half = plan.way, 0.5 * plan.material.plate
+    path, half = plan.path, 0.5 * plan.material.plate
     at, end = plan.first + ledge.start, plan.first + ledge.end
     s = steps(plan, kit, *leg)
     low = path.height(s) - ledge.drop * (s < at)
@@ -206,7 +206,7 @@ def _ledge_leg(plan, kit, ledge, leg):
 
 def sides(plan, kit):
     """Return the walls of the outlet: one carries on the bowl's wall, one keeps parts on the outlet."""
-    path, wall = plan.way, plan.material.wall
+    path, wall = plan.path, plan.material.wall
     end = path.end + plan.outlet
     height = plan.outlet_height
     low, top = height - plan.material.plate - fillet(plan), height + plan.headroom
@@ -245,10 +245,10 @@ def slots(plan, kit):
     solid = []
     for cut in _rails(plan):
         ring = cut.ring + [plan.first, 0.0]
-        ring[cut.ring[:, 0] >= cut.span[1] - 1e-9, 0] = plan.way.end + plan.outlet + 5e-3
-        heights = plan.way.height(ring[:, 0], ring[:, 1])
+        ring[cut.ring[:, 0] >= cut.span[1] - 1e-9, 0] = plan.path.end + plan.outlet + 5e-3
+        heights = plan.path.height(ring[:, 0], ring[:, 1])
         deep = heights.min() - plan.material.plate - plan.hanging
-        solid.append(kit.over(plan.way, ring, deep, heights.max() + TRACK_PIECE_OVERLAP_M, 0.2 * plan.chord))
+        solid.append(kit.over(plan.path, ring, deep, heights.max() + TRACK_PIECE_OVERLAP_M, 0.2 * plan.chord))
     return solid
 
 
@@ -267,14 +267,14 @@ def yokes(plan, kit):
     if not _rails(plan):
         return []
     behind = plan.first + max(cut.span[1] for cut in _rails(plan))
-    end = plan.way.end + plan.outlet
+    end = plan.path.end + plan.outlet
     return [_yoke(plan, kit, s) for s in (behind, end - YOKE)]
 
 
 def _yoke(plan, kit, s):
     """A bracket below the track, deep enough that parts hang free over it."""
     ends, plate = np.array([s, s + YOKE]), plan.material.plate
-    foot, bank = plan.way.height(ends), plan.way.bank_at(ends)
+    foot, bank = plan.path.height(ends), plan.path.bank_at(ends)
     across, low = plan.width * np.cos(bank), foot[0] - plate - plan.hanging - YOKE
     out = np.stack(
         [
@@ -338,7 +338,7 @@ def groove_spans(plan):
 
     They lie in the last turn: above them there is no other.
     """
-    earliest, last = float(plan.way.at(-MAX_GROOVE_WALL_RAD)), plan.way.end + plan.outlet
+    earliest, last = float(plan.path.at(-MAX_GROOVE_WALL_RAD)), plan.path.end + plan.outlet
     grooves = () if plan.stretch is None else plan.stretch.grooves
     return [
         (max(plan.first + start, earliest, GROOVE_CUT_MARGIN_M), min(plan.first + end, last), lean, opens)
@@ -355,7 +355,7 @@ def lean_at(groove, s):
 
 def _swept(plan, kit, groove, section):
     """A body along a groove, of sections that its lean makes."""
-    path, last = plan.way, plan.way.end + plan.outlet
+    path, last = plan.path, plan.path.end + plan.outlet
     start, end, _, opens = groove
     stop = min(end + opens, last)
     turned = path.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()

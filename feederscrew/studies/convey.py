@@ -16,12 +16,12 @@ from feederscrew.conveying import answer, phase, radius, sensitivity, trace
 from feederscrew.conveying.steady import STATUSES
 from feederscrew.geometry import grids
 from feederscrew.machine import checks
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.units import DEG, MM
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyStudy(Shown):
+class ConveyStudy(ReadableRecord):
     """One operating point of a bowl, and its neighbours."""
 
     bowl: Bowl
@@ -58,7 +58,7 @@ class ConveyStudy(Shown):
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyCurve(Shown):
+class ConveyCurve(ReadableRecord):
     """What a part does along one quantity of the bowl; N points."""
 
     kind: str  # 'curve' over a key, or 'radius'
@@ -79,7 +79,7 @@ class ConveyCurve(Shown):
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyPhase(Shown):
+class ConveyPhase(ReadableRecord):
     """What the phase of an elliptical drive does for a bowl."""
 
     best: phase.BestPhase
@@ -92,7 +92,7 @@ class ConveyPhase(Shown):
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyMap(Shown):
+class ConveyMap(ReadableRecord):
     """What a part does over two keys of the bowl."""
 
     ranges: tuple[KeyRange, KeyRange]

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 from feederscrew.bowl.record import Track
 from feederscrew.mechanics.wall import stable_headings as wall
 from feederscrew.part.record import Part
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.studies.aspects import answered
 
 
 @dataclass(frozen=True, eq=False)
-class HeadingsStudy(Shown):
+class HeadingsStudy(ReadableRecord):
     """The stable headings of a part on one or more aspects."""
 
     part: Part

@@ -11,7 +11,7 @@ from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.geometry.grids import Grid, GridAxis, evaluate
 from feederscrew.mechanics import limits, wedge
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 
 STEPS = (1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # round numbers within a decade
 PLAIN_TOP = 3.0  # G that every sliding map reaches
@@ -25,7 +25,7 @@ NOISE = 12  # decimals of a limit; cos(90 deg) leaves 6e-17
 
 
 @dataclass(frozen=True, eq=False)
-class SlideMap(Shown):
+class SlideMap(ReadableRecord):
     """What slips over (alpha - theta, G) at one vibration angle."""
 
     beta: float  # [rad]
@@ -65,7 +65,7 @@ class SlideMap(Shown):
 
 
 @dataclass(frozen=True, eq=False)
-class SlideStudy(Shown):
+class SlideStudy(ReadableRecord):
     """The sliding maps of one bowl, one for each vibration angle."""
 
     bowl: Bowl

@@ -16,7 +16,7 @@ from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.rates.tipping import marked, remark, steady
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import arriving
 from feederscrew.studies.wishes import ToolingKeywords, ToolingOptions, asked_for, listed
@@ -33,7 +33,7 @@ LATE = "the search stopped at the time limit: another machine may find more - ra
 
 
 @dataclass(frozen=True, eq=False)
-class ToolingStudy(Shown):
+class ToolingStudy(ReadableRecord):
     """Every orientation of a part on a track, and what isolates it behind the bowl's devices; M of them."""
 
     part: Part

@@ -17,7 +17,7 @@ from feederscrew.tooling.isolating.design import PLAY_M, TOLERANCE_M
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Goal
 from feederscrew.tooling.orientations import travel_speed
-from feederscrew.units import shown
+from feederscrew.units import quantity_text
 
 OUTCOMES = ("lying", "hanging", "any")
 
@@ -92,7 +92,7 @@ def may_be_left_out(without: str | Sequence[str]) -> tuple[str, ...]:
     kinds = listed(without)
     for kind in kinds:
         if kind not in KINDS:
-            raise ArgumentError("without", f"unknown device {shown(kind)}", hint(kind, list(KINDS)))
+            raise ArgumentError("without", f"unknown device {quantity_text(kind)}", hint(kind, list(KINDS)))
     return kinds
 
 
@@ -102,7 +102,7 @@ def may_be_up(part: Part, found: Aspects, up: str | Sequence[str]) -> tuple[str,
     for name in listed(up):
         if name.casefold() not in known:
             mend = f"choose one of {', '.join(found.names)}"
-            raise ArgumentError("up", f"{part.name} has no aspect {shown(name)}", mend)
+            raise ArgumentError("up", f"{part.name} has no aspect {quantity_text(name)}", mend)
     return listed(up)
 
 

@@ -107,11 +107,11 @@ def _off(plan, body):
     """How far [m] the track's height lies off the formula, where no device is."""
     body = exact_body.placed_as(body, mirrored=False, turned=-plan.turned)
     body = exact_body.placed_as(body, mirrored=plan.left, turned=0.0)
-    last = plan.first if plan.stretch is not None else plan.way.end
+    last = plan.first if plan.stretch is not None else plan.path.end
     off = []
     for k in range(STEP_HEIGHT_SAMPLES):
         s, y = last * (k + 1.0) / (STEP_HEIGHT_SAMPLES + 2.0), plan.width * (0.1 + 0.8 * (k * 0.618 % 1.0))
-        place = plan.way.places(s, y)
+        place = plan.path.places(s, y)
         below = exact_body.below(body, (place + [0.0, 0.0, 0.5 * plan.headroom]) / MM)
         off.append(np.inf if below is None else abs(below * MM - place[2]))
     return float(max(off))
