@@ -85,9 +85,9 @@ def materials(out):
 
     List the materials that --density and the key 'density' of a part card know by name, with their densities.
     """
-    from feederscrew.output.inertia import tables
+    from feederscrew.output import inertia
 
-    frame = tables.materials()
+    frame = inertia.materials()
     out.show(frame, {"materials": list(frame.rows())})
 
 
@@ -100,11 +100,10 @@ def show(bowl, out):
     Show every value in effect and where it came from: the default, a line of the bowl file, or --set.
     """
     from feederscrew.bowl import identity, name, settings, texts
-    from feederscrew.output import tables
-    from feederscrew.output.slide import tables as slide_tables
+    from feederscrew.output import slide, tables
 
     given, path = settings(**bowl), bowl["path"]
-    frame = slide_tables.settings(given)
+    frame = slide.settings(given)
     with out.folder(name(path), identity(path), texts(given)) as folder:
         if folder:
             folder.write("config.csv", tables.text(frame, "csv"))

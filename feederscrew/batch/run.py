@@ -378,9 +378,9 @@ class _UnderWay:
 
 def _contact_sheet(tiles):
     """Draw one contact sheet: a process of the crew has matplotlib, this one need not."""
-    from feederscrew.output.batch import contact_sheet
+    from feederscrew.output import batch
 
-    return contact_sheet.sheet(tiles)
+    return batch.sheet(tiles)
 
 
 def _stopped(store, requests, finished):

@@ -331,7 +331,7 @@ def _in_queues(
     line = queues.FollowedRow(
         search.part, candidate.bowl, known.aspects, candidate.ways, candidate.weights,
         candidate.tried.states, search.request.seed, search.told, RATE_KEPT * search.request.target,
-        candidate.proposal.any_heading, search.run("queue").progress, entering,
+        candidate.proposal.any_heading, search.run("queue").progress, entering, search.request.jobs,
     )  # fmt: skip
     study = _queued(study, queues.filled(line, whole=whole))
     return _queued(study, queues.longer(line, study))

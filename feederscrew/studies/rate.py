@@ -30,6 +30,7 @@ from feederscrew.tooling.isolating.design import PLAY_M, TOLERANCE_M
 
 ALIKE = 1.0 - 1e-9  # of the most frequent orientation: as frequent
 LEAST = 1e-6  # of what must be above 0
+CHOOSING = 400  # parts that show which aspect is the likeliest, where its share is well above all others
 SEED = 1  # of the parts that are fed onto the moving floor
 
 
@@ -117,6 +118,31 @@ def shares(
 def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED_ANSWER) -> Aspects:
     """Return the aspects of a part with what arrives at the entry of a bowl's track as their answer."""
     return shares(part, bowl, rule=rule).aspects
+
+
+def likeliest(part: Part, bowl: Bowl) -> Aspects:
+    """Return the aspects of a part with what arrives, of as few parts as show which aspect is the likeliest.
+
+    CHOOSING parts are fed first. Where the interval of the most frequent aspect is apart from that of every
+    other one, they decide. Else the answer is that of ``arriving``.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+
+    Returns
+    -------
+    Aspects
+        Its ``likeliest`` is that of ``arriving``; its shares are of fewer parts.
+    """
+    sample = shares(part, bowl, fed=CHOOSING)
+    answer = sample.aspects.recommended
+    if not sample.fed or answer is None:
+        return sample.aspects
+    first = int(np.argmax(answer.p))
+    others = np.delete(answer.high, first)
+    return sample.aspects if answer.low[first] > others.max(initial=0.0) else arriving(part, bowl)
 
 
 def _on_the_floor(part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed: int, run: OnCores) -> Any:

@@ -24,7 +24,7 @@ from feederscrew.part.record import Part
 from feederscrew.rates import tipping
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.posture import Posture
-from feederscrew.studies.rate import arriving
+from feederscrew.studies.rate import likeliest
 from feederscrew.tooling import orientations
 
 USUAL = ("track.bank=0deg:30deg:41", "track.climb=0deg:8deg:41")  # of a map
@@ -100,7 +100,7 @@ def track(part: Part, bowl: Bowl, aspect: str | None = None, heading: float | No
         the drive is not ``limits.plain``.
     """
     limits.plain(bowl)
-    posture, why = standing(part, aspect, "track", partial(arriving, bowl=bowl))
+    posture, why = standing(part, aspect, "track", partial(likeliest, bowl=bowl))
     seat, found, row = cells.seated(posture, bowl, heading)
     now, held_across = _from_rest(seat, bowl)
     cycle, course = balance.over_cycle(seat, bowl)

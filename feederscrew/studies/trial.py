@@ -105,6 +105,7 @@ class TrialOptions(RunSettings):
     queue: int | None = None
     poured: bool = False
     seconds: float = 10.0  # [s]
+    frames: int = 0
 
 
 class TrialKeywords(RunKeywords, total=False):
@@ -115,6 +116,7 @@ class TrialKeywords(RunKeywords, total=False):
     queue: int | None
     poured: bool
     seconds: float
+    frames: int
 
 
 def trial(
@@ -150,6 +152,7 @@ def trial(
         queue : int, so many parts that push each other, as well.
         poured : bool, whether those fall onto the track in any attitude; in a row without it.
         seconds : float [s], the queue is followed.
+        frames : int, poses of the queue that are noted for a film; none without it.
         seed : int.
         jobs : int, cores to use; the outcome does not depend on it.
         progress : callable, called with how many are done, and of how many.
@@ -177,7 +180,11 @@ def trial(
     count = own.parts or (FEW if own.queue else PARTS)
     launch = LAUNCH if found.recommended is None else found.recommended.launch
     fall = None if own.landing is None else {"launch": launch, "parts": own.landing}
-    crowd = None if own.queue is None else QueuePlan(own.queue, own.seconds, None if own.poured else GAPS)
+    crowd = (
+        None
+        if own.queue is None
+        else QueuePlan(own.queue, own.seconds, None if own.poured else GAPS, own.frames)
+    )
     run = RunSettings(own.seed, own.jobs, own.progress)
     made: list[TrialRun] = []
     stopped = False

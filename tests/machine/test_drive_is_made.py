@@ -18,7 +18,7 @@ from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue
 from feederscrew.machine import drive_sizing, drive_units, sizing, springs
 from feederscrew.machine.springs import analyse_springs, leaf_stress
 from feederscrew.machine.stroke import stroke
-from feederscrew.output.designs import design_file, design_page, tables
+from feederscrew.output import design_pages, designs
 from feederscrew.output.machine import figures
 from feederscrew.output.machine import tables as machine_tables
 from feederscrew.output.solidbowl import drawing_sheet
@@ -127,23 +127,23 @@ def test_a_drive_out_of_phase_stands_first_in_every_output(two_axis, tmp_path):
     rows = machine_tables.summary(sheet)
     assert rows["quantity"][0] == "drive" and "-60 deg" in rows["value"][0]
     assert "two magnets" in rows["value"][0]
-    table = tables.summary(found)
+    table = designs.summary(found)
     assert table["quantity"][1] == "drive" and "phase -60 deg" in table["value"][1]
     document = machine_tables.document(sheet)
     assert (document["drive_kind"], document["phase_deg"]) == ("two-axis drive", pytest.approx(-60.0))
-    assert tables.document(found)["bowl"]["phase_deg"] == pytest.approx(-60.0)
+    assert designs.document(found)["bowl"]["phase_deg"] == pytest.approx(-60.0)
     assert any("phase" in text.get_text() for text in figures.bowl(sheet).texts)
-    assert any("two magnets" in line for line in tables.document(found)["warnings"])
+    assert any("two magnets" in line for line in designs.document(found)["warnings"])
     drawn = drawing_sheet.sheet(built.drawn).figure.findobj(Text)
     assert any("two magnets" in text.get_text() for text in drawn)
-    assert "two magnets" in design_page.page(found, built).partition("leaves as")[0]
-    assert "two magnets" in design_file.bowl_file(found, (), sheet).splitlines()[1]
+    assert "two magnets" in design_pages.page(found, built).partition("leaves as")[0]
+    assert "two magnets" in designs.bowl_file(found, (), sheet).splitlines()[1]
 
 
 def test_a_design_warns_of_what_feeder_bowl_warns_of_for_its_file(two_axis, run, tmp_path):
     found, built = two_axis
     path = tmp_path / "design.yaml"
-    path.write_text(design_file.bowl_file(found, (), built.sheet))
+    path.write_text(designs.bowl_file(found, (), built.sheet))
     alone = json.loads(run("bowl", "--config", str(path), "--format", "json").stdout)
     assert alone["warnings"] and set(alone["warnings"]) <= set(found.warnings)
     own = machine_tables.document(built.sheet)
@@ -236,4 +236,4 @@ def test_the_machine_that_is_drawn_makes_the_drive_that_is_chosen(name):
         own = bowls.record(settings).machine
         kept = ("leaves", "leaf_thickness", "leaf_length", "spring_angle", "spring_radius", "bowl_mass")
         assert [getattr(under, word) for word in kept] == pytest.approx([getattr(own, word) for word in kept])
-    assert design_file.bowl_file(made, settings, built.sheet)  # it is read back and compared
+    assert designs.bowl_file(made, settings, built.sheet)  # it is read back and compared

@@ -13,7 +13,7 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl import reading
 from feederscrew.designing import beside
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
-from feederscrew.output.designs import design_file, files, tables
+from feederscrew.output import design_pages, designs
 from feederscrew.output.machine import figures
 from feederscrew.output.machine import tables as machine_tables
 from feederscrew.output.solidbowl import drawing_sheet
@@ -45,13 +45,13 @@ def papers(tmp_path_factory):
     built = beside.built(study, ())
     assert not built.why, built.why
     study = beside.with_machine(study, built)
-    offered = {one.name: one for one in files.offers(study, (), built)}
+    offered = {one.name: one for one in design_pages.offers(study, (), built)}
     (path.parent / "design.yaml").write_text(offered["design.yaml"].make())
     return {
         "study": study,
         "built": built,
         "design": json.loads(offered["design.json"].make()),
-        "summary": rows(tables.summary(study)),
+        "summary": rows(designs.summary(study)),
         "acceptance": offered["acceptance.csv"].view(),
         "bowl": json.loads(offered["bowl.json"].make()),
         "sheet": rows(machine_tables.summary(built.sheet)),
@@ -213,7 +213,7 @@ def test_a_design_warns_of_what_feeder_bowl_warns_of_for_its_part_and_rate(paper
 
 
 def test_the_title_block_has_orientation_and_rate_of_the_trial(papers):
-    tried = design_file.trial(papers["study"])
+    tried = designs.trial_of(papers["study"])
     drawn = words(drawing_sheet.sheet(papers["built"].drawn, tried).figure)
     assert re.search(r"orientation\nA@0\n", drawn) and re.search(r"rate of its trial\n60/min", drawn)
     assert "all that pass" not in drawn and "FALLS SHORT" not in drawn

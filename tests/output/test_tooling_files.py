@@ -18,8 +18,7 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
 from feederscrew.errors import FeederError
-from feederscrew.output.designs import tables as design_tables
-from feederscrew.output.solid import pair
+from feederscrew.output import designs, shading
 from feederscrew.output.tooling import (
     bowl_file,
     drawing,
@@ -212,8 +211,8 @@ def test_no_gate_hides_the_part_that_is_drawn_at_it(lying):
         angle, half = met.angle(section.stations[0]), np.ptp(body[0], axis=0).max()
         track = solid.solid(section)
         (view,) = relief.clearest([track], [body], [centre], [angle], half)
-        share = pair.shown_share(track, body, centre, view, half)
-        former = pair.shown_share(track, body, centre, relief.camera_at(angle), half)
+        share = shading.shown_share(track, body, centre, view, half)
+        former = shading.shown_share(track, body, centre, relief.camera_at(angle), half)
         assert share >= max(former, 0.6)
 
 
@@ -274,7 +273,7 @@ def test_a_design_names_its_devices_as_the_trade_does():
     found = {"status": "holds", "wanted": "A@0"} | {f"{name}_per_minute": 1.0 for name in rates}
     found |= {"delivered_low": 1.0, "delivered_high": 1.0, "purity": None, "jams": 0, "queue_seconds": 0.0}
     found |= {"jams_per_hour_high": None, "robust": {"held": 0, "draws": 0}, "up": []}
-    name, said = design_tables.outcome(found, (sorter,))[-1]
+    name, said = designs.outcome(found, (sorter,))[-1]
     assert name == "device 1" and said.startswith(
         "vision reject (camera from the side): keeps A at heading 0 deg"
     )

@@ -11,7 +11,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
 from feederscrew.mechanics.floor.balance import TIP
-from feederscrew.output.rate import tables
+from feederscrew.output import rate as rate_output
 from feederscrew.output.tooling.tables import passages as passage_table
 from feederscrew.rates import drive_settings as knobs
 from feederscrew.rates.stream import follow_orientations
@@ -49,7 +49,7 @@ def test_what_tips_over_lowers_the_rate_to_zero_and_is_said():
     study = studied(1, "B")
     row = study.rate.row
     assert study.rate.parts.all == (0.0, 0.0, 0.0) and study.rate.orientations.passes[row, 0] == 0.0
-    (line,) = tables.remarks(study)
+    (line,) = rate_output.remarks(study)
     assert line == "B@0 can tip over on the track at this drive and count as returned; rate is 0"
     assert study.rate.orientations.leaving[:, row].sum() == 0.0
 
@@ -58,13 +58,13 @@ def test_the_other_orientation_leaves_pure():
     study = studied(1, "A")
     assert study.rate.orientations.aspects.count("B") == 1 and study.rate.through == 1.0
     assert study.rate.purity > studied(10, "A").rate.purity
-    assert tables.remarks(study)[0].startswith("B@0 can tip over")
+    assert rate_output.remarks(study)[0].startswith("B@0 can tip over")
 
 
 def test_a_large_pin_rocks_and_passes():
     study = studied(10, "B")
     assert study.rate.parts.value > 0.0
-    (line,) = tables.remarks(study)
+    (line,) = rate_output.remarks(study)
     assert line.startswith("B@0 rocks on the track: a stroke tilts it by 1.6") and "from 14 deg" in line
 
 
@@ -141,9 +141,9 @@ def test_it_is_said_how_many_must_come_where_few_stay_on_the_track(monkeypatch):
     study = rate(part, BOWL, "A", heading=0.0, rule="csa", known=Shares(find(part)))
     share = float((study.rate.orientations.rules["csa"] * study.rate.orientations.stays).sum())
     assert 0.0 < share < 1.0
-    assert not any("at the entry" in line for line in tables.remarks(study))
-    monkeypatch.setattr(tables, "SCARCE", share + 0.01)
-    (said,) = [line for line in tables.remarks(study) if "at the entry" in line]
+    assert not any("at the entry" in line for line in rate_output.remarks(study))
+    monkeypatch.setattr(rate_output, "SCARCE", share + 0.01)
+    (said,) = [line for line in rate_output.remarks(study) if "at the entry" in line]
     come = 60.0 * study.rate.offered.value / share
     assert said == (
         f"{100.0 * share:.2g} % of the parts at the entry stay on the track: this rate needs {come:,.0f} "
@@ -151,7 +151,7 @@ def test_it_is_said_how_many_must_come_where_few_stay_on_the_track(monkeypatch):
     )
     parts = replace(study.rate.parts, low=0.0)
     never = replace(study, rate=replace(study.rate, parts=parts))
-    assert [line for line in tables.remarks(never) if "at the entry" in line] == [
+    assert [line for line in rate_output.remarks(never) if "at the entry" in line] == [
         f"{said}, and is 0 if none stays"
     ]
 

@@ -13,7 +13,7 @@ from feederscrew.errors import FeederError
 from feederscrew.machine.drive_sizing import machine_for
 from feederscrew.machine.sizing import Size
 from feederscrew.machine.springs import analyse_springs, centred_mass, rocking
-from feederscrew.output.designs import design_file
+from feederscrew.output import designs
 from feederscrew.solidbowl.closed_body import body
 
 
@@ -35,7 +35,7 @@ def test_a_solid_s_springs_are_the_same_when_its_bowl_file_is_read_back(hand):
         analyse_springs(under).effective_mass, rel=1e-5
     )
     assert rocking(again, 0.15, 0.05).greatest == pytest.approx(rocking(under, 0.15, 0.05).greatest, rel=1e-6)
-    lines = dict(design_file._unbalance(under))
+    lines = dict(designs._unbalance(under))
     assert list(lines) == list(schema.UNBALANCE_NAMES)
     assert lines["centre_z"] == f"{1e3 * (solid.centre[2] - solid.plan.underside):.9g} mm"
     assert lines["product_xy"] == f"{under.unbalance.products[2]:.9g} kg m2"
@@ -52,7 +52,7 @@ def test_what_a_file_says_of_the_mass_is_kept():
 
 def test_a_balanced_machine_has_nothing_to_write():
     machine = bowls.read(None, ()).machine
-    assert schema.unbalance_values(machine) == {} and list(design_file._unbalance(machine)) == []
+    assert schema.unbalance_values(machine) == {} and list(designs._unbalance(machine)) == []
     assert schema.with_unbalance(
         {"bowl_mass": 2.0, **dict.fromkeys(schema.UNBALANCE_NAMES, 0.0)}, "left"
     ) == {"bowl_mass": 2.0}

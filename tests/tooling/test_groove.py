@@ -12,7 +12,7 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew.errors import Faults
 from feederscrew.mechanics.wall import lying_in_groove
-from feederscrew.output.rate.tables import remarks
+from feederscrew.output.rate import remarks
 from feederscrew.output.tooling import drawing, profile
 from feederscrew.part import load
 from feederscrew.rates import stream

@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew.geometry.polygons import turned
-from feederscrew.output import style
-from feederscrew.output.solid import pair
-from feederscrew.output.solid.render import Camera
+from feederscrew.output import shading, style
+from feederscrew.output.shading import Camera
 from feederscrew.output.tooling import ink
 from feederscrew.tooling import solid, track_sections
 from feederscrew.tooling.isolating.proposal import (
@@ -169,7 +168,9 @@ def _image(met, every):
     track, sides = solid.solid(section)
     half = ROOM * np.ptp(corners, axis=0).max()
     camera = clearest([(track, sides)], [(corners, faces)], [centre], [angle], half)[0]
-    image, frame, size = pair.picture((track, sides), (corners, faces), centre, camera, half, WIDE, HIGH)
+    image, frame, size = shading.pair_picture(
+        (track, sides), (corners, faces), centre, camera, half, WIDE, HIGH
+    )
     return image, frame, (camera, size), centre
 
 
@@ -194,7 +195,7 @@ def clearest(tracks, parts, centres, angles, half):
     for turn in TURNS:
         views = [camera_at(angle, turn) for angle in angles]
         moments = zip(tracks, parts, centres, views)
-        share = np.mean([pair.shown_share(*moment, half) for moment in moments])
+        share = np.mean([shading.shown_share(*moment, half) for moment in moments])
         if share > most:
             best, most = views, share
         if share >= ENOUGH:
