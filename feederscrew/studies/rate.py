@@ -163,9 +163,7 @@ def likeliest(part: Part, bowl: Bowl) -> Aspects:
     answer = sample.aspects.recommended
     if not sample.fed or answer is None:
         return sample.aspects
-    low, high = wilson(
-        np.nan_to_num(answer.p) * CHOOSING, CHOOSING
-    )  # of the sample alone
+    low, high = wilson(np.nan_to_num(answer.p) * CHOOSING, CHOOSING)  # of the sample alone
     first = int(np.argmax(answer.p))
     is_clear = low[first] > np.delete(high, first).max(initial=0.0)
     return sample.aspects if is_clear else arriving(part, bowl)
