@@ -195,7 +195,7 @@ def _batch(out, part, own, bowl, written):
     from feederscrew.errors import FeederError
     from feederscrew.output import designs, offers
 
-    settings, path, pictures = written
+    (settings, path, pictures), (record, given) = written, bowl
     orders = design_list.read_orders(part["source"])
     lacks = next((order for order in orders if (order.target or own["target"]) is None), None)
     if lacks:
@@ -208,7 +208,7 @@ def _batch(out, part, own, bowl, written):
             solid = out.part(part | {"source": order.source})
             with _folder(out, solid, solid.inputs | bowls.identity(path), settings) as folder:
                 with _stoppable(out) as search:
-                    study = loop.design(solid, *bowl, DesignRequest(**asked), **search)
+                    study = loop.design(solid, record, given, DesignRequest(**asked), **search)
                 study = _written(out, folder, study, settings, pictures)
         except FeederError as fault:
             out.say(f"Error: {fault}")
