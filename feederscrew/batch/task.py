@@ -35,7 +35,7 @@ class Conditions:
     name: str  # the file's stem; 'bowl' for the defaults
     bowl: Bowl
     texts: tuple[tuple[str, str], ...]  # key and value in effect, as text
-    given: bool = False  # whether a bowl file was named
+    has_file: bool = False  # whether a bowl file was named
     warnings: tuple[str, ...] = ()  # what a machine makes of its drive
     tried: Verified | VoidTrial | None = None  # what the file says of its trial
 

@@ -33,7 +33,7 @@ def figure(study):
 def parts(solid, part):
     """Return the parts along the track of a bowl as one mesh, vertices (V, 3) [m] and faces (F, 3)."""
     own = part.vertices - part.centre_of_mass
-    placed = [riding.laid(solid.plan, one, own, s) for one, s in solid.riders]
+    placed = [riding.place_rider(solid.plan, one, own, s) for one, s in solid.riders]
     if not placed:
         return np.zeros((0, 3)), np.zeros((0, 3), int)
     faces = [part.faces + len(own) * k for k in range(len(placed))]

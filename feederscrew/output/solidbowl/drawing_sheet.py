@@ -100,7 +100,7 @@ def _radius(paper, plan, found, at, scale):
     out = np.array([np.cos(plan.turned), np.sin(plan.turned)])
     r = 0.5 * found.diameter / MM
     paper.dimension(at, at + r * scale * out, f"R{r:.4g} at the outlet", (0.0, 0.0), size=2.2)
-    lowest = float(plan.way.wall_radius(0.0)) / MM
+    lowest = float(plan.path.wall_radius(0.0)) / MM
     paper.text(25.0, 272.5, f"R{lowest:.4g} of the wall where the track begins", size=2.2)
 
 
@@ -108,7 +108,7 @@ def _track_width(paper, plan, found, at, scale):
     """The width of the track, a quarter turn before the outlet."""
     turn = plan.turned + (1.0 if plan.left else -1.0) * 0.5 * np.pi
     outward, r = np.array([np.cos(turn), np.sin(turn)]), 0.5 * found.diameter / MM * scale
-    bank = float(plan.way.bank_at(plan.way.at(-0.5 * np.pi)))
+    bank = float(plan.path.bank_at(plan.path.at(-0.5 * np.pi)))
     wide = found.track_width * np.cos(bank) / MM * scale
     paper.lines([[at + outward * (r - wide - 7.0), at + outward * r]])
     text = f"track {found.track_width / MM:.4g}"
@@ -179,5 +179,5 @@ def _unrolled(paper, solid):
     text = f"{plan.width / MM:.4g}"
     paper.dimension(at + [length, 0.0], at + [length, wide], text, (6.0, 0.0), size=2.2)
     head = f"track unrolled  {named(scale)}: wall below, parts move to the right; its end lies "
-    behind = (plan.way.end - plan.first - stretch.length) / MM
+    behind = (plan.path.end - plan.first - stretch.length) / MM
     paper.text(25.0, 127.0, f"{head}{behind:.4g} mm before the outlet", size=2.5, fontweight="bold")

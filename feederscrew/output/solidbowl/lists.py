@@ -121,7 +121,7 @@ def _fields(study, solid, found, scale, tried):
         ("drive", f"{study.stroke.frequency:.4g} Hz, {study.stroke.peak_to_peak / MM:.3g} mm"),
         ("vibration angle", sheets.angles(study, phase=False)),
         ("natural frequency", f"{study.springs.natural_frequency:.4g} Hz"),
-        ("climb, bank", f"{np.degrees(plan.way.climb):.3g}°, {_banks(plan.way)}"),
+        ("climb, bank", f"{np.degrees(plan.path.climb):.3g}°, {_banks(plan.path)}"),
         (
             "hand",
             f"{'left' if plan.left else 'right'}: parts climb {'' if plan.left else 'counter-'}clockwise",

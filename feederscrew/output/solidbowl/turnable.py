@@ -35,7 +35,7 @@ def blocks(solid, part, why="", mark=""):
     """
     if solid is None:
         return [Notes((f"the bowl as a solid: {why}",))] if why else []
-    text = f"{2.0 * solid.plan.way.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
+    text = f"{2.0 * solid.plan.path.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
     captions = ((marking.marked_title("bowl", mark), text, ()),)
     return [Views(scene(solid, part), captions, "solid-bowl", "The", hint=TURN, printed=True, mark=mark)]
 

@@ -22,7 +22,7 @@ def bowl_file(study, settings):
     """
     check_written(study.design.devices, "tooling.yaml")
     width = study.design.width
-    given = [s for s in settings if s.given and s.key.field != DEVICES_SECTION]
+    given = [s for s in settings if s.is_own and s.key.field != DEVICES_SECTION]
     given = [s for s in given if width is None or s.key.name != WIDTH]
     lines = [*_head(study), *(f"{s.key.word}: {s.text}" for s in given if not s.key.section)]
     for section in dict.fromkeys(s.key.section for s in given if s.key.section):

@@ -86,7 +86,7 @@ def layers(strip, ghosts=(), mark=""):
         bent = tuple(strip.bent(ring) for ring in rings)
         found += _both(strip, name, tuple(rings), bent)
     plain = tuple(np.add(ring, [place, 0.0]) for ring, place in ghosts)
-    found += _both(strip, "GHOST", plain, tuple(strip.laid(*ghost) for ghost in ghosts))
+    found += _both(strip, "GHOST", plain, tuple(strip.outline_in_bowl(*ghost) for ghost in ghosts))
     found += [Layer(name, COLOURS["OPENING"], rings=rings) for name, rings in _openings(strip)]
     found.append(Layer("TEXT", COLOURS["TEXT"], texts=_texts(strip, mark)))
     if not mark:

@@ -19,7 +19,7 @@ def along(one, top, right):
     top, right : float [mm]
         How far wall and track are drawn.
     """
-    shown = ink.mm(one.seen)
+    shown = ink.mm(one.view_ahead)
     if not one.groove:
         return shown, np.array([[0.0, top], [0.0, 0.0], [right, 0.0]])
     angle, lean = one.groove, 2.0 * one.groove - 0.5 * np.pi

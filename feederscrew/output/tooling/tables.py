@@ -286,11 +286,11 @@ def _designed(study, place, found):
 def _cut(cut):
     return {
         "device": cut.device.kind,
-        **cut.device.told(),
+        **cut.device.document_values(),
         "margin_pass_mm": cut.margin_pass / MM,
         "margin_reject_mm": cut.margin_reject / MM,
-        "smallest": cut.smallest.told(),
-        "largest": cut.largest.told(),
+        "smallest": cut.smallest.document_values(),
+        "largest": cut.largest.document_values(),
         "returns": [name for name in cut.returns if name not in cut.stops],
         "stops": list(cut.stops),
         "text": cut.device.text,
