@@ -78,7 +78,7 @@ pytestmark = pytest.mark.needs("chromium")
 
 @pytest.fixture(scope="module")
 def case():
-    return report(load(str(BRACKET)), None, (), command="feeder report x.stl")
+    return report(load(str(BRACKET)), command="feeder report x.stl")
 
 
 @pytest.fixture(scope="module")
