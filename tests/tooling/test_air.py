@@ -19,7 +19,7 @@ from feederscrew.geometry.polygons import turned
 from feederscrew.part import load
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
-from feederscrew.studies import tooling
+from feederscrew.studies import tooling as tooling_study
 from feederscrew.tooling import sensor_views, verdicts
 from feederscrew.tooling.devices.kinds import KINDS, make_device
 from feederscrew.tooling.devices.pneumatics import Nozzles
@@ -166,7 +166,7 @@ def test_a_screw_that_hangs_is_seen_head_first_and_thread_first():
     steep = bowls.read(None, ["track.bank=8 deg", "track.width=15 mm"])
     met = [name for name, kind in KINDS.items() if kind.proposed and name != "sorter"]
     own = {"heading": np.radians(350.93), "outcome": "hanging", "without": met}
-    found = tooling.tooling(screw, steep, "A", **own)
+    found = tooling_study.tooling(screw, steep, "A", **own)
     devices = [cut.device for cut in found.design.cuts]
     kinds = [device.kind for device in devices]
     assert kinds == ["separation", "sorter", "separation", "rails"]
