@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from test_drawing import study
 from test_leans import STEEP, bank
-from test_solid import GAP, NEAR, TRACK, One, closed, made, planned
+from test_solid import GAP, NEAR, TRACK, One, closed, make_device, planned
 from test_stepped import STEPPED
 
 from feederscrew.output.solidbowl import drawing_sheet
@@ -22,7 +22,7 @@ CYLINDER = replace(TRACK, climb=np.radians(4.5))
 
 
 def groove(degrees):
-    return made("groove", "b", angle=np.radians(degrees), text=f"{{angle: {degrees} deg}}")
+    return make_device("groove", "b", angle=np.radians(degrees), text=f"{{angle: {degrees} deg}}")
 
 
 CASES = {
