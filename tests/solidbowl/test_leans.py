@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from test_drawing import study
-from test_solid import CHAINS, GAP, NEAR, RAILS, TRACK, One, closed, make_device, planned
+from test_solid import CHAINS, GAP, NEAR, RAILS, TRACK, One, closed, planned
 from test_stepped import STEPPED
 
 from feederscrew.output.solidbowl import drawing_sheet, unrolled_strip
@@ -14,14 +14,15 @@ from feederscrew.solidbowl.closed_body import body, pieces
 from feederscrew.solidbowl.exact import exact_body
 from feederscrew.solidbowl.measuring import measures, track_heights, track_width, ways_down
 from feederscrew.solidbowl.plan import SolidOptions
+from feederscrew.tooling.devices.kinds import make_device as device_of
 
 STEEP = replace(TRACK, climb=np.radians(6.5))
-TIP = make_device("tip", "b", limit=6e-3, text="6 mm")
+TIP = device_of("tip", "b", limit=6e-3, text="6 mm")
 SHAPES = {"cylinder": (TRACK, SolidOptions()), "stepped": (STEEP, replace(STEPPED, left=True))}
 
 
 def bank(degrees):
-    return make_device("bank", "b", angle=np.radians(degrees), text=f"{degrees} deg")
+    return device_of("bank", "b", angle=np.radians(degrees), text=f"{degrees} deg")
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -130,7 +131,7 @@ def test_a_yoke_of_banked_rails_lies_below_their_surface():
 
 
 def test_the_sheet_has_what_leans_and_what_drops():
-    chain = (TIP, make_device("step", "b", limit=4e-3), *CHAINS["blades"], *CHAINS["jets"], bank(12.0))
+    chain = (TIP, device_of("step", "b", limit=4e-3), *CHAINS["blades"], *CHAINS["jets"], bank(12.0))
     solid = body(planned(chain, track=STEEP, asked=STEPPED))
     paper = drawing_sheet.sheet(study(solid))
     told = [one.get_text() for one in paper.axes.texts]

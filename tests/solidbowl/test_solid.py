@@ -21,24 +21,23 @@ from feederscrew.solidbowl import cuts, facets, riding, segments
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.measuring import measures, track_heights, track_width, ways_down
 from feederscrew.solidbowl.plan import SolidOptions, material, plan
-from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.devices.kinds import make_device as device_of
 
 RULES = record(effective({})).sizing
 TRACK = Track(climb=np.radians(3.5), bank=0.0, radius=0.15, width=0.02)
 NEAR = 5e-5  # [m]
-RAILS = make_device("rails", "b", span=(3e-3, 7e-3))
-GAP = make_device("gap", "b", limit=9e-3)
+RAILS = device_of("rails", "b", span=(3e-3, 7e-3))
+GAP = device_of("gap", "b", limit=9e-3)
 CHAINS = {
     "none": (),
-    "narrowed and rails": (make_device("narrowed_track", "b", limit=9e-3, text="9 mm"), RAILS),
+    "narrowed and rails": (device_of("narrowed_track", "b", limit=9e-3, text="9 mm"), RAILS),
     "gap": (GAP,),
-    "canyon, slot": (make_device("canyon", "b", limit=6e-3), make_device("slot", "b", span=(8e-3, 12e-3))),
-    "cut out": (make_device("cut_out", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 8e-3))),),
-    "blades": (make_device("wiper", "b", limit=6e-3), make_device("hold_down", "b", limit=8e-3)),
-    "gate": (make_device("profile", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 5e-3), (0.0, 7e-3))),),
-    "jets": (*(make_device("jet", "b", nozzle=2e-3, pressure=2e4, height=z) for z in (1e-3, 8e-3)), GAP),
-    "step": (make_device("step", "b", limit=4e-3), make_device("gap", "b", limit=5e-3)),
+    "canyon, slot": (device_of("canyon", "b", limit=6e-3), device_of("slot", "b", span=(8e-3, 12e-3))),
+    "cut out": (device_of("cut_out", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 8e-3))),),
+    "blades": (device_of("wiper", "b", limit=6e-3), device_of("hold_down", "b", limit=8e-3)),
+    "gate": (device_of("profile", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 5e-3), (0.0, 7e-3))),),
+    "jets": (*(device_of("jet", "b", nozzle=2e-3, pressure=2e4, height=z) for z in (1e-3, 8e-3)), GAP),
+    "step": (device_of("step", "b", limit=4e-3), device_of("gap", "b", limit=5e-3)),
 }
 
 
@@ -103,7 +102,7 @@ def test_height_and_width_of_the_track_are_those_of_the_formula(bank, rng):
 
 
 def test_a_separation_leads_the_track_down_from_its_place_on():
-    chain = (make_device("separation", "b", angle=np.radians(-5.0), text="{climb: -5 deg}"), *CHAINS["gap"])
+    chain = (device_of("separation", "b", angle=np.radians(-5.0), text="{climb: -5 deg}"), *CHAINS["gap"])
     solid = body(planned(chain))
     assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
     plan, whole = solid.plan, facets.unplaced(solid)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from test_drawing import study
 from test_leans import STEEP, bank
-from test_solid import GAP, NEAR, TRACK, One, closed, make_device, planned
+from test_solid import GAP, NEAR, TRACK, One, closed, planned
 from test_stepped import STEPPED
 
 from feederscrew.output.solidbowl import drawing_sheet
@@ -16,13 +16,14 @@ from feederscrew.solidbowl.closed_body import _wall, body
 from feederscrew.solidbowl.exact import exact_body
 from feederscrew.solidbowl.measuring import measures, track_heights, ways_down
 from feederscrew.solidbowl.plan import SolidOptions
+from feederscrew.tooling.devices.kinds import make_device as device_of
 
 LEFT = replace(STEPPED, left=True)
 CYLINDER = replace(TRACK, climb=np.radians(4.5))
 
 
 def groove(degrees):
-    return make_device("groove", "b", angle=np.radians(degrees), text=f"{{angle: {degrees} deg}}")
+    return device_of("groove", "b", angle=np.radians(degrees), text=f"{{angle: {degrees} deg}}")
 
 
 CASES = {
