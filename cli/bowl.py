@@ -101,7 +101,6 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
     from feederscrew import bowl as bowls
     from feederscrew.errors import FeederError
     from feederscrew.output import columns, machine, offers, proof
-    from feederscrew.output.machine import tables
     from feederscrew.studies import bowl as study
     from feederscrew.studies import solidbowl as solids
 
@@ -133,8 +132,8 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
             found = study.machine(settings)
         out.warn(*found.remarks, *proof.warnings(tried, *own))
         offers.write(folder, machine.offers(found, holding), pictures=pictures)
-        document = proof.beside(tables.document(found), tried, *own)
-        out.show(tables.summary(found, holding), document)
+        document = proof.beside(machine.document(found), tried, *own)
+        out.show(machine.summary(found, holding), document)
 
 
 def _typed_options(*names):
@@ -148,12 +147,12 @@ def _found(bowl, measured, out):
     """The machine of a bowl file as it was found."""
     from feederscrew import bowl as bowls
     from feederscrew.machine import condition
-    from feederscrew.output.machine import as_found as tables
+    from feederscrew.output import machine
     from feederscrew.studies import bowl as study
 
     values = condition.read(measured)
     found = condition.found(study.machine(bowls.settings(**bowl)), values)
-    out.show(tables.summary(found), tables.document(found))
+    out.show(machine.measured_summary(found), machine.measured_document(found))
 
 
 def _fitting(part, target, made, measured):

@@ -124,16 +124,15 @@ def tooling(part, asked, cad, static, taken, bowl, pictures, out):
 
     from feederscrew import bowl as bowls
     from feederscrew.designing import own_trial
-    from feederscrew.output import columns, offers
-    from feederscrew.output.tooling import files, tables
+    from feederscrew.output import columns, offers, solid_files
+    from feederscrew.output import tooling as files
+    from feederscrew.output import tooling_tables as tables
     from feederscrew.studies.tooling import tooling as study
     from feederscrew.studies.tooling import tooling_without
 
     orientation.of_an_aspect(asked)
     if cad:
-        from feederscrew.output.tooling import written_step as steps
-
-        steps.check()
+        solid_files.check_opencascade()
     solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)

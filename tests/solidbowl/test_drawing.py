@@ -8,7 +8,7 @@ from test_solid import CHAINS, TRACK, planned
 from test_stepped import STEEP, STEPPED
 
 from feederscrew.bowl.settings import effective, record
-from feederscrew.output.solidbowl import drawing_sheet
+from feederscrew.output import bowl_sheet
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.plan import Asked
 
@@ -34,14 +34,14 @@ def study(solid):
 def test_dimensions_are_those_of_the_solid_and_all_is_within_the_frame(name):
     devices, track, asked = CASES[name]
     solid = body(planned(devices, track=track, asked=asked, turns=1.8))
-    paper = drawing_sheet.sheet(study(solid))
+    paper = bowl_sheet.draw_sheet(study(solid))
     told = [one.get_text() for one in paper.axes.texts]
     low, high = solid.vertices[:, 2].min(), solid.vertices[:, 2].max()
     assert f"{1e3 * (high - low):.4g}" in told
     assert f"{1e3 * solid.plan.outlet_height:.4g}" in told
     assert ("R150 at the outlet" if name == "stepped" else "Ø300") in told
     assert "track 20" in told and f"{solid.mass:.4g} kg, {1e9 * solid.volume:.6g} mm³" in told
-    left, bottom, right, top = drawing_sheet.FRAME
+    left, bottom, right, top = bowl_sheet.FRAME
     for some in paper.axes.collections:
         places = np.concatenate([path.vertices for path in some.get_paths()])
         assert (places >= np.array([left, bottom]) - 0.1).all()

@@ -10,7 +10,7 @@ from test_leans import STEEP, bank
 from test_solid import GAP, NEAR, TRACK, One, closed, made, planned
 from test_stepped import STEPPED
 
-from feederscrew.output.solidbowl import drawing_sheet
+from feederscrew.output import bowl_sheet
 from feederscrew.solidbowl import facets, grooves_wall, leaning, riding
 from feederscrew.solidbowl.closed_body import _wall, body
 from feederscrew.solidbowl.exact import exact_body, exact_faces
@@ -109,5 +109,5 @@ def test_a_part_lies_in_the_groove_at_both_faces(name, degrees):
 
 def test_the_sheet_has_the_groove():
     solid = grooved("before a bank")[0]
-    told = [one.get_text() for one in drawing_sheet.sheet(study(solid)).axes.texts]
+    told = [one.get_text() for one in bowl_sheet.draw_sheet(study(solid)).axes.texts]
     assert "groove: the wall leans back by 50°" in told and "6.5°, 0° to 40° to 0°" in told

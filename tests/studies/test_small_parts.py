@@ -9,9 +9,9 @@ import pytest
 import feederscrew as feeder
 from feederscrew import bowl as bowls
 from feederscrew.designing.record import DesignRequest, DesignStudy
+from feederscrew.output import tooling_tables
 from feederscrew.output.headings import tables as heading_tables
 from feederscrew.output.rate import tables as rate_tables
-from feederscrew.output.tooling import tables as tooling_tables
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.studies.headings import headings
 from feederscrew.studies.rate import rate

@@ -1,7 +1,7 @@
 """A design on one page to hand on: the answer first, then what it stands on."""
 
 from feederscrew.designing import record
-from feederscrew.output import marking
+from feederscrew.output import marking, solidbowl_views
 from feederscrew.output.designs import design_file, figures, risk_pictures, tables
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import (
@@ -16,7 +16,6 @@ from feederscrew.output.page.blocks import (
     Tile,
     Views,
 )  # fmt: skip
-from feederscrew.output.solidbowl import turnable
 from feederscrew.output.style import png
 from feederscrew.output.tables import text
 from feederscrew.output.trial import playback
@@ -63,7 +62,7 @@ def _sections(study, built):
         yield Chapter(tuple(_proof(study, d)), anchor="proof", title="The proof")
     if built is not None and study.delivers:
         mark = marking.of_trial(design_file.trial(study))
-        shown = tuple(turnable.blocks(built.drawn and built.drawn.solid, study.part, built.why, mark))
+        shown = tuple(solidbowl_views.blocks(built.drawn and built.drawn.solid, study.part, built.why, mark))
         yield Chapter(shown, anchor="bowl", title="The bowl")
     if not study.delivers:  # nothing to build from, nothing to accept
         return

@@ -1,11 +1,9 @@
 """What ``feeder design`` leaves in its folder."""
 
 from feederscrew.designing import record
-from feederscrew.output import machine, marking, solidbowl
+from feederscrew.output import machine, marking, solidbowl, tooling
 from feederscrew.output import offers as offer
 from feederscrew.output.designs import design_file, tables
-from feederscrew.output.solidbowl import tables as tables_of_solid
-from feederscrew.output.tooling import files as tooling_files
 
 
 def offers(study, settings, built=None):
@@ -50,9 +48,9 @@ def offers(study, settings, built=None):
         found += machine.offers(sheet, tried)
     if drawn is not None:
         found += solidbowl.offers(drawn, tried)
-        found.append(offer.document("bowl_solid.json", tables_of_solid.document, drawn.solid))
+        found.append(offer.document("bowl_solid.json", solidbowl.document, drawn.solid))
     if study.tooling is not None:
-        own = tooling_files.offers(study.tooling, settings, mark=marking.of_trial(tried))
+        own = tooling.offers(study.tooling, settings, mark=marking.of_trial(tried))
         found += [one for one in own if one.name != "tooling.yaml"]  # design.yaml has the devices
     return found
 

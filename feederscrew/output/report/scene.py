@@ -3,10 +3,10 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from feederscrew.output import tooling_views
 from feederscrew.output.solid import meshes
 from feederscrew.output.solid.meshes import short
 from feederscrew.output.solid.stance import outermost, stance
-from feederscrew.output.tooling import relief
 from feederscrew.units import MM
 
 REACH = 1.25  # of the part's radius: how much of the track around it is seen
@@ -56,8 +56,8 @@ def over_cuts(part, met, every):
         As ``scene``, with ``tracks``: the sections in mm, ahead, inwards and up from the foot of the centre
         of mass; and ``reach``, how far the view goes, in radii of the part.
     """
-    tracks = [meshes.track(*relief.track_below(one, every)) for one in met]
-    return meshes.viewed(part, relief.VIEW) | {
+    tracks = [meshes.track(*tooling_views.track_below(one, every)) for one in met]
+    return meshes.viewed(part, tooling_views.VIEW) | {
         "reach": REACH,
         "tracks": tracks,
         "poses": [_over_cut(one, place) for place, one in enumerate(met)],

@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from feederscrew.output import tooling_views
 from feederscrew.output.solid import meshes
 from feederscrew.output.solid.meshes import encoded, short
-from feederscrew.output.tooling import relief
 from feederscrew.output.trial.section import section
 from feederscrew.output.trial.shown import shown
 from feederscrew.units import MM
@@ -35,7 +35,7 @@ def scene(part, *tried):
         What each pose is, and what becomes of it.
     """
     rides, run, found = shown(*tried), tried[0], tried[0].course
-    seen = meshes.viewed(part, relief.VIEW)
+    seen = meshes.viewed(part, tooling_views.VIEW)
     cut = section(found.stations[rides[0].place], run.bowl.track, ABOVE * seen["radius"] * MM)
     paths = [_path(ride.path, found.principal) for ride in rides]
     return seen | {

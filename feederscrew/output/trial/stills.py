@@ -5,7 +5,7 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from feederscrew.output import style
 from feederscrew.output.solid import pair
-from feederscrew.output.tooling.relief import clearest
+from feederscrew.output.tooling_views import clearest
 from feederscrew.output.trial.section import section
 from feederscrew.output.trial.shown import shown
 from feederscrew.units import MM

@@ -1,10 +1,10 @@
-"""What ``feeder tooling`` leaves in its folder."""
+"""Files of ``feeder tooling``."""
 
 import numpy as np
 
 from feederscrew.output import marking
 from feederscrew.output import offers as offer
-from feederscrew.output.tooling import bowl_file, tables
+from feederscrew.output import tooling_tables as tables
 from feederscrew.tooling.strip import strip
 
 
@@ -36,7 +36,7 @@ def offers(study, settings, step=False, mark=""):
         return marking.pictures(found, mark)
     found = [
         *found,
-        offer.text("tooling.yaml", bowl_file.bowl_file, study, settings),
+        offer.text("tooling.yaml", tables.bowl_file, study, settings),
         offer.text("tooling.dxf", _drawn, "dxf", study, mark),
         offer.text("tooling.svg", _drawn, "svg", study, mark),
         offer.text(marking.file_name("tooling.stl", mark), _printed, study, mark),
@@ -48,7 +48,7 @@ def offers(study, settings, step=False, mark=""):
 
 def picture(study):
     """Return the figure of a study: the chain of the orientation asked for, or all with their limits."""
-    from feederscrew.output.tooling import figures
+    from feederscrew.output import tooling_figures as figures
 
     if study.design is None or not study.design.devices:
         return figures.limits(study)
@@ -70,7 +70,7 @@ def chain_picture(devices, every, shares):
     """
 
     def draw():
-        from feederscrew.output.tooling import figures
+        from feederscrew.output import tooling_figures as figures
 
         return figures.chain(devices, every, shares)
 
@@ -103,16 +103,16 @@ def solid_picture(devices, every, shares, wanted):
     """
 
     def draw():
-        from feederscrew.output.tooling import relief
+        from feederscrew.output import tooling_views
 
-        return relief.figure(devices, every, shares, wanted)
+        return tooling_views.figure(devices, every, shares, wanted)
 
     text = "The part over the cut: what passes, and the nearest that falls"
     return offer.picture("tooling_3d.png", text, draw)
 
 
 def _drawn(kind, study, mark):
-    from feederscrew.output.tooling import drawing
+    from feederscrew.output import tooling_drawing as drawing
 
     made = _strip(study)
     one = study.orientations[study.wanted]
@@ -122,15 +122,15 @@ def _drawn(kind, study, mark):
 
 
 def _printed(study, mark):
-    from feederscrew.output.tooling import written_stl
+    from feederscrew.output import solid_files
 
-    return written_stl.stl(_strip(study), mark)
+    return solid_files.section_stl(_strip(study), mark)
 
 
 def _quoted(study, mark):
-    from feederscrew.output.tooling import written_step
+    from feederscrew.output import solid_files
 
-    return marking.mark_step(written_step.step(_strip(study)), mark)
+    return marking.mark_step(solid_files.section_step(_strip(study)), mark)
 
 
 def _strip(study):
