@@ -78,9 +78,10 @@ def _of_the_solid(command):
     "fill=50 %': what it does now beside what it should, and the likely cause.",
 )
 @options.bowl
+@options.title_block
 @options.pictures
 @options.output
-def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
+def bowl(part, target, made, measured, bowl, fields, pictures, out, **wanted):
     """Example: feeder bowl parts/lbracket_30x20x15.stl --target 60/min -o results
 
     With PART and --target: the diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs
@@ -100,7 +101,7 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
     """
     from feederscrew import bowl as bowls
     from feederscrew.errors import FeederError
-    from feederscrew.output import columns, machine, offers, proof
+    from feederscrew.output import columns, machine, marking, offers, proof
     from feederscrew.studies import bowl as study
     from feederscrew.studies import solidbowl as solids
 
@@ -131,7 +132,8 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
             out.warn(f"{fault}; what follows is the machine as it was tried")
             found = study.machine(settings)
         out.warn(*found.remarks, *proof.warnings(tried, *own))
-        offers.write(folder, machine.offers(found, holding), pictures=pictures)
+        made_of = machine.offers(found, holding, fields=marking.SheetFields(**fields))
+        offers.write(folder, made_of, pictures=pictures)
         document = proof.beside(machine.document(found), tried, *own)
         out.show(machine.summary(found, holding), document)
 

@@ -18,7 +18,7 @@ N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
 LITRE = units.factor("l", "volume")
 
 
-def offers(study, tried=None, mark=None):
+def offers(study, tried=None, mark=None, fields=None):
     """Return the files of a machine.
 
     Parameters
@@ -28,6 +28,8 @@ def offers(study, tried=None, mark=None):
         What a trial of exactly this bowl at this stroke has shown: it leads, and what falls short is marked.
     mark : str, optional
         Across every drawing; that of the trial without it.
+    fields : marking.SheetFields, optional
+        Date and revision of the drawing.
 
     Returns
     -------
@@ -37,7 +39,7 @@ def offers(study, tried=None, mark=None):
     from feederscrew.output import solidbowl
 
     alt = "The bowl from above and in section, with its sizes, and what it does from full to empty"
-    solid = () if study.solid is None else solidbowl.offers(study, tried, mark)
+    solid = () if study.solid is None else solidbowl.offers(study, tried, mark, fields)
     drawn = picture("bowl.png", alt, figures.bowl, study, tried)
     return (
         *solid,

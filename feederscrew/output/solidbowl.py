@@ -1,5 +1,7 @@
 """The bowl as a solid: its document, and the files of ``feeder bowl --solid``."""
 
+import functools
+
 from feederscrew.output import marking
 from feederscrew.output import offers as offer
 from feederscrew.solidbowl import lugs
@@ -14,7 +16,7 @@ NOT_EXACT = (
 WALL = "the wall is no surface of revolution: it is ruled between splines through 16 places a quarter turn"
 
 
-def offers(study, tried=None, mark=None):
+def offers(study, tried=None, mark=None, fields=None):
     """Return the files of the solid of a bowl.
 
     Parameters
@@ -25,6 +27,8 @@ def offers(study, tried=None, mark=None):
         What a trial of the bowl has shown: it is in the title block, and across what falls short.
     mark : str, optional
         On every drawing and solid; that of the trial without it.
+    fields : marking.SheetFields, optional
+        Date and revision of the drawing.
 
     Returns
     -------
@@ -34,6 +38,8 @@ def offers(study, tried=None, mark=None):
 
     name, cut, mark = study.order.part.name, study.solid.segments, marking.of_trial(tried, mark)
     title = marking.marked_title(f"bowl for {name}", mark)
+    sheet_title = marking.marked_title(f"{name}: bowl", mark)
+    sheets = functools.cache(lambda: bowl_sheet.draw_sheets(study, tried, mark, fields))
     pieces = (
         ()
         if cut is None
@@ -54,7 +60,8 @@ def offers(study, tried=None, mark=None):
         *exact,
         _file("bowl.stl", mark, solid_files.bowl_stl, study.solid, mark),
         _file("bowl.3mf", mark, solid_files.bowl_3mf, study.solid, title, mark),
-        offer.text("bowl.pdf", bowl_sheet.pdf, study, tried, mark),
+        offer.text("bowl.pdf", lambda: sheets().pdf(sheet_title)),
+        offer.text("bowl.dxf", lambda: sheets().dxf()),
         *marking.pictures([picture], mark),
     )
 

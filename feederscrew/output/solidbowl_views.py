@@ -177,7 +177,10 @@ def lines(vertices, faces, looked):
     ends = [a[owner] + (b - a)[owner] * ((place + k) / count[owner])[:, None] for k in (0, 1)]
     middle = 0.5 * (ends[0] + ends[1]) + OFF * push[owner] + OFF * looked.back
     seen = looked.sees(rays, middle, slack=OFF)
-    pieces = np.stack([looked.project(end[seen]) for end in ends], axis=1)
+    same = owner[1:] == owner[:-1]  # pieces of one edge that are seen one after the other are one
+    first = seen & ~np.append(False, same & seen[:-1])
+    last = seen & ~np.append(same & seen[1:], False)
+    pieces = np.stack([looked.project(ends[0][first]), looked.project(ends[1][last])], axis=1)
     return pieces * rays.size + looked.project(centre[None])[0]
 
 

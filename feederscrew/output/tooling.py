@@ -8,7 +8,7 @@ from feederscrew.output import tooling_tables as tables
 from feederscrew.tooling.strip import strip
 
 
-def offers(study, settings, step=False, mark=""):
+def offers(study, settings, step=False, mark="", fields=None):
     """Offer the files of a ToolingStudy, as a list of Offer.
 
     Parameters
@@ -20,6 +20,8 @@ def offers(study, settings, step=False, mark=""):
         Offer the section of track as STEP as well, which needs OpenCASCADE.
     mark : str
         On every drawing, picture and solid.
+    fields : marking.SheetFields, optional
+        Date and revision of the drawing.
 
     Returns
     -------
@@ -37,8 +39,8 @@ def offers(study, settings, step=False, mark=""):
     found = [
         *found,
         offer.text("tooling.yaml", tables.bowl_file, study, settings),
-        offer.text("tooling.dxf", _drawn, "dxf", study, mark),
-        offer.text("tooling.svg", _drawn, "svg", study, mark),
+        offer.text("tooling.dxf", _drawn, "dxf", study, mark, fields),
+        offer.text("tooling.svg", _drawn, "svg", study, mark, fields),
         offer.text(marking.file_name("tooling.stl", mark), _printed, study, mark),
         *([offer.text(marking.file_name("tooling.step", mark), _quoted, study, mark)] if step else []),
         *_views(study),
@@ -111,14 +113,18 @@ def solid_picture(devices, every, shares, wanted):
     return offer.picture("tooling_3d.png", text, draw)
 
 
-def _drawn(kind, study, mark):
+def _drawn(kind, study, mark, fields):
     from feederscrew.output import tooling_drawing as drawing
 
     made = _strip(study)
     one = study.orientations[study.wanted]
     outline = np.add(one.outline, [0.0, one.distance])
     places = [station.start + 0.5 * station.length for station in made.stations if station.hole is None]
-    return getattr(drawing, kind)(made, [(outline, place) for place in (0.6 * one.length, *places)], mark)
+    ghosts = [(outline, place) for place in (0.6 * one.length, *places)]
+    titles = [("tooling for", study.part.name), ("leaves as", one.name)]
+    return getattr(drawing, kind)(
+        made, ghosts, mark, thickness=study.bowl.sizing.sheet, fields=fields, titles=titles
+    )
 
 
 def _printed(study, mark):

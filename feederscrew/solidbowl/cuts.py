@@ -9,7 +9,7 @@ from shapely import affinity
 from feederscrew.solidbowl import leaning
 from feederscrew.solidbowl.leaning import TrackLedge
 from feederscrew.tooling.devices.hole_shapes import beyond_borders
-from feederscrew.tooling.strip import strip
+from feederscrew.tooling.strip import Station, strip
 
 BEYOND = 2e-3  # [m] by which what reaches an edge of the track is cut over it
 
@@ -70,6 +70,7 @@ class Stretch:
     grooves: tuple[
         tuple[float, float, float, float], ...
     ] = ()  # from and to s [m], lean of the wall, opens [m]
+    stations: tuple[Station, ...] = ()  # of the devices, in the order parts meet them
 
     @property
     def falls(self):
@@ -119,6 +120,7 @@ def stretch(track, devices, every):
         leans=leans,
         ledges=ledges,
         grooves=grooves,
+        stations=tuple(stations),
     )
 
 

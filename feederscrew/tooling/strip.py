@@ -1,14 +1,14 @@
 """A stretch of track with a chain of devices on it, one after the other, as it is drawn and made."""
 
 import itertools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
 
 from feederscrew.bowl.record import Track
 from feederscrew.tooling.devices.base import Device, room_of
-from feederscrew.tooling.devices.pieces import BLADE, FRAME
+from feederscrew.tooling.devices.pieces import BLADE, FRAME, Standing
 from feederscrew.tooling.fates import leading
 
 BESIDE = 5e-3  # [m] of track beyond what parts and cuts need, where the whole track is not drawn
@@ -31,6 +31,7 @@ class Station:
     wall: float | None = (
         None  # [rad] by which the wall leans back over the track from there on; None: as before
     )
+    standing: Standing = field(default_factory=Standing)  # nozzles, a sensor, slopes, from its start on
 
     @property
     def label(self):
@@ -155,6 +156,7 @@ def _station(device, start, length, section, every):
         drop=lower[0] if lower is not None and lower[1] <= 0.0 else 0.0,
         edge=device.edge(start, length, section.width),
         wall=_wall(device, section.track, every),
+        standing=device.standing(section.track, every),
     )
 
 

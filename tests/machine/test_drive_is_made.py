@@ -7,7 +7,6 @@ import awkward
 import numpy as np
 import pytest
 import shapes
-from matplotlib.text import Text
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.direction import shares, vibration_angle
@@ -133,8 +132,7 @@ def test_a_drive_out_of_phase_stands_first_in_every_output(two_axis, tmp_path):
     assert tables.document(found)["bowl"]["phase_deg"] == pytest.approx(-60.0)
     assert any("phase" in text.get_text() for text in machine_figures.bowl(sheet).texts)
     assert any("two magnets" in line for line in tables.document(found)["warnings"])
-    drawn = bowl_sheet.draw_sheet(built.drawn).figure.findobj(Text)
-    assert any("two magnets" in text.get_text() for text in drawn)
+    assert any("two magnets" in text for text in bowl_sheet.draw_sheets(built.drawn).texts(0))
     assert "two magnets" in design_page.page(found, built).partition("leaves as")[0]
     assert "two magnets" in design_file.bowl_file(found, (), sheet).splitlines()[1]
 

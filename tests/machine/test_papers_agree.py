@@ -55,7 +55,7 @@ def papers(tmp_path_factory):
         "solid": json.loads(offered["bowl_solid.json"].make()),
         "quotation": rows(machine.summary(built.drawn)),
         "picture": words(machine_figures.bowl(built.sheet)),
-        "drawing": words(bowl_sheet.draw_sheet(built.drawn).figure),
+        "drawing": drawn_words(built.drawn),
         "file": bowls.read(path.parent / "design.yaml"),
         "path": path.parent / "design.yaml",
     }
@@ -67,6 +67,11 @@ def rows(frame):
 
 def words(figure):
     return "\n".join(one.get_text() for one in figure.findobj(Text))
+
+
+def drawn_words(study, tried=None):
+    drawing = bowl_sheet.draw_sheets(study, tried)
+    return "\n".join(text for sheet in range(len(drawing.sheets)) for text in drawing.texts(sheet))
 
 
 def number(pattern, text):
@@ -212,8 +217,8 @@ def test_a_design_warns_of_what_feeder_bowl_warns_of_for_its_part_and_rate(paper
 
 def test_the_title_block_has_orientation_and_rate_of_the_trial(papers):
     tried = design_file.trial(papers["study"])
-    drawn = words(bowl_sheet.draw_sheet(papers["built"].drawn, tried).figure)
+    drawn = drawn_words(papers["built"].drawn, tried)
     assert re.search(r"orientation\nA@0\n", drawn) and re.search(r"rate of its trial\n60/min", drawn)
     assert "all that pass" not in drawn and "FALLS SHORT" not in drawn
-    short = words(bowl_sheet.draw_sheet(papers["built"].drawn, replace(tried, status="falls short")).figure)
+    short = drawn_words(papers["built"].drawn, replace(tried, status="falls short"))
     assert "FALLS SHORT - not for manufacture" in short

@@ -105,7 +105,7 @@ def test_screws_are_on_the_parts_list_and_in_the_document():
     solid = replace(solid, segments=found)
     told = solidbowl.document(solid)
     assert told["screws"] == len(found.screws) > 0 and told["screw"] == "M3 x 16"
-    words = [one.get_text() for one in bowl_sheet.draw_sheet(study(solid)).axes.texts]
+    words = bowl_sheet.draw_sheets(study(solid)).texts(0)
     assert "screws ISO 4762 M3 x 16 with nuts ISO 4032, in lugs of the segments; floor: dowels" in words
     whole = mass.solid(found.joined[0][found.joined[1]])
     assert any(f"{1e9 * whole.volume:.6g} mm³" in one for one in words)
@@ -130,10 +130,11 @@ def test_the_views_of_the_sheet_have_the_lugs():
     for one in at:
         near = np.sqrt(((drawn.reshape(-1, 2) - one) ** 2).sum(axis=1)) < 6.0
         assert (near & (reach > far + 8.0)).any()
-    paper = bowl_sheet.draw_sheet(study(solid))
-    lines = [one for one in paper.axes.collections if len(one.get_segments()) > len(drawn) // 2]
-    bare = solidbowl_views.lines(solid.vertices, solid.faces, solidbowl_views.camera(-90.0, 90.0))
-    assert any(len(one.get_segments()) == len(drawn) != len(bare) for one in lines) and plan.left
+    edges = [
+        sum(layer == "EDGE" for layer, *_ in bowl_sheet.draw_sheets(study(one)).sheets[0])
+        for one in (solid, replace(solid, segments=None))
+    ]
+    assert edges[0] > edges[1] and plan.left
 
 
 @pytest.mark.parametrize("name", SHAPES)

@@ -109,5 +109,6 @@ def test_a_part_lies_in_the_groove_at_both_faces(name, degrees):
 
 def test_the_sheet_has_the_groove():
     solid = grooved("before a bank")[0]
-    told = [one.get_text() for one in bowl_sheet.draw_sheet(study(solid)).axes.texts]
+    drawing = bowl_sheet.draw_sheets(study(solid))
+    told = [*drawing.texts(0), *drawing.texts(1)]
     assert "groove: the wall leans back by 50°" in told and "6.5°, 0° to 40° to 0°" in told

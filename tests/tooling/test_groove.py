@@ -209,9 +209,9 @@ def test_its_section_is_closed_and_has_the_other_face(dowel):
 def test_its_drawing_has_a_line_and_its_angle(dowel):
     _, every = dowel
     section = strip(BOWL.track, (groove(30.0),), every)
-    layers = {one.name: one for one in drawing.layers(section)}
-    assert len(layers["SLOPE"].rings) == 1
-    assert any("groove {angle: 30 deg}" in text for text, _ in layers["TEXT"].texts)
+    made, _, _ = drawing.draw(section)
+    assert sum(layer == "SLOPE" for layer, *_ in made.sheets[0]) == 1
+    assert "30 deg" in " ".join(made.texts())
 
 
 @pytest.mark.parametrize("angle", [20.0, 45.0, 58.0])

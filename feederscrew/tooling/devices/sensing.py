@@ -145,6 +145,16 @@ class Sorter(Device):
         pulse = "" if self.time == PULSE else f", air for {self.time / MS:.4g} ms"
         return f"keeps {keeps((self.like[:2], *self.also))}, rejects {what} by more than {most}{pulse}"
 
+    @property
+    def shop_words(self):
+        most = f"resolves {length_words(self.blur)}, rejects more than {length_words(self.like[2])}"
+        nozzles = f"{self.nozzles:.0f} nozzles of {length_words(self.nozzle)} in the wall"
+        valve = f"solenoid valve: opens within {REACTION / MS:.3g} ms, pulse of {self.time / MS:.4g} ms"
+        return (
+            f"{SEEN_BY[self.sees][0]}: {most}",
+            f"{nozzles}, {self.pressure / BAR:.4g} bar at the nozzle; {valve}",
+        )
+
     def _jet_text(self):
         """Its nozzles and its pulse as a bowl file has them, as far as they are not as by default."""
         nozzles = [

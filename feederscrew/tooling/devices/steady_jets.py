@@ -61,6 +61,13 @@ class SteadyJet(Device):
         return f"nozzle of {bore} at {self.pressure / BAR:.4g} bar, {high} over the track"
 
     @property
+    def shop_words(self):
+        bore = length_words(self.nozzle)
+        return (
+            f"1 nozzle of {bore} in the wall, blows all the time: regulator {self.pressure / BAR:.4g} bar",
+        )
+
+    @property
     def jet(self):
         """Its Nozzles, one."""
         return Nozzles(self.nozzle, self.pressure, self.height)
