@@ -82,9 +82,9 @@ class Output:
             solid = load(**keywords)
         self.warn(*solid.warnings)
         if self.verbose:
-            from feederscrew.studies.simulated import on_disk
+            from feederscrew.studies import simulation_cache
 
-            self.say(*filter(None, [on_disk.refusal()]))
+            self.say(*filter(None, [simulation_cache.refusal()]))
         return solid
 
     def settings(self, bowl):
@@ -125,7 +125,7 @@ class Output:
 
     def explain(self, text):
         """Say once what the headings of orientations in a text are turned from."""
-        from feederscrew.output.orientation_words import heading_note
+        from feederscrew.output.words import heading_note
 
         note = "" if self.notes else heading_note(text)
         if note:

@@ -19,10 +19,9 @@ from feederscrew.output import tooling_drawing
 from feederscrew.output.drafting import FRAME, Drawing, scale_words
 from feederscrew.output.marking import SheetFields, of_trial
 from feederscrew.output.tooling_drawing import EDGES, View
-from feederscrew.solidbowl import facets, lugs, track
+from feederscrew.solidbowl import facets, segments, track
 from feederscrew.solidbowl.measuring import Measures, measures
-from feederscrew.solidbowl.plan import BowlPlan
-from feederscrew.solidbowl.way import Way
+from feederscrew.solidbowl.plan import BowlPlan, Way
 from feederscrew.units import DEG, MM, PER_MINUTE, factor
 
 LITRE, GRAM = factor("l", "volume"), factor("g", "mass")
@@ -327,7 +326,8 @@ def _list_parts(drawing: Drawing, study: Any, at: tuple[float, float]) -> None:
         size = f"{cut.dowel / MM:.3g} x {cut.dowel_length / MM:.3g} mm"
         rows.append((str(cut.dowels), f"dowels {size}, between {len(cut.pieces)} segments"))
     if cut is not None and len(cut.screws):
-        text = f"screws ISO 4762 {lugs.NAME} with nuts ISO 4032, in lugs of the segments; floor: dowels"
+        screw = f"screws ISO 4762 {segments.SCREW_NAME} with nuts ISO 4032"
+        text = f"{screw}, in lugs of the segments; floor: dowels"
         rows.append((str(len(cut.screws)), text))
     rows.append((str(plan.bolts + 1), f"bolts for holes of {plan.bolt / MM:.4g} mm"))
     each = "/".join(map(str, dict.fromkeys(banks.counts)))

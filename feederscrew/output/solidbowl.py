@@ -4,7 +4,7 @@ import functools
 
 from feederscrew.output import marking
 from feederscrew.output import offers as offer
-from feederscrew.solidbowl import lugs
+from feederscrew.solidbowl import segments
 from feederscrew.solidbowl.segments import overhangs
 from feederscrew.units import DEG, MM
 
@@ -142,7 +142,7 @@ def _segments(cut):
         "dowel_mm": cut.dowel / MM,
         "dowel_length_mm": cut.dowel_length / MM,
         "screws": len(cut.screws),
-        "screw": lugs.NAME if len(cut.screws) else None,
+        "screw": segments.SCREW_NAME if len(cut.screws) else None,
         "seam_ends": cut.ends[1],
         "seam_ends_without_screw": cut.ends[0],
         "seams_deg": cut.turned / DEG,

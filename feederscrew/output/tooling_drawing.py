@@ -13,14 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from feederscrew.output import marking
 from feederscrew.output.drafting import Drawing, Pen, spread
-from feederscrew.tooling.orientations import ROUNDED
-from feederscrew.tooling.strip import Station, TrackSection
+from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
+from feederscrew.tooling.track_sections import Station, TrackSection
 from feederscrew.units import DEG, MM
 
 APART = 20.0  # [mm] between the views
 NARROW = 1e-9  # [m] the line of the wall needs no width
 WALL = 2e-3  # [m] thickness the wall is drawn with
-EDGES = f"edges broken at most {ROUNDED / MM:.3g} mm"  # as they are tried
+EDGES = f"edges broken at most {CUT_BORDER_RADIUS_M / MM:.3g} mm"  # as they are tried
 SHOP = f"values +-0.1 mm; {EDGES}; lands 1 mm and the sheet's thickness at least"
 PENS = {  # of the layers of devices
     "TRACK": Pen(7, "#22303c", 0.25, face="#eef1f4"),

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from feederscrew.bowl.devices import SECTION, check_written, value_text
+from feederscrew.bowl.devices import DEVICES_SECTION, check_written, value_text
 from feederscrew.output import columns, tables
-from feederscrew.tooling import tightest as passages_of
+from feederscrew.tooling import track_sections
+from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE
-from feederscrew.tooling.isolating.shop_values import millimetres
 from feederscrew.units import DEG, MM
 
 LEAVING = (  # efficiency and purity, of the trial where there is one
@@ -250,7 +250,7 @@ def _outcome(one, met):
     if met and met[-1].verdict.passes <= 0.0:
         doubt = "" if met[-1].verdict.sure else ", not sure"
         return f"{met[-1].fate} by the {met[-1].device.name}{doubt}"
-    return passages_of.fate(one, met)
+    return track_sections.passage_fate(one, met)
 
 
 def _row(one, share):
@@ -339,7 +339,7 @@ def bowl_file(study, settings):
     """
     check_written(study.design.devices, "tooling.yaml")
     width = study.design.width
-    given = [s for s in settings if s.given and s.key.field != SECTION]
+    given = [s for s in settings if s.given and s.key.field != DEVICES_SECTION]
     given = [s for s in given if width is None or s.key.name != WIDTH]
     lines = [*_file_head(study), *(f"{s.key.word}: {s.text}" for s in given if not s.key.section)]
     for section in dict.fromkeys(s.key.section for s in given if s.key.section):
@@ -348,14 +348,14 @@ def bowl_file(study, settings):
         lines += [_wide(width)] if width is not None and section == TRACK else []
     if width is not None and not any(s.key.section == TRACK for s in given):
         lines += [f"{TRACK}:", _wide(width)]
-    lines += [f"{SECTION}:  # along the track, in the order parts meet them"]
+    lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
     lines += [f"  - {device.kind}: {value_text(device)}" for device in study.design.before]
     lines += [f"  - {cut.device.kind}: {value_text(cut.device)}{_mark(cut)}" for cut in study.design.cuts]
     return "\n".join(lines) + "\n"
 
 
 def _wide(width):
-    return f"  width: {millimetres(width)}  # as the design asks for"
+    return f"  width: {in_mm(width)}  # as the design asks for"
 
 
 def _mark(cut):

@@ -17,12 +17,12 @@ import pytest
 import shapes
 from scipy.optimize import brentq
 
-from feederscrew import api
+import feederscrew as fs
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
-from feederscrew.tooling import drift
+from feederscrew.tooling import verdicts
 from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.devices.nozzles import thrust
+from feederscrew.tooling.devices.pneumatics import thrust
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.verdicts import verdict
 from feederscrew.units import GRAVITY
@@ -135,7 +135,7 @@ def test_a_trial_scales_with_gravity(tmp_path):
     part, runs = shapes.part(shapes.box(20, 12, 5)), []
     for k, text in enumerate(texts()):
         (tmp_path / f"{k}.yaml").write_text(text)
-        (one,) = api.trial(part, bowls.read(tmp_path / f"{k}.yaml"), parts=6, rule="quasistatic").runs
+        (one,) = fs.trial(part, bowls.read(tmp_path / f"{k}.yaml"), parts=6, rule="quasistatic").runs
         runs.append(one.course)
     one, other = runs
     assert np.array_equal(one.fates, other.fates) and np.array_equal(one.ended, other.ended)
@@ -217,7 +217,7 @@ def test_the_force_to_clear_is_that_of_the_bowls_gravity(gravity):
         still, height = replace(one, swing=0.0), 4e-3
         weight = one.posture.mass * gravity
         least = min(one.grip * weight, weight * one.foot_reach / height)
-        assert drift.force_to_clear(still, 1.0, height) == pytest.approx(least, rel=1e-6)
+        assert verdicts.force_to_clear(still, 1.0, height) == pytest.approx(least, rel=1e-6)
 
 
 def test_what_is_only_placed_has_the_standard_gravity():

@@ -1,0 +1,312 @@
+"""Simulations that are made once in a run, and kept on the disk for the next.
+
+An entry is one line of JSON: its key, a digest, and arrays of plain numbers. Nothing in it is ever run.
+Whoever reads it compares the key and checks the numbers. Without a folder that is the user's own nothing is
+kept, and the same is simulated again.
+"""
+
+import base64
+import binascii
+import contextlib
+import functools
+import hashlib
+import importlib.metadata
+import json
+import os
+import secrets
+import stat
+import sys
+import time
+from collections import OrderedDict
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects
+
+VARIABLE = "FEEDER_CACHE"  # names the folder; empty: nothing is kept
+MAX_ENTRY_BYTES = 4_000_000
+MAX_ENTRIES = 500  # the oldest go
+MAX_FILES = 20_000  # in the folder: of more nothing is tidied up
+ENTRY_SUFFIX = ".simulated"  # nothing else in the folder is touched
+PARTIAL_PREFIX = "tmp"  # of an entry that is being written
+PARTIAL_AGE_S = 3600.0  # older ones were left by a run that was killed
+MADE_WITH = ("numpy", "scipy", "numba")
+KINDS = {"float": "<f8", "int": "<i8", "bool": "|b1"}  # of arrays, by the name that an entry gives
+OPEN_FLAGS = (
+    os.O_RDONLY
+    | getattr(os, "O_NOFOLLOW", 0)
+    | getattr(os, "O_NONBLOCK", 0)
+    | getattr(os, "O_CLOEXEC", 0)
+    | getattr(os, "O_BINARY", 0)
+)
+
+Arrays = Mapping[str, np.ndarray]
+
+
+def read(key: Mapping[str, str]) -> dict[str, np.ndarray] | None:
+    """Return the arrays that are kept under a key.
+
+    Parameters
+    ----------
+    key : dict of str to str
+        All that decides them.
+
+    Returns
+    -------
+    dict of str to array, or None
+        Arrays of float, int or bool, closed to writing. None where there is no entry, or one that is
+        damaged, too large, of another key, no regular file, or in a folder that others may write to.
+    """
+    folder, full = _folder(), _full(key)
+    if folder is None or refusal() is not None:
+        return None
+    data = _content(folder / _name(full))
+    return None if data is None else _decoded(data, full)
+
+
+def write(key: Mapping[str, str], arrays: Arrays) -> None:
+    """Keep arrays under a key, where there is room for them; a full disk leaves nothing behind.
+
+    Parameters
+    ----------
+    key : dict of str to str
+    arrays : dict of str to array
+        Of float, int or bool.
+    """
+    folder, full = _folder(), _full(key)
+    data = _encoded(arrays, full)
+    if folder is None or len(data) > MAX_ENTRY_BYTES:
+        return
+    with contextlib.suppress(OSError):
+        if not folder.is_dir():
+            folder.parent.mkdir(parents=True, exist_ok=True)
+            folder.mkdir(mode=0o700, exist_ok=True)
+        if refusal() is not None:
+            return
+        _put(folder, _name(full), data)
+        _tidy(folder)
+
+
+def refusal() -> str | None:
+    """Return why the folder of the cache is not used, and how to mend that; None where it is used."""
+    folder = _folder()
+    if folder is None or not hasattr(os, "geteuid"):
+        return None
+    try:
+        held = folder.stat()
+    except (OSError, ValueError):
+        return None
+    if not stat.S_ISDIR(held.st_mode):
+        why, mend = "it is no folder", f"name another in {VARIABLE}"
+    elif held.st_uid != os.geteuid():
+        why, mend = "it belongs to another user", f"name a folder of your own in {VARIABLE}"
+    elif held.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+        why, mend = "other users may write to it", "run chmod go-w on it"
+    else:
+        return None
+    return f"the cache {folder} is not used: {why} - {mend}"
+
+
+def _folder() -> Path | None:
+    named = os.environ.get(VARIABLE)
+    if named is not None:
+        return Path(named) if named else None
+    base = os.environ.get("XDG_CACHE_HOME")
+    with contextlib.suppress(RuntimeError):  # a user without a home
+        return Path(base or Path.home() / ".cache") / "feeder"
+    return None
+
+
+def _content(path: Path) -> bytes | None:
+    """Bytes of a regular file of this user, no link, of at most MAX_ENTRY_BYTES; None of anything else."""
+    try:
+        before = path.lstat()  # where the system knows no O_NOFOLLOW
+        if not stat.S_ISREG(before.st_mode) or before.st_size > MAX_ENTRY_BYTES:
+            return None
+        with open(os.open(path, OPEN_FLAGS), "rb") as file:  # noqa: PTH123 - a descriptor
+            held = os.fstat(file.fileno())
+            if not stat.S_ISREG(held.st_mode) or (held.st_dev, held.st_ino) != (before.st_dev, before.st_ino):
+                return None
+            if hasattr(os, "geteuid") and held.st_uid != os.geteuid():
+                return None
+            data = file.read(MAX_ENTRY_BYTES + 1)
+    except (OSError, ValueError):
+        return None
+    return data if len(data) <= MAX_ENTRY_BYTES else None
+
+
+def _put(folder: Path, name: str, data: bytes) -> None:
+    """Write an entry under a name of its own, then give it its place; what fails is taken away again."""
+    partial = folder / f"{PARTIAL_PREFIX}{secrets.token_hex(8)}{ENTRY_SUFFIX}"
+    try:
+        handle = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o600)
+        with open(handle, "wb") as file:  # noqa: PTH123 - a descriptor
+            file.write(data)
+        partial.replace(folder / name)
+    finally:
+        with contextlib.suppress(OSError):
+            partial.unlink()
+
+
+def _tidy(folder: Path) -> None:
+    """Delete the oldest entries beyond MAX_ENTRIES, and what a killed run has left half-written."""
+    entries = sorted(_entries(folder), key=lambda entry: (entry[0], entry[1].name))
+    excess = len(entries) - MAX_ENTRIES
+    for k, (changed, path) in enumerate(entries):
+        left = path.name.startswith(PARTIAL_PREFIX) and changed < time.time() - PARTIAL_AGE_S
+        if k < excess or left:
+            with contextlib.suppress(OSError):
+                path.unlink()
+
+
+def _entries(folder: Path) -> Iterator[tuple[float, Path]]:
+    """When each entry was changed [s], and its path."""
+    with os.scandir(folder) as files:
+        for k, file in enumerate(files):
+            if k >= MAX_FILES:
+                return
+            if file.name.endswith(ENTRY_SUFFIX) and not file.is_dir(follow_symlinks=False):
+                with contextlib.suppress(OSError):
+                    yield file.stat(follow_symlinks=False).st_mtime, Path(file.path)
+
+
+def _full(key: Mapping[str, str]) -> dict[str, str]:
+    return {**key, "code": _code()}
+
+
+def _name(full: Mapping[str, str]) -> str:
+    return hashlib.sha256(_line(full)).hexdigest() + ENTRY_SUFFIX
+
+
+def _line(value: Any) -> bytes:
+    return json.dumps(value, sort_keys=True).encode()
+
+
+def _encoded(arrays: Arrays, full: Mapping[str, str]) -> bytes:
+    held = {name: _packed(np.asarray(array)) for name, array in arrays.items()}
+    return _line({"key": full, "arrays": held, "sha256": hashlib.sha256(_line([full, held])).hexdigest()})
+
+
+def _packed(array: np.ndarray) -> dict[str, Any]:
+    kind = {"f": "float", "i": "int", "b": "bool"}[array.dtype.kind]
+    data = np.ascontiguousarray(array).astype(KINDS[kind]).tobytes()
+    return {"kind": kind, "shape": list(array.shape), "data": base64.b64encode(data).decode()}
+
+
+def _decoded(data: bytes, full: Mapping[str, str]) -> dict[str, np.ndarray] | None:
+    """Arrays of an entry; None where it is not whole, or of another key."""
+    try:
+        entry = json.loads(data)
+        if entry["key"] != full:
+            return None
+        held = entry["arrays"]
+        if hashlib.sha256(_line([full, held])).hexdigest() != entry["sha256"]:
+            return None
+        return {str(name): _unpacked(**one) for name, one in held.items()}
+    except (ValueError, TypeError, LookupError, AttributeError, RecursionError, binascii.Error):
+        return None
+
+
+def _unpacked(kind: str, shape: list[int], data: str) -> np.ndarray:
+    """An array of plain numbers; raises ValueError where its data are not of its shape."""
+    flat = np.frombuffer(base64.b64decode(data, validate=True), KINDS[kind])
+    if not all(type(size) is int and 0 <= size <= MAX_ENTRY_BYTES for size in shape):
+        raise ValueError("no shape of an array")
+    return flat.reshape(shape)  # of bytes: closed to writing
+
+
+@functools.cache
+def _code() -> str:
+    """Digest of the library's sources and of what they run on: what other code made is not taken."""
+    library = Path(__file__).parents[2]
+    digest = hashlib.sha256(sys.version.encode())
+    for name in MADE_WITH:
+        digest.update(importlib.metadata.version(name).encode())
+    for path in sorted(library.rglob("*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+MAX_RECORDS = 32
+_RECORDS: OrderedDict = OrderedDict()
+
+Record = TypeVar("Record")
+
+
+@dataclass(frozen=True)
+class Simulation(Generic[Record]):
+    """What is simulated of a part: how it is made, and how plain arrays on a disk stand for it."""
+
+    kind: str  # 'arrival', 'drop'
+    settings: tuple  # all that decides it beside the part, written out the same whenever it is the same
+    make: Callable[[], Record]
+    is_whole: Callable[[Record], bool]  # not of a run that the user stopped
+    to_arrays: Callable[[Record], Mapping[str, np.ndarray]]
+    from_arrays: Callable[
+        [Mapping[str, np.ndarray]], Record
+    ]  # ValueError or KeyError where they are not of one
+
+
+def once(part: Part, aspects: Aspects, simulation: Simulation[Record]) -> Record:
+    """Return what was simulated of a part before; else simulate it, and keep it if it is whole.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    aspects : Aspects
+        Of that part.
+    simulation : Simulation
+
+    Returns
+    -------
+    object
+        As ``simulation.make`` returns it, of this part or of one that no number tells from it.
+    """
+    key = {
+        "kind": simulation.kind,
+        "part": _digest(part, aspects),
+        "settings": repr(simulation.settings),
+    }
+    place = tuple(key.values())
+    if place not in _RECORDS:
+        record = _from_disk(key, simulation)
+        if record is None:
+            record = simulation.make()
+            if not simulation.is_whole(record):
+                return record
+            write(key, simulation.to_arrays(record))
+        _RECORDS[place] = record
+        while len(_RECORDS) > MAX_RECORDS:
+            _RECORDS.popitem(last=False)
+    return _RECORDS[place]
+
+
+def _from_disk(key: Mapping[str, str], simulation: Simulation[Any]) -> Any:
+    """The record of an entry on disk; None where there is none whose numbers can be of this simulation."""
+    arrays = read(key)
+    if arrays is None:
+        return None
+    try:
+        return simulation.from_arrays(arrays)
+    except (ValueError, KeyError):
+        return None
+
+
+def _digest(part: Part, aspects: Aspects) -> str:
+    """Of all that decides what a simulation makes of a part."""
+    arrays = (part.vertices, part.faces, part.centre_of_mass, part.inertia, aspects.normals, aspects.stable)
+    text = hashlib.sha256(repr((float(part.mass), aspects.names)).encode())
+    for array in arrays:
+        text.update(np.ascontiguousarray(array).tobytes())
+    return text.hexdigest()
+
+
+def forget() -> None:
+    """Forget all that was simulated: for tests that simulate it otherwise."""
+    _RECORDS.clear()
