@@ -96,7 +96,8 @@ def bowl(part, target, made, measured, bowl, fields, pictures, out, **wanted):
     What the bowl file says of track, drive and machine is kept. Section 'sizing' has the rules of thumb.
     With -o: bowl.json, bowl.csv, bowl_angles.csv, bowl_leaves.csv, bowl_leaf_changes.csv,
     bowl_emptying.csv and bowl.png. --solid adds bowl.stl and bowl.3mf, the bowl as one closed body with
-    its track, cuts, blades and outlet. It also adds the drawing sheet bowl.pdf, and bowl_solid.png. The
+    its track, cuts, blades and outlet. It also adds the drawing sheets as bowl.pdf and
+    bowl.dxf, and bowl_solid.png. The
     mass and inertia of that body take the place of the estimate.
     """
     from feederscrew import bowl as bowls
