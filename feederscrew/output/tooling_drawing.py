@@ -38,7 +38,9 @@ PENS = {  # of the layers of devices
 }
 TEXT_GAP = 4.2  # [mm] of paper between two numbers
 NUMBERS = 11.0  # [mm] of paper from the wall to the numbers along it
-LEAST_CORNER_ANGLE = 3.0 * DEG  # [rad] by which an outline turns at a corner that has dimensions
+TAPER_ANGLE_RAD = 1.0 * DEG  # by which an outline turns at least at a corner that has dimensions
+MANY_CORNERS = 12  # beyond which an outline is one of arcs,
+ARC_ANGLE_RAD = 20.0 * DEG  # and what turns less is a chord of an arc
 NARROW_MM = 8.0  # of paper: a dimension that has no room for its number between others
 CROSS = 2.0  # [mm] of paper: half of a sensor's cross
 COLUMNS = 9.0, 56.0, 21.0, 19.0, 20.0, 17.0, 160.0  # [mm] of the list of devices
@@ -206,7 +208,9 @@ def cut_corners(hole: NDArray[np.float64]) -> NDArray[np.float64]:
     ahead = np.roll(hole, -1, axis=0) - hole
     heading = np.arctan2(ahead[:, 1], ahead[:, 0])
     turn = np.abs((heading - np.roll(heading, 1) + np.pi) % (2.0 * np.pi) - np.pi)
-    sharp = turn >= LEAST_CORNER_ANGLE
+    sharp = turn >= TAPER_ANGLE_RAD
+    if sharp.sum() > MANY_CORNERS:
+        sharp = turn >= ARC_ANGLE_RAD
     for side in (hole.argmin(axis=0), hole.argmax(axis=0)):
         sharp[side] = True
     return hole[sharp].copy()

@@ -1,8 +1,12 @@
 """The drawing sheets: their dimensions are those of the solid, and nothing lies beyond its frame."""
 
+import io
 import itertools
+import re
+import zlib
 from types import SimpleNamespace
 
+import ezdxf
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -10,9 +14,11 @@ from matplotlib.text import Text
 from test_solid import CHAINS, TRACK, planned
 from test_stepped import STEEP, STEPPED
 
+from feederscrew import bowl as bowls
 from feederscrew.bowl.settings import effective, record
 from feederscrew.output import bowl_sheet
 from feederscrew.output.drafting import FRAME
+from feederscrew.output.marking import SheetFields
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.plan import SolidOptions
 
@@ -82,3 +88,52 @@ def overlapping(figure):
         if min(across, upright) > slack:
             found.append((one.get_text(), other.get_text()))
     return found
+
+
+RAILS = """\
+track: {radius: 150 mm, width: 20 mm, climb: 4 deg}
+devices:
+  - rails: {from: 4.4 mm, to: 11.45 mm, lead_in: {from: 2.9 mm, to: 12.7 mm, length: 47.7 mm, taper: 31.8 mm}}
+"""
+
+
+def test_the_rails_are_read_back_from_dxf_and_pdf_as_the_bowl_file_has_them(tmp_path):
+    (tmp_path / "bowl.yaml").write_text(RAILS)
+    bowl = bowls.read(tmp_path / "bowl.yaml")
+    drawing = bowl_sheet.draw_sheets(
+        study(body(planned(bowl.devices, track=bowl.track, turns=1.2))),
+        fields=SheetFields("2026-11-26", "rev C"),
+    )
+    (rails,) = bowl.devices
+    near, far, long, taper = (1e3 * size for size in rails.lead)
+    low, high = (1e3 * end for end in rails.span)
+    across = {low, high, near, far}
+    measured = {"x": set(), "y": set(), "along": set()}
+    for one in ezdxf.read(io.StringIO(drawing.dxf().decode())).modelspace().query("DIMENSION"):
+        factor, value = one.get_dim_style().dxf.dimlfac, one.get_measurement()
+        if one.dimtype == 6:  # an ordinate, from the wall or from the datum
+            upright = not one.dxf.dimtype & 64
+            measured["y" if upright else "x"].add(round(factor * (value.y if upright else value.x), 6))
+        elif one.dimtype in (0, 1):
+            measured["along"].add(round(factor * value, 6))
+    assert across <= measured["y"] and {long, taper} <= measured["along"]
+    start = min(x for x in measured["x"] if x > 0.0)
+    assert {round(start + long, 6), round(start + long + taper, 6)} <= measured["x"]
+    words = pdf_words(drawing.pdf("rails"))
+    for size in (*across, long, taper):
+        assert f"{size:g}" in words, size
+    assert {"2026-11-26", "rev C", "date", "rev"} <= set(words) and any("1:2" in word for word in words)
+
+
+def pdf_words(data):
+    """The texts of a PDF of matplotlib, in its order."""
+    words = []
+    for stream in re.findall(rb"stream\r?\n(.*?)\r?\nendstream", data, re.S):
+        try:
+            content = zlib.decompress(stream)
+        except zlib.error:
+            continue
+        for written in re.findall(rb"BT\n(.*?)ET", content, re.S):
+            pieces = re.findall(rb"\(((?:\\.|[^\\()])*)\)", written)
+            words.append(b"".join(pieces).decode("latin-1"))
+    return words
