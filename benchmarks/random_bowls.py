@@ -171,7 +171,7 @@ def _laid(one, planned, whole, every, low, last):
         low = max(low, float(planned.way.at(-2.0 * np.pi)) + planned.outlet + 0.02)
     for k, s in enumerate(one.rng.uniform(min(low, 0.9 * last), last - 0.015, LAID)):
         lying = fitting[k % len(fitting)]
-        points = facets.as_planned(planned, riding.laid(planned, lying, own, s))
+        points = facets.as_planned(planned, riding.place_rider(planned, lying, own, s))
         near = points[_lowest(planned, lying, points, s)]
         gaps = [_gap(planned, whole, at) for at in near]
         feet.append(min((abs(x) for x in gaps if x is not None), default=np.inf))

@@ -152,7 +152,7 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
 
     settings = bowls.settings(**bowl)
     out.warn(*bowls.assumptions(settings))
-    record, given = bowls.record(settings), {s.key.name for s in settings if s.given}
+    record, given = bowls.record(settings), {s.key.name for s in settings if s.is_own}
     request = DesignRequest(**asked | {"jobs": asked["jobs"] or os.cpu_count()}, rule=rule)
     named = any(value is not None for value in taken.values())
     if others:

@@ -105,20 +105,20 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
             if file.read(len(documents.POINTER_HEAD)) == documents.POINTER_HEAD:
                 raise ConfigError(where, f"{name} {documents.POINTER}", documents.PULL)
         drawing = _drawing(path)
-        found = _outlines(drawing, layer)
+        outlines = _outlines(drawing, layer)
     except FileNotFoundError:
         raise ConfigError(where, f"{name}: no such file", "check the path") from None
     except _Unread as fault:
-        what = f"layer {units.shown(layer)} of {units.printable(path.name)} {fault.what}"
+        what = f"layer {units.quantity_text(layer)} of {units.printable(path.name)} {fault.what}"
         raise ConfigError(where, what, fault.mend) from None
     except (*REFUSED, ezdxf.DXFError):
         raise ConfigError(
             where, f"{name} cannot be read as DXF", "save it as ASCII DXF R2000 or later"
         ) from None
-    if not found:
-        what = f"{units.printable(path.name)} has no closed outline on layer {units.shown(layer)}"
+    if not outlines:
+        what = f"{units.printable(path.name)} has no closed outline on layer {units.quantity_text(layer)}"
         raise ConfigError(where, what, "draw the hole as one closed polyline (LWPOLYLINE)")
-    return Outlines(found, _unit_code(drawing) != UNITLESS)
+    return Outlines(outlines, _unit_code(drawing) != UNITLESS)
 
 
 def _drawing(path: Path) -> Any:
@@ -199,8 +199,8 @@ def _points(kind: str, entity: Any, sagitta: float) -> tuple[list[Point], bool]:
         return _round(kind, entity, sagitta)
     if kind == "ELLIPSE":
         _near((*dxf.center, *dxf.major_axis))
-        found = itertools.islice(entity.flattening(sagitta, MAX_CORNERS // 16), MAX_CORNERS + 2)
-        return [tuple(point) for point in found], False
+        flattened = itertools.islice(entity.flattening(sagitta, MAX_CORNERS // 16), MAX_CORNERS + 2)
+        return [tuple(point) for point in flattened], False
     if kind == "SPLINE" and len(entity.control_points):
         return _spline(entity, sagitta), False
     if kind == "SPLINE":
@@ -271,8 +271,8 @@ def _spline(entity: Any, sagitta: float) -> list[Point]:
     while count * len(spans) <= 4 * MAX_CORNERS:
         shares = np.arange(2 * count) / (2.0 * count)
         times = np.append((spans[:-1, None] + np.diff(spans)[:, None] * shares).ravel(), spans[-1])
-        found = curve(times)
-        points = found[:, :3] / found[:, 3:]
+        homogeneous = curve(times)
+        points = homogeneous[:, :3] / homogeneous[:, 3:]
         off = points[1::2] - 0.5 * (points[:-2:2] + points[2::2])
         if np.sqrt((off**2).sum(axis=1)).max(initial=0.0) <= sagitta:
             return [tuple(map(float, point)) for point in points[::2]]
@@ -323,15 +323,15 @@ def _joined(chains: list[list[tuple[float, float]]]) -> Iterator[list[tuple[floa
         left.remove(first)
         ring = list(chains[first])
         while math.dist(ring[0], ring[-1]) > JOIN_M or len(ring) < 3:
-            met = [
+            contacts = [
                 (k, end)
                 for cell in _around(_cell(ring[-1]))
                 for k, end in ends.get(cell, ())
                 if k in left and math.dist(chains[k][end], ring[-1]) <= JOIN_M
             ]
-            if len(met) != 1:
-                raise _open(ring[-1], len(met), chains, left, ring[0])
-            k, end = met[0]
+            if len(contacts) != 1:
+                raise _open(ring[-1], len(contacts), chains, left, ring[0])
+            k, end = contacts[0]
             left.remove(k)
             ring += chains[k][1:] if end == 0 else chains[k][-2::-1]
         yield ring
@@ -342,8 +342,8 @@ def _open(place: Point, count: int, chains: list[Any], left: set[int], start: Po
     at = f"at ({1e3 * place[0]:.4g}, {1e3 * place[1]:.4g}) mm"
     if count:
         return _Unread(f"has an outline that branches {at}", "keep one closed outline on the layer")
-    others = [chains[k][end] for k in left for end in (0, -1)] + [start]
-    gap = min(math.dist(place, other) for other in others)
+    rest = [chains[k][end] for k in left for end in (0, -1)] + [start]
+    gap = min(math.dist(place, other) for other in rest)
     return _Unread(
         f"has an outline that is open {at}: {1e3 * gap:.3g} mm to the next end", "close the outline"
     )
@@ -362,14 +362,14 @@ def _simplified(ring: list[tuple[float, float]]) -> list[tuple[float, float]]:
     """The outline without corners that repeat the last one or lie on the line through their neighbours."""
     corners = [b for a, b in zip((ring[-1], *ring), ring, strict=False) if math.dist(a, b) > REPEATED_M]
     corners = corners or ring[:1]
-    kept = [
+    simplified = [
         b
         for a, b, c in zip((corners[-1], *corners), corners, (*corners[1:], corners[0]), strict=False)
         if not _is_straight(a, b, c)
     ]
-    if len(kept) > MAX_CORNERS:
-        raise _Unread(f"has an outline of {len(kept)} corners", f"keep it below {MAX_CORNERS}")
-    return kept
+    if len(simplified) > MAX_CORNERS:
+        raise _Unread(f"has an outline of {len(simplified)} corners", f"keep it below {MAX_CORNERS}")
+    return simplified
 
 
 def _is_straight(a: Point, b: Point, c: Point) -> bool:

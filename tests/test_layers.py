@@ -117,6 +117,17 @@ def module(path):
     return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
 
 
+def test_every_own_module_that_is_imported_exists():
+    """mypy takes a missing module for one without types, and an import within a function runs late."""
+    names = {module(path) for path in FILES if path.parts[-2] != "cli"}
+    every = [*FILES, *ROOT.glob("tests/**/*.py"), *ROOT.glob("docs/**/*.py"), *ROOT.glob("benchmarks/*.py")]
+    froms = (
+        (path, node) for path in every for node in ast.walk(tree(path)) if isinstance(node, ast.ImportFrom)
+    )
+    own = ((path, node.module) for path, node in froms if (node.module or "").startswith("feederscrew."))
+    assert not [f"{path} imports {name}" for path, name in own if name not in names]
+
+
 def test_no_imports_go_in_a_circle():
     """Those inside functions and for types alone count too."""
     names = {module(path) for path in FILES}

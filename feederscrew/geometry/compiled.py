@@ -48,8 +48,7 @@ class CompiledEntry:
     """A function that Python calls; numba is loaded at its first call.
 
     What is on disk is loaded as it is. The functions that it calls are made known to numba only where it must
-    be compiled: numba works through all that it knows before it loads anything, a fifth of a second for those
-    of this program.
+    be compiled.
     """
 
     def __init__(self, function: Callable[..., Any], arrays: bool) -> None:

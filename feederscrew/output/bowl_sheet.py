@@ -21,7 +21,7 @@ from feederscrew.output.marking import SheetFields, of_trial
 from feederscrew.output.tooling_drawing import EDGES, View
 from feederscrew.solidbowl import facets, segments, track
 from feederscrew.solidbowl.measuring import Measures, measures
-from feederscrew.solidbowl.plan import BowlPlan, Way
+from feederscrew.solidbowl.plan import BowlPlan, TrackPath
 from feederscrew.units import DEG, MM, PER_MINUTE, factor
 
 LITRE, GRAM = factor("l", "volume"), factor("g", "mass")
@@ -104,11 +104,11 @@ def _from_above(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> 
         drawing.length(at - [r, 0.0], at + [r, 0.0], (0.0, low - at[1]), scale, "Ø<>", decimals=1)
     else:
         drawing.round_size(at, r, plan.turned / DEG, scale, text="<> at the outlet", decimals=1)
-        lowest = float(plan.way.wall_radius(0.0)) / MM
+        lowest = float(plan.path.wall_radius(0.0)) / MM
         drawing.text(25.0, 268.0, f"R{lowest:.4g} of the wall where the track begins", 2.2)
     turn = plan.turned + (1.0 if plan.left else -1.0) * 0.5 * np.pi
     outward = np.array([np.cos(turn), np.sin(turn)])
-    wide = sizes.track_width * np.cos(float(plan.way.bank_at(plan.way.at(-0.5 * np.pi)))) / MM * scale
+    wide = sizes.track_width * np.cos(float(plan.path.bank_at(plan.path.at(-0.5 * np.pi)))) / MM * scale
     drawing.lines([[at + outward * (r - wide - 7.0), at + outward * r]], "DIMENSION")
     x, y = at + outward * (r - wide - 9.5)
     drawing.text(x, y - 1.0, f"track {sizes.track_width / MM:.4g}", 2.2, "center")
@@ -118,7 +118,7 @@ def _from_above(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> 
     if plan.stretch is not None:
         start = angle_from_outlet(plan, 0.0)
         drawing.text(25.0, 272.5, f"tooling begins at the datum D, {start:.4g}° before the outlet", 2.2)
-        ray = _way_angle(plan, float(plan.way.angle(plan.first)))
+        ray = _way_angle(plan, float(plan.path.angle(plan.first)))
         drawing.lines([[at + (r - wide - 2.0) * _ray(ray), at + (r + 5.0) * _ray(ray)]], "NOTE")
         x, y = at + (r + 7.5) * _ray(ray)
         drawing.text(x, y - 1.2, "D", 3.0, "center", bold=True)
@@ -139,7 +139,7 @@ def _way_angle(plan: BowlPlan, angle: float) -> float:
 
 def angle_from_outlet(plan: BowlPlan, place: float) -> float:
     """Return how far [deg] before the outlet a place [m] of the tooled stretch lies, along the bowl."""
-    return -float(plan.way.angle(plan.first + place)) / DEG
+    return -float(plan.path.angle(plan.first + place)) / DEG
 
 
 def _section(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> None:
@@ -174,10 +174,10 @@ def _yoke(plan: BowlPlan) -> NDArray[np.float64] | None:
     """A yoke of the inner rail as it is seen in A-A (K, 2) [m]; None where A-A does not cut the rails."""
     rails = _hanging_station(plan)
     angle = (plan.turned if plan.left else -plan.turned) % (2.0 * np.pi)
-    place = float(plan.way.at(angle - 2.0 * np.pi if angle > 1e-9 else 0.0))
+    place = float(plan.path.at(angle - 2.0 * np.pi if angle > 1e-9 else 0.0))
     if rails is None or place < plan.first + float(rails.hole[:, 0].min()):
         return None
-    wall, high = float(plan.way.wall_radius(place)), float(plan.way.height(place)) - plan.material.plate
+    wall, high = float(plan.path.wall_radius(place)), float(plan.path.height(place)) - plan.material.plate
     low, deep = high - plan.hanging - track.YOKE, high - plan.hanging
     near, far = (wall - edge for edge in rails.device.span)
     inner = wall - plan.width
@@ -413,7 +413,7 @@ def _fields(study: Any, sizes: Measures, tried: Any) -> list[tuple[str, str]]:
         ("drive", f"{study.stroke.frequency:.4g} Hz, {study.stroke.peak_to_peak / MM:.3g} mm"),
         ("vibration angle", sheets.angles(study, phase=False)),
         ("natural frequency", f"{study.springs.natural_frequency:.4g} Hz"),
-        ("climb, bank", f"{_climbs(plan.way)}, {_banks(plan.way)}"),
+        ("climb, bank", f"{_climbs(plan.path)}, {_banks(plan.path)}"),
         ("hand", hand),
         ("turns", f"{study.turns:.3g}"),
         ("material", f"{plan.material.name}, {plan.material.density:.4g} kg/m³"),
@@ -426,12 +426,12 @@ def _fields(study: Any, sizes: Measures, tried: Any) -> list[tuple[str, str]]:
     ]
 
 
-def _banks(way: Way) -> str:
+def _banks(way: TrackPath) -> str:
     """'0°', '0° to 12°': the banks of the track, one after the other."""
     return " to ".join(f"{np.degrees(bank):.3g}°" for bank in (way.bank, *(one[2] for one in way.leans)))
 
 
-def _climbs(way: Way) -> str:
+def _climbs(way: TrackPath) -> str:
     """'4°', '4° to -6° to 3°': the climbs of the track, one after the other."""
     return " to ".join(f"{np.degrees(one):.3g}°" for one in (way.climb, *(climb for _, climb in way.bends)))
 
@@ -460,7 +460,9 @@ def number_devices(plan: BowlPlan) -> list[tuple[str, float, float]]:
 def _devices(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str) -> None:
     """Sheet 2: the tooled stretch unrolled, seen from above, with its dimensions and the list of devices."""
     plan, stretch = study.solid.plan, study.solid.plan.stretch
-    end = min(stretch.length + plan.way.end - plan.first - stretch.length + plan.outlet, 2.0 * stretch.length)
+    end = min(
+        stretch.length + plan.path.end - plan.first - stretch.length + plan.outlet, 2.0 * stretch.length
+    )
     length = end if _hanging_station(plan) is not None else stretch.length
     scale = min(_scale(length / MM, STRIP_ROOM[0]), _scale(plan.width / MM, STRIP_ROOM[1]))
     drawing.new_sheet()
@@ -485,7 +487,7 @@ def _devices(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: st
     tooling_drawing.dimension_devices(drawing, stations, view, plan.width)
     drawing.length(view.placed([length, 0]), view.placed([length, plan.width]), (27.0, 0.0), scale)
     tooling_drawing.draw_wall_bores(drawing, stations, view, 240.0)
-    behind = (plan.way.end - plan.first) / MM
+    behind = (plan.path.end - plan.first) / MM
     words = f"track unrolled: wall below, parts move to the right; D lies {behind:.5g} mm along the wall, "
     _head(drawing, 25.0, 281.0, f"{words}{angle_from_outlet(plan, 0.0):.4g}° before the outlet", scale)
     rows = tooling_drawing.device_rows(stretch.stations, lambda s: angle_from_outlet(plan, s))
@@ -546,7 +548,7 @@ class TrackPiece:
         return float(np.hypot(*np.diff(self.outer, axis=0).T).sum()) / self.radii[0]
 
 
-def develop_track(way: Way, width: float, start: float, end: float) -> tuple[NDArray, NDArray]:
+def develop_track(way: TrackPath, width: float, start: float, end: float) -> tuple[NDArray, NDArray]:
     """Return the flat outline of a piece of track: its outer and inner border, (N, 2) [m] each.
 
     The surface between both borders is taken as triangles, which are laid into the plane one after the
@@ -554,7 +556,7 @@ def develop_track(way: Way, width: float, start: float, end: float) -> tuple[NDA
 
     Parameters
     ----------
-    way : Way
+    way : TrackPath
     width : float [m]
     start, end : float [m]
         Lengths along the wall.
@@ -585,7 +587,7 @@ def _third(one: NDArray, other: NDArray, from_one: float, from_other: float) -> 
 
 def track_pieces(plan: BowlPlan) -> list[TrackPiece]:
     """Return the pieces that the track is made of in sheet metal: one climb each, half a turn at most."""
-    way = plan.way
+    way = plan.path
     stops = [0.0, *(at for at, _ in way.bends), way.end]
     climbs = [way.climb, *(climb for _, climb in way.bends)]
     found = []
@@ -599,7 +601,7 @@ def track_pieces(plan: BowlPlan) -> list[TrackPiece]:
 
 def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str) -> None:
     """The last sheet: the stretches of the track from the side, and their development in sheet metal."""
-    plan, way = study.solid.plan, study.solid.plan.way
+    plan, way = study.solid.plan, study.solid.plan.path
     scale = _scale(way.end / MM, 340.0)
     drawing.new_sheet()
     _small_title(drawing, study, scale, fields, sheet)
@@ -621,7 +623,7 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
 
 def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
     """The height of the track over the floor's edge along the wall, from where it rises to the outlet."""
-    way = plan.way
+    way = plan.path
     stops = sorted({0.0, *(at for at, _ in way.bends), *(at for at, _ in way.drops), way.end})
     places = np.unique(np.concatenate([stops, np.nextafter(np.array(stops[1:-1]), 0.0), [plan.first]]))
     heights = way.height(places)

@@ -88,7 +88,7 @@ def document(solid):
     """
     plan, extent = solid.plan, solid.vertices.max(axis=0) - solid.vertices.min(axis=0)
     return {
-        "diameter_mm": 2.0 * plan.way.radius / MM,
+        "diameter_mm": 2.0 * plan.path.radius / MM,
         "solid_volume_mm3": solid.volume / MM**3,
         "solid_mass_kg": solid.mass,
         "solid_inertia_kg_m2": solid.inertia,

@@ -43,7 +43,7 @@ def figure(study):
 def parts(solid, part):
     """Return the parts along the track of a bowl as one mesh, vertices (V, 3) [m] and faces (F, 3)."""
     own = part.vertices - part.centre_of_mass
-    placed = [riding.laid(solid.plan, one, own, s) for one, s in solid.riders]
+    placed = [riding.place_rider(solid.plan, one, own, s) for one, s in solid.riders]
     if not placed:
         return np.zeros((0, 3)), np.zeros((0, 3), int)
     faces = [part.faces + len(own) * k for k in range(len(placed))]
@@ -106,7 +106,7 @@ def blocks(solid, part, why="", mark=""):
     """
     if solid is None:
         return [Notes((f"the bowl as a solid: {why}",))] if why else []
-    text = f"{2.0 * solid.plan.way.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
+    text = f"{2.0 * solid.plan.path.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
     captions = ((marking.marked_title("bowl", mark), text, ()),)
     return [Views(scene(solid, part), captions, "solid-bowl", "The", hint=TURN, printed=True, mark=mark)]
 

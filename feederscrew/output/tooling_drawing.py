@@ -357,7 +357,7 @@ def _bent(drawing: Drawing, strip: TrackSection, ghosts: Sequence, top: float) -
     """Draw the stretch as it lies in the bowl below a height [mm]; return its lowest [mm]."""
     radius = strip.track.radius / MM
     rings = [(f"BENT_{name}", strip.bent(ring)) for name, group in _plan(strip).items() for ring in group]
-    rings += [("BENT_GHOST", strip.laid(*ghost)) for ghost in ghosts]
+    rings += [("BENT_GHOST", strip.outline_in_bowl(*ghost)) for ghost in ghosts]
     highest = max(float(ring[:, 1].max()) for _, ring in rings) / MM
     shift = np.array([0.0, top - highest])
     for name, ring in rings:

@@ -355,7 +355,7 @@ def profile_along_track(one, top, right):
     top, right : float [mm]
         How far wall and track are drawn.
     """
-    shown = in_mm(one.seen)
+    shown = in_mm(one.view_ahead)
     if not one.groove:
         return shown, np.array([[0.0, top], [0.0, 0.0], [right, 0.0]])
     angle, lean = one.groove, 2.0 * one.groove - 0.5 * np.pi
@@ -403,8 +403,8 @@ def draw_scale_bar(page, right, y, size):
 def draw_leaving(page, box, one, size, colour):
     """Draw an orientation as it leaves in a box of pixels, ``size`` mm a pixel or, if need be, more."""
     left, top, wide, high = box
-    low, up = min(one.seen.bounds[1], 0.0) / MM, one.seen.bounds[3] / MM
-    across = max(one.seen.bounds[2], *one.span) / MM if _hangs(one) else one.seen.bounds[2] / MM
+    low, up = min(one.view_ahead.bounds[1], 0.0) / MM, one.view_ahead.bounds[3] / MM
+    across = max(one.view_ahead.bounds[2], *one.span) / MM if _hangs(one) else one.view_ahead.bounds[2] / MM
     own = max(size, 1.05 * (across + _hangs(one) * DEEP) / wide, 1.05 * (up - low) / high)
     page_wide, page_high = page.get_size_inches() * style.DPI
     place = left / page_wide, 1.0 - (top + high) / page_high, wide / page_wide, high / page_high
@@ -423,7 +423,7 @@ def _hangs(one):
 
 def draw_along_track(axes, one, colour):
     """Draw an orientation [mm] as it leaves: the wall at the left, the track below it, rails cut across."""
-    shown, (_, top), (_, right) = in_mm(one.seen), axes.get_ylim(), axes.get_xlim()
+    shown, (_, top), (_, right) = in_mm(one.view_ahead), axes.get_ylim(), axes.get_xlim()
     if _hangs(one):
         first, last = (end / MM for end in one.span)
         for low, high in ((0.0, first), (last, right)):

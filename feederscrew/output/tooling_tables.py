@@ -289,11 +289,11 @@ def _designed(study, place, found):
 def _cut(cut):
     return {
         "device": cut.device.kind,
-        **cut.device.told(),
+        **cut.device.document_values(),
         "margin_pass_mm": cut.margin_pass / MM,
         "margin_reject_mm": cut.margin_reject / MM,
-        "smallest": cut.smallest.told(),
-        "largest": cut.largest.told(),
+        "smallest": cut.smallest.document_values(),
+        "largest": cut.largest.document_values(),
         "returns": [name for name in cut.returns if name not in cut.stops],
         "stops": list(cut.stops),
         "text": cut.device.text,
@@ -339,7 +339,7 @@ def bowl_file(study, settings):
     """
     check_written(study.design.devices, "tooling.yaml")
     width = study.design.width
-    given = [s for s in settings if s.given and s.key.field != DEVICES_SECTION]
+    given = [s for s in settings if s.is_own and s.key.field != DEVICES_SECTION]
     given = [s for s in given if width is None or s.key.name != WIDTH]
     lines = [*_file_head(study), *(f"{s.key.word}: {s.text}" for s in given if not s.key.section)]
     for section in dict.fromkeys(s.key.section for s in given if s.key.section):

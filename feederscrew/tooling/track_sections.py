@@ -74,7 +74,7 @@ class TrackSection:
         """
         return bend_ring(ring, self.track.radius)
 
-    def laid(self, outline, place):
+    def outline_in_bowl(self, outline, place):
         """Return an outline (K, 2) [m] from the wall as it lies in the bowl at a length along it."""
         c, s = np.cos(place / self.track.radius), np.sin(place / self.track.radius)
         x, up = outline[:, 0], self.track.radius - outline[:, 1]

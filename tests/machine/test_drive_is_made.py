@@ -214,7 +214,7 @@ def test_the_machine_that_is_drawn_makes_the_drive_that_is_chosen(name):
     """Angle, tuning, stress and pull with the mass of the solid; the leaves of an owned machine are kept."""
     text = None if name is None else drive_units.bowl_file(drive_units.unit(name))
     settings = bowls.settings(None) if text is None else settings_of_text(text, "machine.yaml")
-    given = frozenset(one.key.name for one in settings if one.given)
+    given = frozenset(one.key.name for one in settings if one.is_own)
     plain = calm_drive.section(PART, find(PART), bowls.record(settings), given)
     bowl = calm_drive.driven(plain, 0.08)
     queue = FilledQueue("normal", 0.2, 12, 200.0, 200.0, 200.0, 200, 200, 0, 0, 0)

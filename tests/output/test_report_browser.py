@@ -26,7 +26,7 @@ from feederscrew.part import load
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import report
 from feederscrew.studies.trial import trial
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
 
 LOOKED_AT = True
@@ -231,7 +231,7 @@ def test_names_with_values_are_set_in_two_halves():
 
 def test_the_part_turns_over_the_cut(visit, case):
     every = orientations(case.part, case.resting.aspects, case.bowl.track)
-    shown = tooling_views.poses([made("gap", "test", limit=9e-3)], every, [0.1] * len(every), 0)
+    shown = tooling_views.poses([make_device("gap", "test", limit=9e-3)], every, [0.1] * len(every), 0)
     views = Views(
         over_cuts(case.part, [met for met, _ in shown], every),
         tuple((met.orientation.name, told, ()) for met, told in shown), "cuts", "Orientation",

@@ -33,7 +33,7 @@ from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling import solid, track_sections
 from feederscrew.tooling.devices.base import UNSURE, Verdict
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.track_sections import bend_ring, build_section
 from feederscrew.tooling.verdicts import verdict
@@ -236,12 +236,12 @@ def test_a_scale_bar_is_1_2_or_5_of_a_power_of_ten_and_fits(size, long):
 def test_what_leaves_is_drawn_as_it_leaves(lying):
     """Behind two devices that let it pass, seen along the track: the wall at 0, its foot at height 0."""
     _, every = lying
-    narrow = [made("narrowed_track", "here", limit=limit) for limit in (0.03, 0.029)]
+    narrow = [make_device("narrowed_track", "here", limit=limit) for limit in (0.03, 0.029)]
     page = tooling_figures.chain(narrow, every[:1], np.ones(1))
     last = page.axes[-1]
     assert len(page.axes) == 3 and last.get_xlim()[0] < 0.0 < last.get_ylim()[1]
     (area,) = [patch.get_path().get_extents() for patch in last.patches]
-    seen = np.array(every[0].seen.bounds) * 1e3
+    seen = np.array(every[0].view_ahead.bounds) * 1e3
     assert [area.x0, area.y0, area.x1, area.y1] == pytest.approx(seen, abs=1e-6)
 
 
@@ -249,7 +249,7 @@ def test_rails_are_cut_across_under_what_hangs():
     screw = parts.load(Path(__file__).parents[2] / "docs/tutorial/countersunk_m4x12.stl")
     bowl = bowls.read(None, ["track.width=15 mm"])
     every = travelling(orientations(screw, find(screw), bowl.track), bowl)
-    rails = made("rails", "here", span=(2.1e-3, 6.6e-3))
+    rails = make_device("rails", "here", span=(2.1e-3, 6.6e-3))
     along = next(one for one in every if one.length > 0.011 and one.height < 0.009)
     page = tooling_figures.chain([rails], [along], np.ones(1))
     near, far, part = (patch.get_path().get_extents() for patch in page.axes[-1].patches)
@@ -270,7 +270,7 @@ def test_many_orientations_stand_in_two_panels(lying):
 
 
 def test_a_design_names_its_devices_as_the_trade_does():
-    sorter = made("sorter", "here", like=("A", np.radians(359.7), 2.35e-3), sees="side").rewritten()
+    sorter = make_device("sorter", "here", like=("A", np.radians(359.7), 2.35e-3), sees="side").rewritten()
     rates = "target delivered worst_friction static".split()
     found = {"status": "holds", "wanted": "A@0"} | {f"{name}_per_minute": 1.0 for name in rates}
     found |= {"delivered_low": 1.0, "delivered_high": 1.0, "purity": None, "jams": 0, "queue_seconds": 0.0}
@@ -288,7 +288,7 @@ def test_a_device_without_a_margin_is_drawn_so():
 
 
 def test_a_table_of_polygons_fits_a_page():
-    hole = made("cut_out", "here", corners=((0.0, 0.0), (12e-3, 3e-3), (14e-3, 9e-3), (2e-3, 11e-3)))
+    hole = make_device("cut_out", "here", corners=((0.0, 0.0), (12e-3, 3e-3), (14e-3, 9e-3), (2e-3, 11e-3)))
     assert hole.value_words == "polygon of 4 corners"
     names = " ".join(f"A@{k}" for k in range(100, 120))
     assert tooling_tables._few(names, 34) == "A@100 A@101 A@102 A@103 A@104 and 15 more"

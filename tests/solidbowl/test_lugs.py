@@ -83,8 +83,8 @@ def test_lugs_stand_outside_the_wall_and_off_the_devices(name):
                 found_now, before = (facets.first_met(each, *ends)[:1] for each in (whole, old))
                 assert found_now == pytest.approx(before, abs=1e-7) or found_now[0] > 0.043
     if plan.stretch is not None:
-        s = np.linspace(plan.first, plan.way.end + plan.outlet, 200)
-        line = shapely.LineString(plan.way.plan(s, -plan.material.wall))
+        s = np.linspace(plan.first, plan.path.end + plan.outlet, 200)
+        line = shapely.LineString(plan.path.plan(s, -plan.material.wall))
         there = facets.as_planned(plan, found.screws)[:, :2]
         assert line.distance(shapely.points(there)).min() > 0.012
 
@@ -123,7 +123,7 @@ def test_the_views_of_the_sheet_have_the_lugs():
     """From above they stand out of the wall, where nothing was drawn."""
     solid, found, _ = cut("cylinder")
     solid = replace(solid, segments=found)
-    plan, far = solid.plan, 1e3 * (solid.plan.way.radius + solid.plan.material.wall)
+    plan, far = solid.plan, 1e3 * (solid.plan.path.radius + solid.plan.material.wall)
     drawn = (
         solidbowl_views.lines(
             solid.with_lugs.vertices, solid.with_lugs.faces, solidbowl_views.camera(-90.0, 90.0)

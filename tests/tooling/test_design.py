@@ -13,7 +13,7 @@ from feederscrew.rates.tipping import steady
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling.devices.kinds import made as device_of
+from feederscrew.tooling.devices.kinds import make_device as device_of
 from feederscrew.tooling.isolating import chain, hole_search, proposal
 from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.isolating.design import design, place
