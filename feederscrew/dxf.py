@@ -22,7 +22,6 @@ MILLIMETRES = {  # by $INSUNITS: DXF Reference of Autodesk, "HEADER Section"; 0 
 }  # fmt: skip
 UNITLESS, IN_MILLIMETRES = 0, 4  # of $INSUNITS
 MAX_DXF_COORDINATE_M = 1e3  # [m] from the origin of a drawing to a corner of a hole
-TEXT_HEIGHT_MM = 3.0  # [mm] height of texts
 CHORD_ERROR_M = 1e-6  # at most between a curve and the chord read for it; the corners lie on the curve
 MAX_CHORD_ANGLE = math.radians(15.0)  # of an arc to one chord
 JOIN_M = 1e-6  # ends of lines and arcs so near are one corner
@@ -49,20 +48,6 @@ class _Unread(Exception):
     def __init__(self, what: str, mend: str) -> None:
         super().__init__(what)
         self.what, self.mend = what, mend
-
-
-@dataclass(frozen=True, eq=False)
-class Layer:
-    """One layer of a drawing."""
-
-    name: str
-    colour: int  # of AutoCAD's index: 1 red, 3 green, 5 blue, 7 white or black, 8 grey
-    rings: tuple = ()  # of (K, 2) [m], each becomes a closed polyline
-    lines: tuple = ()  # of (K, 2) [m], each becomes an open polyline
-    texts: tuple[tuple[str, tuple[float, float]], ...] = ()  # with the place [m] where each begins
-    across: tuple[str, tuple[float, float], float, float] | None = (
-        None  # text, middle [m], height [m], turn [rad]
-    )
 
 
 @dataclass(frozen=True)
@@ -394,26 +379,21 @@ def _is_straight(a: Point, b: Point, c: Point) -> bool:
     return on and (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) > 0.0
 
 
-def written(layers: Iterable[Layer]) -> bytes:
-    """Return a drawing as the bytes of a DXF file in millimetres, the same for the same layers.
-
-    Parameters
-    ----------
-    layers : sequence of Layer
-
-    Returns
-    -------
-    bytes
-    """
+def new_document() -> Any:
+    """Return an empty drawing of ``ezdxf`` in millimetres, without a date."""
     import ezdxf
 
     with _without_a_date(ezdxf.options):
         drawing = ezdxf.new("R2010", units=IN_MILLIMETRES)
-        drawing.header["$MEASUREMENT"] = 1  # metric
-        space = drawing.modelspace()
-        for layer in layers:
-            drawing.layers.add(layer.name, color=layer.colour)
-            _draw(space, layer)
+    drawing.header["$MEASUREMENT"] = 1  # metric
+    return drawing
+
+
+def document_bytes(drawing: Any) -> bytes:
+    """Return a drawing of ``new_document`` as the bytes of a DXF file, the same for the same entities."""
+    import ezdxf
+
+    with _without_a_date(ezdxf.options):
         # ezdxf would add those that it needs in the order of a set, another one in each process
         for kind in sorted(drawing.entitydb.dxf_types_in_use()):
             drawing.classes.add_class(kind)
@@ -422,22 +402,54 @@ def written(layers: Iterable[Layer]) -> bytes:
     return file.getvalue().encode()
 
 
-def _draw(space: Any, layer: Layer) -> None:
-    look = {"layer": layer.name}
-    for closed, lines in ((True, layer.rings), (False, layer.lines)):
-        for line in lines:
-            corners = [(1e3 * float(x), 1e3 * float(y)) for x, y in line]
-            space.add_lwpolyline(corners, close=closed, dxfattribs=look)
-    for text, place in layer.texts:
-        space.add_text(text, height=TEXT_HEIGHT_MM, dxfattribs=look).set_placement(
-            [1e3 * float(x) for x in place]
-        )
-    if layer.across is not None:
-        from ezdxf.enums import TextEntityAlignment
+def primitives(entity: Any, sagitta: float = 0.02) -> Iterator[tuple[str, Any]]:
+    """Yield the lines, filled areas and texts that an entity is drawn by, those of its blocks too.
 
-        text, middle, height, turn = layer.across
-        written = space.add_text(text, height=1e3 * height, rotation=math.degrees(turn), dxfattribs=look)
-        written.set_placement([1e3 * float(x) for x in middle], align=TextEntityAlignment.MIDDLE_CENTER)
+    Parameters
+    ----------
+    entity : DXFGraphic
+    sagitta : float
+        By which an arc may be seen too flat, in the drawing's unit.
+
+    Yields
+    ------
+    ("line", (K, 2) float), ("area", list of (K, 2) float) or ("text", (words, place (2,), height, turn
+    [deg], 'left' | 'center' | 'right', 'baseline' |
+    'center_baseline'))
+    """
+    from ezdxf.disassemble import recursive_decompose
+    from ezdxf.path import make_path
+
+    one: Any
+    for one in recursive_decompose([entity]):
+        kind = one.dxftype()
+        if kind in ("TEXT", "MTEXT"):
+            yield "text", _written_text(one, kind)
+        elif kind in ("SOLID", "HATCH"):
+            rings = [one.vertices()] if kind == "SOLID" else [path.vertices for path in one.paths]
+            yield "area", [np.array([(place[0], place[1]) for place in ring]) for ring in rings]
+        elif kind != "POINT":
+            places = make_path(one).flattening(sagitta)
+            yield "line", np.array([(place.x, place.y) for place in places])
+
+
+def _written_text(entity: Any, kind: str) -> tuple[str, tuple[float, float], float, float, str, str]:
+    """Words, place, height, turn [deg] and alignment of a text."""
+    dxf = entity.dxf
+    if kind == "TEXT":
+        place = dxf.align_point if dxf.halign else dxf.insert
+        across = ("left", "center", "right")[dxf.halign]
+        return dxf.text, (place.x, place.y), dxf.height, dxf.get("rotation", 0.0), across, "baseline"
+    across = ("left", "center", "right")[(dxf.attachment_point - 1) % 3]
+    place = dxf.insert
+    return (
+        entity.plain_text(),
+        (place.x, place.y),
+        dxf.char_height,
+        entity.get_rotation(),
+        across,
+        "center_baseline",
+    )
 
 
 @contextlib.contextmanager

@@ -28,7 +28,7 @@ DOORS = {
         "feederscrew/tooling/solid.py",
         "feederscrew/solidbowl/facets.py",
     },
-    "OCP": {"feederscrew/output/tooling/written_step.py", "feederscrew/solidbowl/exact"},
+    "OCP": {"feederscrew/output/solid_files.py", "feederscrew/solidbowl/exact"},
     "click": {"cli"},
     "numba": {"feederscrew/geometry"},
     "werkzeug": {"feederscrew/serving", "cli/serve.py"},

@@ -9,7 +9,7 @@ from shapely import affinity
 from feederscrew.tooling.devices.base import room_of
 from feederscrew.tooling.devices.openings import beyond_borders
 from feederscrew.tooling.fates import leading
-from feederscrew.tooling.track_sections import build_section
+from feederscrew.tooling.track_sections import Station, build_section
 
 MAX_EDGE_SLOPE_RAD = np.radians(10.0)  # slope along the track of its free edge, where the bank changes
 RAMP = np.radians(15.0)  # slope on which a ledge comes down to the track beside it
@@ -192,6 +192,7 @@ class Stretch:
     grooves: tuple[
         tuple[float, float, float, float], ...
     ] = ()  # from and to s [m], lean of the wall, opens [m]
+    stations: tuple[Station, ...] = ()  # of the devices, in the order parts meet them
 
     @property
     def falls(self):
@@ -243,6 +244,7 @@ def stretch(track, devices, orientations):
         leans=leans,
         ledges=ledges,
         grooves=grooves,
+        stations=tuple(stations),
     )
 
 

@@ -264,11 +264,15 @@ def yokes(plan, kit):
     -------
     list of bodies [mm]
     """
+    return [_yoke(plan, kit, s) for s in yoke_places(plan)]
+
+
+def yoke_places(plan) -> tuple[float, ...]:
+    """Return where along the way each yoke begins [m], YOKE thick; none without rails."""
     if not _rails(plan):
-        return []
+        return ()
     behind = plan.first + max(cut.span[1] for cut in _rails(plan))
-    end = plan.path.end + plan.outlet
-    return [_yoke(plan, kit, s) for s in (behind, end - YOKE)]
+    return behind, plan.path.end + plan.outlet - YOKE
 
 
 def _yoke(plan, kit, s):

@@ -9,7 +9,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import own_trial
-from feederscrew.output.tooling import bowl_file, tables
+from feederscrew.output import tooling_tables as tables
 from feederscrew.studies.tooling import tooling, tooling_without
 from feederscrew.tooling.devices.kinds import make_device
 
@@ -66,7 +66,7 @@ def test_what_the_trial_denies_is_not_isolated_and_the_next_best_are_tried(monke
     denied, agreed = tables.trials(found)
     assert len(denied) == len(found.trials) - 1 and not agreed
     assert all(text.startswith("tried as well, ") for text in denied)
-    assert "# DENIED by its trial: nothing leaves as wanted." in bowl_file.bowl_file(found, ())
+    assert "# DENIED by its trial: nothing leaves as wanted." in tables.bowl_file(found, ())
 
 
 def test_the_next_best_that_holds_is_taken(monkeypatch, study):
@@ -130,4 +130,4 @@ def test_without_a_trial_the_static_rule_is_named(study):
     assert tables.document(study)["status"] == "static"
     none = replace(study, designs=tuple(SimpleNamespace(isolated=False) for _ in study.designs))
     assert tables.status(none, 0) == "none"
-    assert "# By the static rule, not tried: see feeder trial." in bowl_file.bowl_file(study, ())
+    assert "# By the static rule, not tried: see feeder trial." in tables.bowl_file(study, ())

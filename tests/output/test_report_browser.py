@@ -15,13 +15,12 @@ import shapes
 from PIL import Image
 
 from feederscrew import bowl as bowls
-from feederscrew.output import aspects, style, tables
+from feederscrew.output import aspects, style, tables, tooling_views
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture, Table, Views
 from feederscrew.output.report import page
 from feederscrew.output.report.chapters import CHAPTERS
 from feederscrew.output.report.scene import over_cuts
-from feederscrew.output.tooling import relief
 from feederscrew.output.trial import playback
 from feederscrew.part import load
 from feederscrew.studies.aspects import AspectsStudy
@@ -232,7 +231,7 @@ def test_names_with_values_are_set_in_two_halves():
 
 def test_the_part_turns_over_the_cut(visit, case):
     every = orientations(case.part, case.resting.aspects, case.bowl.track)
-    shown = relief.poses([make_device("gap", "test", limit=9e-3)], every, [0.1] * len(every), 0)
+    shown = tooling_views.poses([make_device("gap", "test", limit=9e-3)], every, [0.1] * len(every), 0)
     views = Views(
         over_cuts(case.part, [met for met, _ in shown], every),
         tuple((met.orientation.name, told, ()) for met, told in shown), "cuts", "Orientation",

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_drawing import study
+from test_drawing import study, within_the_frame
 from test_solid import CHAINS, GAP, NEAR, RAILS, TRACK, One, closed, planned
 from test_stepped import STEPPED
 
-from feederscrew.output.solidbowl import drawing_sheet, unrolled_strip
+from feederscrew.output import bowl_sheet
 from feederscrew.solidbowl import cuts, facets, track
 from feederscrew.solidbowl.closed_body import body, pieces
 from feederscrew.solidbowl.exact import exact_body
@@ -133,19 +133,15 @@ def test_a_yoke_of_banked_rails_lies_below_their_surface():
 def test_the_sheet_has_what_leans_and_what_drops():
     chain = (TIP, device_of("step", "b", limit=4e-3), *CHAINS["blades"], *CHAINS["jets"], bank(12.0))
     solid = body(planned(chain, track=STEEP, asked=STEPPED))
-    paper = drawing_sheet.sheet(study(solid))
-    told = [one.get_text() for one in paper.axes.texts]
-    listed = unrolled_strip.numbered(solid.plan.stretch)
-    assert [row[1] for row in listed][-3:] == [
+    drawing = bowl_sheet.draw_sheets(study(solid))
+    told = drawing.texts(1)
+    listed = bowl_sheet.number_devices(solid.plan)
+    assert [words for words, _, _ in listed] == [
         "step 4 mm down", "ledge 6 wide, track 9 lower; to 35.1 level", "twists to a bank of 12°",
     ]  # fmt: skip
-    for number, (_, words, start, end) in enumerate(listed, start=1):
-        assert told.count(str(number)) >= 2 and words in told  # in the table and on the strip
-        assert f"{1e3 * start:.5g}" in told and f"{1e3 * end:.5g}" in told
-    assert "6.5°, 0° to 12°" in told
-    left, bottom, right, top = drawing_sheet.FRAME
-    for some in paper.axes.collections:
-        places = np.concatenate([path.vertices for path in some.get_paths()])
-        assert (places >= np.array([left, bottom]) - 0.1).all() and (
-            places <= np.array([right, top]) + 0.1
-        ).all()
+    for words, start, end in listed:
+        assert words in told and f"{1e3 * start:.5g}" in told and f"{1e3 * end:.5g}" in told
+    for number in range(1, len(chain) + 1):
+        assert str(number) in told
+    assert "6.5°, 0° to 12°" in drawing.texts(0)
+    within_the_frame(drawing)

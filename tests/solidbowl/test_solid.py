@@ -16,7 +16,7 @@ from feederscrew.errors import FeederError
 from feederscrew.machine.drive_sizing import machine_for
 from feederscrew.machine.sizing import Size
 from feederscrew.machine.springs import analyse_springs, centred_mass, rocking
-from feederscrew.output.solidbowl import printing
+from feederscrew.output import solid_files
 from feederscrew.solidbowl import cuts, facets, riding, segments
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.measuring import measures, track_heights, track_width, ways_down
@@ -305,8 +305,8 @@ def test_a_part_that_hangs_stays_where_its_rails_hold_it():
 
 def test_the_same_bytes_twice():
     one, other = (body(planned(CHAINS["narrowed and rails"])) for _ in range(2))
-    assert printing.stl(one) == printing.stl(other)
-    assert printing.threemf(one, "a & b") == printing.threemf(other, "a & b")
+    assert solid_files.bowl_stl(one) == solid_files.bowl_stl(other)
+    assert solid_files.bowl_3mf(one, "a & b") == solid_files.bowl_3mf(other, "a & b")
 
 
 def test_gates_are_parts_of_their_own():
@@ -314,7 +314,7 @@ def test_gates_are_parts_of_their_own():
     assert [name for name, _, _ in solid.gates] == ["gate_1"]
     gate = facets.placed(SimpleNamespace(vertices=solid.gates[0][1], faces=solid.gates[0][2]))
     assert (gate ^ facets.placed(solid)).volume() < 20.0  # [mm3] it stands on the track and in its notch
-    assert b"gate_1" in model_of(printing.threemf(solid, "bowl"))
+    assert b"gate_1" in model_of(solid_files.bowl_3mf(solid, "bowl"))
 
 
 @pytest.mark.parametrize(

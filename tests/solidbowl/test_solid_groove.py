@@ -10,7 +10,7 @@ from test_leans import STEEP, bank
 from test_solid import GAP, NEAR, TRACK, One, closed, planned
 from test_stepped import STEPPED
 
-from feederscrew.output.solidbowl import drawing_sheet
+from feederscrew.output import bowl_sheet
 from feederscrew.solidbowl import cuts, facets, riding, track
 from feederscrew.solidbowl.closed_body import _wall, body
 from feederscrew.solidbowl.exact import exact_body
@@ -113,5 +113,6 @@ def test_a_part_lies_in_the_groove_at_both_faces(name, degrees):
 
 def test_the_sheet_has_the_groove():
     solid = grooved("before a bank")[0]
-    told = [one.get_text() for one in drawing_sheet.sheet(study(solid)).axes.texts]
+    drawing = bowl_sheet.draw_sheets(study(solid))
+    told = [*drawing.texts(0), *drawing.texts(1)]
     assert "groove: the wall leans back by 50°" in told and "6.5°, 0° to 40° to 0°" in told

@@ -12,8 +12,9 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew.errors import Faults
 from feederscrew.mechanics.wall import lying_in_groove
+from feederscrew.output import tooling_drawing as drawing
+from feederscrew.output import tooling_figures
 from feederscrew.output.rate import remarks
-from feederscrew.output.tooling import drawing, profile
 from feederscrew.part import load
 from feederscrew.rates import stream
 from feederscrew.rates.well_oriented import velocity
@@ -83,7 +84,7 @@ def test_what_turns_is_not_sure_and_counts_as_what_it_turns_into(dowel):
     assert found.leaving[row, lying] == 1.0 and found.leaving[row, row] == 0.0
     seen = worst_passage(groove(30.0), upright[row], upright)
     assert seen.after.name == "A@0" and seen.after.groove == 30.0 * DEG
-    assert profile.turned_into(seen) == "turns into A@0, not sure"
+    assert tooling_figures.turned_words(seen) == "turns into A@0, not sure"
 
 
 def test_a_place_is_known_though_the_track_leans_otherwise(dowel):
@@ -211,16 +212,16 @@ def test_its_section_is_closed_and_has_the_other_face(dowel):
 def test_its_drawing_has_a_line_and_its_angle(dowel):
     _, every = dowel
     section = build_section(BOWL.track, (groove(30.0),), every)
-    layers = {one.name: one for one in drawing.layers(section)}
-    assert len(layers["SLOPE"].rings) == 1
-    assert any("groove {angle: 30 deg}" in text for text, _ in layers["TEXT"].texts)
+    made, _, _ = drawing.draw(section)
+    assert sum(layer == "SLOPE" for layer, *_ in made.sheets[0]) == 1
+    assert "30 deg" in " ".join(made.texts())
 
 
 @pytest.mark.parametrize("angle", [20.0, 45.0, 58.0])
 def test_its_picture_has_the_part_between_both_faces(dowel, angle):
     _, every = dowel
     one = groove(angle).onward(named(every, "A@0"))
-    shown, line = profile.along(one, 20.0, 20.0)
+    shown, line = tooling_figures.profile_along_track(one, 20.0, 20.0)
     _, (x1, z1), (x2, z2) = line
     assert z1 == 0.0 and math.degrees(math.atan2(z2, x2 - x1)) == pytest.approx(angle)
     middle = shown.centroid

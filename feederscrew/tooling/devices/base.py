@@ -394,6 +394,11 @@ class Device:
             return f"outline of {keeps(((aspect, heading),))}, with {length_words(play)} of play"
         return span_words(self.span) if self.span else YAML_MARKS.sub("", self.short)
 
+    @property
+    def shop_words(self) -> tuple[str, ...]:
+        """What a shop buys and sets for it, a sentence each: sensor, nozzles, valve; () of plain steel."""
+        return ()
+
     def beside_track_fault(self, width):
         """Return the ConfigError of a hole that lies beside a track of some width [m]."""
         what = f"{self.kind} lies beside the track: the track is {1e3 * width:.4g} mm wide"

@@ -343,6 +343,16 @@ class Sorter(Device):
         pulse = "" if self.time == PULSE else f", air for {self.time / MS:.4g} ms"
         return f"keeps {keeps((self.like[:2], *self.also))}, rejects {what} by more than {most}{pulse}"
 
+    @property
+    def shop_words(self):
+        most = f"resolves {length_words(self.blur)}, rejects more than {length_words(self.like[2])}"
+        nozzles = f"{self.nozzles:.0f} nozzles of {length_words(self.nozzle)} in the wall"
+        valve = f"solenoid valve: opens within {REACTION / MS:.3g} ms, pulse of {self.time / MS:.4g} ms"
+        return (
+            f"{SEEN_BY[self.sees][0]}: {most}",
+            f"{nozzles}, {self.pressure / BAR_PA:.4g} bar at the nozzle; {valve}",
+        )
+
     def _jet_text(self):
         """Its nozzles and its pulse as a bowl file has them, as far as they are not as by default."""
         nozzles = [
@@ -475,6 +485,13 @@ class SteadyJet(Device):
     def value_words(self):
         bore, high = length_words(self.nozzle), length_words(self.height)
         return f"nozzle of {bore} at {self.pressure / BAR_PA:.4g} bar, {high} over the track"
+
+    @property
+    def shop_words(self):
+        bore = length_words(self.nozzle)
+        return (
+            f"1 nozzle of {bore} in the wall, blows steadily: regulator {self.pressure / BAR_PA:.4g} bar",
+        )
 
     @property
     def jet(self):
