@@ -13,16 +13,24 @@ import shapely.affinity
 from feederscrew import bowl as bowls
 from feederscrew import dxf
 from feederscrew.errors import ConfigError
+from feederscrew.units import MM
 
 RING = [(0.0, 0.0), (0.01, 0.0), (0.01, 0.004), (0.002, 0.006)]
 POINTER = b"version https://git-lfs.github.com/spec/v1\noid sha256:%s\nsize 120484\n" % (b"0" * 64)
 UNREADABLE = "cannot be read as DXF - save it as ASCII DXF R2000 or later"
 
 
+def _drawn_ring(layer):
+    """Return a drawing of RING as the bytes of a file."""
+    document = dxf.new_document()
+    document.modelspace().add_lwpolyline(np.array(RING) / MM, close=True, dxfattribs={"layer": layer})
+    return dxf.document_bytes(document)
+
+
 @pytest.fixture
 def drawing(tmp_path):
     path = tmp_path / "hole.dxf"
-    path.write_bytes(dxf.written([dxf.Layer("HOLE", 1, rings=(np.array(RING),))]))
+    path.write_bytes(_drawn_ring("HOLE"))
     return path
 
 
@@ -254,7 +262,7 @@ def test_a_drawing_is_read_in_its_unit(tmp_path, code):
 @pytest.mark.parametrize("code", [17, 18, 20, 25, 99, -1])
 def test_another_unit_is_refused(tmp_path, code):
     path = tmp_path / "hole.dxf"
-    lines = dxf.written([dxf.Layer("HOLE", 1, rings=(np.array(RING),))]).decode().split("\n")
+    lines = _drawn_ring("HOLE").decode().split("\n")
     lines[lines.index("$INSUNITS") + 2] = str(code)
     path.write_text("\n".join(lines))
     with pytest.raises(ConfigError, match=r"unit"):
@@ -347,7 +355,7 @@ def test_only_a_file_of_some_size_is_read(tmp_path):
 def test_a_drawing_that_names_no_unit_is_read_in_millimetres_and_that_is_said(run, tmp_path, code, warned):
     """A drawing in inches without $INSUNITS was a hole of 9 mm, and nothing was said."""
     path = tmp_path / "hole.dxf"
-    lines = dxf.written([dxf.Layer("CUT", 1, rings=(np.array(RING),))]).decode().split("\n")
+    lines = _drawn_ring("CUT").decode().split("\n")
     lines[lines.index("$INSUNITS") + 2] = str(code)
     path.write_text("\n".join(lines))
     (tmp_path / "bowl.yaml").write_text(

@@ -179,8 +179,8 @@ def test_orientations_that_hardly_come_are_not_counted():
         shares=np.array([0.6, 0.395, 0.005, 0.0]), designs=designs, isolates=lambda k: designs[k].isolated
     )
     said = "orientations in which 0.5 % or more of the parts come can be isolated"
-    assert tables.isolated(study) == f"2 of 3 {said} (1 rarer not counted)"
+    assert tables.isolation_words(study) == f"2 of 3 {said} (1 rarer not counted)"
     assert (
-        tables.isolated(study, 0.5)
+        tables.isolation_words(study, 0.5)
         == f"0 of 3 {said} with an efficiency of 50 % or more (1 rarer not counted)"
     )
