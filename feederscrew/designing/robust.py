@@ -166,8 +166,9 @@ def matched(one, every):
 
 
 def robust_run(
-    part, bowl, known, shares, wanted, *, draws, tolerance, run, any_heading=(), spared=(), enough=HALF
-):
+    part, bowl, known, shares, wanted, *, draws, tolerance, run, any_heading=(), spared=(), enough=HALF,
+    allowed=None,
+):  # fmt: skip
     """Try draws of part, friction, drive and cuts.
 
     Parameters
@@ -191,6 +192,8 @@ def robust_run(
         Orientations that count as the wanted one and may be returned.
     enough : float [1]
         Share of what is wanted that has to leave, where a part of it comes back: HALF at least.
+    allowed : int, optional
+        Draws that may fail: with one more the run ends, for the rest decides nothing. All draws without it.
 
     Returns
     -------
@@ -199,7 +202,7 @@ def robust_run(
         draw tries the wanted orientation and some others, drawn by their shares. Where a wanted part comes
         back, AGAIN more of each wanted orientation are tried: it is offered again, and costs rate.
     """
-    held, wrong, speeds, done = 0, Counter[str](), [], 0
+    held, wrong, speeds, done, stopped = 0, Counter[str](), [], 0, False
     try:
         for draw in range(draws):
             faults, speed = _draw(
@@ -219,10 +222,12 @@ def robust_run(
             wrong.update(set(faults))
             speeds.append(speed)
             run.tell(done, draws)
+            if allowed is not None and done - held > allowed:
+                break
     except KeyboardInterrupt:
-        pass  # what was done is counted, and marked
+        stopped = True  # what was done is counted, and marked
     worst = "" if not wrong else f"{wrong.most_common(1)[0][0]} in {wrong.most_common(1)[0][1]} of {done}"
-    return RobustRun(done, held, worst, float(min(speeds, default=np.nan)), partial=done < draws)
+    return RobustRun(done, held, worst, float(min(speeds, default=0.0)), partial=stopped)
 
 
 def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading, spared, enough):

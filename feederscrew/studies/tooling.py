@@ -1,5 +1,6 @@
 """The study of ``feeder tooling``: which orientation can be isolated, and by which cuts."""
 
+import functools
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -141,6 +142,7 @@ def tooling(
         vary : bool, whether other banks, grooves and widths of the track and sweeps are tried where they
         give more.
         turn : bool, whether devices that turn parts over may be used, where returning them wastes too much.
+        air : bool, whether air that blows all the time may be used, where cuts and blades are not enough.
         play, tolerance : float [m], of the part from the wall and of its size, which are added to the margin
         that is asked for.
         seed : int, of the search for holes.
@@ -213,6 +215,7 @@ class _Track:
     cache: dict[Any, Any]  # of orientations where it leans
 
 
+@functools.lru_cache(maxsize=32)
 def _coming(part: Part, found: Aspects, bowl: Bowl) -> tuple[Orientation, ...]:
     """Every orientation of a part as it comes in a bowl."""
     every, _ = marked(named(orientations(part, found, bowl.track)), bowl)

@@ -36,6 +36,7 @@ class ToolingOptions:
     cutter: float = Wishes.cutter
     vary: bool = Wishes.vary
     turn: bool = Wishes.turn
+    air: bool = Wishes.air
     play: float = PLAY
     tolerance: float = TOLERANCE
     seed: int = HoleSearch.seed
@@ -56,6 +57,7 @@ class ToolingKeywords(TypedDict, total=False):
     cutter: float
     vary: bool
     turn: bool
+    air: bool
     play: float
     tolerance: float
     seed: int
@@ -78,6 +80,7 @@ def asked_for(part: Part, bowl: Bowl, found: Aspects, own: ToolingOptions) -> Wi
         cutter=float(own.cutter),
         vary=bool(own.vary),
         turn=own.turn,
+        air=own.air,
     )
     return replace(wishes, separation=_separation(bowl, wishes))
 

@@ -115,7 +115,7 @@ def test_a_class_uses_its_share_of_the_trials_and_the_next_has_the_rest(searchin
     list(exploring.candidates(search, 1))
     assert len(search.attempts) == 5  # half of ten
     list(exploring.candidates(search, 2))
-    assert len(search.attempts) == 5  # no device of steady air is proposed
+    assert len(search.attempts) == 7  # the first two 70 %
     list(exploring.candidates(search, 3))
     assert len(search.attempts) == 10
 

@@ -1,8 +1,10 @@
 """Air that blows all the time: jet."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import brentq
 
 from feederscrew import units
 from feederscrew import value_forms as forms
@@ -17,9 +19,12 @@ from feederscrew.tooling.devices.base import (
     mapping_text,
     room_of,
 )
-from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles
+from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles, thrust
 from feederscrew.tooling.devices.pieces import Standing
 
+RESERVE = 1.1  # beyond that, of a jet that a design proposes
+HEIGHTS = 6  # of the nozzle that a design tries, evenly up to the tallest orientation
+SUPPLY, PRESSURE_STEP = 4e5, 5e3  # [Pa] of a usual compressed-air net, and to which a regulator is set
 CLEAR = 2.0  # times the force that just moves a part off: within it, to either side, nothing is sure
 PLACES = 9  # along a part at which a jet meets it
 BORE, PRESSURE = 2e-3, 2e4  # [m], [Pa]
@@ -46,6 +51,7 @@ class SteadyJet(Device):
     picture = "above"
     layer = "NOZZLE"
     cost_class = 2
+    proposed = True
 
     @classmethod
     def read(cls, entry):
@@ -64,6 +70,36 @@ class SteadyJet(Device):
     def jet(self):
         """Its Nozzles, one."""
         return Nozzles(self.nozzle, self.pressure, self.height)
+
+    @classmethod
+    def proposals(cls, wanted, others, every, where):
+        """Return the jets that blow surely off some orientations and surely leave others, one a height.
+
+        Parameters
+        ----------
+        wanted, others : sequence of Meeting
+            That shall stay, and that shall be blown off where they can.
+        every : sequence of Orientation
+            Of the part.
+        where : str
+
+        Returns
+        -------
+        list of SteadyJet
+            Of the least pressure that blows off as many as the greatest one that leaves all that are wanted.
+        """
+        found, top = [], max(one.height for one in every)
+        for height in np.round(top * (np.arange(HEIGHTS) + 0.5) / HEIGHTS, 4):
+            jet = cls(where, height=float(height))
+            own, full = jet.jet.thrust, thrust(jet.nozzle, SUPPLY)
+            most = max(jet.most(met) for met in wanted) / own
+            greatest = min(full, 1.0 / (CLEAR * RESERVE * most) if most > 0.0 else full)
+            needed = [CLEAR * RESERVE * own / max(jet.factor(met), 1e-12) for met in others]
+            enough = [one for one in needed if one <= greatest]
+            if enough:
+                pressure = math.ceil(_pressure(jet.nozzle, max(enough)) / PRESSURE_STEP - 1e-6)
+                found.append(replace(jet, pressure=pressure * PRESSURE_STEP).rewritten())
+        return found
 
     def fate(self, met):
         return RETURNED
@@ -119,3 +155,8 @@ class SteadyJet(Device):
     @property
     def label(self):
         return f"{self.kind} {self.text}"
+
+
+def _pressure(nozzle, force):
+    """The pressure [Pa] at which a nozzle [m] has a thrust [N], which the supply makes."""
+    return float(brentq(lambda pressure: thrust(nozzle, pressure) - force, 0.0, SUPPLY))

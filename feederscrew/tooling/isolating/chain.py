@@ -42,6 +42,7 @@ class Wishes:
     vary: bool = True  # other tracks and sweeps are tried where they give more
     gentle: bool = False  # cuts take no more of the wanted orientation's foot than they must
     turn: bool = False  # devices that turn parts over, where returning them wastes too much
+    air: bool = False  # air that blows all the time, where cuts and blades are not enough
 
     def allows(self, *kinds):
         """Return whether some kinds of devices may all be used."""
@@ -58,7 +59,7 @@ class Wishes:
         return any(self.allows(kind.kind) for kind in numbered() if kind.overhead)
 
 
-def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=False, same=()):
+def candidates(every, wanted, margin, wishes=None, *, clearing=True, air=False, sensed=False, same=()):
     """Return every device of one number that the wanted orientation passes by a margin.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -72,8 +73,9 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
     wishes : Wishes, optional
     same : sequence of int
         Those that count as the wanted one: a device of one number lets all of them pass.
-    clearing, sensed : bool
-        Whether what has to clear itself, and what sees, is tried beside what drops parts.
+    clearing, air, sensed : bool
+        Whether what has to clear itself, air that blows all the time, and what sees, is tried beside what
+        drops parts.
 
     Returns
     -------
@@ -93,6 +95,13 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
         limit = snapped(values[first] + (-play if lower else play), wishes.step, up=not lower)
         device = kind.proposal(WHERE, limit)
         if limit > 0.0 and device.acts(every[wanted].track):
+            found[device] = np.array([margin_at(device, one, every) for one in every])
+
+    for kind in blowing() if air else ():
+        rows = sorted({wanted, *same})
+        meetings = [Meeting(one, every) for one in every]
+        others = [met for k, met in enumerate(meetings) if k not in rows]
+        for device in kind.proposals([meetings[k] for k in rows], others, every, WHERE):
             found[device] = np.array([margin_at(device, one, every) for one in every])
 
     def unlike(view):
@@ -116,6 +125,11 @@ def pivot(kind, every, wanted, same=()):
 def around():
     """Return the kinds that a design tries with the wanted orientation's own outline."""
     return [kind for kind in KINDS.values() if kind.proposed and kind.senses]
+
+
+def blowing():
+    """Return the kinds that a design tries that blow all the time."""
+    return [kind for kind in KINDS.values() if kind.proposed and not (kind.senses or kind.bound)]
 
 
 def margin_at(device, one, every):
@@ -223,8 +237,10 @@ def shared_out(found, devices, margin):
 
 
 def _cut(every, wanted, device, must, least, step):
-    if not device.bound:
+    if device.senses:
         return _sensor(every, wanted, device, must, step)
+    if not device.bound:
+        return judged(every, wanted, device, must, device, device)
     values, upper = limits(type(device), every), device.bound == "upper"
     values = values + np.where(np.arange(len(every)) == wanted, 0.0, _more(device, every))
     nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]

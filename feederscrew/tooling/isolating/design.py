@@ -131,8 +131,8 @@ def _plain(given, search):
         if not _left(given, returned):
             break
     found = told_needed(given, cuts, returned)
-    sensed = {"sensed": given.wishes.sensed}
-    for stage in (sensed, sensed | {"varied": given.wishes.vary}):
+    air, sensed = {"air": given.wishes.air}, {"sensed": given.wishes.sensed}
+    for stage in (air, sensed, sensed | {"varied": given.wishes.vary}):
         if found.isolated or not any(stage.values()):
             continue
         other = told_needed(given, *_chosen(given, weight, stage))

@@ -12,8 +12,8 @@ from feederscrew.tooling.verdicts import verdict
 
 PLAY, MOST = 4e-4, 6e-4  # [m] by which a slot is wider than the shank: 0.2 to 0.6 mm
 CLEAR = 4e-4  # [m] between a hanging head and the wall, wherever the shank stands in its slot
-# drops first, then what clears itself, then what sees
-STAGES: tuple[dict[str, bool], ...] = ({"clearing": False}, {}, {"sensed": True})
+# drops first, then what clears itself, then air, then what sees
+STAGES: tuple[dict[str, bool], ...] = ({"clearing": False}, {}, {"air": True}, {"sensed": True})
 RAIL = 1e-3  # [m] least width of a rail, and of the sheet it is cut from
 # a part that lies along the wall is askew: its shank's tip lies nearer to the wall than its weight, and has
 # to be over the slot. The lead-in reaches so far under it, in radii of the shank, and so much at least
@@ -49,7 +49,7 @@ def design(given):
     gone = (at_rails <= -margin) | ~given.stays | (given.coming <= 0.0)
     passed = gone | same
     for stage in STAGES:
-        if not stage.get("sensed") or given.wishes.sensed:
+        if all(getattr(given.wishes, name) for name in ("air", "sensed") if stage.get(name)):
             cuts, returned = _before(given, passed, same, stage)
         left = ~returned & ~passed & given.often
         jams = (left & np.isnan(at_rails)).any()  # however seldom it comes, it blocks the rails
