@@ -1,5 +1,6 @@
 """How many well-oriented parts leave a bowl, and what drive or what bowl reaches a rate."""
 
+import math
 from collections.abc import Sequence
 from typing import Any, Unpack
 
@@ -8,6 +9,7 @@ from feederscrew.api import asked
 from feederscrew.api.asked import Path, Quantity
 from feederscrew.api.bowl_settings import BowlSettings, Overrides, override_texts, with_settings
 from feederscrew.bowl import Bowl
+from feederscrew.output import proof
 from feederscrew.part import Part
 from feederscrew.rates.well_oriented import RECOMMENDED
 from feederscrew.studies import bowl as machines
@@ -233,6 +235,7 @@ def size_bowl(
     Returns
     -------
     MachineSheet
+        At the stroke that was tried, where the file has a trial that is still of this part and bowl.
     """
     own: dict[str, Any] = {"rule": rule, "gap": asked.amount("gap", gap, "length", 0.0), "fill": fill}
     wanted = asked.amount("target", target, "rate", LEAST)
@@ -240,4 +243,6 @@ def size_bowl(
     solid = asked.a_part(part, mesh=True)
     file = None if path is None else asked.a_file("path", path)
     effective = bowls.settings(file, override_texts(overrides, settings))
+    name = aspect if aspect is None or angle is None else f"{aspect}@{round(math.degrees(angle)) % 360}"
+    own["as_tried"] = proof.holds(bowls.verified(file), solid, bowls.record(effective), name)
     return machines.bowl(effective, solid, wanted, aspect=aspect, heading=angle, **own)

@@ -206,11 +206,12 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
     -------
     DesignStudy
         Its ``warnings`` hold those of ``feeder bowl`` for its file. Where the leaf springs that are drawn do
-        not make the angle that was tried, it falls short.
+        not make the angle that was tried, or its bowl makes no solid, it falls short.
     """
     sheet = built.sheet
+    solid = (f"no solid of its bowl can be made: {built.why}",) if built.why else ()
     if study.bowl is None or sheet is None:
-        return study
+        return replace(study, machine_lacks=solid) if solid else study
     warnings = [*checks.remarks(sheet)]
     warnings += [] if built.drawn is None else checks.of_the_solid(built.drawn)
     warnings += built.remarks
@@ -221,6 +222,7 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
         else ()
     )
     lacking += (f"the machine that is drawn does not make its drive: {built.lacks}",) if built.lacks else ()
+    lacking += solid
     made = replace(
         study,
         bowl=replace(study.bowl, machine=sheet.bowl.machine),
