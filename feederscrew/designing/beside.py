@@ -124,12 +124,14 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     devices = tuple(of_device(k, one) for k, one in enumerate(study.devices, start=1))
     try:
         made = bowls.settings(None, (*kept, *own))
-        sized, why = _sized((*made, *devices), study)
+        stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
+        sized, why = _sized(
+            (*made, *devices), study, (*bowls.settings(None, (*kept, *own, stroke)), *devices)
+        )
         driven = replace(sized.bowl, drive=study.bowl.drive)  # at the stroke that was tried
         words = drive_sought.given(listed, "machine")
         machine = driven.machine if "leaves" in words else drive_sought.on_leaves(driven, words)
         under = [f"machine.{name}={text}" for name, text in _machine(machine)]
-        stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
         lines = _last((*kept, *own, stroke, *under, *_fill(study.part, sized)))
         own_settings = (*bowls.settings(None, lines), *devices)
         sheet = machines.machine(own_settings)
@@ -261,16 +263,21 @@ def _drawn(sheet: MachineSheet, sized: MachineSheet) -> MachineSheet | None:
     return replace(sheet, bowl=replace(sheet.bowl, machine=under), order=sized.order, solid=sized.solid)
 
 
-def _sized(settings: Sequence[Setting], study: DesignStudy) -> tuple[MachineSheet, str]:
+def _sized(
+    settings: Sequence[Setting], study: DesignStudy, tried: Sequence[Setting]
+) -> tuple[MachineSheet, str]:
     """The bowl of a design, with its solid, or else why there is none.
 
-    Where the static rule lets nothing or too little through, the machine is that of a track without devices.
+    Where the static rule lets nothing or too little through, it is the bowl at the stroke that was tried,
+    whose settings are ``tried``; where that makes no solid, that of a track without devices.
     """
     wanted = solidbowl.asked(settings, solid=True, material=STEEL, chord=CHORD)
-    try:
-        return machines.bowl(settings, study.part, study.request.target, solid=wanted), ""
-    except FeederError as fault:
-        why = str(fault)
+    target = study.request.target
+    for own, as_tried in ((settings, False), (tried, True)):
+        try:
+            return machines.bowl(own, study.part, target, solid=wanted, as_tried=as_tried), ""
+        except FeederError as fault:
+            why = str(fault)
     try:
         return machines.bowl(settings, study.part, study.request.target), why
     except FeederError:

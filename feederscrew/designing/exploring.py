@@ -120,7 +120,7 @@ def _best_first(search, ideas):
         if _promise(search, idea.track, idea.row, idea.way) < _least(search):
             continue
         if idea.proposal is None:
-            proposal = _proposed(search, idea.track, idea.row, idea.way)
+            proposal = _proposal(search, idea)
             if proposal is not None and not _tried_before(search, idea.track, proposal):
                 idea = replace(idea, proposal=proposal)
                 heapq.heappush(heap, (-_score(search, idea), next(order), idea))
@@ -136,6 +136,28 @@ def _best_first(search, ideas):
             way = replace(idea.way, without=(*idea.way.without, *more))
             other = _Idea(idea.track, idea.row, way, again=idea.again + 1)
             heapq.heappush(heap, (-_bound(search, other), next(order), other))
+
+
+def _proposal(search, idea):
+    """The chain of an idea; None where none is, or there is none with less asked for.
+
+    A smaller margin asks for less, and so do chains without turning devices: where even those isolate
+    nothing, the longer search is left out.
+    """
+    if idea.way.turns and _kept(search, idea, replace(idea.way, turns=False)) is None:
+        return None
+    least = replace(idea.way, margin=min(proposals.MARGINS))
+    if least != idea.way and _kept(search, idea, least) is None:
+        return None
+    return _kept(search, idea, idea.way)
+
+
+def _kept(search, idea, way):
+    """The chain that a way proposes for the orientation of an idea, looked for once."""
+    key = *_place(idea.track, idea.row), way
+    if key not in search.proposed:
+        search.proposed[key] = _proposed(search, idea.track, idea.row, way)
+    return search.proposed[key]
 
 
 def _tracks(search):

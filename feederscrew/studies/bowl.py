@@ -1,5 +1,6 @@
 """``feeder bowl``: the machine under a bowl, and the bowl for a part and a rate."""
 
+import contextlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -223,7 +224,12 @@ def bowl(
     wanted, counted["target"], plain = one, one, replace(plain, track=track)
     room = cast(float, part.volume if part.hull is None else part.hull.volume)  # a card has no size
     sought = drive_sought.Sought(plain, size, tuple(settings), target, part.mass / room)
-    driven, flow, note = _driven(sought, lambda bowl: throughput.flow(ways(bowl), **counted), as_tried)
+    bare = _ways(part, found, track, ())
+    driven, flow, note = _driven(
+        sought,
+        lambda bowl: throughput.flow(ways(bowl), **counted),
+        (lambda bowl: throughput.flow(bare(bowl), **counted)) if as_tried else None,
+    )
     order = Order(
         part=part,
         target=target,
@@ -245,10 +251,16 @@ def bowl(
 
 
 def _driven(
-    sought: drive_sought.Sought, flow: Callable[[Bowl | None], throughput.Flow], as_tried: bool
+    sought: drive_sought.Sought,
+    flow: Callable[[Bowl | None], throughput.Flow],
+    bare: Callable[[Bowl | None], throughput.Flow] | None,
 ) -> tuple[Bowl, throughput.Flow, str]:
-    """The bowl with its drive, its flow, and what the static rule takes where that is another drive."""
-    if not as_tried:
+    """The bowl with its drive, its flow, and what the static rule takes where that is another drive.
+
+    ``bare`` is the flow without devices of what was tried: it is taken where the rule lets nothing through
+    them. None of what was not tried.
+    """
+    if bare is None:
         return (*drive_sought.brought(sought, flow), "")
     driven = drive_sought.as_given(sought)
     rate, own = f"{sought.target * units.MINUTE:.4g}/min", 2e3 * driven.drive.amplitude
@@ -256,10 +268,18 @@ def _driven(
     try:
         other, _ = drive_sought.brought(sought, flow)
     except FeederError:
-        return driven, flow(driven), f"{lead}: the static rule finds none for {rate}"
+        return driven, _flow(driven, flow, bare), f"{lead}: the static rule finds none for {rate}"
     stroke = 2e3 * other.drive.amplitude
     same = np.isclose(stroke, own, rtol=SAME_STROKE, atol=0.0)
     return driven, flow(driven), "" if same else f"{lead}: the static rule takes {stroke:.3g} mm for {rate}"
+
+
+def _flow(driven: Bowl, *flows: Callable[[Bowl | None], throughput.Flow]) -> throughput.Flow:
+    """The first flow that lets anything through."""
+    for flow in flows[:-1]:
+        with contextlib.suppress(FeederError):
+            return flow(driven)
+    return flows[-1](driven)
 
 
 def _sorting(bowl: Bowl, order: Order) -> Iterator[str]:
