@@ -201,12 +201,13 @@ def proposed(part, bowl, aspects, row, known, request, way):
     cuts = tuple(pulses.quickened(rounded(cut, known.lying, row), known.lying) for cut in found.cuts)
     step = f"proposed with margins of {millimetres(way.margin)}"
     same, free = alike(known.lying, row, request.up), free_headings(known.lying, row, request)
-    pure = float(np.nan_to_num(0.5 * (found.purity + found.hopeful)))
+    hopeful = found.hopeful or 0.0
+    pure = 0.5 * (float(np.nan_to_num(found.purity)) + hopeful)
     made = Proposal(row, cuts, tuple(found.before), step, same, free, pure, found.margin)
     if found.isolated:
         return made
     through = known_through(part, aspects, replace(bowl, devices=made.devices))
-    return _guarded_stops(made, through, request.rule) if found.hopeful >= ENOUGH else None
+    return _guarded_stops(made, through, request.rule) if hopeful >= ENOUGH else None
 
 
 def _guarded_stops(proposal, through, rule):

@@ -52,7 +52,10 @@ def _returns(given, cut):
 
 def _alike(one, other):
     """Whether a design says the same of what leaves as another, and no more stands in it."""
-    first, second = (np.nan_to_num([k.efficiency, k.purity, k.hopeful], nan=-1.0) for k in (one, other))
+    first, second = (
+        np.nan_to_num([k.efficiency, k.purity, -1.0 if k.hopeful is None else k.hopeful], nan=-1.0)
+        for k in (one, other)
+    )
     stands = [{name for cut in design.cuts for name in cut.stops} for design in (one, other)]
     return (
         one.isolated >= other.isolated
