@@ -16,7 +16,7 @@ NAMES := $(basename $(notdir $(PARTS)))
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .SUFFIXES:
-.PHONY: help demo test check test-lowest test-newest test-without lint format all-aspects inertia maps bench mutants docs release fuzz clean distclean
+.PHONY: help demo test check test-lowest test-newest test-without lint format all-aspects inertia maps bench mutants docs site wheels release fuzz clean distclean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -104,7 +104,7 @@ bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minut
 
 PICTURES := aspects regimes drop bowl bowl_solid design tooling trial report conveying_map glossary
 
-docs: $(PICTURES:%=docs/%.png) $(READY) ## pictures, outputs and tables of the pages
+docs: $(PICTURES:%=docs/%.png) docs/trial_film.gif $(READY) ## pictures, outputs and tables of the pages
 	$(BIN)/python docs/readme.py
 	$(BIN)/python docs/commands.py
 	$(BIN)/python docs/equations.py
@@ -141,6 +141,9 @@ docs/trial.png: parts/$(DEMO).stl docs/measured/example/bowl.yaml | $(READY)
 	$(FEEDER) trial $< --config docs/measured/example/bowl.yaml --parts 24 -o results --quiet > /dev/null
 	cp results/$(DEMO)/trial_stills.png $@
 
+docs/trial_film.gif: parts/$(DEMO).stl docs/measured/example/bowl.yaml | $(READY)
+	$(FEEDER) trial $< --config docs/measured/example/bowl.yaml --aspect A --parts 12 --queue 10 --seconds 25 --film $@ --quiet > /dev/null
+
 docs/design.png: parts/$(BOLT).stl | $(READY)
 	$(FEEDER) tooling $< --aspect A -o results --quiet > /dev/null
 	cp results/$(BOLT)/tooling_3d.png $@
@@ -155,18 +158,27 @@ docs/conveying_map.png: docs/conveying_map.py | $(READY)
 docs/glossary.png: docs/glossary.py | $(READY)
 	$(BIN)/python docs/glossary.py
 
-release: ## what a release is, step by step; checks version and changelog
-	@$(PYTHON) docs/release.py
+# Its own environment: mkdocs and its theme are needed for nothing else. site/ needs no server and no network.
+site: $(READY) ## the pages as a site in site/, with search, API pages and a gallery that is made anew
+	$(PYTHON) -m venv .venv-site
+	.venv-site/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	.venv-site/bin/python -m mkdocs build --quiet --strict --config-file docs/site/mkdocs.yml
+
+wheels: ## sdist and wheel in dist/, tried in fresh environments on each Python at hand
+	$(PYTHON) docs/release.py --build
+
+release: ## what a release is, step by step; checks, builds, tries and tags it
+	@$(PYTHON) docs/release.py --tag
 
 fuzz: $(READY_TO_TEST) ## 2,000 round bodies, then ten minutes of damaged files, on from where the last run stopped
 	PYTHONPATH=tests $(BIN)/python -m fuzz.rounds 2000
 	PYTHONPATH=tests $(BIN)/python -m fuzz 600
 
 clean: ## remove results and caches
-	rm -rf results build .pytest_cache .ruff_cache .mypy_cache .hypothesis
+	rm -rf results build dist site .pytest_cache .ruff_cache .mypy_cache .hypothesis
 
 distclean: clean ## remove .venv as well
-	rm -rf .venv .venv-lowest .venv-newest *.egg-info
+	rm -rf .venv .venv-lowest .venv-newest .venv-site *.egg-info
 
 $(READY): pyproject.toml
 	$(PYTHON) -m venv .venv

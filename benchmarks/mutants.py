@@ -1,8 +1,8 @@
 """Small changes to the physics, one at a time, and whether the tests notice: `make mutants`.
 
 Examples: python benchmarks/mutants.py --each 12 --seed 1
-          python benchmarks/mutants.py rates.rocking.goes_over machine.sizing
-          python benchmarks/mutants.py tooling.holding.may_wedge --tests tests/tooling/test_holding.py
+          python benchmarks/mutants.py rates.tipping.goes_over machine.sizing
+          python benchmarks/mutants.py tooling.falling.may_wedge --tests tests/tooling/test_holding.py
 
 A name is that of a module, function, method or constant below `feederscrew`. The operators change numbers,
 signs, sums, products, comparisons, conditions, minima and sines of what has that name, in a copy of the
@@ -32,30 +32,28 @@ LEDGES = f"{VERDICTS} tests/tooling/test_holding.py tests/rates/test_steadiness.
 RATES = "tests/rates/test_rate_noticed.py"
 CONDITION = "tests/machine/test_condition.py"
 JUDGED = "tests/resting/test_judged_by_measurement.py"
+TIPPING = "tests/rates/test_tipping.py tests/rates/test_steadiness.py tests/rates/test_rocking.py"
 SIGNS = "tests/trial/test_trial_signs.py"
 TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "machine.sizing": f"{SIZING} tests/cli/moving/test_cli_bowl.py",
-    "machine.throughput": f"{SIZING} tests/cli/moving/test_cli_bowl.py",
     "machine.condition._of_stroke": CONDITION,
     "machine.condition._why": CONDITION,
-    "rates.rocking": f"tests/rates/test_rocking.py {ROCKING}",
-    "rates.rocking.goes_over": ROCKING,
-    "rates.steadiness": f"{RATES} {ROCKING} tests/rates/test_steadiness.py",
-    "rates.tipping": f"{RATES} {ROCKING} tests/rates/test_tipping.py",
+    "rates.tipping.goes_over": ROCKING,
+    "rates.tipping": f"{RATES} {ROCKING} {TIPPING}",
     "rates.well_oriented": f"tests/rates/test_rate.py {RATES} tests/rates/test_passing.py",
     "rates.stream.Orientations.sure": "tests/rates/test_steadiness.py -k round",
     "resting.rules.recommended.HOP_SHARES": JUDGED,
     "resting.rules.recommended.LAUNCH_WIDTH": JUDGED,
     "resting.rules.recommended.WIDTH_FLOOR": JUDGED,
     "tooling.verdicts.WORN": HOLDING,
-    "tooling.strip._width": DEVICES,
-    "tooling.holding": f"tests/tooling/test_holding.py {HOLDING}",
-    "tooling.turning": f"tests/tooling/test_turning.py {HOLDING}",
+    "tooling.track_sections._width": DEVICES,
+    "tooling.falling": f"tests/tooling/test_holding.py {HOLDING}",
+    "tooling.verdicts": f"tests/tooling/test_turning.py {HOLDING}",
     "tooling.devices.blades": f"{VERDICTS} tests/tooling/test_clearing.py",
     "tooling.devices.ledges": LEDGES,
-    "tooling.devices.ledge_edges.Tip.judged": HOLDING,
+    "tooling.devices.ledges.Tip.judged": HOLDING,
     "tooling.devices.openings": LEDGES,
-    "tooling.devices.steady_jets.SteadyJet": DEVICES,
+    "tooling.devices.pneumatics.SteadyJet": DEVICES,
     "trial.course": "tests/studies/test_trial_numbers.py tests/trial/test_trial_course.py",
     "trial.result": "tests/studies/test_trial_numbers.py tests/cli/moving/test_cli_trial.py",
     "trial.queue.PartsQueue.enter": "tests/trial/test_trial_queue.py -k 'enter or wait'",
@@ -67,13 +65,13 @@ TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "dropping.kernel.falling.resist": "tests/dropping/test_drop_resistance.py",
 }
 EXCUSED = {  # constants whose value within reason has no consequence, and why
-    "machine.sizing.SETTLED": "a bound below every length that is printed",
-    "machine.sizing.ROUNDS": "the search ends by itself long before",
-    "machine.throughput.STEPS": "strokes so near each other find the same one",
-    "rates.rocking.QUIET": "a part that comes down so slowly is at rest within the same instant",
-    "rates.tipping.INSTANTS": "any number of instants that shows a stroke",
-    "rates.tipping.BESIDE": "any width beyond every force's place: it tips over the ends alone",
-    "tooling.holding.FAR": "any length beyond every foot",
+    "machine.sizing.DIAMETER_TOLERANCE_M": "a bound below every length that is printed",
+    "machine.sizing.MAX_SIZING_ITERATIONS": "the search ends by itself long before",
+    "machine.sizing.STROKE_SAMPLES": "strokes so near each other find the same one",
+    "rates.tipping.REST_ANGULAR_SPEED": "a part that comes down so slowly is at rest within the same instant",
+    "rates.tipping.TIPPING_PHASES": "any number of instants that shows a stroke",
+    "rates.tipping.MAX_FORCE_OFFSET_HEIGHTS": "any width beyond every force: it tips over the ends alone",
+    "tooling.falling.BEYOND_FOOT_M": "any length beyond every foot",
 }
 COPIED = (
     "feederscrew",

@@ -22,11 +22,10 @@ from feederscrew.errors import FeederError
 from feederscrew.output.solidbowl import printing
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.solidbowl import cuts, facets, leaning, measuring, riding
+from feederscrew.solidbowl import cuts, facets, measuring, riding
 from feederscrew.solidbowl.closed_body import body
-from feederscrew.solidbowl.materials import NAMES, material
-from feederscrew.solidbowl.plan import Asked, plan
-from feederscrew.solidbowl.ways_down import ways_down
+from feederscrew.solidbowl.measuring import ways_down
+from feederscrew.solidbowl.plan import NAMES, SolidOptions, material, plan
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import course
 
@@ -90,7 +89,7 @@ def drawn(seed, ridden=False):
         path = Path(folder) / "bowl.yaml"
         path.write_text("devices:" + ("".join(f"\n  - {one}" for one in chain) or " []") + "\n")
         bowl = bowls.read(path, [*DRIVE, *own])
-    asked = Asked(
+    asked = SolidOptions(
         shape=shape, left=bool(rng.integers(2)), outlet_angle=float(rng.uniform(0.0, 6.2)),
         material=made_of, drains=int(rng.integers(0, 7)), drain=1.5e-3, bolts=int(rng.integers(3, 7)),
         bolt=6e-3,
@@ -112,7 +111,7 @@ def _chain(rng, size, width, ridden):
 def made(one):
     """The solid of a drawn bowl, its orientations, and the bowl with the bank of its entry."""
     every = orientations(one.part, find(one.part), one.bowl.track)
-    track = leaning.banked(one.bowl.track, one.bowl.devices, every)
+    track = cuts.banked_height(one.bowl.track, one.bowl.devices, every)
     tooled = cuts.stretch(track, one.bowl.devices, every) if one.bowl.devices else None
     depth = one.turns * 2.0 * np.pi * track.radius * np.tan(track.climb)
     size = SimpleNamespace(diameter=2.0 * track.radius, depth=depth)
@@ -134,7 +133,7 @@ def faults(one, solid, every):
     low = max(0.05, float(planned.way.rises(planned.width)) + 0.05)
     s = one.rng.uniform(min(low, 0.5 * last), last, PLACES)
     y = one.rng.uniform(3e-4, planned.width - 3e-4, PLACES)
-    heights = [measuring.heights(planned, whole, *at) for at in zip(s, y)]
+    heights = [measuring.track_heights(planned, whole, *at) for at in zip(s, y)]
     off = np.abs(np.array(heights, float) - planned.way.height(s, y))
     wide = s[planned.way.angle(s) > planned.way.angle(0.0) + 0.4]
     widths = np.array([measuring.track_width(planned, whole, at) for at in wide]) - planned.width

@@ -14,8 +14,7 @@ from feederscrew.output.solidbowl import printing
 from feederscrew.solidbowl import segments
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.exact import exact_file
-from feederscrew.solidbowl.materials import material
-from feederscrew.solidbowl.plan import Asked, plan
+from feederscrew.solidbowl.plan import SolidOptions, material, plan
 
 TRACK = Track(climb=np.radians(4.5), bank=0.0, radius=0.15, width=0.02)
 
@@ -26,7 +25,7 @@ def main():
         rise = 2.0 * np.pi * TRACK.radius * np.tan(TRACK.climb)
         size = Size(0.3, {}, TRACK.width, 0.0, 0.0, TRACK.climb, 1.8 * rise, 1.8, rise)
         rules, times = record(effective({})).sizing, [time.process_time()]
-        made = body(plan(size, TRACK, material("pla", rules), None, Asked(shape=shape),
+        made = body(plan(size, TRACK, material("pla", rules), None, SolidOptions(shape=shape),
                          extents=(18e-3, 14e-3, 12e-3)))  # fmt: skip
         times.append(time.process_time())
         files = printing.stl(made), printing.threemf(made, "bowl")

@@ -14,9 +14,9 @@ import shapely
 import waits
 
 from feederscrew.geometry import compiled
-from feederscrew.tooling import foot as feet
-from feederscrew.tooling.devices.hole_shapes import polygon
-from feederscrew.tooling.foot import Footprint
+from feederscrew.tooling import footprints
+from feederscrew.tooling.devices.openings import polygon
+from feederscrew.tooling.footprints import Footprint
 from feederscrew.tooling.kernel import ring
 
 RADIUS, DISTANCE, CORNERS = 0.15, 9e-3, 30
@@ -67,11 +67,11 @@ def rate(function, items):
 
 def polygons(count, positions, rng):
     print_foot = foot_of(CORNERS)
-    foot, shapes = feet.standing(print_foot, DISTANCE, RADIUS), [random_hole(rng) for _ in range(count)]
+    foot, shapes = footprints.standing(print_foot, DISTANCE, RADIUS), [random_hole(rng) for _ in range(count)]
     holes = [polygon(corners, RADIUS) for corners in shapes]
-    work = feet.scratch(foot, max(holes, key=lambda hole: len(hole.nodes)))
-    feet.least(foot, holes[0], work)
-    compiled, exact = rate(lambda hole: feet.least(foot, hole, work)[0], holes)
+    work = footprints.scratch(foot, max(holes, key=lambda hole: len(hole.nodes)))
+    footprints.least(foot, holes[0], work)
+    compiled, exact = rate(lambda hole: footprints.least(foot, hole, work)[0], holes)
     few = min(count, 12)
     print(f"polygon verdicts, foot of {CORNERS} corners, holes of 5: {judged('polygon verdicts', compiled)}")
     agrees = True
@@ -94,10 +94,10 @@ def one_number(count, rng):
         for k in range(len(out)):
             out[k] = ring.over_ring(foot, low[k], high[k], scratch)
 
-    foot = feet.standing(foot_of(CORNERS), DISTANCE, RADIUS)
+    foot = footprints.standing(foot_of(CORNERS), DISTANCE, RADIUS)
     widths = rng.uniform(0.002, 0.016, count)
     out = np.empty(count)
-    work = feet.ring_scratch(foot)
+    work = footprints.ring_scratch(foot)
     over_rings(foot, 0.0 * widths, RADIUS - widths, work, out)
     start = time.process_time()
     over_rings(foot, 0.0 * widths, RADIUS - widths, work, out)

@@ -69,7 +69,7 @@ def chain(part, folder, drive):
         study = tooling.tooling(part, bowl, one.aspect, heading=one.heading, known=first.aspects, **own)
         found = study.design
         nearest = nearest or (found.cuts and (study, f"{one.name}, not isolated"))
-        if found.isolated and found.cuts and tracks.CARRIED not in found.reasons:
+        if found.isolated and found.cuts and tracks.TRACK_REMARK not in found.reasons:
             nearest = study, one.name
             break
     width = [f"track.width={1e3 * nearest[0].bowl.track.width:.6g} mm"]

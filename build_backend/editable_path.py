@@ -3,10 +3,13 @@
 The folder `cli` is installed as `feederscrew_cli`, so setuptools maps names to folders by an import hook.
 mypy and pyright run no hook: without a path they find no `feederscrew`, and call every program that imports
 it wrong.
+
+A wheel begins without what an earlier one left in `build`: a module that is gone would be in it.
 """
 
 import base64
 import hashlib
+import shutil
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -14,7 +17,6 @@ from typing import Any
 from setuptools import build_meta
 from setuptools.build_meta import (
     build_sdist,
-    build_wheel,
     get_requires_for_build_editable,
     get_requires_for_build_sdist,
     get_requires_for_build_wheel,
@@ -29,6 +31,16 @@ __all__ = [
 ]  # fmt: skip
 
 PATH_FILE = "feederscrew_path.pth"
+
+
+def build_wheel(
+    wheel_directory: str,
+    config_settings: Any = None,
+    metadata_directory: str | None = None,
+) -> str:
+    """Return the name of the wheel that setuptools builds from the sources alone."""
+    shutil.rmtree("build", ignore_errors=True)
+    return build_meta.build_wheel(wheel_directory, config_settings, metadata_directory)
 
 
 def build_editable(

@@ -55,8 +55,8 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     input. With -o: aspects.csv, aspects.json, aspects.png, probabilities.png, names.yaml (for --names) and
     run.json.
     """
+    from feederscrew.output import aspects as aspects_output
     from feederscrew.output import offers
-    from feederscrew.output.aspects import files, tables
     from feederscrew.output.columns import conditions
 
     _files_wanted(graph, out)
@@ -66,11 +66,11 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     effective = conditions(solid) | chosen | ({"surface": "hard"} if chosen["surface"] is None else {})
     with out.folder(solid.name, solid.inputs, effective) as folder:
         study = _study(solid, chosen, out)
-        frame = tables.aspects(study)
-        shown = tables.printed(frame, columns) if columns or out.format == "table" else frame
-        offers.write(folder, files.offers(study, tipping=graph), pictures=pictures)
-        out.say(*tables.remarks(study) if folder and pictures else ())
-    out.show(shown, tables.document(study))
+        frame = aspects_output.aspects(study)
+        shown = aspects_output.printed(frame, columns) if columns or out.format == "table" else frame
+        offers.write(folder, aspects_output.offers(study, tipping=graph), pictures=pictures)
+        out.say(*aspects_output.remarks(study) if folder and pictures else ())
+    out.show(shown, aspects_output.document(study))
 
 
 ONCE = (

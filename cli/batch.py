@@ -126,4 +126,4 @@ def _report(found, out):
         out.warn(f"{folders} {text}{'' if one else ', ...'}")
     kept = f", {found.kept} of them as they were" if found.kept else ""
     out.say(f"Wrote {out.directory} ({counted(len(found.rows), 'part')}{kept}; open index.html)")
-    out.show(summary.frame(found.rows), {"parts": list(found.rows)}, hidden=summary.HIDDEN)
+    out.show(summary.frame(found.rows), {"parts": list(found.rows)}, hidden=summary.HIDDEN_SUMMARY_COLUMNS)

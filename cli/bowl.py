@@ -152,7 +152,7 @@ def _found(bowl, measured, out):
     from feederscrew.studies import bowl as study
 
     values = condition.read(measured)
-    found = condition.found(study.machine(bowls.settings(**bowl)), values)
+    found = condition.diagnose(study.machine(bowls.settings(**bowl)), values)
     out.show(tables.summary(found), tables.document(found))
 
 

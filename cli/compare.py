@@ -56,10 +56,10 @@ def compare(sources, reading, counts, launch, as_published, pictures, out):
 def _accepted(source, out):
     """A filled-in acceptance sheet."""
     from feederscrew.designing import accepting
-    from feederscrew.output.designs import accepted
+    from feederscrew.output import designs
 
     lines = accepting.sheet(source)
-    out.show(accepted.summary(lines), accepted.document(lines))
+    out.show(designs.accepted_summary(lines), designs.accepted_document(lines))
 
 
 def _of_part(part, counts, launch, as_published, pictures, out):
@@ -72,19 +72,18 @@ def _of_part(part, counts, launch, as_published, pictures, out):
     chosen = {"launch": launch, "as_published": as_published}
     study = compare_study(solid, counts, **chosen, **orientation.telling(out))
     out.warn(*study.warnings)
-    files, tables = of_kind(study)
+    offered, printed, hidden, document = of_kind(study)
     inputs = solid.inputs | study.inputs
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
         out.say(*study.measured.notes)
-        offers.write(folder, files.offers(study), pictures=pictures)
-    shown = tables.shown(study, out.format)
-    out.show(shown, tables.document(study), hidden=tables.hidden(study))
+        offers.write(folder, offered(study), pictures=pictures)
+    out.show(printed(study, out.format), document(study), hidden=hidden(study))
 
 
 def _over_files(sources, launch, as_published, pictures, out):
     """Many files, each with its own part."""
+    from feederscrew.output import compare as compare_output
     from feederscrew.output import offers
-    from feederscrew.output.compare import sets
     from feederscrew.studies.compare import compare_sets
 
     if any(Path(source).suffix.lower() != ".csv" for source in sources):
@@ -93,6 +92,6 @@ def _over_files(sources, launch, as_published, pictures, out):
         study = compare_sets(sources, launch=launch, as_published=as_published, progress=bar.reach)
     out.warn(*study.warnings)
     with out.folder("measured", study.inputs) as folder:
-        offers.write(folder, sets.offers(study), pictures=pictures)
-    for shown in sets.shown(study, out.format):
-        out.show(shown, sets.document(study), spare=sets.SPARE)
+        offers.write(folder, compare_output.sets_offers(study), pictures=pictures)
+    for shown in compare_output.sets_printed(study, out.format):
+        out.show(shown, compare_output.sets_document(study), spare=compare_output.SPARE_RULES)

@@ -36,7 +36,7 @@ def init(file, replace, machine, quiet):
     and greatest stroke. feeder design keeps that machine and looks for the stroke. --machine list prints a
     line for each drive unit and writes no file.
     """
-    from feederscrew.bowl import documentation, json_schema
+    from feederscrew.bowl import documentation
 
     if machine is not None and machine.strip().casefold() == "list":
         from feederscrew.machine import drive_units
@@ -49,7 +49,7 @@ def init(file, replace, machine, quiet):
     else:
         documentation.write_new(file, text, replace=replace)
         out = talk.Output.of(format="table", quiet=quiet)
-        out.say(f"Wrote {file}", f"Wrote {json_schema.write_beside(file)}, which editors read")
+        out.say(f"Wrote {file}", f"Wrote {documentation.write_beside(file)}, which editors read")
 
 
 def _of_machine(name):
@@ -69,12 +69,12 @@ def schema(file, replace, quiet):
     and meaning, and every device. Editors with a YAML language server then complete and check bowl files
     that begin with '# yaml-language-server: $schema=feeder.schema.json', as those of config init do.
     """
-    from feederscrew.bowl import documentation, json_schema
+    from feederscrew.bowl import documentation
 
     if file == "-":
-        click.echo(json_schema.text(), nl=False)
+        click.echo(documentation.schema_text(), nl=False)
     else:
-        documentation.write_new(file, json_schema.text(), replace=replace)
+        documentation.write_new(file, documentation.schema_text(), replace=replace)
         talk.Output.of(format="table", quiet=quiet).say(f"Wrote {file}")
 
 
@@ -85,9 +85,9 @@ def materials(out):
 
     List the materials that --density and the key 'density' of a part card know by name, with their densities.
     """
-    from feederscrew.output.inertia import tables
+    from feederscrew.output import inertia
 
-    frame = tables.materials()
+    frame = inertia.materials()
     out.show(frame, {"materials": list(frame.rows())})
 
 
@@ -100,11 +100,10 @@ def show(bowl, out):
     Show every value in effect and where it came from: the default, a line of the bowl file, or --set.
     """
     from feederscrew.bowl import identity, name, settings, texts
-    from feederscrew.output import tables
-    from feederscrew.output.slide import tables as slide_tables
+    from feederscrew.output import slide, tables
 
     given, path = settings(**bowl), bowl["path"]
-    frame = slide_tables.settings(given)
+    frame = slide.settings(given)
     with out.folder(name(path), identity(path), texts(given)) as folder:
         if folder:
             folder.write("config.csv", tables.text(frame, "csv"))

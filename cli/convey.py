@@ -39,7 +39,7 @@ def convey(bowl, spans, curve, best_phase, pictures, out):
     from feederscrew import bowl as bowls
 
     _fitting(spans, curve, best_phase)
-    settings, ranges, path = out.settings(bowl), bowls.ranges(spans), bowl["path"]
+    settings, ranges, path = out.settings(bowl), bowls.key_ranges(spans), bowl["path"]
     alone = "convey radius" if curve else "convey phase" if best_phase else "convey"
     out = replace(out, command=WAYS[len(ranges)] if ranges else alone)
     with out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings)) as folder:
@@ -67,53 +67,53 @@ def _fitting(spans, curve, best_phase):
 
 def _point(settings, pictures, folder, out):
     from feederscrew import bowl as bowls
+    from feederscrew.output import convey as convey_output
     from feederscrew.output import offers
-    from feederscrew.output.convey import files, tables
     from feederscrew.studies import convey as studies
 
     found, texts = studies.convey(bowls.record(settings)), bowls.texts(settings)
-    document = tables.document(found) | {"bowl": texts}
-    out.warn(*tables.remarks(document), *found.warnings)
-    offers.write(folder, files.offers(found, texts), pictures=pictures)
-    out.show(tables.summary(document), document, spare=())
+    document = convey_output.document(found) | {"bowl": texts}
+    out.warn(*convey_output.remarks(document), *found.warnings)
+    offers.write(folder, convey_output.offers(found, texts), pictures=pictures)
+    out.show(convey_output.summary(document), document, spare=())
 
 
 def _map(settings, ranges, curve, pictures, folder, out):
+    from feederscrew.output import convey as convey_output
     from feederscrew.output import offers
-    from feederscrew.output.convey import files, tables
     from feederscrew.studies import convey as studies
 
     waiting.conveying(out)
     with out.step("map"):
         found = studies.velocity_map(settings, ranges, drawn="radius" if curve else None)
-    out.say(*tables.map_remarks(found))
-    offers.write(folder, files.map_offers(found), pictures=pictures)
-    frame = tables.cells(found)
+    out.say(*convey_output.map_remarks(found))
+    offers.write(folder, convey_output.map_offers(found), pictures=pictures)
+    frame = convey_output.cells(found)
     out.show(frame, {"cells": frame})
 
 
 def _curve(settings, ranges, pictures, folder, out):
     from feederscrew import bowl as bowls
+    from feederscrew.output import convey as convey_output
     from feederscrew.output import offers
-    from feederscrew.output.convey import files, tables
     from feederscrew.studies import convey as studies
 
     waiting.conveying(out)
     found = studies.curve(settings, *ranges) if ranges else studies.along_radius(bowls.record(settings))
-    out.say(*tables.curve_remarks(found))
-    offers.write(folder, files.curve_offers(found), pictures=pictures)
-    frame = tables.points(found)
+    out.say(*convey_output.curve_remarks(found))
+    offers.write(folder, convey_output.curve_offers(found), pictures=pictures)
+    frame = convey_output.points(found)
     out.show(frame, {"cells": frame})
 
 
 def _phase(settings, pictures, folder, out):
     from feederscrew import bowl as bowls
+    from feederscrew.output import convey as convey_output
     from feederscrew.output import offers
-    from feederscrew.output.convey import files, phase_tables
     from feederscrew.studies import convey as studies
 
     waiting.conveying(out)
     found, texts = studies.best_phase(bowls.record(settings)), bowls.texts(settings)
-    best = phase_tables.document(found.best)
-    offers.write(folder, files.phase_offers(found, texts), pictures=pictures)
-    out.show(phase_tables.summary(best), {"best_phase": best, "bowl": texts})
+    best = convey_output.phase_document(found.best)
+    offers.write(folder, convey_output.phase_offers(found, texts), pictures=pictures)
+    out.show(convey_output.phase_summary(best), {"best_phase": best, "bowl": texts})

@@ -148,7 +148,7 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
         from feederscrew import bowl as bowls
         from feederscrew.designing import loop
         from feederscrew.designing.record import DesignRequest
-        from feederscrew.output.designs import tables
+        from feederscrew.output import designs
 
     settings = bowls.settings(**bowl)
     out.warn(*bowls.assumptions(settings))
@@ -166,7 +166,7 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
         with _stoppable(out) as search:
             found = loop.design(solid, record, given, request, known=known, **search)
         found = _written(out, folder, found, settings, pictures)
-        out.show(tables.summary(found), tables.document(found))
+        out.show(designs.summary(found), designs.document(found))
     _ended(found)
 
 
@@ -220,16 +220,15 @@ def _folder(out, solid, inputs, settings):
 def _written(out, folder, found, settings, pictures):
     """What one design leaves in its folder; returns the design with what its machine is out of limits in."""
     from feederscrew.designing import beside
-    from feederscrew.output import offers
-    from feederscrew.output.designs import design_file, files
+    from feederscrew.output import design_pages, designs, offers
 
     made = beside.Built() if found.partial else beside.built(found, settings)
     found = beside.with_machine(found, made)
     if found.bowl is not None:  # read back and compared, whether or not it is kept
-        design_file.bowl_file(found, settings, made.sheet)
+        designs.bowl_file(found, settings, made.sheet)
     out.warn(*found.warnings, *([f"no solid of the bowl is made: {made.why}"] if made.why else []))
     if not (found.partial and _keeps_earlier(out, folder, "design.html")):
-        offers.write(folder, files.offers(found, settings, made), pictures=pictures)
+        offers.write(folder, design_pages.offers(found, settings, made), pictures=pictures)
     return found
 
 
@@ -246,8 +245,7 @@ def _family(out, parts, asked, written):
     """Several parts for one bowl."""
     from feederscrew import bowl as bowls
     from feederscrew.designing import families
-    from feederscrew.output import offers
-    from feederscrew.output.designs import family, family_page
+    from feederscrew.output import design_pages, offers
 
     settings, path, pictures = written
     families.named_apart(parts)
@@ -261,6 +259,6 @@ def _family(out, parts, asked, written):
     inputs = {name: value for part in parts for name, value in part.inputs.items()}
     with out.folder("family", inputs | bowls.identity(path), bowls.texts(settings)) as folder:
         if not (found.partial and _keeps_earlier(out, folder, "family.html")):
-            offers.write(folder, family_page.offers(found), pictures=pictures)
-        out.show(family.summary(found), family.document(found))
+            offers.write(folder, design_pages.family_offers(found), pictures=pictures)
+        out.show(design_pages.family_summary(found), design_pages.family_document(found))
     _ended(found)

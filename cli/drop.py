@@ -123,7 +123,7 @@ def _on_floor(part, launch, own, test, pictures, out):
     """Drop the part on a plane at rest, write and tell what becomes of it."""
     with held_back():
         from feederscrew.output import columns, offers
-        from feederscrew.output.drop import files, tables
+        from feederscrew.output import drop as drop_output
         from feederscrew.studies.simulated.drop import drop as drop_study
 
     solid = out.part(part)
@@ -131,6 +131,6 @@ def _on_floor(part, launch, own, test, pictures, out):
         with waiting.bar(out, "drops") as bar:
             values = {"progress": bar.reach, "before": lambda: waiting.drops(out)}
             study = drop_study(solid, launch, own, **values, **test)
-        out.warn(*tables.remarks(study))
-        offers.write(folder, files.offers(study), pictures=pictures)
-    out.show(tables.counts(study), tables.document(study))
+        out.warn(*drop_output.remarks(study))
+        offers.write(folder, drop_output.offers(study), pictures=pictures)
+    out.show(drop_output.counts(study), drop_output.document(study))

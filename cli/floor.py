@@ -28,7 +28,7 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out):
     """
     from feederscrew.bowl import record, texts
     from feederscrew.output import columns, offers
-    from feederscrew.output.floor import files, tables
+    from feederscrew.output import floor as floor_output
     from feederscrew.studies import floor as complete
     from feederscrew.thesis import motion as by_print
 
@@ -36,8 +36,8 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out):
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
         found = (by_print if as_published else complete).floor(solid, record(given), aspect, heading)
-        out.say(*tables.remarks(found), *(tables.map_remarks(found) if folder else ()))
-        offered = files.offers(found, texts(given))
+        out.say(*floor_output.remarks(found), *(floor_output.map_remarks(found) if folder else ()))
+        offered = floor_output.offers(found, texts(given))
         offers.write(folder, offered, pictures=pictures)
-    document = tables.document(found, texts(given))
-    out.show(tables.shown(document, out.format), document)
+    document = floor_output.document(found, texts(given))
+    out.show(floor_output.printed(document, out.format), document)

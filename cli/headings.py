@@ -24,7 +24,7 @@ def headings(part, aspect, bowl, pictures, out):
     """
     from feederscrew.bowl import record, texts
     from feederscrew.output import columns, offers
-    from feederscrew.output.headings import files, tables
+    from feederscrew.output import headings as headings_output
     from feederscrew.studies.headings import headings as study
     from feederscrew.studies.rate import arriving
 
@@ -32,7 +32,7 @@ def headings(part, aspect, bowl, pictures, out):
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
         found = study(solid, record(given).track, aspect, arriving(solid, record(given)))
-        out.say(tables.answer(found), *tables.remarks(found))
-        offers.write(folder, files.offers(found, texts(given)), pictures=pictures)
-    shown, document = tables.frame(found), tables.document(found, texts(given))
-    out.show(shown, document, hidden=tables.HIDDEN, spare=tables.SPARE)
+        out.say(headings_output.answer(found), *headings_output.remarks(found))
+        offers.write(folder, headings_output.offers(found, texts(given)), pictures=pictures)
+    shown, document = headings_output.frame(found), headings_output.document(found, texts(given))
+    out.show(shown, document, hidden=headings_output.HIDDEN, spare=headings_output.SPARE)

@@ -12,7 +12,7 @@ import feederscrew
 DISTRIBUTION = "feederscrew"
 EXTRA = re.compile(r"extra\s*==\s*['\"]([^'\"]+)['\"]")
 NAME = re.compile(r"[A-Za-z0-9._-]+")
-DEVELOPERS = ("test", "oracle")  # extras that a user has no need of
+DEVELOPERS = ("test", "oracle", "docs")  # extras that a user has no need of
 KERNELS = "*.nbi"  # one index a compiled function
 SHELLS = ("bash", "zsh", "fish")
 

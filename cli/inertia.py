@@ -17,12 +17,12 @@ def inertia(part, out):
     --format json, and run.json.
     """
     from feederscrew.output import columns, offers
-    from feederscrew.output.inertia import files, tables
+    from feederscrew.output import inertia as inertia_output
     from feederscrew.studies.inertia import inertia as inertia_study
 
     solid = out.part(part)
     study = inertia_study(solid)
     with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:
         out.say(f"Material: {solid.material}")
-        offers.write(folder, files.offers(study, out.format))
-    out.show(tables.rows(study), tables.document(study))
+        offers.write(folder, inertia_output.offers(study, out.format))
+    out.show(inertia_output.rows(study), inertia_output.document(study))

@@ -21,7 +21,7 @@ GROUPS = {  # heading: commands, in the order of a job
     "Design": ("design", "tooling", "trial", "bowl", "report"),
     "Part": ("aspects", "drop", "inertia", "compare", "calibrate"),
     "Bowl": ("rate", "tune", "convey", "slide", "floor", "track", "headings"),
-    "Files": ("batch", "config", "doctor", "reproduce"),
+    "Files": ("batch", "config", "serve", "doctor", "reproduce"),
 }
 COMMANDS = {name: f"feederscrew_cli.{name}" for names in GROUPS.values() for name in names}
 COLOUR = False if os.environ.get("NO_COLOR") else None  # None: on a terminal only

@@ -43,13 +43,13 @@ def run(part, plate, launch, own, test, pictures, out):
     """Put the part on each plate, write and tell what becomes of it."""
     with held_back():
         from feederscrew.output import columns, offers
-        from feederscrew.output.plate import files, tables
+        from feederscrew.output import plate as plate_output
         from feederscrew.studies.simulated.plate import plate as plate_study
 
     bowls, names, inputs, values = _bowls(plate)
     out = replace(out, command="drop plate")
     solid = out.part(part)
-    out.say(*tables.notes(bowls))
+    out.say(*plate_output.notes(bowls))
     inputs = solid.inputs | inputs
     with out.folder(solid.name, inputs, columns.conditions(solid) | values) as folder:
         with waiting.bar(out, "parts") as bar:
@@ -57,11 +57,11 @@ def run(part, plate, launch, own, test, pictures, out):
             study = plate_study(
                 solid, bowls, launch, own, names=names, seconds=plate["seconds"], **document, **test
             )
-        out.say(*tables.summary(study))
-        out.warn(*tables.remarks(study))
-        offers.write(folder, files.offers(study), pictures=pictures)
-    frame = tables.plates(study)
-    out.show(frame, tables.document(study), hidden=tables.HIDDEN, spare=tables.spare(frame))
+        out.say(*plate_output.summary(study))
+        out.warn(*plate_output.remarks(study))
+        offers.write(folder, plate_output.offers(study), pictures=pictures)
+    frame = plate_output.plates(study)
+    out.show(frame, plate_output.document(study), hidden=plate_output.HIDDEN, spare=plate_output.spare(frame))
 
 
 def _given(shaken, **others):
@@ -80,8 +80,8 @@ def _bowls(plate):
 
     paths = plate["paths"] or (None,)
     settings = [bowls.settings(path, plate["overrides"]) for path in paths]
-    every = [bowls.strokes(bowls.record(one), plate["amplitudes"]) for one in settings]
-    names = [name for name, plates in zip(bowls.named(paths), every) for _ in plates]
+    every = [bowls.at_strokes(bowls.record(one), plate["amplitudes"]) for one in settings]
+    names = [name for name, plates in zip(bowls.bowl_names(paths), every) for _ in plates]
     files = {source: digest for path in paths for source, digest in bowls.identity(path).items()}
-    values = {name: bowls.texts(one) for name, one in zip(bowls.named(paths), settings)}
+    values = {name: bowls.texts(one) for name, one in zip(bowls.bowl_names(paths), settings)}
     return [bowl for plates in every for bowl in plates], names, files, values

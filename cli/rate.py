@@ -35,7 +35,7 @@ def rate(part, wanted, taken, play, tolerance, bowl, out):
     """
     from feederscrew import bowl as bowls
     from feederscrew.output import columns, offers, proof
-    from feederscrew.output.rate import files, tables
+    from feederscrew.output import rate as rate_output
     from feederscrew.studies.rate import rate as study
 
     solid, settings = out.part(part), out.settings(bowl)
@@ -46,7 +46,7 @@ def rate(part, wanted, taken, play, tolerance, bowl, out):
         found = study(solid, record, known=known, sigma=math.hypot(play, tolerance), **wanted)
         tried = bowls.verified(bowl["path"])
         own = solid, record, found.rate.orientations.lying[found.rate.row].name
-        document = proof.beside(tables.document(found), tried, *own)
-        out.warn(*found.warnings, *tables.remarks(found), *proof.warnings(tried, *own))
-        offers.write(folder, files.offers(found))
-        out.show(tables.summary(document), document)
+        document = proof.beside(rate_output.document(found), tried, *own)
+        out.warn(*found.warnings, *rate_output.remarks(found), *proof.warnings(tried, *own))
+        offers.write(folder, rate_output.offers(found))
+        out.show(rate_output.summary(document), document)

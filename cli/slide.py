@@ -51,12 +51,12 @@ def slide(betas, as_published, bowl, pictures, out):
     """
     from feederscrew.bowl import identity, name, record, texts
     from feederscrew.output import offers
-    from feederscrew.output.slide import files, tables
+    from feederscrew.output import slide as slide_output
     from feederscrew.studies.slide import slide as study
 
     given, path = out.settings(bowl), bowl["path"]
     with out.folder(name(path), identity(path), texts(given)) as folder:
         found = study(record(given), betas, as_published=as_published)
-        offers.write(folder, files.offers(found), pictures=pictures)
-    out.say(*tables.remarks(found))
-    out.show(tables.shown(found, out.format), tables.document(found, texts(given)))
+        offers.write(folder, slide_output.offers(found), pictures=pictures)
+    out.say(*slide_output.remarks(found))
+    out.show(slide_output.printed(found, out.format), slide_output.document(found, texts(given)))

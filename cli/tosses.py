@@ -25,7 +25,7 @@ def run(part, path, own, test, pictures, out):
     _fitting(own, test)
     with held_back():
         from feederscrew.output import columns, offers
-        from feederscrew.output.drop import toss_files, toss_tables
+        from feederscrew.output import tosses as tosses_output
         from feederscrew.studies.simulated import tosses
 
     out = replace(out, command="drop launches")
@@ -36,10 +36,10 @@ def run(part, path, own, test, pictures, out):
         study = tosses.follow(solid, path, own, **values, **run)
     inputs = solid.inputs | {study.launches.source: study.launches.sha256}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
-        out.warn(*toss_tables.remarks(study))
-        out.say(*toss_tables.summary(study))
-        offers.write(folder, toss_files.offers(study), pictures=pictures)
-    out.show(toss_tables.tosses(study), toss_tables.document(study), hidden=toss_tables.HIDDEN)
+        out.warn(*tosses_output.remarks(study))
+        out.say(*tosses_output.summary(study))
+        offers.write(folder, tosses_output.offers(study), pictures=pictures)
+    out.show(tosses_output.tosses(study), tosses_output.document(study), hidden=tosses_output.HIDDEN)
 
 
 def _fitting(own, test):

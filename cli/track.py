@@ -33,24 +33,24 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
     --format csv gives the cycle, or with --vary the map. With -o: track.json, the cycle, a map over two
     bowl values and the part from above and from behind, as CSV and PNG.
     """
-    from feederscrew.bowl import ranges, record, texts
+    from feederscrew.bowl import key_ranges, record, texts
     from feederscrew.output import columns, offers
-    from feederscrew.output.track import files, map_tables, tables
+    from feederscrew.output import track as track_output
     from feederscrew.studies import track as complete
     from feederscrew.thesis import motion as by_print
 
     _fitting(spans)
-    solid, given, varied = out.part(part), out.settings(bowl), ranges(spans)
+    solid, given, varied = out.part(part), out.settings(bowl), key_ranges(spans)
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
         found = (by_print if as_published else complete).track(solid, record(given), aspect, heading)
         grid = found.over(given, varied) if spans or folder else None
-        out.say(*tables.remarks(found), *(map_tables.remarks(grid) if grid else ()))
+        out.say(*track_output.remarks(found), *(track_output.map_remarks(grid) if grid else ()))
         if folder:
-            offered = files.offers(found, texts(given), grid)
+            offered = track_output.offers(found, texts(given), grid)
             offers.write(folder, offered, pictures=pictures)
-    document = tables.document(found, texts(given))
-    out.show(map_tables.cells(grid) if spans else tables.shown(document, out.format), document)
+    document = track_output.document(found, texts(given))
+    out.show(track_output.cells(grid) if spans else track_output.shown(document, out.format), document)
 
 
 def _fitting(spans):

@@ -7,7 +7,18 @@ import click
 from feederscrew_cli import grouped, options, orientation, waiting
 from feederscrew_cli.interrupt import held_back
 
+FILMS = (".gif", ".mp4", ".webm")
 SENT = ("aspect", "rule", "parts", "landing", "queue", "poured", "seconds", "measured", "seed", "jobs")
+
+
+class FilmFile(options.Place):
+    """The name of a film, whose ending says its format."""
+
+    def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """The name as typed, or a wrong call."""
+        if not value.lower().endswith(FILMS):
+            self.fail(f"{value!r} is not a name for a film - end it in {', '.join(FILMS)}", param, ctx)
+        return super().convert(value, param, ctx)
 
 
 def _sent(command):
@@ -90,11 +101,17 @@ def _together(queue, **others):
     help="Seed of the play and the phases that are drawn.",
 )
 @click.option("--jobs", type=options.Whole(1, 256), metavar="N", help="Cores to use.  [default: all]")
+@click.option(
+    "--film",
+    type=FilmFile(),
+    metavar="FILE",
+    help="Write a film of ten seconds, FILE.gif, or FILE.mp4 or FILE.webm where ffmpeg is installed.",
+)
 @options.bowl
 @options.pictures
 @options.output
 @_sent
-def trial(part, sent, taken, amplitudes, bowl, pictures, out):
+def trial(part, sent, taken, amplitudes, film, bowl, pictures, out):
     """Example: feeder trial parts/lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed.
@@ -115,7 +132,8 @@ def trial(part, sent, taken, amplitudes, bowl, pictures, out):
 
     With -o: trial.csv, trial_stations.csv, trial.json, trial.png (orientations in and out),
     trial_paths.png (paths from above), trial_stills.png and run.json; trial_landing.csv, and
-    trial_outlet.csv of a queue.
+    trial_outlet.csv of a queue. --film shows a part that passes and one that does not at the device that
+    decides, then the queue, with the bowl around them.
     """
     with held_back():
         from feederscrew import bowl as bowls
@@ -123,8 +141,12 @@ def trial(part, sent, taken, amplitudes, bowl, pictures, out):
         from feederscrew.output.trial import files, tables
         from feederscrew.studies import trial as studies
 
+        if film:
+            from feederscrew.output.trial import film as films
+
+            films.require_writer(film)
     solid, settings = out.part(part), out.settings(bowl)
-    driven = bowls.strokes(bowls.record(settings), amplitudes)
+    driven = bowls.at_strokes(bowls.record(settings), amplitudes)
     effective = columns.conditions(solid) | bowls.texts(settings)
     known = orientation.shares(out, solid, driven[0], taken, sent["rule"])
     measured = sent.pop("measured")
@@ -134,13 +156,17 @@ def trial(part, sent, taken, amplitudes, bowl, pictures, out):
         with waiting.bar(out, "runs") as bar:
             found = studies.trial(
                 solid, driven, known=known, measured=beside, progress=bar.reach,
-                before=lambda: waiting.trial(out), **sent | {"jobs": sent["jobs"] or os.cpu_count()},
+                before=lambda: waiting.trial(out), frames=films.QUEUE_FRAMES if film else 0,
+                **sent | {"jobs": sent["jobs"] or os.cpu_count()},
             )  # fmt: skip
         document = tables.document(found)
         out.warn(*found.warnings)
         out.say(*tables.summary(found))
         for line in tables.engine(found):
             out.detail(line)
+        if film:
+            films.write_film(film, found)
+            out.say(f"Wrote {film}")
         offers.write(folder, files.offers(found), pictures=pictures)
         shown = tables.frame(found, people=out.format == "table")
         hidden = tables.HIDDEN if not out.verbose else ("fell_mm", "seconds")

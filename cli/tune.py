@@ -37,7 +37,7 @@ def tune(part, target, wanted, taken, worst, bowl, out):
     """
     from feederscrew import bowl as bowls
     from feederscrew.output import columns, offers, proof
-    from feederscrew.output.tune import files, tables
+    from feederscrew.output import tune as tune_output
     from feederscrew.studies.tune import tune as study
 
     solid, settings = out.part(part), out.settings(bowl)
@@ -53,7 +53,7 @@ def tune(part, target, wanted, taken, worst, bowl, out):
         )  # fmt: skip
         tried = bowls.verified(bowl["path"])
         own = solid, record, orientation.name(wanted)
-        out.warn(*found.warnings, *tables.remarks(found), *proof.warnings(tried, *own))
-        offers.write(folder, files.offers(found))
-        document = proof.beside(tables.document(found), tried, *own)
-        out.show(tables.shown(found, out.format), document, spare=())
+        out.warn(*found.warnings, *tune_output.remarks(found), *proof.warnings(tried, *own))
+        offers.write(folder, tune_output.offers(found))
+        document = proof.beside(tune_output.document(found), tried, *own)
+        out.show(tune_output.printed(found, out.format), document, spare=())

@@ -11,8 +11,8 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from feederscrew.bowl import documentation, json_schema
-from feederscrew.bowl.schema import KEYS
+from feederscrew.bowl import documentation
+from feederscrew.bowl.schema import BOWL_KEYS
 from feederscrew.dropping import conditions
 
 PAGE = Path(__file__).resolve().parent / "bowl_file.md"
@@ -24,7 +24,7 @@ HEAD = "| Key | Default | From | To | Units | Meaning |\n|---|---|---|---|---|--
 
 def filled(text):
     """Return the page with its tables as the schema has them."""
-    made = json_schema.schema()["properties"]
+    made = documentation.json_schema()["properties"]
     kinds = made.pop("devices")["items"]["properties"]
     alone = {name: value for name, value in made.items() if "properties" not in value}
     parts = [HEAD, *(_row(name, value) for name, value in alone.items())]
@@ -57,8 +57,8 @@ def between(text, name, content):
 
 def with_keywords(text):
     """Return the module with a keyword for each key whose name is in one section, and is none of a launch."""
-    count = Counter(key.word for key in KEYS)
-    words = [key.word for key in KEYS if count[key.word] == 1 and key.word not in conditions.KEYS]
+    count = Counter(key.word for key in BOWL_KEYS)
+    words = [key.word for key in BOWL_KEYS if count[key.word] == 1 and key.word not in conditions.KEYS]
     before, _, rest = text.partition(BEGIN)
     lines = "".join(f"    {word}: Setting\n" for word in words)
     return before + BEGIN + lines + END + rest.partition(END)[2]
@@ -71,7 +71,7 @@ def main():
         PAGE: filled,
         KEYWORDS: with_keywords,
         CONFIGS / "bowl.yaml": lambda _: documentation.template(),
-        CONFIGS / "feeder.schema.json": lambda _: json_schema.text(),
+        CONFIGS / "feeder.schema.json": lambda _: documentation.schema_text(),
     }
     for path, make in written.items():
         old = path.read_text(encoding="utf-8")

@@ -41,7 +41,7 @@ def __getattr__(name: str) -> object:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(import_module(f"{__name__}.api"), name)
-    if name in ROOMS:  # `import feederscrew.tooling.mirrored as x` looks for `mirrored` in the function
+    if name in ROOMS:  # `import feederscrew.tooling.orientations as x` looks for `mirrored` in the function
         folder = import_module(f"{__name__}.{name}").__dict__
         folder.update(value.__dict__)
         value.__dict__ = folder

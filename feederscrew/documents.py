@@ -13,8 +13,10 @@ import yaml
 from feederscrew.errors import ArgumentError, ConfigError, Faults, FeederError
 from feederscrew.units import shown
 
-LARGEST = 200_000  # [bytes]: a bowl file or part card has a few hundred; parsing time grows with size
-PIECE = 1 << 22  # [bytes] of a stream that are asked for at once
+MAX_DOCUMENT_BYTES = (
+    200_000  # [bytes]: a bowl file or part card has a few hundred; parsing time grows with size
+)
+READ_CHUNK_BYTES = 1 << 22  # [bytes] of a stream that are asked for at once
 DEEPEST = 12  # levels of nesting
 POINTER_HEAD = b"version https://git-lfs.github.com/spec/"
 POINTER = "is a pointer file of git LFS, not the file it stands for"
@@ -68,7 +70,7 @@ def read(path: str | os.PathLike[str]) -> tuple[Node, list[FeederError]]:
     if str(path) == "-" or found_as(Path.is_fifo, path):
         what = "is a stream, and a bowl file is read more than once"
         raise ConfigError(path, what, "save it and name the file")
-    return load(content(path, LARGEST, "a YAML file"), str(path))
+    return load(content(path, MAX_DOCUMENT_BYTES, "a YAML file"), str(path))
 
 
 def found_as(kind: Callable[[Path], bool], path: str | os.PathLike[str]) -> bool:
@@ -150,7 +152,7 @@ def upto(file: BinaryIO, most: int) -> bytes | bytearray:
 
 def _next(file: BinaryIO, left: int) -> bytes:
     """The next piece of a stream of which so many bytes are still of use; empty at its end or beyond."""
-    return file.read(min(PIECE, left + 1)) if left >= 0 else b""
+    return file.read(min(READ_CHUNK_BYTES, left + 1)) if left >= 0 else b""
 
 
 def _size(file: BinaryIO) -> int:
@@ -182,8 +184,10 @@ def load(text: str | bytes | bytearray, name: str) -> tuple[Node, list[FeederErr
     ConfigError
         If the text is empty, too long, not UTF-8 or not one YAML document.
     """
-    if len(text) > LARGEST:
-        raise ConfigError(name, f"has more than {LARGEST // 1000} kB", "name a YAML file of settings")
+    if len(text) > MAX_DOCUMENT_BYTES:
+        raise ConfigError(
+            name, f"has more than {MAX_DOCUMENT_BYTES // 1000} kB", "name a YAML file of settings"
+        )
     text = text if isinstance(text, str) else decoded(text, name)
     builder = _Builder(name)
     try:

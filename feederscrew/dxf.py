@@ -21,15 +21,15 @@ MILLIMETRES = {  # by $INSUNITS: DXF Reference of Autodesk, "HEADER Section"; 0 
     22: 100e3 / 3937.0, 23: 3600e3 / 3937.0,
 }  # fmt: skip
 UNITLESS, IN_MILLIMETRES = 0, 4  # of $INSUNITS
-FARTHEST = 1e3  # [m] from the origin of a drawing to a corner of a hole
-LETTERS = 3.0  # [mm] height of texts
+MAX_DXF_COORDINATE_M = 1e3  # [m] from the origin of a drawing to a corner of a hole
+TEXT_HEIGHT_MM = 3.0  # [mm] height of texts
 CHORD_ERROR_M = 1e-6  # at most between a curve and the chord read for it; the corners lie on the curve
 MAX_CHORD_ANGLE = math.radians(15.0)  # of an arc to one chord
 JOIN_M = 1e-6  # ends of lines and arcs so near are one corner
 FLAT_M = 1e-6  # by which the heights of an outline may differ
 REPEATED_M = 1e-9  # a corner so near to the last one is none
 STRAIGHT_M = 1e-12  # a corner so near to the line through its neighbours is none
-MAX_FILE_BYTES = 10_000_000
+MAX_DXF_BYTES = 10_000_000
 MAX_ENTITIES = 10_000  # on the layer, those of blocks included
 MAX_CORNERS = 1000  # of one outline, after its curves are read as chords
 MAX_BLOCK_DEPTH = 8  # blocks within blocks
@@ -113,8 +113,8 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
             raise FileNotFoundError
         if not path.is_file():
             raise ConfigError(where, f"{name} is no regular file", "name a DXF file")
-        if path.stat().st_size > MAX_FILE_BYTES:
-            what = f"{name} has more than {MAX_FILE_BYTES // 10**6} MB"
+        if path.stat().st_size > MAX_DXF_BYTES:
+            what = f"{name} has more than {MAX_DXF_BYTES // 10**6} MB"
             raise ConfigError(where, what, "save the hole alone")
         with path.open("rb") as file:
             if file.read(len(documents.POINTER_HEAD)) == documents.POINTER_HEAD:
@@ -316,8 +316,8 @@ def _flat(points: list[Point], size: float) -> list[tuple[float, float]]:
     """Points (x, y) [m] of a flat outline."""
     if not points:
         return []
-    if not all(abs(place) * size <= FARTHEST for point in points for place in point):
-        what = f"has a corner farther than {FARTHEST:g} m from the origin, or at no finite place"
+    if not all(abs(place) * size <= MAX_DXF_COORDINATE_M for point in points for place in point):
+        what = f"has a corner farther than {MAX_DXF_COORDINATE_M:g} m from the origin, or at no finite place"
         raise _Unread(what, "check the drawing's units, and save it again")
     heights = [point[2] * size for point in points]
     if max(heights) - min(heights) > FLAT_M:
@@ -429,7 +429,9 @@ def _draw(space: Any, layer: Layer) -> None:
             corners = [(1e3 * float(x), 1e3 * float(y)) for x, y in line]
             space.add_lwpolyline(corners, close=closed, dxfattribs=look)
     for text, place in layer.texts:
-        space.add_text(text, height=LETTERS, dxfattribs=look).set_placement([1e3 * float(x) for x in place])
+        space.add_text(text, height=TEXT_HEIGHT_MM, dxfattribs=look).set_placement(
+            [1e3 * float(x) for x in place]
+        )
     if layer.across is not None:
         from ezdxf.enums import TextEntityAlignment
 

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
-LONGEST = 360  # characters of a text in all,
-LONG = 44  # and of one field
+MAX_TEXT_LENGTH = 360  # characters of a text in all,
+MAX_FIELD_LENGTH = 44  # and of one field
 MOST_LETTERS = 500  # of a text that says an answer
-VIEWS, LINES = "feederscrew.output.record_views", "feederscrew.output.record_lines"
+VIEWS = "feederscrew.output.record_views"
 
 
 class Shown:
@@ -29,7 +29,7 @@ class Shown:
         cls.__repr__ = Shown.__repr__  # type: ignore[method-assign]  # or a dataclass makes its own
 
     def __repr__(self) -> str:
-        answer = import_module(LINES).answer(self)
+        answer = import_module(VIEWS).answer(self)
         if answer is None:
             return text(self)
         line = printable(answer)
@@ -87,7 +87,7 @@ def text(record: Any) -> str:
         value = getattr(record, field.name)
         if value is not None and field.repr:
             parts.append(f"{field.name}={_field(value)}")
-        if sum(map(len, parts)) + 2 * len(parts) > LONGEST:
+        if sum(map(len, parts)) + 2 * len(parts) > MAX_TEXT_LENGTH:
             parts[-1] = "..."
             break
     return f"{type(record).__name__}({', '.join(parts)})"
@@ -103,13 +103,13 @@ def _field(value: Any) -> str:
         if isinstance(name := getattr(value, "name", None), str):
             return f"{type(value).__name__} {name!r}"
         within = text(value)
-        return within if len(within) <= LONG else f"{type(value).__name__}(...)"
+        return within if len(within) <= MAX_FIELD_LENGTH else f"{type(value).__name__}(...)"
     if isinstance(value, (tuple, list)) and not all(isinstance(one, (str, int, float)) for one in value):
         return f"<{len(value)} {type(value[0]).__name__}>"
     if isinstance(value, dict):
         return f"<{len(value)} by name>"
     said = repr(value)
-    return said if len(said) <= LONG else f"{said[: LONG - 3]}..."
+    return said if len(said) <= MAX_FIELD_LENGTH else f"{said[: MAX_FIELD_LENGTH - 3]}..."
 
 
 def _view(kind: str) -> Callable[..., Any]:

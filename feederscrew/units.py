@@ -12,7 +12,7 @@ MINUTE, HOUR = 60.0, 3600.0  # [s]
 GRAVITY = 9.80665  # [m/s2] standard: 3rd General Conference on Weights and Measures, 1901
 DEGREE, TURN = math.pi / 180.0, 2.0 * math.pi  # [rad]
 
-UNITS = {  # dimension: {unit: SI units in it}, the unit we suggest first
+UNITS_BY_DIMENSION = {  # dimension: {unit: SI units in it}, the unit we suggest first
     "number": {"": 1.0, "%": 0.01},
     "length": {"mm": 1e-3, "m": 1.0, "cm": 1e-2, "um": 1e-6, "in": INCH, "ft": FOOT},
     "area": {"mm2": 1e-6, "m2": 1.0, "cm2": 1e-4, "in2": INCH**2},
@@ -50,16 +50,19 @@ UNITS = {  # dimension: {unit: SI units in it}, the unit we suggest first
     "supply": {"Hz full wave": 2.0, "Hz half wave": 1.0},  # mains: hertz of the drive in one of the supply
     "energy": {"J": 1.0, "mJ": 1e-3, "uJ": 1e-6},
 }
-MM, DEG = UNITS["length"]["mm"], UNITS["angle"]["deg"]  # [m], [rad] of those that people read most
-MM_S, PER_MINUTE = UNITS["velocity"]["mm/s"], UNITS["rate"]["/min"]  # [m/s], [1/s]
+MM, DEG = (
+    UNITS_BY_DIMENSION["length"]["mm"],
+    UNITS_BY_DIMENSION["angle"]["deg"],
+)  # [m], [rad] of those that people read most
+MM_S, PER_MINUTE = UNITS_BY_DIMENSION["velocity"]["mm/s"], UNITS_BY_DIMENSION["rate"]["/min"]  # [m/s], [1/s]
 SPELLINGS = {
     **{"°": "deg", "degree": "deg", "degrees": "deg", "µm": "um", "μm": "um", "inch": "in", '"': "in"},
     **{f"Hz {wave}{end}": f"Hz {wave} wave" for wave in ("full", "half") for end in ("", "-wave", "wave")},
 }
-NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![\d._,+-])", re.ASCII)
+NUMBER_PATTERN = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![\d._,+-])", re.ASCII)
 COMMA = re.compile(r"[+-]?\d+,\d+", re.ASCII)
 PLAIN_YAML = re.compile(r"(?!- )[\w.+/-]([\w.+@/% -]*[\w.+@/%-])?")
-PLAIN = str.maketrans({"²": "2", "³": "3", "^": None, "*": " ", "·": " ", "\N{MINUS SIGN}": "-"})
+UNIT_CHARACTERS = str.maketrans({"²": "2", "³": "3", "^": None, "*": " ", "·": " ", "\N{MINUS SIGN}": "-"})
 
 
 class QuantityError(ValueError):
@@ -78,7 +81,7 @@ def quantity(text: str, dimension: str, *, suggest: str | None = None, bare: str
     text : str
         Number and unit, '0.5 mm'; a number alone where the dimension is 'number'.
     dimension : str
-        A key of ``UNITS``.
+        A key of ``UNITS_BY_DIMENSION``.
     suggest : str, optional
         Unit to name when one is missing; the first of the dimension otherwise.
     bare : str, optional
@@ -96,22 +99,22 @@ def quantity(text: str, dimension: str, *, suggest: str | None = None, bare: str
     number, unit = split(text)
     if unit == "" and bare is not None:
         unit = bare
-    if unit not in UNITS[dimension]:
-        raise _wrong_unit(text.strip(), unit, dimension, suggest or next(iter(UNITS[dimension])))
-    return number * UNITS[dimension][unit]
+    if unit not in UNITS_BY_DIMENSION[dimension]:
+        raise _wrong_unit(text.strip(), unit, dimension, suggest or next(iter(UNITS_BY_DIMENSION[dimension])))
+    return number * UNITS_BY_DIMENSION[dimension][unit]
 
 
 def factor(unit: str, dimension: str) -> float:
     """Return how many SI units one ``unit`` is; raises KeyError for a unit of another dimension."""
-    return UNITS[dimension][unit]
+    return UNITS_BY_DIMENSION[dimension][unit]
 
 
 def split(text: str) -> tuple[float, str]:
     """Return the number and unit of '0.5 mm', as (0.5, 'mm'); raises QuantityError where no number leads."""
-    plain = text.strip().translate(PLAIN)
+    plain = text.strip().translate(UNIT_CHARACTERS)
     if COMMA.match(plain):
         raise QuantityError(f"{shown(text)} has a comma", _without_comma(plain))
-    match = NUMBER.match(plain)
+    match = NUMBER_PATTERN.match(plain)
     if match is None:
         raise _no_number(text)
     number = float(match.group())
@@ -123,7 +126,7 @@ def split(text: str) -> tuple[float, str]:
 
 def decimal(text: str) -> float:
     """Return a plain finite number of the digits 0 to 9, as a file writes it; else raises QuantityError."""
-    match = NUMBER.fullmatch(text.strip())
+    match = NUMBER_PATTERN.fullmatch(text.strip())
     number = float(match.group()) if match else math.nan
     if not math.isfinite(number):
         raise _no_number(text)
@@ -167,7 +170,7 @@ def _without_comma(plain: str) -> str:
 
 
 def _wrong_unit(text: str, unit: str, dimension: str, suggest: str) -> QuantityError:
-    known = next((other for other, units in UNITS.items() if unit in units), None)
+    known = next((other for other, units in UNITS_BY_DIMENSION.items() if unit in units), None)
     if dimension in ("number", "count"):
         what = f"{shown(text)} has a unit, and this is a plain number"
         return QuantityError(what, "write the number alone") if known else _no_number(text)
@@ -175,7 +178,9 @@ def _wrong_unit(text: str, unit: str, dimension: str, suggest: str) -> QuantityE
         return QuantityError(f"{shown(text)} has no unit", f"write {text} {suggest}")
     if known:
         what = f"{shown(text)} is {_with_article(known)}, not {_with_article(dimension)}"
-        longer = [text + one[len(unit) :] for one in UNITS[dimension] if one.startswith(f"{unit} ")]
+        longer = [
+            text + one[len(unit) :] for one in UNITS_BY_DIMENSION[dimension] if one.startswith(f"{unit} ")
+        ]
         return QuantityError(what, f"write {' or '.join(longer)}" if longer else f"give it in {suggest}")
     return QuantityError(
         f"{shown(text)}: {shown(unit)} is not a unit of {dimension}", _units_of(unit, dimension)
@@ -188,7 +193,7 @@ def _with_article(dimension: str) -> str:
 
 
 def _units_of(unit: str, dimension: str) -> str:
-    folded = {known.lower(): known for known in UNITS[dimension]}
+    folded = {known.lower(): known for known in UNITS_BY_DIMENSION[dimension]}
     if unit.lower() in folded:
         return f"did you mean {folded[unit.lower()]}?"
-    return f"known are {', '.join(UNITS[dimension])}"
+    return f"known are {', '.join(UNITS_BY_DIMENSION[dimension])}"

@@ -6,14 +6,14 @@ from typing import Any
 
 from feederscrew import units
 
-NUMBER = r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"
-PLAIN = ("number", "count")  # dimensions without a unit
+NUMBER_TEXT = r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"
+UNITLESS = ("number", "count")  # dimensions without a unit
 
 
 def quantity(dimension: str, lowest: str | None = None, highest: str | None = None) -> dict[str, Any]:
     """Return the form of a value with its unit; without one a number within bounds, or a text of it."""
     text = {"type": "string", "pattern": pattern(dimension)}
-    if dimension not in PLAIN:
+    if dimension not in UNITLESS:
         return text
     number: dict[str, Any] = {"type": "number"}
     if lowest is not None and highest is not None:
@@ -27,12 +27,12 @@ def quantity(dimension: str, lowest: str | None = None, highest: str | None = No
 def pattern(dimension: str) -> str:
     """Return the regular expression of a quantity as a bowl file writes it."""
     spelt = [
-        *units.UNITS[dimension],
-        *(name for name, unit in units.SPELLINGS.items() if unit in units.UNITS[dimension]),
+        *units.UNITS_BY_DIMENSION[dimension],
+        *(name for name, unit in units.SPELLINGS.items() if unit in units.UNITS_BY_DIMENSION[dimension]),
     ]
     ends = sorted({_loose(name) for name in spelt if name}, key=lambda end: (-len(end), end))
     behind = f"\\s*({'|'.join(ends)})" if ends else ""
-    return f"^\\s*{NUMBER}{behind}{'?' if dimension in PLAIN and ends else ''}\\s*$"
+    return f"^\\s*{NUMBER_TEXT}{behind}{'?' if dimension in UNITLESS and ends else ''}\\s*$"
 
 
 def _loose(unit: str) -> str:
@@ -58,12 +58,12 @@ def mapping(optional: Sequence[str] = (), /, **values: dict[str, Any]) -> dict[s
     return {"type": "object", "properties": named, "required": needed, "additionalProperties": False}
 
 
-LENGTH = quantity("length")
-ANGLE = quantity("angle")
+LENGTH_FORM = quantity("length")
+ANGLE_FORM = quantity("angle")
 POLYGON: dict[str, Any] = {
     "type": "array",
     "minItems": 3,
-    "items": {"type": "array", "items": LENGTH, "minItems": 2, "maxItems": 2},
+    "items": {"type": "array", "items": LENGTH_FORM, "minItems": 2, "maxItems": 2},
 }
-TEXT = {"type": "string"}
+TEXT_FORM = {"type": "string"}
 NAMED = {"type": "string", "pattern": "^.+@.+$"}  # an orientation: A@90

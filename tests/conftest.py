@@ -16,8 +16,8 @@ from click.testing import CliRunner
 from hypothesis import settings
 
 from feederscrew.dropping.plate import arrival
+from feederscrew.output import shading as shading_output
 from feederscrew.output import style
-from feederscrew.output.solid import pair, shading
 from feederscrew.studies import aspects, tune
 from feederscrew.studies.simulated import memory
 from feederscrew_cli.main import feeder
@@ -170,8 +170,8 @@ def coarse(request):
             patch.setattr(style, "png", lambda figure: PIXEL)
         if not getattr(request.module, "LOOKED_AT", False):
             patch.setattr(style, "DPI", COARSE)
-            patch.setattr(shading, "SAMPLES", 1)
-            patch.setattr(pair, "SAMPLES", 1)
+            patch.setattr(shading_output, "SAMPLES", 1)
+            patch.setattr(shading_output, "PAIR_SAMPLES", 1)
         yield
 
 

@@ -10,8 +10,8 @@ import pytest
 import feederscrew as fs
 from feederscrew import api
 from feederscrew.api.bowl_settings import BowlSettings
-from feederscrew.bowl.schema import KEYS
-from feederscrew.bowl.unbalance import KEYS as TOGETHER
+from feederscrew.bowl.schema import BOWL_KEYS
+from feederscrew.bowl.schema import UNBALANCE_KEYS as TOGETHER
 
 ROOT = Path(__file__).parent.parent
 FILE = """
@@ -25,7 +25,7 @@ OTHER = {  # neither the default nor the file's
     "sizing.leaves": 12.0, "friction.kinetic": 0.2, "friction.kinetic_backward": 0.2,
     "machine.mains": "60 Hz", "machine.controller": "frequency",
 }  # fmt: skip
-SHARED = sorted(word for word, count in Counter(key.word for key in KEYS).items() if count > 1)
+SHARED = sorted(word for word, count in Counter(key.word for key in BOWL_KEYS).items() if count > 1)
 
 
 def other_value(key):
@@ -46,12 +46,12 @@ def bowl(tmp_path):
 
 
 def test_each_key_with_a_name_of_its_own_is_a_keyword_and_no_other():
-    missing = {key.word for key in KEYS} - set(SHARED) - set(BowlSettings.__optional_keys__)
+    missing = {key.word for key in BOWL_KEYS} - set(SHARED) - set(BowlSettings.__optional_keys__)
     assert missing == set(), "run docs/bowl_file.py"
-    assert set(BowlSettings.__optional_keys__) == {key.word for key in KEYS} - set(SHARED)
+    assert set(BowlSettings.__optional_keys__) == {key.word for key in BOWL_KEYS} - set(SHARED)
 
 
-@pytest.mark.parametrize("key", [key for key in KEYS if key not in TOGETHER], ids=lambda key: key.name)
+@pytest.mark.parametrize("key", [key for key in BOWL_KEYS if key not in TOGETHER], ids=lambda key: key.name)
 def test_a_setting_over_a_bowl_is_that_of_the_file_with_it(bowl, key):
     """Also what follows from it: kinetic friction from static, the drive from a machine's supply."""
     value = other_value(key)

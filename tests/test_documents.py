@@ -148,7 +148,7 @@ def test_a_stream_is_read_whole_in_pieces(monkeypatch):
         def read(self, size=-1):
             return super().read(min(size, 7))
 
-    monkeypatch.setattr(documents, "PIECE", 16)
+    monkeypatch.setattr(documents, "READ_CHUNK_BYTES", 16)
     text = bytes(range(100))
     assert documents.upto(Dripping(text), 1000) == text
     assert documents.upto(Dripping(text), 50) == text[:51]

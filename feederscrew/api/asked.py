@@ -11,7 +11,7 @@ from feederscrew.bowl import Bowl
 from feederscrew.dropping.conditions import KEYS
 from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
-from feederscrew.rates.well_oriented import RECOMMENDED
+from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.rules.surface import EXPONENTS
 from feederscrew.studies.rate import Shares, shares
@@ -103,7 +103,7 @@ def amount(name: str, value: Quantity, dimension: str, low: float = -math.inf) -
     value : str or float
         '2 mm', or a number in SI units.
     dimension : str
-        A key of ``units.UNITS``.
+        A key of ``units.UNITS_BY_DIMENSION``.
     low : float [SI]
         The least that can be used.
 
@@ -185,7 +185,7 @@ def probabilities(
     part: Part,
     bowl: Bowl,
     *,
-    rule: str = RECOMMENDED,
+    rule: str = RECOMMENDED_RULE,
     launch: str | None = None,
     probabilities: Path | None = None,
     fed: int | None = None,

@@ -13,13 +13,13 @@ from typing import Any, TypeAlias, TypedDict, TypeVar, cast
 from feederscrew import bowl as bowls
 from feederscrew import check, units
 from feederscrew.bowl import Bowl
-from feederscrew.bowl.reading import checked, named
-from feederscrew.bowl.schema import KEYS, Key
+from feederscrew.bowl.reading import checked, find_key
+from feederscrew.bowl.schema import BOWL_KEYS, Key
 from feederscrew.errors import ArgumentError
 
 Setting: TypeAlias = str | float | None  # '2 mm', a number in SI units, a word; None: as the bowl has it
 Overrides: TypeAlias = str | Sequence[str] | Mapping[str, str | float]  # or a dict, by the full name of a key
-BY_WORD = {key.word: key for key in KEYS}
+BY_WORD = {key.word: key for key in BOWL_KEYS}
 Function = TypeVar("Function", bound=Callable[..., object])
 OVERRIDES_MEND = "give a dict, {'drive.frequency': '50 Hz'}, or texts, 'drive.frequency=50 Hz'"
 
@@ -131,7 +131,7 @@ def with_settings(function: Function) -> Function:
     own = [one for one in signature.parameters.values() if one.kind is not inspect.Parameter.VAR_KEYWORD]
     settings = [
         inspect.Parameter(key.word, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Setting)
-        for key in KEYS
+        for key in BOWL_KEYS
         if key.word in BowlSettings.__optional_keys__ and key.word not in signature.parameters
     ]
     names = [one.name for one in (*own, *settings)]
@@ -148,7 +148,7 @@ def with_settings(function: Function) -> Function:
 
 def _unknown(name: str, own: Sequence[str], names: Sequence[str]) -> str:
     """What is wrong with a keyword that a function does not have."""
-    if keys := [key for key in KEYS if key.word == name and name not in BowlSettings.__optional_keys__]:
+    if keys := [key for key in BOWL_KEYS if key.word == name and name not in BowlSettings.__optional_keys__]:
         full = [f"overrides={{'{key.name}': ...}}" for key in keys]
         return f"has no keyword {name!r}, a key of {len(keys)} sections - write {' or '.join(full)}"
     near = difflib.get_close_matches(name, names, n=1)
@@ -206,7 +206,7 @@ def _by_key(overrides: Overrides) -> list[tuple[Key, str | float]]:
         return []
     for name in overrides:
         check.kind("overrides", name, str, OVERRIDES_MEND)
-    return [(named(name, f"overrides {units.one_line(name)}"), value) for name, value in overrides.items()]
+    return [(find_key(name, f"overrides {units.one_line(name)}"), value) for name, value in overrides.items()]
 
 
 def _override(key: Key, value: object, argument: str) -> str:
@@ -224,5 +224,5 @@ def _text_in_si(key: Key, value: object, argument: str) -> str:
     if key.choices:
         raise ArgumentError(argument, f"is {value!r:.40}", f"give {key.bounds}")
     number = check.argument(argument, value)
-    unit = next(unit for unit, factor in units.UNITS[key.dimension].items() if factor == 1.0)
+    unit = next(unit for unit, factor in units.UNITS_BY_DIMENSION[key.dimension].items() if factor == 1.0)
     return f"{number!r} {unit}".strip()

@@ -8,7 +8,7 @@ from feederscrew.api.asked import BowlFile, Path, Quantity
 from feederscrew.api.bowl_settings import BowlSettings, Overrides, override_texts, with_settings
 from feederscrew.bowl import Bowl
 from feederscrew.part import Part
-from feederscrew.rates.well_oriented import RECOMMENDED
+from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.resting.counts.profiles import Measured
 from feederscrew.studies import report as reports
 from feederscrew.studies import tooling as isolating
@@ -28,8 +28,8 @@ def tooling(
     aspect: str | None = None,
     *,
     heading: Quantity | None = None,
-    rule: str = RECOMMENDED,
-    margin: Quantity = isolating.MARGIN,
+    rule: str = RECOMMENDED_RULE,
+    margin: Quantity = isolating.MARGIN_M,
     purity: float = ToolingOptions.purity,
     efficiency: float = ToolingOptions.efficiency,
     outcome: str = ToolingOptions.outcome,
@@ -140,7 +140,7 @@ def trial(
     queue: int | None = None,
     poured: bool = TrialOptions.poured,
     seconds: Quantity = TrialOptions.seconds,
-    rule: str = RECOMMENDED,
+    rule: str = RECOMMENDED_RULE,
     known: Shares | None = None,
     measured: Measured | None = None,
     seed: int = 1,
@@ -221,7 +221,7 @@ def report(
     bowl: BowlFile | None = None,
     gap: Quantity = 0.0,
     fill: float = 1.0,
-    rule: str = RECOMMENDED,
+    rule: str = RECOMMENDED_RULE,
     launch: str | None = None,
     probabilities: Path | None = None,
     fed: int | None = None,

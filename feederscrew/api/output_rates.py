@@ -11,7 +11,7 @@ from feederscrew.api.bowl_settings import BowlSettings, Overrides, override_text
 from feederscrew.bowl import Bowl
 from feederscrew.output import proof
 from feederscrew.part import Part
-from feederscrew.rates.well_oriented import RECOMMENDED
+from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import rate as rates
 from feederscrew.studies import tune as tuning
@@ -28,7 +28,7 @@ def shares(
     part: Part,
     bowl: Bowl,
     *,
-    rule: str = RECOMMENDED,
+    rule: str = RECOMMENDED_RULE,
     launch: str | None = None,
     probabilities: Path | None = None,
     fed: int | None = None,
@@ -73,7 +73,7 @@ def rate(
     devices: Sequence[Device] | None = None,
     gap: Quantity = 0.0,
     fill: float = 1.0,
-    rule: str = RECOMMENDED,
+    rule: str = RECOMMENDED_RULE,
     launch: str | None = None,
     probabilities: Path | None = None,
     fed: int | None = None,
@@ -149,7 +149,7 @@ def tune(
     worst: bool = False,
     gap: Quantity = 0.0,
     fill: float = 1.0,
-    rule: str = RECOMMENDED,
+    rule: str = RECOMMENDED_RULE,
     launch: str | None = None,
     probabilities: Path | None = None,
     fed: int | None = None,
@@ -187,7 +187,7 @@ def tune(
             rule=rule, launch=launch, probabilities=probabilities, fed=parts, seed=seed, known=known,
         )  # fmt: skip
 
-    is_fed = rule == RECOMMENDED and launch is None and probabilities is None and known is None
+    is_fed = rule == RECOMMENDED_RULE and launch is None and probabilities is None and known is None
     return tuning.tune(
         solid,
         bowl,
@@ -210,7 +210,7 @@ def size_bowl(
     aspect: str | None = None,
     *,
     heading: Quantity | None = None,
-    rule: str = RECOMMENDED,
+    rule: str = RECOMMENDED_RULE,
     gap: Quantity = 0.0,
     fill: float = 1.0,
     path: Path | None = None,

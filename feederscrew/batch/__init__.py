@@ -1,10 +1,9 @@
 """Many parts at once: the whole pipeline for each, on several processes or machines, resumable."""
 
-from feederscrew.batch.cluster import Cluster
 from feederscrew.batch.inputs import gather
 from feederscrew.batch.run import StoppedBatchError, count_stale, crew, run
 from feederscrew.batch.task import Choices, Conditions, Outcome, Request, Task
-from feederscrew.batch.workers import Processes
+from feederscrew.batch.workers import Cluster, Processes
 
 __all__ = [
     "Choices", "Cluster", "Conditions", "Outcome", "Processes", "Request", "StoppedBatchError", "Task",

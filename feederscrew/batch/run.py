@@ -1,19 +1,226 @@
-"""A batch from its first part to its summary."""
+"""A batch from its first part to its summary; a part's results appear in its folder whole or not at all."""
 
 import contextlib
+import hashlib
+import json
+import os
+import shutil
+import tempfile
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
-from feederscrew.batch import index_page, summary
-from feederscrew.batch.cluster import Cluster
-from feederscrew.batch.store import Store
-from feederscrew.batch.task import FAILED, Choices, Outcome, Task
-from feederscrew.batch.workers import Processes, processors
+from feederscrew import __version__
+from feederscrew.batch import summary
+from feederscrew.batch.task import (
+    CHANGED_FILE,
+    CHANGED_OPTIONS,
+    CHANGED_PROGRAM,
+    FAILED,
+    FAILED_BEFORE,
+    MEDDLED,
+    NEW,
+    Choices,
+    Outcome,
+    Task,
+    libraries,
+)
+from feederscrew.batch.workers import Cluster, Processes, processors
 from feederscrew.errors import FeederError
 from feederscrew.output import tables
 from feederscrew.output.batch import SHEET
+from feederscrew.output.folder import RECORD
 from feederscrew.part.reading import source
+
+MARKER = "batch.json"  # says that the folder is a batch's
+PARTS = "parts"
+RESUME_STORE_ADVICE = "make room there, then start this batch again with `resume`: what is finished is kept"
+STALE = ".batch-"  # how the name of what is not finished begins
+REPLACED = "replaced"  # folder in it of results that make room for new ones
+
+
+class Store:
+    """The results of a batch on disk.
+
+    Parameters
+    ----------
+    directory : str or Path
+        Empty, not there yet, or of an earlier batch.
+
+    Raises
+    ------
+    FeederError
+        If it holds something else, cannot be written, or another batch is at work in it.
+    """
+
+    def __init__(self, directory):
+        self.path = Path(directory)
+        self.parts = self.path / PARTS
+
+    def __enter__(self):
+        try:
+            self.parts.parent.mkdir(parents=True, exist_ok=True)
+            self.lock = _locked(self.path)
+            self._check_ours()
+            self.parts.mkdir(exist_ok=True)
+            for stale in self.path.glob(f"{STALE}*"):
+                self._put_back(stale)
+                shutil.rmtree(stale) if stale.is_dir() else stale.unlink()
+            self.write({MARKER: tables.json_text({"version": __version__})})
+        except OSError as error:
+            mend = "give another folder to `directory`"
+            raise FeederError(self.path, f"cannot be written ({error.strerror})", mend) from error
+        return self
+
+    def __exit__(self, *fault):
+        if self.lock is not None:
+            os.close(self.lock)
+
+    def _check_ours(self):
+        held = [p.name for p in self.path.iterdir() if not p.name.startswith(STALE)]
+        if held and MARKER not in held:
+            what = f"holds other files, such as {sorted(held)[0]}"
+            raise FeederError(
+                self.path, what, "give an empty folder to `directory`, or that of an earlier batch"
+            )
+
+    def holds(self, name, key):
+        """Return whether the results of one part are there, whole and of this very input."""
+        record = self.record(name)
+        if record.get("key") != key or not key:
+            return False
+        folder, files = self.parts / name, record.get("files", {})
+        there = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()} - {RECORD}
+        return there == set(files) and all(
+            hashlib.sha256((folder / file).read_bytes()).hexdigest() == sha256
+            for file, sha256 in files.items()
+        )
+
+    def why_again(self, task):
+        """Return why the results of a part cannot stay as they are; None where they can.
+
+        Parameters
+        ----------
+        task : Task
+
+        Returns
+        -------
+        str or None
+            As ``task.NEW`` and the constants behind it.
+        """
+        record = self.record(task.request.name)
+        if not record:
+            return NEW
+        if record.get("status") == FAILED and not record.get("key"):
+            return FAILED_BEFORE
+        if record.get("key") == task.key:
+            return None if self.holds(task.request.name, task.key) else MEDDLED
+        inputs = record.get("inputs")
+        before = inputs[0].get("sha256") if isinstance(inputs, list) and inputs else None
+        if before != task.sha256:
+            return CHANGED_FILE
+        same = record.get("version") == __version__ and record.get("libraries") == libraries()
+        return CHANGED_OPTIONS if same else CHANGED_PROGRAM
+
+    def keep(self, outcome):
+        """Put the results of one part in place, instead of those of an earlier run."""
+        with self._writing(), tempfile.TemporaryDirectory(prefix=STALE, dir=self.path) as staging:
+            fresh, place = Path(staging, "new"), self.parts / outcome.name
+            record = tables.json_text({"batch": _told(outcome)})
+            for name, content in {**outcome.files, RECORD: record.encode()}.items():
+                (fresh / name).parent.mkdir(parents=True, exist_ok=True)
+                (fresh / name).write_bytes(content)
+            if place.exists():
+                Path(staging, REPLACED).mkdir()
+                place.rename(Path(staging, REPLACED, outcome.name))
+            fresh.rename(place)
+
+    def _put_back(self, staging):
+        """Put results back that a run had taken out of their place when it was killed."""
+        for old in staging.glob(f"{REPLACED}/*"):
+            if not (self.parts / old.name).exists():
+                old.rename(self.parts / old.name)
+
+    def file(self, name, file):
+        """Read the bytes of one result of a part; None where it is not there."""
+        path = self.parts / name / file
+        return path.read_bytes() if path.exists() else None
+
+    def text(self, name):
+        """Read a text of the whole batch; None where it is not there."""
+        path = self.path / name
+        return path.read_text(encoding="utf-8", errors="replace") if path.exists() else None
+
+    def write(self, files, without=()):
+        """Put files of the whole batch in place once all of them are written; until then the old ones stay.
+
+        Parameters
+        ----------
+        files : dict of str to (str or bytes)
+            Content by name, in the order in which they are put in place.
+        without : sequence of str
+            Patterns of files of an earlier run, which go where they are not among the new ones.
+        """
+        with self._writing(), tempfile.TemporaryDirectory(prefix=STALE, dir=self.path) as staging:
+            for name, content in files.items():
+                Path(staging, name).write_bytes(tables.encoded(content))
+            for name in files:
+                Path(staging, name).replace(self.path / name)
+            for path in (path for pattern in without for path in self.path.glob(pattern)):
+                if path.name not in files:
+                    path.unlink()
+
+    @contextlib.contextmanager
+    def _writing(self):
+        """Turn what the disk refuses into a FeederError; what is finished stays."""
+        try:
+            yield
+        except OSError as error:
+            what = f"cannot be written ({error.strerror or error})"
+            raise FeederError(self.path, what, RESUME_STORE_ADVICE) from error
+
+    def strangers(self, names):
+        """Return the folders of parts that are not in this batch, by name."""
+        return sorted({p.name for p in self.parts.iterdir()} - set(names))
+
+    def record(self, name):
+        """Read what is recorded of one part: key, status, reason, row, files; empty if there is none."""
+        try:
+            record = json.loads((self.parts / name / RECORD).read_text())["batch"]
+        except (OSError, ValueError, LookupError, TypeError):
+            return {}
+        return record if isinstance(record, dict) else {}
+
+
+def _told(outcome):
+    return {
+        "version": __version__,
+        "key": outcome.key,
+        "inputs": [{"path": outcome.source, "sha256": outcome.sha256}],
+        "effective": outcome.effective,
+        "warnings": list(outcome.warnings),
+        "libraries": libraries(),
+        "status": outcome.status,
+        "reason": outcome.reason,
+        "row": outcome.row,
+        "files": {name: hashlib.sha256(data).hexdigest() for name, data in sorted(outcome.files.items())},
+    }
+
+
+def _locked(folder):
+    """Take a lock on the folder that goes with this process, however it ends; None where there is none."""
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        return None
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        with contextlib.suppress(OSError):
+            os.close(handle)
+        raise FeederError(folder, "another batch is at work in it", "wait for it, or stop it") from None
+    return handle
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,9 +376,9 @@ class _UnderWay:
 
 def _contact_sheet(tiles):
     """Draw one contact sheet: a process of the crew has matplotlib, this one need not."""
-    from feederscrew.output.batch import contact_sheet
+    from feederscrew.output import batch
 
-    return contact_sheet.sheet(tiles)
+    return batch.sheet(tiles)
 
 
 def _stopped(store, requests, finished):
@@ -179,8 +386,8 @@ def _stopped(store, requests, finished):
 
     The tables of an earlier run that ended stay until a run ends: then it is beside them.
     """
-    before = store.text(summary.NAME)
-    name = summary.NAME if before is None or summary.is_partial(before) else summary.PARTIAL
+    before = store.text(summary.SUMMARY_FILE)
+    name = summary.SUMMARY_FILE if before is None or summary.is_partial(before) else summary.PARTIAL
     rows = summary.rows(store, requests, finished)
     store.write({name: tables.text(summary.frame(rows), "csv")})
     return store.path / name
@@ -195,13 +402,13 @@ def _finished(store, requests, kept, workers):
     files = {
         SHEET.format(f"_{number}" if number > 1 else ""): sheet for number, sheet in enumerate(sheets, 1)
     }
-    files[index_page.NAME] = html(index_page.page(store, rows))
-    files[summary.NAME] = tables.text(summary.frame(rows), "csv")  # last: it says that all is there
+    files[summary.INDEX_FILE] = html(summary.index_page(store, rows))
+    files[summary.SUMMARY_FILE] = tables.text(summary.frame(rows), "csv")  # last: it says that all is there
     store.write(files, without=[SHEET.format("*"), summary.PARTIAL])
     return Batch(
         rows=rows,
         kept=kept,
         strangers=tuple(store.strangers([request.name for request in requests])),
-        targets=(store.path / summary.NAME, store.path / index_page.NAME),
+        targets=(store.path / summary.SUMMARY_FILE, store.path / summary.INDEX_FILE),
         sources=tuple(dict.fromkeys(request.source for request in requests)),
     )

@@ -1,16 +1,20 @@
-"""One row a part: what the summary, the contact sheets and the index page are made of."""
+"""One row a part for summary and contact sheets; and one page over the whole batch, complete in itself."""
 
 import csv
 import io
 from pathlib import Path
+from urllib.parse import quote
 
+from feederscrew.batch.run import PARTS
 from feederscrew.batch.task import DONE, NOT_COMPUTED, THUMBNAIL
 from feederscrew.output import tables
 from feederscrew.output.batch import ACROSS, DOWN
+from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture
+from feederscrew.units import counted
 
-NAME = "summary.csv"
+SUMMARY_FILE = "summary.csv"
 PARTIAL = "summary_partial.csv"  # of a run that was stopped, beside the tables of an earlier one
-COLUMNS = (
+SUMMARY_COLUMNS = (
     "part", "folder", "config", "status", "reason", "material", "mass_g", "aspects", "aspect", "heading_deg",
     "orientation", "rule", "answer", "p_orientation", "passes_devices", "velocity_mm_s", "regime", "pitch_mm",
     "parts_per_minute", "parts_per_minute_low", "parts_per_minute_high",
@@ -18,7 +22,7 @@ COLUMNS = (
 )  # fmt: skip
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 TILES = ACROSS * DOWN
-HIDDEN = (  # from a table for people; reasons stand above it, a line each
+HIDDEN_SUMMARY_COLUMNS = (  # from a table for people; reasons stand above it, a line each
     "reason", "folder", "aspects", "material", "aspect", "heading_deg", "rule", "answer", "regime",
     "passes_devices", "drops", "drop_aspect", "p_drop",
     "note", "warnings",
@@ -38,7 +42,7 @@ def rows(store, requests, finished=None):
     Returns
     -------
     tuple of dict
-        By ``COLUMNS``, None where there is nothing to say.
+        By ``SUMMARY_COLUMNS``, None where there is nothing to say.
     """
     nothing = {"status": NOT_COMPUTED, "reason": "", "warnings": (), "row": {}}
     return tuple(
@@ -62,12 +66,12 @@ def _row(record, request):
         "warnings": "; ".join(record["warnings"]) or None,
     }
     numbers = record["row"] | known
-    return {name: numbers.get(name) for name in COLUMNS}
+    return {name: numbers.get(name) for name in SUMMARY_COLUMNS}
 
 
 def frame(rows):
     """Return the rows as a table."""
-    return tables.frame({name: [_harmless(row[name]) for row in rows] for name in COLUMNS})
+    return tables.frame({name: [_harmless(row[name]) for row in rows] for name in SUMMARY_COLUMNS})
 
 
 def _harmless(value):
@@ -115,3 +119,57 @@ def _reason(row):
     reason = row["reason"] or ""
     place, colon, rest = reason.partition(": ")
     return f"failed: {rest if colon and Path(place.split(':')[0]).name == row['part'] else reason}"
+
+
+INDEX_FILE = "index.html"
+INDEX_HEADINGS = (
+    "", "part", "bowl", "mass [g]", "aspects", "leaves on", "velocity [mm/s]", "parts a minute",
+    "what to know",
+)  # fmt: skip
+SUMMARY_LINK_TABLE = Matrix(("all numbers",), ((MarkedCell(SUMMARY_FILE, link=SUMMARY_FILE),),))
+
+
+def index_page(store, rows):
+    """Build the page of a batch: a line a part, with its picture and a link to its folder.
+
+    Parameters
+    ----------
+    store : Store
+    rows : sequence of dict
+        From ``summary.rows``.
+
+    Returns
+    -------
+    Page
+    """
+    failed = sum(row["status"] != DONE for row in rows)
+    text = counted(len(rows), "part") + (f", {failed} of them failed" if failed else "")
+    lines = tuple(_index_row(store, row) for row in rows)
+    return Page(text, "", (Chapter((Matrix(INDEX_HEADINGS, lines, sortable=True), SUMMARY_LINK_TABLE)),))
+
+
+def _index_row(store, row):
+    said = "; ".join(filter(None, (row["reason"], row["note"], row["warnings"])))
+    folder = MarkedCell(row["folder"], link=f"{PARTS}/{quote(row['folder'])}/")
+    start = (MarkedCell("", picture=_picture(store, row)), folder, MarkedCell(row["config"]))
+    if row["status"] != DONE:
+        return (*start, MarkedCell("failed", "failed"), *[MarkedCell("")] * 4, MarkedCell(said, "failed"))
+    leaves = row["orientation"] or "-"
+    numbers = [_number(row[name]) for name in ("mass_g", "aspects")]
+    rates = [_number(row[name]) for name in ("velocity_mm_s", "parts_per_minute")]
+    return (*start, *numbers, MarkedCell(leaves), *rates, MarkedCell(said))
+
+
+def _number(value):
+    return MarkedCell("-" if value is None else f"{value:.4g}", "number")
+
+
+def _picture(store, row):
+    content = store.file(row["folder"], THUMBNAIL) if row["status"] == DONE else None
+    return (
+        None
+        if content is None
+        else Picture(
+            THUMBNAIL, content, f"{row['folder']} on aspect {row['aspect'] or 'it rests on most often'}"
+        )
+    )

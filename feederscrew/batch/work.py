@@ -8,12 +8,9 @@ import numpy as np
 
 from feederscrew.batch.task import DONE, THUMBNAIL, Outcome
 from feederscrew.errors import FeederError
-from feederscrew.output import columns, offers, proof, tables
-from feederscrew.output.aspects import files as aspects_files
-from feederscrew.output.batch import contact_sheet
-from feederscrew.output.convey import tables as convey_tables
-from feederscrew.output.rate import files as rate_files
-from feederscrew.output.rate import tables as rate_tables
+from feederscrew.output import aspects, batch, columns, offers, proof, tables
+from feederscrew.output import convey as convey_output
+from feederscrew.output import rate as rate_output
 from feederscrew.part import load
 from feederscrew.rates import well_oriented
 from feederscrew.resting.aspects import find
@@ -60,7 +57,7 @@ def _results(task):
     part = load(request.source, **dict(request.options), names=request.names, stdin=io.BytesIO(task.data))
     study, tested = _answered(part, task, files)
     found = study.aspects
-    offers.write(files, aspects_files.offers(study), pictures=choices.pictures)
+    offers.write(files, aspects.offers(study), pictures=choices.pictures)
     conveying = travel(request.conditions)
     files.write("convey.json", tables.json_text(conveying))
     rated, rate_warnings = _rate(part, found, task, files)
@@ -75,7 +72,7 @@ def _results(task):
         **tested,
     }
     if choices.pictures and part.vertices is not None:
-        files.write(THUMBNAIL, contact_sheet.thumbnail(part, found, row.get("aspect")))
+        files.write(THUMBNAIL, batch.thumbnail(part, found, row.get("aspect")))
     return Outcome(
         name=request.name,
         key=task.key,
@@ -98,7 +95,7 @@ def _results(task):
 def travel(conditions):
     """Return the document of ``convey.json``: the same for every part, a point mass."""
     well_oriented.velocity(conditions.bowl)  # raises where there is no steady state
-    return convey_tables.document(convey(conditions.bowl)) | {"bowl": dict(conditions.texts)}
+    return convey_output.document(convey(conditions.bowl)) | {"bowl": dict(conditions.texts)}
 
 
 def _rate(part, found, task, files):
@@ -108,12 +105,12 @@ def _rate(part, found, task, files):
     conditions, rule = task.request.conditions, task.choices.rule
     study = rate(part, conditions.bowl, task.request.aspect, rule=rule, known=Shares(found))
     way = study.rate.orientations.lying[study.rate.row].name
-    document = proof.beside(rate_tables.document(study), conditions.tried, part, conditions.bowl, way)
-    offers.write(files, rate_files.offers(study))
+    document = proof.beside(rate_output.document(study), conditions.tried, part, conditions.bowl, way)
+    offers.write(files, rate_output.offers(study))
     wanted = ("aspect", "heading_deg", "pitch_mm", "p_orientation", "passes_devices")
     rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
     named = {"orientation": way, "rule": rule, "answer": study.answer}
-    remarks = rate_tables.remarks(study)
+    remarks = rate_output.remarks(study)
     why = "; ".join(remarks) if document["parts_per_minute"] <= 0.0 else ""
     noted = {"note": why} if why else {}
     warnings = (*study.warnings, *remarks, *_tried(part, task.request, way))
@@ -137,12 +134,12 @@ def _answered(part, task, files):
         bowl = task.request.conditions.bowl
         known = shares(part, bowl, launch=choices.launch, rule=choices.rule, jobs=1)
         return AspectsStudy(part, known.aspects), {}
-    from feederscrew.output.drop import files as drop_files
+    from feederscrew.output import drop as drop_output
     from feederscrew.studies.simulated.drop import drop
 
     found, seed = find(part, launch=choices.launched), int(task.sha256[:SEED_DIGITS], 16)
     study = drop(part, choices.launched, drops=choices.drops, seed=seed, aspects=found)
-    offers.write(files, drop_files.offers(study), pictures=choices.pictures)
+    offers.write(files, drop_output.offers(study), pictures=choices.pictures)
     tally = study.result.tally
     first = int(np.argmax(tally.p))
     values = {"drops": choices.drops, "drop_aspect": found.names[first], "p_drop": tally.p[first]}

@@ -8,17 +8,15 @@ from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
 
-from feederscrew.bowl.reading import adjust, settings
+from feederscrew.bowl.reading import adjust, at_strokes, bowl_names, key_ranges, settings
 from feederscrew.bowl.record import Bowl, Drive, Friction, Track
 from feederscrew.bowl.settings import assumptions, by_machine, effective, record, remarks, swept, texts
-from feederscrew.bowl.strokes import named, strokes
-from feederscrew.bowl.vary import ranges
 from feederscrew.bowl.verified import verified
 
 __all__ = [
     "Bowl", "Drive", "Friction", "Track",
-    "adjust", "assumptions", "by_machine", "default", "identity", "name", "named", "ranges", "read", "record",
-    "remarks", "settings", "strokes", "swept", "texts", "verified",
+    "adjust", "assumptions", "at_strokes", "bowl_names", "by_machine", "default", "identity", "key_ranges",
+    "name", "read", "record", "remarks", "settings", "swept", "texts", "verified",
 ]  # fmt: skip
 
 

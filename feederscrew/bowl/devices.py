@@ -11,7 +11,7 @@ from feederscrew.tooling.devices.base import WRITTEN_STEP_M, Device
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.devices.values import written
 
-SECTION = "devices"  # of a bowl file
+DEVICES_SECTION = "devices"  # of a bowl file
 WRITTEN_SHARE = 1e-6  # [1] of a value, within which it is that of its text
 
 

@@ -1,16 +1,19 @@
-"""Bowl files and overrides, checked against the schema; every fault is reported with its place."""
+"""Bowl files and overrides, checked against the schema; every fault is reported with its place.
+
+Bowls at several strokes, ``--amplitude 78%,80%``, and one key over a range, KEY=a:b:n.
+"""
 
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
 from feederscrew import documents, units
 from feederscrew.bowl import devices, verified
-from feederscrew.bowl.key import Key
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.schema import BY_NAME, KEYS, SECTIONS, rival
+from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, Key, rival
 from feederscrew.bowl.settings import (
     OVERRIDES,
     Setting,
@@ -25,7 +28,12 @@ from feederscrew.documents import Entry, Node
 from feederscrew.errors import ArgumentError, ConfigError, FeederError
 
 SMALLEST = 1e-15  # [SI] a number nearer to 0 is 0: squared, or divided by, it would leave the range of floats
-TOP_LEVEL = (*SECTIONS, devices.SECTION, verified.SECTION, *(key.name for key in KEYS if not key.section))
+TOP_LEVEL = (
+    *BOWL_SECTIONS,
+    devices.DEVICES_SECTION,
+    verified.VERIFIED_SECTION,
+    *(key.name for key in BOWL_KEYS if not key.section),
+)
 
 
 def settings(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> tuple[Setting, ...]:
@@ -178,15 +186,15 @@ def _given(root: Node, faults: list[FeederError]) -> tuple[dict[str, Setting], l
         raise ConfigError(root.where, "no 'key: value' line", "start from 'feeder config init'")
     given: dict[str, Setting] = {}
     for entry in root.entries:
-        if entry.key in SECTIONS:
+        if entry.key in BOWL_SECTIONS:
             _read_section(entry, given, faults)
         elif entry.key in BY_NAME and not BY_NAME[entry.key].section:
             _read_value(BY_NAME[entry.key], entry, given, faults)
-        elif entry.key == devices.SECTION:
+        elif entry.key == devices.DEVICES_SECTION:
             given |= {
                 s.key.name: s for s in map(of_device, itertools.count(1), devices.listed(entry, faults))
             }
-        elif entry.key != verified.SECTION:
+        elif entry.key != verified.VERIFIED_SECTION:
             faults.append(_unknown(entry, "", TOP_LEVEL))
     return given, faults
 
@@ -196,7 +204,7 @@ def _read_section(section: Entry, given: dict[str, Setting], faults: list[Feeder
     if value.kind == "list" or value.text:
         what = f"'{section.key}' is a section, not a value"
         faults.append(ConfigError(value.where, what, f"indent its keys below '{section.key}:'"))
-    words = [key.word for key in KEYS if key.section == section.key]
+    words = [key.word for key in BOWL_KEYS if key.section == section.key]
     for entry in value.entries:
         if entry.key in words:
             _read_value(BY_NAME[f"{section.key}.{entry.key}"], entry, given, faults)
@@ -227,7 +235,7 @@ def _from_node(key: Key, node: Node) -> Setting:
 
 def _unknown(entry: Entry, section: str, known: Sequence[str]) -> ConfigError:
     """The fault of a key that does not exist here; it may exist elsewhere."""
-    elsewhere = next((k for k in KEYS if entry.key in (k.word, k.name) and k.section != section), None)
+    elsewhere = next((k for k in BOWL_KEYS if entry.key in (k.word, k.name) and k.section != section), None)
     mend = documents.hint(entry.key, known)
     if elsewhere is not None:
         mend = f"write {elsewhere.word} " + (
@@ -257,13 +265,13 @@ def _from_override(override: str) -> Setting:
     where = f"{OVERRIDES} {units.one_line(name)}"
     if not equals:
         raise ArgumentError(where, "has no '='", 'write KEY=VALUE, as in "drive.frequency=50 Hz"')
-    key = named(name, where)
+    key = find_key(name, where)
     if not text.strip():
         raise ArgumentError(where, "has no value", f"write {default(key).text}")
     return checked(key, text, where, kind=ArgumentError)
 
 
-def named(name: str, where: str) -> Key:
+def find_key(name: str, where: str) -> Key:
     """Return the key that an argument names.
 
     Parameters
@@ -281,10 +289,10 @@ def named(name: str, where: str) -> Key:
     """
     if name in BY_NAME:
         return BY_NAME[name]
-    if name in SECTIONS:
-        first = next(key.name for key in KEYS if key.section == name)
+    if name in BOWL_SECTIONS:
+        first = next(key.name for key in BOWL_KEYS if key.section == name)
         raise ArgumentError(where, f"'{name}' is a section, not a key", f"write one of its keys, as {first}")
-    if name == devices.SECTION:
+    if name == devices.DEVICES_SECTION:
         raise ArgumentError(where, "devices are a list", "write them in a bowl file")
     raise ArgumentError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
 
@@ -312,3 +320,144 @@ def _above(static: Setting, kinetic: Setting) -> ConfigError:
     what = f"{kinetic.key.name} {kinetic.text} is above {static.key.name} {static.text} ({place})"
     kind = ArgumentError if last.overrides else ConfigError
     return kind(last.where, what, "lower the kinetic coefficient or raise the static one")
+
+
+AMPLITUDES_KEY = "amplitudes"
+MAX_STROKES = 50  # strokes of one call
+FULL = 5.0  # of the bowl's own amplitude, at most
+
+
+def at_strokes(bowl: Bowl, text: str | None = None) -> tuple[Bowl, ...]:
+    """Return the bowl at each amplitude of its drive.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    text : str or None
+        '78%,80%,82%' of the bowl's own amplitude, or '0.3 mm,0.4 mm'; None for that one alone.
+
+    Returns
+    -------
+    tuple of Bowl
+
+    Raises
+    ------
+    ConfigError
+        If an entry is neither, or out of range.
+    """
+    if text is None:
+        return (bowl,)
+    entries = text.split(",")
+    if len(entries) > MAX_STROKES:
+        raise ArgumentError(AMPLITUDES_KEY, f"{len(entries)} amplitudes", f"give at most {MAX_STROKES}")
+    amplitudes = [_amplitude(bowl.drive.amplitude, entry) for entry in entries]
+    return tuple(replace(bowl, drive=replace(bowl.drive, amplitude=amplitude)) for amplitude in amplitudes)
+
+
+def bowl_names(paths: Sequence[str | None]) -> list[str]:
+    """Return what bowl files are called side by side: their stems, their paths where two stems are the same.
+
+    Parameters
+    ----------
+    paths : sequence of (str or None)
+        None for the defaults.
+
+    Returns
+    -------
+    list of str
+    """
+    stems = ["defaults" if path is None else Path(path).stem for path in paths]
+    if len(set(stems)) == len(stems):
+        return stems
+    return [stem if path is None else str(path) for stem, path in zip(stems, paths)]
+
+
+def _amplitude(full: float, entry: str) -> float:
+    if not entry.strip().endswith("%"):
+        try:
+            return checked(BY_NAME["drive.amplitude"], entry, AMPLITUDES_KEY).value
+        except ConfigError as fault:
+            raise ArgumentError(fault.where, fault.what, fault.mend) from None
+    try:
+        share = units.quantity(entry, "number")
+    except units.QuantityError as fault:
+        raise ArgumentError(AMPLITUDES_KEY, fault.what, fault.mend) from None
+    if not 0.0 <= share <= FULL:
+        raise ArgumentError(
+            AMPLITUDES_KEY,
+            f"{units.shown(entry)} is out of range",
+            f"give 0% to {FULL:.0%} of drive.amplitude",
+        )
+    return share * full
+
+
+MAX_RANGE_VALUES = 2000  # values of one key
+
+
+@dataclass(frozen=True)
+class KeyRange:
+    """Evenly spaced values of one key."""
+
+    key: Key
+    values: tuple[float, ...]  # [SI]
+
+
+def key_ranges(texts: Iterable[str]) -> tuple[KeyRange, ...]:
+    """Return the ranges of one command.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        'drive.vibration_angle=5:60:200': from 5 to 60 in 200 values. Both ends may carry a
+        unit, '0.05mm:0.6mm:20'; without one they are in the unit of the key's limits.
+
+    Returns
+    -------
+    tuple of KeyRange
+
+    Raises
+    ------
+    Faults
+        Every fault of every text, one a line; also a field varied twice.
+    """
+    found: dict[str, KeyRange] = {}
+    faults: list[ConfigError] = []
+    for text in texts:
+        try:
+            one = _range(text)
+            if one.key.field in found:
+                raise ArgumentError(f"vary {one.key.name}", "is varied twice", "vary two different keys")
+            found[one.key.field] = one
+        except ConfigError as fault:
+            faults.append(fault)
+    documents.raise_all(faults)
+    return tuple(found.values())
+
+
+def _range(text: str) -> KeyRange:
+    name, _, span = (part.strip() for part in text.partition("="))
+    where = f"vary {units.one_line(name)}"
+    key = find_key(name, where)
+    if key.choices:
+        raise ArgumentError(where, "is a word, not a number", f"set it to {key.bounds}")
+    ends = span.split(":")
+    if len(ends) != 3:
+        what = f"{units.shown(span)} is not a range"
+        raise ArgumentError(where, what, f"write FROM:TO:COUNT, as in {name}={_example(key)}")
+    low, high = (checked(key, end, where, bare=True, kind=ArgumentError).value for end in ends[:2])
+    if low == high:
+        raise ArgumentError(where, "begins where it ends", "give two different values, or set the one")
+    steps = _range_count(ends[2], where) - 1
+    return KeyRange(key, tuple((low * (steps - i) + high * i) / steps for i in range(steps + 1)))
+
+
+def _range_count(text: str, where: str) -> int:
+    if text.strip().isascii() and text.strip().isdigit() and 2 <= int(text.strip()[:9]) <= MAX_RANGE_VALUES:
+        return int(text.strip())
+    raise ArgumentError(
+        where, f"{units.shown(text)} is not a count", f"give a whole number from 2 to {MAX_RANGE_VALUES}"
+    )
+
+
+def _example(key: Key) -> str:
+    return f"{key.lowest}:{key.highest}:20".replace(" ", "")

@@ -1,12 +1,18 @@
-"""What a bowl is, in SI units."""
+"""What a bowl is, in SI units, and the direction in which leaf springs move it over its radius.
+
+Source: a rigid bowl on inclined leaf springs; docs/method/machine.md.
+"""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from feederscrew.records import Shown
 from feederscrew.tooling.devices.base import Device
 
-WIDEST = 0.95  # of the wall's radius: about the axis there is no track
+MAX_TRACK_WIDTH_SHARE = 0.95  # of the wall's radius: about the axis there is no track
 
 
 @dataclass(frozen=True)
@@ -51,7 +57,7 @@ class Track:
     @property
     def extent(self) -> float:
         """How far from the wall there is track [m]: its width, or nearly to the bowl's axis."""
-        return min(self.width, WIDEST * self.radius)
+        return min(self.width, MAX_TRACK_WIDTH_SHARE * self.radius)
 
 
 @dataclass(frozen=True)
@@ -64,7 +70,7 @@ class Unbalance:
     turns: float = 1.0  # [1] 1 where it turns counter-clockwise as it rises, -1 of a left hand
 
 
-EVEN = Unbalance()  # nothing of it is known
+BALANCED = Unbalance()  # nothing of it is known
 
 
 @dataclass(frozen=True)
@@ -84,7 +90,7 @@ class Machine:
     leaves: float  # of all banks together
     damping: float  # [1] of the critical one
     supply: float  # [Hz] at which the supply drives the bowl
-    unbalance: Unbalance = EVEN  # known of a bowl that is a solid
+    unbalance: Unbalance = BALANCED  # known of a bowl that is a solid
 
 
 @dataclass(frozen=True)
@@ -161,3 +167,55 @@ class Bowl(Shown):
     sizing: Sizing = None  # type: ignore[assignment]
     devices: tuple[Device, ...] = ()  # along the track, in the order parts meet them
     settings: ClassVar[tuple[Any, ...]] = ()  # it was read from; of one that was changed afterwards none
+
+
+RIGHT_ANGLE_RAD = 0.5 * np.pi  # [rad] upright
+
+
+def direction(machine: Machine, radius: ArrayLike) -> Any:
+    """Return the angle of the bowl's motion to the horizontal.
+
+    Source: docs/bowl.md, "How it is computed".
+
+    Parameters
+    ----------
+    machine : Machine
+    radius : array_like [m]
+        From the bowl's axis.
+
+    Returns
+    -------
+    array_like [rad]
+        tan psi(r) = tan psi_s (r_s / r) [m2 / (m1 + m2)] / [I2 / (I1 + I2)], of the shape of ``radius``.
+
+    Notes
+    -----
+    The springs fix the direction of the bowl against its base. Momentum fixes how much of it the bowl takes:
+    m2 / (m1 + m2) of the rise and I2 / (I1 + I2) of the turn.
+    """
+    rise, turn = shares(machine)
+    along = machine.spring_radius * rise * np.sin(machine.spring_angle)
+    return np.arctan2(along, np.asarray(radius) * turn * np.cos(machine.spring_angle))
+
+
+def shares(machine: Machine) -> tuple[float, float]:
+    """Return the bowl's shares of the rise and of the turn between bowl and base [1].
+
+    Source: the bowl and its base keep their momentum; docs/bowl.md, "How it is computed".
+    """
+    rise = machine.base_mass / (machine.bowl_mass + machine.base_mass)
+    return rise, machine.base_inertia / (machine.bowl_inertia + machine.base_inertia)
+
+
+def vibration_angle(machine: Machine, radius: ArrayLike, climb: ArrayLike) -> Any:
+    """Return the angle from the track to the bowl's motion [rad], within 0 to 90 deg.
+
+    Source: docs/bowl.md, "How it is computed".
+
+    Parameters
+    ----------
+    machine : Machine
+    radius, climb : array_like [m], [rad]
+        Of the track.
+    """
+    return np.clip(direction(machine, radius) - climb, 0.0, RIGHT_ANGLE_RAD)

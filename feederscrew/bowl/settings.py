@@ -8,17 +8,16 @@ from typing import Any
 import numpy as np
 
 from feederscrew import units
-from feederscrew.bowl import unbalance
-from feederscrew.bowl.devices import SECTION
-from feederscrew.bowl.direction import vibration_angle
-from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track
-from feederscrew.bowl.schema import BY_NAME, KEYS, OPTIONAL, Key, rival
+from feederscrew.bowl import schema
+from feederscrew.bowl.devices import DEVICES_SECTION
+from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track, vibration_angle
+from feederscrew.bowl.schema import BOWL_KEYS, BY_NAME, OPTIONAL, Key, rival
 from feederscrew.tooling.devices.base import Device
 
 RECORDS = {"drive": Drive, "friction": Friction, "track": Track, "machine": Machine, "sizing": Sizing}
 OVERRIDES = "overrides"  # the argument that goes over the file; ``--set`` of the commands
 OF_THE_MACHINE = ("drive.vibration_angle", "drive.frequency")  # keys that a machine gives, where there is one
-FOLLOWING = {
+DEPENDENT_KEYS = {
     f"{name}.{field.name}"
     for name, kind in RECORDS.items()
     for field in dataclasses.fields(kind)
@@ -67,19 +66,19 @@ def effective(given: Mapping[str, Setting]) -> tuple[Setting, ...]:
     tuple of Setting
         One a key, in the order of ``schema.KEYS``, then one a device.
     """
-    keyed = tuple(_effective(key, given) for key in KEYS)
+    keyed = tuple(_effective(key, given) for key in BOWL_KEYS)
     return (*keyed, *(s for name, s in given.items() if name not in BY_NAME))
 
 
 def of_device(place: int, device: Device) -> Setting:
     """Return a device as the Setting 'devices.1', for people: 'gap: 9 mm'."""
-    key = Key(f"{SECTION}.{place}", SECTION, "", "", "", "", device.meaning)
+    key = Key(f"{DEVICES_SECTION}.{place}", DEVICES_SECTION, "", "", "", "", device.meaning)
     return Setting(key, f"{device.kind}: {device.text}", device, device.where)
 
 
 def chain(settings: Iterable[Setting]) -> tuple[Device, ...]:
     """Return the devices (Device, ...) among settings, in the order parts meet them."""
-    return tuple(s.value for s in settings if s.key.field == SECTION)
+    return tuple(s.value for s in settings if s.key.field == DEVICES_SECTION)
 
 
 def record(settings: Sequence[Setting]) -> Bowl:
@@ -88,14 +87,14 @@ def record(settings: Sequence[Setting]) -> Bowl:
     A field that may be None, 'as the other one', stays so until its key is given: a Bowl in which the other
     is replaced later must not keep the old value.
     """
-    keyed = [s for s in settings if s.key.field != SECTION]
+    keyed = [s for s in settings if s.key.field != DEVICES_SECTION]
     fields = {s.key.field: s.value if s.key.choices else s.size for s in keyed}
-    fields |= {s.key.field: None for s in keyed if s.key.field in FOLLOWING and not s.given}
+    fields |= {s.key.field: None for s in keyed if s.key.field in DEPENDENT_KEYS and not s.given}
     sections: dict[str, dict[str, Any]] = {name: {} for name in RECORDS}
     for name, value in fields.items():
         section, _, word = name.rpartition(".")
         sections.setdefault(section, {})[word] = value
-    sections["machine"] = unbalance.known(sections["machine"], sections["sizing"]["hand"])
+    sections["machine"] = schema.with_unbalance(sections["machine"], sections["sizing"]["hand"])
     top_level = sections.pop("")
     bowl = Bowl(
         **{name: RECORDS[name](**values) for name, values in sections.items()},
@@ -213,7 +212,11 @@ def _of_the_machine(key: Key, given: Mapping[str, Setting]) -> Setting:
     if key.name == "drive.frequency":
         supply = _effective(BY_NAME["machine.supply"], given)
         return _derived(key, supply.value, "from machine.supply")
-    own = [one for one in KEYS if one.field.startswith("machine.") and one.word not in unbalance.WORDS]
+    own = [
+        one
+        for one in BOWL_KEYS
+        if one.field.startswith("machine.") and one.word not in schema.UNBALANCE_NAMES
+    ]
     names = [one.name for one in own]
     machine = Machine(**{name.partition(".")[2]: _effective(BY_NAME[name], given).value for name in names})
     radius, climb = (_effective(BY_NAME[name], given).value for name in ("track.radius", "track.climb"))

@@ -16,7 +16,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.part.record import Part
 from feederscrew.tooling.devices.base import Device
 
-SECTION = "verified"
+VERIFIED_SECTION = "verified"
 SHARED = {one.name for one in fields(Device)}  # what every device has
 HOLDS, FALLS_SHORT = "holds", "falls short"  # what a trial may come to
 RATE_KEPT, PURE, DRAWS_HELD = (
@@ -24,7 +24,7 @@ RATE_KEPT, PURE, DRAWS_HELD = (
     0.98,
     0.95,
 )  # [1] of the target, of what leaves, of the draws
-ROUNDING = 1e-3  # [1] of a number as the file writes it
+VERIFIED_TOLERANCE = 1e-3  # [1] of a number as the file writes it
 NOTHING_LEFT = "none"  # the purity of a queue that nothing left
 MAX_RATE = 1e6 / units.MINUTE  # [1/s]
 MAX_QUEUE_S = 1e7  # [s] four months
@@ -33,7 +33,7 @@ MAX_SEED = 2**64
 MAX_TEXT = 200  # letters
 HASH = re.compile(r"[0-9a-f]{16,64}", re.ASCII)
 VERSION = re.compile(r"\d+(\.[0-9A-Za-z]+){1,5}([+-][0-9A-Za-z.]+)?", re.ASCII)
-AHEAD = datetime.timedelta(days=1)  # by which the clock of another machine may be wrong
+MAX_CLOCK_SKEW = datetime.timedelta(days=1)  # by which the clock of another machine may be wrong
 LYING, HANGING = "lying", "hanging"  # how parts leave
 AMONG = " or "  # between the names of what counts as one
 
@@ -198,11 +198,11 @@ def verified(path: str | PathLike[str] | None) -> Verified | VoidTrial | None:
     if path is None or str(path) == "-":
         return None
     root, _ = documents.read(path)
-    entry = root.find(SECTION) if root.kind == "mapping" else None
+    entry = root.find(VERIFIED_SECTION) if root.kind == "mapping" else None
     if entry is None:
         return None
     if entry.value.kind != "mapping":
-        return VoidTrial((f"{SECTION} is no mapping",))
+        return VoidTrial((f"{VERIFIED_SECTION} is no mapping",))
     text = {one.key: one.value.text for one in entry.value.entries}  # of a list or a mapping ''
     faults = [*_faults_of_fields(text)]
     if faults:
@@ -271,7 +271,7 @@ def _date(text: str) -> datetime.date:
     if not text.isascii():
         raise ValueError
     date = datetime.date.fromisoformat(text)
-    if date > datetime.datetime.now(datetime.UTC).date() + AHEAD:
+    if date > datetime.datetime.now(datetime.UTC).date() + MAX_CLOCK_SKEW:
         raise ValueError
     return date
 
@@ -343,7 +343,7 @@ def _contradictions(block: Verified) -> Iterator[str]:
 
 def _shortfalls(block: Verified) -> Iterator[str]:
     """Why a design with these figures does not hold."""
-    enough = 1.0 - ROUNDING
+    enough = 1.0 - VERIFIED_TOLERANCE
     if not block.target > 0.0 or block.low < enough * RATE_KEPT * block.target:
         yield "less than the target was delivered"
     if (block.purity or 0.0) < enough * PURE:

@@ -9,28 +9,27 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew import units
-from feederscrew.bowl import unbalance
+from feederscrew.bowl import schema
 from feederscrew.bowl.record import Bowl, Machine
-from feederscrew.bowl.schema import KEYS
+from feederscrew.bowl.schema import BOWL_KEYS
 from feederscrew.bowl.settings import Setting, of_device
 from feederscrew.designing.nearest import tried_nearest
 from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import HOLDS, DesignRequest, DesignStudy
 from feederscrew.errors import FeederError
-from feederscrew.machine import checks, drive_sought
-from feederscrew.machine.feasibility import is_two_axis
+from feederscrew.machine import checks, drive_sizing
+from feederscrew.machine.drive_sizing import is_two_axis
 from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
-from feederscrew.solidbowl.materials import STEEL
-from feederscrew.solidbowl.plan import CHORD
+from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import solidbowl
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.rate import LEAST
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling.isolating import proposal as static
-from feederscrew.tooling.isolating.chain import Wishes
+from feederscrew.tooling.isolating.chain import DesignConstraints
 
 DRIVE = (
     ("frequency", 1.0, "Hz"),
@@ -78,11 +77,17 @@ def tooled(
     """
     if not proposal.cuts:
         return None
-    given = static.task(
-        ways.lying, weights, proposal.row, margin, 1.0, proposal.before, wishes=Wishes(up=request.up)
+    given = static.design_task(
+        ways.lying,
+        weights,
+        proposal.row,
+        margin,
+        1.0,
+        proposal.before,
+        constraints=DesignConstraints(up=request.up),
     )
     same = np.isin(ways.leaves_as, proposal.states(ways))
-    found = static.told(given, proposal.cuts, ways.through < 0.5, same)
+    found = static.propose(given, proposal.cuts, ways.through < 0.5, same)
     designs = tuple(found if k == proposal.row else None for k in range(len(weights)))
     return ToolingStudy(
         part, bowl, aspects, request.rule, margin, ways.lying, weights, designs, proposal.row, request.up
@@ -125,12 +130,11 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     try:
         made = bowls.settings(None, (*kept, *own))
         stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
-        sized, why = _sized(
-            (*made, *devices), study, (*bowls.settings(None, (*kept, *own, stroke)), *devices)
-        )
+        tried = bowls.settings(None, (*kept, *own, stroke))
+        sized, why = _sized((*made, *devices), study, (*tried, *devices))
         driven = replace(sized.bowl, drive=study.bowl.drive)  # at the stroke that was tried
-        words = drive_sought.given(listed, "machine")
-        machine = driven.machine if "leaves" in words else drive_sought.on_leaves(driven, words)
+        words = drive_sizing.user_keys(listed, "machine")
+        machine = driven.machine if "leaves" in words else drive_sizing.on_leaves(driven, words)
         under = [f"machine.{name}={text}" for name, text in _machine(machine)]
         lines = _last((*kept, *own, stroke, *under, *_fill(study.part, sized)))
         own_settings = (*bowls.settings(None, lines), *devices)
@@ -139,7 +143,7 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
         return Built(why=str(fault))
     sheet = replace(sheet, turns=sized.turns)
     owned = "leaves" in words or is_two_axis(sheet.bowl.drive)
-    lacks = "" if owned else drive_sought.leaves_lack(sheet.bowl)
+    lacks = "" if owned else drive_sizing.leaf_shortfall(sheet.bowl)
     said = {*study.warnings, *checks.remarks(sheet)}
     return Built(sheet, _drawn(sheet, sized), why, tuple(_ordered(own_settings, study, said)), lacks)
 
@@ -178,8 +182,8 @@ def settings_of(bowl: Bowl, given: Collection[str] = ()) -> tuple[Setting, ...]:
         What differs from the defaults is given as well.
     """
     usual, lines = bowls.default(), {}
-    for key in KEYS:
-        if key.field in lines or key.word in unbalance.WORDS:
+    for key in BOWL_KEYS:
+        if key.field in lines or key.word in schema.UNBALANCE_NAMES:
             continue
         pair: list[Any] = [reduce(getattr, key.field.split("."), one) for one in (bowl, usual)]
         value, default = pair
@@ -215,7 +219,7 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
     if study.bowl is None or sheet is None:
         return replace(study, machine_lacks=solid) if solid else study
     warnings = [*checks.remarks(sheet)]
-    warnings += [] if built.drawn is None else checks.of_the_solid(built.drawn)
+    warnings += [] if built.drawn is None else checks.solid_remarks(built.drawn)
     warnings += built.remarks
     other = sheet.mismatch
     lacking: tuple[str, ...] = (
@@ -271,7 +275,7 @@ def _sized(
     Where the static rule lets nothing or too little through, it is the bowl at the stroke that was tried,
     whose settings are ``tried``; where that makes no solid, that of a track without devices.
     """
-    wanted = solidbowl.asked(settings, solid=True, material=STEEL, chord=CHORD)
+    wanted = solidbowl.asked(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
     target = study.request.target
     for own, as_tried in ((settings, False), (tried, True)):
         try:
@@ -300,5 +304,5 @@ def _machine(machine: Machine) -> Iterator[tuple[str, str]]:
     yield "leaf_thickness", f"{1e3 * machine.leaf_thickness:.6g} mm"
     yield "leaf_length", f"{1e3 * machine.leaf_length:.6g} mm"
     yield "leaves", f"{machine.leaves:.0f}"
-    for word, value in unbalance.told(machine).items():
-        yield word, f"{value:.12g} {'m' if word in unbalance.CENTRE else 'kg m2'}"
+    for word, value in schema.unbalance_values(machine).items():
+        yield word, f"{value:.12g} {'m' if word in schema.CENTRE else 'kg m2'}"

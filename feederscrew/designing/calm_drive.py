@@ -8,16 +8,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from feederscrew.bowl.direction import vibration_angle
-from feederscrew.bowl.record import Bowl, Track
+from feederscrew.bowl.record import Bowl, Track, vibration_angle
 from feederscrew.bowl.settings import has_machine
 from feederscrew.conveying import answer
 from feederscrew.conveying.hop import hop
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.errors import ConfigError
-from feederscrew.machine import building, drive_sought, sizing
-from feederscrew.machine.feasibility import is_two_axis
-from feederscrew.machine.springs import springs
+from feederscrew.machine import drive_sizing, sizing
+from feederscrew.machine.drive_sizing import is_two_axis
+from feederscrew.machine.springs import analyse_springs
 from feederscrew.machine.stroke import greatest_amplitude
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
@@ -122,7 +121,7 @@ def section(
     known = {"diameter": "track.radius", "width": "track.width", "climb": "track.climb"}
     kept = {"diameter": 2.0 * plain.track.radius, "width": plain.track.width, "climb": plain.track.climb}
     own = {name: kept[name] for name, key in known.items() if key in given}
-    size = sizing.size(sizing.lying(part, aspects), part.source, rules, sorts=True, **own)
+    size = sizing.size_bowl(sizing.find_lying(part, aspects), part.source, rules, sorts=True, **own)
     track = Track(
         climb=_tenths(size.climb, np.radians(0.1)) if "climb" not in own else size.climb,
         bank=plain.track.bank if "track.bank" in given else bank,
@@ -293,9 +292,9 @@ def _frequencies(made: PlainBowl) -> tuple[float, ...]:
 
 def _controlled(made: PlainBowl) -> float:
     """The frequency [Hz] at which a controller runs a machine that has its leaves, below its natural one."""
-    rules, machine = made.bowl.sizing, building.machine_on(made.bowl, made.given)
+    rules, machine = made.bowl.sizing, drive_sizing.machine_on(made.bowl, made.given)
     detuning = 0.5 * (rules.least_detuning + rules.greatest_detuning)
-    return round(float(springs(machine).natural_frequency) / (1.0 + detuning), 1)
+    return round(float(analyse_springs(machine).natural_frequency) / (1.0 + detuning), 1)
 
 
 def _angles(made: PlainBowl) -> tuple[float, ...]:
@@ -304,7 +303,7 @@ def _angles(made: PlainBowl) -> tuple[float, ...]:
     if "drive.vibration_angle" in made.given:
         return (bowl.drive.vibration_angle,)
     if "machine.spring_angle" in made.given:
-        machine = building.machine_on(bowl, made.given)
+        machine = drive_sizing.machine_on(bowl, made.given)
         return (float(vibration_angle(machine, bowl.track.radius, bowl.track.climb)),)
     return TRACK_ANGLES
 
@@ -329,7 +328,7 @@ def _can_build(made: PlainBowl, bowl: Bowl) -> bool:
     """Whether a machine of usual springs and magnets makes the drive; what the user owns counts as built."""
     if is_two_axis(bowl.drive) or made.has_stroke or "machine.leaves" in made.given:
         return True
-    return not drive_sought.lacks(bowl, frozenset(made.given))
+    return not drive_sizing.drive_shortfall(bowl, frozenset(made.given))
 
 
 def with_amplitude(bowl: Bowl, amplitude: float) -> Bowl:

@@ -15,12 +15,12 @@ from feederscrew.designing.record import DEVICE, DRIVE, PART, Attempt
 from feederscrew.designing.robust import denied, robust_run
 from feederscrew.designing.searching import Candidate
 from feederscrew.dropping.plate.drive import throw_number
-from feederscrew.rates import arrivals, spacing, stream
-from feederscrew.rates.tipping import FLAT
+from feederscrew.rates import arrivals, stream
+from feederscrew.rates.tipping import FLAT_KIND
 from feederscrew.studies import solidbowl
 from feederscrew.studies.rate import shares
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
-from feederscrew.tooling.hanging import neck
+from feederscrew.tooling.orientations import neck
 
 EACH = 2  # parts of each orientation in a short trial
 MENDED = 3  # times that one proposal is mended
@@ -322,7 +322,7 @@ def _banks(search, aspects):
     if "track.bank" in search.given:
         return (search.plain.track.bank,)
     chances = np.nan_to_num(aspects.chances[search.request.rule])
-    rolling = float(chances[[kind != FLAT for kind in aspects.kinds]].sum())
+    rolling = float(chances[[kind != FLAT_KIND for kind in aspects.kinds]].sum())
     return calm_drive.STEEP_BANKS if rolling > ROLLS * chances.sum() else calm_drive.BANKS
 
 
@@ -599,7 +599,7 @@ def driven_for(search, made, proposal, weights):
     for _ in range(2):
         velocity = max(asked(search, ways, weights, gain, apart), search.least)
         bowl = calm_drive.driven(made, velocity, hops=not proposal.devices)
-        apart = spacing.needed(proposal.devices, ways.lying, bowl)
+        apart = stream.needed_spacing(proposal.devices, ways.lying, bowl)
         if not apart > 0.0:
             break
     return bowl

@@ -42,7 +42,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.wishes import may_be_left_out, may_be_up
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
-from feederscrew.tooling.devices.named import rows
+from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.tooling.isolating.design import place
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial.result import TrialRun
@@ -376,7 +376,7 @@ def _in_queues(
     line = queues.FollowedRow(
         search.part, candidate.bowl, known.aspects, candidate.ways, candidate.weights,
         candidate.tried.states, search.request.seed, search.told, RATE_KEPT * search.request.target,
-        candidate.proposal.any_heading, search.run("queue").progress, entering,
+        candidate.proposal.any_heading, search.run("queue").progress, entering, search.request.jobs,
     )  # fmt: skip
     study = _queued(study, queues.filled(line, whole=whole))
     return _queued(study, queues.longer(line, study))

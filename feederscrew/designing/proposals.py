@@ -11,10 +11,9 @@ from feederscrew.designing.slots import STEP, widened
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import KINDS, cost_class, dearer, names
-from feederscrew.tooling.devices.named import nearest
-from feederscrew.tooling.devices.named import rows as rows_of
-from feederscrew.tooling.isolating.chain import WHERE, judged, limits, numbered
-from feederscrew.tooling.isolating.shop_values import millimetres
+from feederscrew.tooling.devices.orientation_names import nearest
+from feederscrew.tooling.devices.orientation_names import rows as rows_of
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, in_mm, judge_cut, limits, numbered
 
 ROWS = 6  # orientations for which chains are proposed, the most frequent first
 HOLES = names(searched=True)  # holes of several corners, which a shop's tolerance soon spoils
@@ -199,7 +198,7 @@ def proposed(part, bowl, aspects, row, known, request, way):
     if found is None or not found.efficiency > 0.0 or not (found.cuts or found.before):
         return None
     cuts = tuple(pulses.quickened(rounded(cut, known.lying, row), known.lying) for cut in found.cuts)
-    step = f"proposed with margins of {millimetres(way.margin)}"
+    step = f"proposed with margins of {in_mm(way.margin)}"
     same, free = alike(known.lying, row, request.up), free_headings(known.lying, row, request)
     hopeful = found.hopeful or 0.0
     pure = 0.5 * (float(np.nan_to_num(found.purity)) + hopeful)
@@ -231,7 +230,7 @@ def moved(cut, limit, every, row):
     limit = float(np.round(limit / STEP) * STEP)
     device = cut.device.valued(limit)
     must = np.array([one.name in cut.returns for one in every])
-    return judged(every, row, device, must, cut.smallest, cut.largest)
+    return judge_cut(every, row, device, must, cut.smallest, cut.largest)
 
 
 def mended(proposal, tried, every):
@@ -284,7 +283,7 @@ def swept(proposal, tried, every):
         ends = [replace(one, sweep=other.sweep).rewritten() for one in (cut.smallest, cut.largest)]
         cuts = (
             *proposal.cuts[:place],
-            judged(every, proposal.row, other, must, *ends),
+            judge_cut(every, proposal.row, other, must, *ends),
             *proposal.cuts[place + 1 :],
         )
         sweep = round(np.degrees(other.sweep))
@@ -375,11 +374,11 @@ def relieved(candidate):
         return None
     wanted = [every[k] for k in trying.wanted_rows(candidate.ways, candidate.tried.states)]
     makers = [KINDS[kind] for kind in names(relieves=True)]
-    found = [kind.relieving(wanted, MARGINS[-1], WHERE) for kind in makers] if wanted else []
+    found = [kind.relieving(wanted, MARGINS[-1], DESIGN_KEY) for kind in makers] if wanted else []
     device = next((one for one in found if one is not None), None)
     if device is None:
         return None
-    cut = judged(every, proposal.row, device, np.zeros(len(every), bool), device, device)
+    cut = judge_cut(every, proposal.row, device, np.zeros(len(every), bool), device, device)
     step = f"{device.name} of {device.text} before it, for what backs up"
     return replace(proposal, cuts=(cut, *proposal.cuts), step=step)
 
@@ -424,10 +423,10 @@ def dropped_before(proposal, others, wanted, every):
         return None
     (kind, middle, listed), room = chosen, best[1]
     limit = float(np.round(middle / STEP) * STEP)
-    device = kind.proposal(WHERE, limit).rewritten()
+    device = kind.proposal(DESIGN_KEY, limit).rewritten()
     must = np.array([k in listed for k in range(len(every))])
     ends = [device.valued(limit + way) for way in (-0.5 * room, 0.5 * room)]
-    cut = judged(every, proposal.row, device, must, *ends)
+    cut = judge_cut(every, proposal.row, device, must, *ends)
     return replace(proposal, cuts=(cut, *proposal.cuts), step=f"{kind.kind} of {device.text} before it")
 
 
@@ -442,4 +441,4 @@ def lost_at(tried, kind):
 
 def known_through(part, aspects, bowl):
     """Return what becomes of every orientation on the track and through the devices of a bowl."""
-    return stream.orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
+    return stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)

@@ -5,10 +5,10 @@ from dataclasses import replace
 from typing import Any
 
 from feederscrew.designing.trying import Tried
-from feederscrew.tooling.devices.sensing import PULSE
+from feederscrew.tooling.devices.pneumatics import PULSE
 from feederscrew.tooling.isolating.chain import Cut
 from feederscrew.tooling.orientations import Orientation
-from feederscrew.tooling.verdicts import Meeting
+from feederscrew.tooling.verdicts import DeviceEncounter
 
 STEP, LEAST = 5e-3, 4  # [s] to which a pulse is set, and of how many of them the shortest one is
 RESERVE = 6.0  # times as long as takes off what stands before the nozzles: they do not blow at its middle
@@ -34,7 +34,7 @@ def quickened(cut: Cut, every: Sequence[Orientation]) -> Cut:
     device: Any = cut.device  # a sorter, where it senses
     if not device.senses:
         return cut
-    gone = [Meeting(one, every) for one in every if one.name in cut.returns]
+    gone = [DeviceEncounter(one, every) for one in every if one.name in cut.returns]
     pushes = [device.jet.push(met.one, every) for met in gone]
     for steps in range(LEAST, round(device.time / STEP)):
         time = steps * STEP

@@ -1,8 +1,11 @@
 """The queue at low, normal and high fill, as a buyer accepts a feeder."""
 
 import math
+import queue as fifo
+import threading
 from collections import Counter
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,7 +25,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
-from feederscrew.tooling.hanging import Hanging
+from feederscrew.tooling.orientations import Hanging
 from feederscrew.trial.queue import GAPS, PartsQueue, QueuedParts, QueuePlan
 
 FILLS = (("low", trying.LOW), ("normal", GAPS), ("high", 0.0))  # free way between parts over their length
@@ -51,6 +54,7 @@ class FollowedRow:
     progress: Callable[[int, int], None] | None = None  # told how many periods are done, of how many
     # (M,) [1] in which they come where they touch on their way: as they entered the track; as shares without
     touching: np.ndarray | None = None
+    jobs: int = 1  # cores: fills are then followed side by side, with the same outcome
 
     def queue(self, gaps: float, seed: int) -> PartsQueue:
         """Return a queue of PARTS that come with a mean free way of so many lengths between them."""
@@ -164,23 +168,97 @@ def filled(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, ...]:
     running: dict[str, PartsQueue] = {}
     seen: dict[str, FilledQueue] = {}
     for seconds in rounds():
-        for name, gaps in FILLS:
-            try:
-                row.say(name, seconds)
-                if name not in running:
-                    running[name] = row.queue(gaps, row.seed)
-                queue = running[name]
-                others = sum(one.periods for one in running.values() if one is not queue)
-                for until in _bits(queue.time, seconds):
-                    queue.follow(until, row.progressed(others))
-                    seen[name] = row.count(name, gaps, queue.seen())
-                    if not whole and is_denied(tuple(seen.values()), seen[name], row.least):
-                        return tuple(seen.values())
-            except KeyboardInterrupt:
-                return _stopped(row, name, gaps, running, seen)
+        follower = _FillsSideBySide if row.jobs > 1 else _FillsInTurn
+        with follower(row, running, seconds) as fills:
+            for name, gaps in FILLS:
+                try:
+                    row.say(name, seconds)
+                    for until in fills.looks(name):
+                        seen[name] = fills.follow(name, gaps, until)
+                        if not whole and is_denied(tuple(seen.values()), seen[name], row.least):
+                            return tuple(seen.values())
+                except KeyboardInterrupt:
+                    fills.stop()
+                    return _stopped(row, name, gaps, running, seen)
         if not whole and is_sure(tuple(seen.values()), row.least):
             break
     return tuple(seen.values())
+
+
+class _FillsInTurn:
+    """The queues of all fills, each followed when it is asked for."""
+
+    def __init__(self, row: FollowedRow, running: dict[str, PartsQueue], seconds: float) -> None:
+        self.row, self.running, self.seconds = row, running, seconds
+
+    def __enter__(self) -> "_FillsInTurn":
+        return self
+
+    def __exit__(self, *fault: object) -> None:
+        self.stop()
+
+    def looks(self, name: str) -> tuple[float, ...]:
+        """Return the times [s] at which a fill is looked at in this round."""
+        return _bits(self.running[name].time if name in self.running else 0.0, self.seconds)
+
+    def follow(self, name: str, gaps: float, until: float) -> FilledQueue:
+        """Return what a fill did until a time [s]."""
+        queue = self.queue(name, gaps)
+        others = sum(one.periods for one in self.running.values() if one is not queue)
+        queue.follow(until, self.row.progressed(others))
+        return self.row.count(name, gaps, queue.seen())
+
+    def queue(self, name: str, gaps: float) -> PartsQueue:
+        """Return the queue of a fill."""
+        if name not in self.running:
+            self.running[name] = self.row.queue(gaps, self.row.seed)
+        return self.running[name]
+
+    def stop(self) -> None:
+        """Follow no fill any further."""
+
+
+class _FillsSideBySide(_FillsInTurn):
+    """The same on several cores: all fills of a round begin at once, the densest first: it takes longest."""
+
+    def __init__(self, row: FollowedRow, running: dict[str, PartsQueue], seconds: float) -> None:
+        super().__init__(row, running, seconds)
+        self.times = {name: super(_FillsSideBySide, self).looks(name) for name, _ in FILLS}
+        self.counted: dict[str, fifo.SimpleQueue] = {name: fifo.SimpleQueue() for name, _ in FILLS}
+        self.stopped, self.pool = threading.Event(), ThreadPoolExecutor(row.jobs)
+        self.tasks = {name: self.pool.submit(self._follow_all, name, gaps) for name, gaps in reversed(FILLS)}
+
+    def looks(self, name: str) -> tuple[float, ...]:
+        """Return the times [s] at which a fill is looked at in this round."""
+        return self.times[name]
+
+    def follow(self, name: str, gaps: float, until: float) -> FilledQueue:
+        """Return what a fill did until a time [s], once its thread has come so far."""
+        outcome = self.counted[name].get()
+        if outcome is None:
+            self.tasks[name].result()  # raises what ended it
+        self.row.progressed(0)(sum(one.periods for one in list(self.running.values())), 0)
+        return outcome
+
+    def stop(self) -> None:
+        """End the threads, each after the period that it is in."""
+        self.stopped.set()
+        self.pool.shutdown(cancel_futures=True)
+
+    def _follow_all(self, name: str, gaps: float) -> None:
+        """Follow one fill through the round, in a thread."""
+
+        def end_where_stopped(*_: int) -> None:
+            if self.stopped.is_set():
+                raise KeyboardInterrupt
+
+        try:
+            queue = self.queue(name, gaps)
+            for until in self.times[name]:
+                queue.follow(until, end_where_stopped)
+                self.counted[name].put(self.row.count(name, gaps, queue.seen()))
+        finally:
+            self.counted[name].put(None)  # nothing more comes: who waits learns what ended it
 
 
 def rounds() -> tuple[float, ...]:

@@ -12,6 +12,7 @@ from feederscrew import check
 from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
 from feederscrew.designing import trying
 from feederscrew.designing.record import RobustRun
+from feederscrew.dropping.pool import gather
 from feederscrew.dropping.toss_runs import scattered
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
@@ -19,7 +20,7 @@ from feederscrew.part.hull import convex_hull
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.named import place_of
+from feederscrew.tooling.devices.orientation_names import place_of
 from feederscrew.tooling.fates import at_entry
 
 FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side
@@ -202,35 +203,39 @@ def robust_run(
         draw tries the wanted orientation and some others, drawn by their shares. Where a wanted part comes
         back, AGAIN more of each wanted orientation are tried: it is offered again, and costs rate.
     """
-    held, wrong, speeds, done, stopped = 0, Counter[str](), [], 0, False
+
+    def draw_one(draw):
+        return _draw(
+            part, bowl, known, shares, np.atleast_1d(wanted), tolerance, (run.seed, draw),
+            any_heading, spared, enough,
+        )  # fmt: skip
+
+    def work(begin):
+        tasks: list[Any] = []
+        failures = 0
+        for done in range(draws):
+            while len(tasks) < min(done + run.jobs, draws):
+                tasks.append(begin(draw_one, len(tasks)))
+            failures += bool(tasks[done].result()[0])
+            run.tell(done + 1, draws)
+            if failures > most:
+                return
+
+    most = draws if allowed is None else allowed
     try:
-        for draw in range(draws):
-            faults, speed = _draw(
-                part,
-                bowl,
-                known,
-                shares,
-                np.atleast_1d(wanted),
-                tolerance,
-                (run.seed, draw),
-                run.jobs,
-                any_heading,
-                spared,
-                enough,
-            )
-            held, done = held + (not faults), draw + 1
-            wrong.update(set(faults))
-            speeds.append(speed)
-            run.tell(done, draws)
-            if allowed is not None and done - held > allowed:
-                break
+        outcomes, stopped = gather(work, run.jobs)  # after an interrupt what was done is counted, and marked
     except KeyboardInterrupt:
-        stopped = True  # what was done is counted, and marked
+        outcomes, stopped = [], True
+    failed = np.cumsum([bool(wrongs) for wrongs, _ in outcomes])
+    outcomes = outcomes[: int((failed <= most).sum()) + 1]  # alike for any number of jobs
+    held, done = sum(not wrongs for wrongs, _ in outcomes), len(outcomes)
+    wrong = Counter(fault for wrongs, _ in outcomes for fault in set(wrongs))
+    speeds = [speed for _, speed in outcomes]
     worst = "" if not wrong else f"{wrong.most_common(1)[0][0]} in {wrong.most_common(1)[0][1]} of {done}"
     return RobustRun(done, held, worst, float(min(speeds, default=0.0)), partial=stopped)
 
 
-def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading, spared, enough):
+def _draw(part, bowl, known, shares, wanted, tolerance, seed, any_heading, spared, enough):
     """What goes wrong in one draw, and the velocity there."""
     rng = np.random.default_rng(seed)
     other = drawn_part(part, tolerance, rng)
@@ -238,7 +243,7 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading,
     chosen = drawn_rows(known, shares, wanted, rng, spared)
     try:
         aspects = find(other)
-        bare = stream.orientations(other, aspects, bowl.track, (), bowl=driven)
+        bare = stream.follow_orientations(other, aspects, bowl.track, (), bowl=driven)
         driven = replace(driven, devices=_named(driven.devices, known.lying, bare.lying))
         lying = at_entry(bare.lying, driven.devices)
         rows = [matched(known.lying[k], lying) for k in chosen]
@@ -250,7 +255,7 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading,
         wanted_rows = [rows[0], *alike]
         tried = trying.single(
             other, driven, ways, even, wanted_rows, rows=list(dict.fromkeys(rows)), each=1,
-            run=RunSettings(sum(seed), jobs), **own,
+            run=RunSettings(sum(seed)), **own,
         )  # fmt: skip
         counting = trying.wanted_rows(ways, tried.states[:1])
         if any(came_back(tried, row) for row in tried.rows if row in counting):
@@ -258,7 +263,7 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading,
             places = [matched(known.lying[k], lying) for k in again]
             more = trying.single(
                 other, driven, ways, even, wanted_rows, rows=list(dict.fromkeys(places)), each=AGAIN,
-                run=RunSettings(sum(seed) + 1, jobs), **own,
+                run=RunSettings(sum(seed) + 1), **own,
             )  # fmt: skip
             weights = {place: float(shares[k]) for k, place in zip(again, places)}
             spared = (*spared, *again) if comes_through(more, weights, enough) else spared

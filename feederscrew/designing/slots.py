@@ -6,11 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.tooling.hanging import neck
-from feederscrew.tooling.isolating.chain import judged
-from feederscrew.tooling.isolating.rails import RAIL
-from feederscrew.tooling.isolating.shop_values import millimetres
-from feederscrew.tooling.orientations import Orientation
+from feederscrew.tooling.isolating.chain import in_mm, judge_cut
+from feederscrew.tooling.isolating.design import RAIL
+from feederscrew.tooling.orientations import Orientation, neck
 
 STEP = 5e-5  # [m] to which a shop makes a value
 WIDER, HELD = 0.35, 0.8  # of what the head is wider than the slot; of the head, that a slot may be
@@ -33,7 +31,7 @@ def widened(proposal: Any, every: Sequence[Orientation]) -> Any:
             continue
         device = cut.device.with_span(span)
         must = np.array([one.name in cut.returns for one in every])
-        other = judged(every, proposal.row, device, must, cut.smallest, cut.largest)
+        other = judge_cut(every, proposal.row, device, must, cut.smallest, cut.largest)
         cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
-        return replace(proposal, cuts=cuts, step=f"slot widened to {millimetres(span[1] - span[0])}")
+        return replace(proposal, cuts=cuts, step=f"slot widened to {in_mm(span[1] - span[0])}")
     return None

@@ -10,12 +10,11 @@ import numpy as np
 from feederscrew.bowl.record import Bowl
 from feederscrew.mechanics.wall.outline import rests
 from feederscrew.part.record import Part
-from feederscrew.rates import spacing, stream
+from feederscrew.rates import stream
 from feederscrew.resting.aspects import Aspects
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.hanging import Hanging
-from feederscrew.tooling.orientations import Orientation
+from feederscrew.tooling.orientations import Hanging, Orientation
 from feederscrew.trial import course, runs
 from feederscrew.trial.looks import AspectsBelow
 
@@ -258,7 +257,7 @@ def single(
         turns=tuple(_turns(seen, one & ~asked) for one in own),
         velocity=float(moving.mean()) if len(moving) else 0.0,
         state=states[0], states=states, deepest=float(seen.depths.max(initial=0.0)),
-        apart=spacing.needed(bowl.devices, known.lying, bowl), seen=(seen,),
+        apart=stream.needed_spacing(bowl.devices, known.lying, bowl), seen=(seen,),
     )  # fmt: skip
 
 

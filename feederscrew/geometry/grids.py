@@ -52,7 +52,7 @@ class Grid:
 
 
 def axis(span):
-    """Return the GridAxis of a ``bowl.vary.KeyRange``."""
+    """Return the GridAxis of a ``bowl.reading.KeyRange``."""
     key = span.key
     return GridAxis(key.column, check.frozen(np.array(span.values)), units.factor(key.unit, key.dimension))
 

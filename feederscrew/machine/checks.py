@@ -6,13 +6,42 @@ from typing import Any
 import numpy as np
 
 from feederscrew import units
+from feederscrew.bowl.record import Sizing
 from feederscrew.conveying import hop
 from feederscrew.errors import FeederError
-from feederscrew.machine import speeds
 from feederscrew.machine.stroke import greatest_amplitude
 
+MM_S = 1e-3  # [m/s]
+
+
+def speed_remark(velocity: float, rules: Sizing | None) -> list[str]:
+    """Return what is odd about a conveying velocity.
+
+    Source: trade, the keys ``sizing.slowest`` and ``sizing.fastest``; docs/bowl_file.md.
+
+    Parameters
+    ----------
+    velocity : float [m/s]
+        NaN where there is no steady one.
+    rules : Sizing or None
+        Its slowest and fastest speed; None of a bowl made by hand, which has none.
+
+    Returns
+    -------
+    list of str
+        One line, or none.
+    """
+    if rules is None or np.isnan(velocity) or rules.slowest <= velocity <= rules.fastest:
+        return []
+    between = f"{rules.slowest / MM_S:.4g} to {rules.fastest / MM_S:.4g} mm/s"
+    side = "slower" if velocity < rules.slowest else "faster"
+    return [
+        f"{velocity / MM_S:.3g} mm/s is {side} than bowls run ({between}): check stroke, angle and friction"
+    ]
+
+
 MM, MPA = 1e-3, 1e6
-UNEVEN = 0.05  # of the stroke round a bowl, that parts show
+VISIBLE_STROKE_SPREAD = 0.05  # of the stroke round a bowl, that parts show
 
 
 def remarks(sheet: Any) -> tuple[str, ...]:
@@ -33,10 +62,10 @@ def remarks(sheet: Any) -> tuple[str, ...]:
         found += [*_lowest(sheet), *_size(sheet), *_hand(sheet)]
     lines = [str(one) for one in found]
     tipping = () if sheet.order is None else sheet.order.tipping
-    return (*lines, *tipping, *speeds.remark(sheet.answer.velocity, sheet.bowl.sizing))
+    return (*lines, *tipping, *speed_remark(sheet.answer.velocity, sheet.bowl.sizing))
 
 
-def of_the_solid(sheet: Any) -> tuple[str, ...]:
+def solid_remarks(sheet: Any) -> tuple[str, ...]:
     """Return the remarks on a machine that its bowl as a solid alone gives, of a MachineSheet with one."""
     return (*(str(one) for one in _rocking(sheet)), *sheet.solid.remarks)
 
@@ -45,7 +74,7 @@ def _rocking(sheet: Any) -> Iterator[FeederError]:
     if sheet.rocking is None:
         return
     as_is, balanced = sheet.rocking
-    if as_is.greatest - as_is.least > UNEVEN:
+    if as_is.greatest - as_is.least > VISIBLE_STROKE_SPREAD:
         weight, angle = sheet.solid.balance
         low, high, rest = (100.0 * (one - 1.0) for one in (as_is.least, as_is.greatest, balanced.greatest))
         what = f"its stroke differs by {low:+.2g} to {high:+.2g} % round the bowl, whose mass lies to a side"

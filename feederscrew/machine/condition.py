@@ -13,13 +13,18 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError
 from feederscrew.machine.springs import gain
-from feederscrew.machine.stroke import TURN
+from feederscrew.machine.stroke import FULL_TURN_RAD
 
 # word: dimension
-WORDS = {"acceleration": "acceleration", "stroke": "length", "frequency": "frequency", "fill": "number"}
-NEAR = 0.05  # of a value: as far as a sticker and a usual accelerometer tell
-APART = 0.1  # of the stroke: from here on it is another one
-FARTHEST = 3.0  # natural frequencies over that of the drive are looked for up to here
+MEASURED_DIMENSIONS = {
+    "acceleration": "acceleration",
+    "stroke": "length",
+    "frequency": "frequency",
+    "fill": "number",
+}
+MEASUREMENT_TOLERANCE = 0.05  # of a value: as far as a sticker and a usual accelerometer tell
+STROKE_TOLERANCE = 0.1  # of the stroke: from here on it is another one
+MAX_RESONANCE_RATIO = 3.0  # natural frequencies over that of the drive are looked for up to here
 
 
 @dataclass(frozen=True)
@@ -53,11 +58,11 @@ def read(text: str) -> dict[str, float]:
     found = {}
     for piece in text.split(","):
         word, _, value = (one.strip() for one in piece.partition("="))
-        if word not in WORDS:
-            mend = f"give some of {', '.join(WORDS)}: 'stroke=0.3 mm'"
+        if word not in MEASURED_DIMENSIONS:
+            mend = f"give some of {', '.join(MEASURED_DIMENSIONS)}: 'stroke=0.3 mm'"
             raise ArgumentError("measured", f"{word!r} is unknown", mend)
         try:
-            found[word] = units.quantity(value, WORDS[word])
+            found[word] = units.quantity(value, MEASURED_DIMENSIONS[word])
         except units.QuantityError as fault:
             raise ArgumentError(f"measured {word}", fault.what, fault.mend) from fault
         most = 1.0 if word == "fill" else math.inf
@@ -68,7 +73,7 @@ def read(text: str) -> dict[str, float]:
     return found
 
 
-def found(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
+def diagnose(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
     """Return a machine as it was found beside what it should do.
 
     Source: docs/bowl.md, "How it is computed" and "Why it feeds 220 for half a minute and then 165".
@@ -95,7 +100,7 @@ def found(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
     acceleration, stroke = values.get("acceleration"), values.get("stroke")
     frequency = values.get("frequency")
     if frequency is None and acceleration and stroke:
-        frequency = math.sqrt(2.0 * acceleration / stroke) / TURN
+        frequency = math.sqrt(2.0 * acceleration / stroke) / FULL_TURN_RAD
     now = _bowl_now(bowl, acceleration, stroke, frequency)
     one = MeasuredMachine(
         fill=level,
@@ -118,7 +123,11 @@ def _bowl_now(
     turning = frequency or bowl.drive.frequency
     if stroke is not None:
         return _moving(bowl, 0.5 * stroke, turning)
-    return None if acceleration is None else _moving(bowl, acceleration / (TURN * turning) ** 2, turning)
+    return (
+        None
+        if acceleration is None
+        else _moving(bowl, acceleration / (FULL_TURN_RAD * turning) ** 2, turning)
+    )
 
 
 def _moving(bowl: Bowl, amplitude: float, frequency: float) -> Bowl:
@@ -135,7 +144,7 @@ def _causes(one: MeasuredMachine, sheet: Any, now: Bowl | None) -> Iterator[Any]
     if now is not None and not listed:
         listed = list(_of_stroke(one, sheet, 2.0 * now.drive.amplitude / one.should["stroke"]))
     if not listed:
-        listed = [f"the machine does what it should, within {100.0 * APART:.0f} %"]
+        listed = [f"the machine does what it should, within {100.0 * STROKE_TOLERANCE:.0f} %"]
     yield from listed
 
 
@@ -144,30 +153,36 @@ def _of_frequency(one: MeasuredMachine, sheet: Any) -> Iterator[Any]:
     if one.frequency is None:
         return
     ratio = one.frequency / one.should["frequency"]
-    if abs(ratio - 1.0) <= NEAR:
+    if abs(ratio - 1.0) <= MEASUREMENT_TOLERANCE:
         return
     if one.acceleration and one.stroke:
         angle, seen = sheet.stroke.angle, ratio**2
         for part, share in (("horizontally", math.cos(angle)), ("upright", math.sin(angle))):
-            if abs(seen / share - 1.0) <= 2.0 * NEAR and abs(share - 1.0) > 2.0 * NEAR:
+            if (
+                abs(seen / share - 1.0) <= 2.0 * MEASUREMENT_TOLERANCE
+                and abs(share - 1.0) > 2.0 * MEASUREMENT_TOLERANCE
+            ):
                 yield (
                     f"the accelerometer stands {part}, not along the motion: there it shows {share:.2f} of "
                     "the acceleration"
                 )
     for times, said in ((2.0, "both half-waves pull: the controller is set to full wave"),
                         (0.5, "only one half-wave pulls: the controller is set to half wave")):  # fmt: skip
-        if abs(ratio / times - 1.0) <= 2.0 * NEAR:
+        if abs(ratio / times - 1.0) <= 2.0 * MEASUREMENT_TOLERANCE:
             yield said
     yield f"the drive runs at {one.frequency:.3g} Hz, not at {one.should['frequency']:.3g} Hz"
 
 
 def _of_stroke(one: MeasuredMachine, sheet: Any, ratio: float) -> list[str]:
     """Causes where the stroke is another one; each after the first is another way to explain it."""
-    if abs(ratio - 1.0) <= APART:
+    if abs(ratio - 1.0) <= STROKE_TOLERANCE:
         return []
     drive, damping, known = one.should["frequency"], sheet.bowl.machine.damping, one.natural_frequency
     wanted = float(gain(drive, known, damping)) * ratio
-    sides = [(1.0, FARTHEST), (1.0 / FARTHEST, 1.0)]  # of the drive's frequency, that of the machine first
+    sides = [
+        (1.0, MAX_RESONANCE_RATIO),
+        (1.0 / MAX_RESONANCE_RATIO, 1.0),
+    ]  # of the drive's frequency, that of the machine first
     own, other = (_tuned(wanted, drive, damping, ends) for ends in sides[:: 1 if known >= drive else -1])
     likely = [_retuned(own, known, drive)] if own else []
     if ratio > 1.0:

@@ -5,10 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.direction import vibration_angle
-from feederscrew.bowl.record import Bowl, Machine
+from feederscrew.bowl.record import Bowl, Machine, vibration_angle
 from feederscrew.errors import ArgumentError
-from feederscrew.machine import building, drive_sought
+from feederscrew.machine import drive_sizing
 from feederscrew.units import listed
 
 SPRING_CIRCLE = 0.7  # [1] radius of the springs over that of the bowl (assumption)
@@ -48,7 +47,7 @@ class DriveUnit:
         return f"{self.mains:.0f} Hz {self.wave}"
 
 
-UNITS = (
+DRIVE_UNITS = (
     DriveUnit("d150-100hz", 0.15, 50.0, "full wave"),
     DriveUnit("d200-100hz", 0.20, 50.0, "full wave"),
     DriveUnit("d250-100hz", 0.25, 50.0, "full wave"),
@@ -80,10 +79,12 @@ def unit(name: str) -> DriveUnit:
     ArgumentError
         If there is none.
     """
-    for one in UNITS:
+    for one in DRIVE_UNITS:
         if one.name == name.strip().casefold():
             return one
-    raise ArgumentError(f"machine {name!r}", "is not known", f"give {listed([one.name for one in UNITS])}")
+    raise ArgumentError(
+        f"machine {name!r}", "is not known", f"give {listed([one.name for one in DRIVE_UNITS])}"
+    )
 
 
 def machine_of(one: DriveUnit) -> Machine:
@@ -107,7 +108,7 @@ def _bowl(one: DriveUnit) -> Bowl:
     circle = round(SPRING_CIRCLE * track.radius, 3)
     under = replace(plain.machine, spring_angle=one.spring_angle, spring_radius=circle, supply=one.frequency)
     plain = replace(plain, track=track, machine=under)
-    guess = building.machine_on(plain, ("machine.spring_angle", "machine.spring_radius"))
+    guess = drive_sizing.machine_on(plain, ("machine.spring_angle", "machine.spring_radius"))
     under = replace(
         guess,
         bowl_mass=_rounded(guess.bowl_mass),
@@ -122,7 +123,7 @@ def _bowl(one: DriveUnit) -> Bowl:
         vibration_angle=float(vibration_angle(under, track.radius, track.climb)),
     )
     driven = replace(plain, drive=drive, machine=under)
-    return replace(driven, machine=drive_sought.on_leaves(driven, ()))
+    return replace(driven, machine=drive_sizing.on_leaves(driven, ()))
 
 
 def _rounded(value: float) -> float:
@@ -132,7 +133,7 @@ def _rounded(value: float) -> float:
 
 def lines() -> tuple[str, ...]:
     """Return what ``feeder config init --machine list`` prints: a line for each drive unit."""
-    return tuple(_line(one) for one in UNITS)
+    return tuple(_line(one) for one in DRIVE_UNITS)
 
 
 def _line(one: DriveUnit) -> str:

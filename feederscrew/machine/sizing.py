@@ -1,25 +1,32 @@
-"""The bowl that a part needs: diameter, width and climb of the track, turns."""
+"""The bowl that a part needs: diameter, track, climb, turns; its fill; and the stroke that brings a rate."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.bowl.record import EVEN, Sizing, Track, Unbalance
-from feederscrew.errors import FeederError
+from feederscrew import check, units
+from feederscrew.bowl.record import BALANCED, RIGHT_ANGLE_RAD, Bowl, Machine, Sizing, Track, Unbalance, shares
+from feederscrew.conveying import answer
+from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.geometry.polygons import turned
+from feederscrew.machine.springs import analyse_springs, gain
+from feederscrew.machine.stroke import greatest_amplitude
 from feederscrew.mechanics.wall.stable_headings import headings
 from feederscrew.part.record import Part
+from feederscrew.rates import well_oriented
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import posture
-from feederscrew.tooling.devices.named import nearest
+from feederscrew.tooling.devices.orientation_names import nearest
 
-STRAIGHT = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
-ROUNDS = 200  # of a search that halves its error in each
-SETTLED = 1e-12  # [m]
-ABOVE = 5e-3  # [m] of upright wall over a part on a track or below its rails, at least, where it steps out
-STEEP = 0.9  # slope, a little over 40 deg, of a wall between two turns that lie beside each other
+STRAIGHT_TRACK = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
+MAX_SIZING_ITERATIONS = 200  # of a search that halves its error in each
+DIAMETER_TOLERANCE_M = 1e-12  # [m]
+MIN_WALL_ABOVE_PART_M = (
+    5e-3  # [m] of upright wall over a part on a track or below its rails, at least, where it steps out
+)
+MAX_WALL_SLOPE = 0.9  # slope, a little over 40 deg, of a wall between two turns that lie beside each other
 
 
 @dataclass(frozen=True)
@@ -48,7 +55,7 @@ class Size:
     pitch: float  # [m] rise of one turn
     mass: float | None = None  # [kg] of the bowl, where it is known from its solid
     inertia: float | None = None  # [kg m2] of the same about its axis
-    unbalance: Unbalance = EVEN  # of the same
+    unbalance: Unbalance = BALANCED  # of the same
     room: float | None = None  # [m] radius of its inside at the bottom, where its solid steps outwards
 
 
@@ -61,7 +68,7 @@ class SizedShape:
     length: float  # [m] along the wall
 
 
-def lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = None) -> Lying:
+def find_lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = None) -> Lying:
     """Compute the room a part takes along a wall.
 
     Source: docs/bowl.md, "1. The part, and the rate".
@@ -84,7 +91,7 @@ def lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = None)
         If the part is a card without an outline.
     """
     stood = [posture(part, aspects, aspects.names[row]) for row in np.flatnonzero(aspects.stable)]
-    found = [headings(one, STRAIGHT) for one in stood]
+    found = [headings(one, STRAIGHT_TRACK) for one in stood]
     rows = [(one.aspect, *row) for one in found for row in zip(one.headings, one.lengths, one.widths)]
     counted = rows if wanted is None else [rows[_place([row[:2] for row in rows], wanted)]]
     return Lying(
@@ -95,7 +102,9 @@ def lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = None)
     )
 
 
-def shape(part: Part, aspects: Aspects, track: Track, wanted: tuple[str, float] | None = None) -> SizedShape:
+def size_shape(
+    part: Part, aspects: Aspects, track: Track, wanted: tuple[str, float] | None = None
+) -> SizedShape:
     """Return the wanted orientation on a track, or else the most frequent heading of the first aspect."""
     name = aspects.names[int(np.flatnonzero(aspects.stable)[0])] if wanted is None else wanted[0]
     stood = posture(part, aspects, name)
@@ -105,7 +114,7 @@ def shape(part: Part, aspects: Aspects, track: Track, wanted: tuple[str, float] 
     return SizedShape(outline, float(found.distances[row]), float(found.lengths[row]))
 
 
-def size(
+def size_bowl(
     part: Lying,
     given: str,
     rules: Sizing,
@@ -158,8 +167,12 @@ def _climb(part: Lying, across: float, wide: float, rules: Sizing) -> float:
     """The least climb [rad]: parts pass below the next turn, or below the slope that leads to it."""
     rise, way = rules.headroom * part.tallest + rules.sheet, np.pi * across
     if rules.shape != "cylinder":
-        free = [max(rules.headroom * one, one + ABOVE) for one in (part.tallest, part.hanging) if one > 0.0]
-        rise = sum(free) + STEEP * wide + 4.0 * rules.sheet
+        free = [
+            max(rules.headroom * one, one + MIN_WALL_ABOVE_PART_M)
+            for one in (part.tallest, part.hanging)
+            if one > 0.0
+        ]
+        rise = sum(free) + MAX_WALL_SLOPE * wide + 4.0 * rules.sheet
         way = np.pi * (across - wide)
     return max(rules.least_climb, np.arctan(rise / way))
 
@@ -178,11 +191,11 @@ def _diameters(part: Lying, play: float, rules: Sizing, width: float | None, sor
         least["bend on this track"] = part.length**2 / (2.0 * room) if room > 0.0 else np.inf
         return least
     across = max(least.values())
-    for _ in range(ROUNDS):
+    for _ in range(MAX_SIZING_ITERATIONS):
         before = across
         wide = part.width + play + part.length**2 / (2.0 * across)
         across = max(*least.values(), rules.diameter_per_width * wide)
-        if abs(across - before) < SETTLED:
+        if abs(across - before) < DIAMETER_TOLERANCE_M:
             break
     return least | {"width of the track": rules.diameter_per_width * wide}
 
@@ -208,3 +221,273 @@ def _place(known: Sequence[tuple[str, float]], wanted: tuple[str, float]) -> int
 
 def _rounded_up(value: float, step: float) -> float:
     return float(np.ceil(value / step - 1e-9) * step)
+
+
+FILL_LEVEL_COUNT = 21  # of the curve, from full to empty
+
+
+@dataclass(frozen=True)
+class Fill:
+    """A full bowl."""
+
+    volume: float  # [m3] that the parts take up, gaps included
+    mass: float  # [kg] of the parts
+    inertia: float  # [kg m2] of the parts about the bowl's axis, spread evenly over its floor
+
+
+@dataclass(frozen=True, eq=False)
+class Emptying:
+    """A bowl from full to empty; N levels."""
+
+    levels: np.ndarray  # (N,) [1] of the full bowl, from 1 to 0
+    masses: np.ndarray  # (N,) [kg] in the bowl
+    natural_frequencies: np.ndarray  # (N,) [Hz]
+    gains: np.ndarray  # (N,) [1]
+    springs: np.ndarray  # (N,) [1] stroke between bowl and base over that of the empty bowl
+    strokes: np.ndarray  # (N,) [1] stroke of the bowl at its track over that of the empty bowl, left alone
+    angles: np.ndarray  # (N,) [rad] from the track to the bowl's motion there
+    controlled: np.ndarray  # (N,) [1] the same under amplitude control, as far as the controller reaches
+
+
+def full_bowl(radius: float, depth: float, bulk: float, rules: Sizing) -> Fill:
+    """Compute the fill of a full bowl.
+
+    Source: the keys of the section ``sizing``, each with its own; docs/bowl.md.
+
+    Parameters
+    ----------
+    radius, depth : float [m]
+        Of the bowl.
+    bulk : float [kg/m3]
+        Mass of a part over the volume of its hull: neighbours keep out of its hollows.
+    rules : Sizing
+
+    Returns
+    -------
+    Fill
+    """
+    volume = np.pi * radius**2 * depth * rules.fill_height
+    mass = volume * rules.packing * bulk
+    return Fill(volume, mass, 0.5 * mass * radius**2)
+
+
+def loaded_bowl(machine: Machine, fill: Fill, share: float) -> Machine:
+    """Return the machine with a share [1] of a fill vibrating with its bowl."""
+    around, own = share * fill.inertia, machine.unbalance
+    upright = own.upright[0] + 0.5 * around, own.upright[1] + 0.5 * around  # spread flat over the floor
+    return replace(
+        machine,
+        bowl_mass=machine.bowl_mass + share * fill.mass,
+        bowl_inertia=machine.bowl_inertia + around,
+        unbalance=replace(own, upright=upright),
+    )
+
+
+def emptying(bowl: Bowl, fill: Fill) -> Emptying:
+    """Compute what becomes of the stroke as a bowl empties.
+
+    Source: two free bodies on springs; docs/bowl.md, "Why it feeds 220 for half a minute and then 165".
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Empty. Its drive is that of the empty bowl; its ``sizing`` has the share of the fill that is carried,
+        and the setting of the controller.
+    fill : Fill
+
+    Returns
+    -------
+    Emptying
+
+    Notes
+    -----
+    The force of the magnet and the damping ratio stay as they are; the damping that parts add is left out,
+    so that a stroke near resonance is less than the one here. The springs move by force times gain over
+    stiffness. Of that the bowl rises by the share m2 / (m1 + m2) and turns by I2 / (I1 + I2): parts in it
+    make both shares smaller, and each by another amount, so that the angle at the track changes as well.
+    """
+    machine, rules, drive = bowl.machine, bowl.sizing, bowl.drive
+    levels = np.linspace(1.0, 0.0, FILL_LEVEL_COUNT)
+    laden = [loaded_bowl(machine, fill, rules.carried * u) for u in levels]
+    natural = np.array([analyse_springs(one).natural_frequency for one in laden])
+    gains = gain(drive.frequency, natural, machine.damping)
+    relative = gains / gains[-1]
+    rises, turns = np.array([shares(one) for one in laden]).T
+    upright = drive.vibration_angle + bowl.track.climb
+    along = relative * turns / turns[-1] * np.cos(upright)
+    up = relative * rises / rises[-1] * np.sin(upright)
+    strokes = np.hypot(along, up)
+    angles = np.clip(np.arctan2(up, along) - bowl.track.climb, 0.0, RIGHT_ANGLE_RAD)
+    angles[-1], strokes[-1] = drive.vibration_angle, 1.0  # without rounding
+    reach = np.minimum(1.0, strokes / rules.controller)
+    columns = (levels, levels * fill.mass, natural, gains, relative, strokes, angles, reach)
+    return Emptying(*(check.frozen(a) for a in columns))
+
+
+STROKE_SAMPLES = 120  # strokes that are looked at
+CONSTANT_LOAD = (1.0,)  # of a bowl that does not change
+STROKE_BISECTIONS = 40
+CLIMB_BISECTIONS = 30  # halvings of the search for the steepest climb
+MAX_CLIMB_RAD = np.radians(45.0)
+
+
+@dataclass(frozen=True)
+class Flow:
+    """What leaves the bowl, for one metre of track."""
+
+    parts: float  # [1/m] counted parts on a length of track
+    share: float  # [1] of all parts that climb the track, those that are counted
+    length: float  # [m] mean length along the track of a part
+
+
+def flow(
+    found: well_oriented.Orientations,
+    rule: str,
+    *,
+    target: tuple[str, float] | None = None,
+    gap: float = 0.0,
+    fill: float = 1.0,
+) -> Flow:
+    """Compute how many parts a length of track delivers.
+
+    Source: docs/bowl.md, "1. The part, and the rate".
+
+    Parameters
+    ----------
+    found : Orientations
+        On the track, through the devices.
+    rule : str
+        Whose probabilities are taken.
+    target : (str, float [rad]), optional
+        Aspect and heading that count; without it, every orientation that stays on the track and that the
+        devices let pass.
+    gap : float [m]
+    fill : float [1]
+
+    Returns
+    -------
+    Flow
+
+    Raises
+    ------
+    FeederError
+        If nothing leaves.
+    """
+    if target is not None:
+        parts = well_oriented.parts_per_metre(found, target, rule, gap=gap, fill=fill)
+        row = list(zip(found.aspects, found.headings)).index(target)
+        return Flow(
+            parts, well_oriented.efficiency(found, row, rule), float(well_oriented.fed(found, row).length)
+        )
+    chances = np.nan_to_num(found.rules[rule])
+    leaving = float((chances * found.leaves).sum())
+    if not leaving > 0.0 and float((chances * found.through).sum()) > 0.0:
+        raise FeederError(
+            "track.climb", f"the part {well_oriented.ROLLS_BACK_REMARK}", well_oriented.HOLD_ADVICE
+        )
+    if not leaving > 0.0:
+        raise FeederError("devices", "let no part pass", "see what each returns in feeder rate")
+    share, length = leaving / float((chances * found.stays).sum()), well_oriented.mean_length(found, rule)
+    return Flow(fill * share / (length + gap), share, length)
+
+
+def amplitude_for(
+    bowl: Bowl, velocity: float, strokes: Any = CONSTANT_LOAD, angles: Any = None
+) -> tuple[tuple[float, float] | None, tuple[float, float]]:
+    """Return the smallest stroke from which on a part travels at least so fast.
+
+    Source: docs/bowl.md, "1. The part, and the rate"; the strokes are those of
+    "Why it feeds 220 for half a minute and then 165".
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its amplitude is not used.
+    velocity : float [m/s]
+    strokes : (N,) float [1]
+        Over that stroke, as the bowl empties: at the slowest of them it shall travel so fast.
+    angles : (N,) float [rad], optional
+        Vibration angle at each of them; that of the bowl without it.
+
+    Returns
+    -------
+    (float [m], float [m/s]) or None
+        Amplitude and velocity there; None where no stroke that drives are built for does.
+    (float [m/s], float [m])
+        The fastest of all, and its amplitude.
+
+    Notes
+    -----
+    Where a part hops, velocity does not only grow with the stroke. A stroke is preferred from which on the
+    velocity holds over the range that is tuned with the controller; where there is none, the smallest stroke
+    that is fast enough is taken.
+    """
+    amplitudes = greatest_amplitude(bowl) * np.arange(1, STROKE_SAMPLES + 1) / STROKE_SAMPLES
+    speeds = _speeds(bowl, amplitudes, strokes, angles)
+    best = int(np.argmax(speeds))
+    fastest = float(speeds[best]), float(amplitudes[best])
+    first = _first(amplitudes, speeds >= velocity, 1.0 + bowl.sizing.retune)
+    if first is None:
+        return None, fastest
+    low, high = (amplitudes[first - 1] if first else 0.0), amplitudes[first]
+    for _ in range(STROKE_BISECTIONS):
+        middle = 0.5 * (low + high)
+        enough = _speeds(bowl, middle, strokes, angles) >= velocity
+        low, high = (low, middle) if enough else (middle, high)
+    return (float(high), float(_speeds(bowl, high, strokes, angles))), fastest
+
+
+def _first(amplitudes: np.ndarray, fast: np.ndarray, reach: float) -> Any:
+    """The first place from which on all is fast up to ``reach`` times as far; else the first fast one."""
+    places = np.flatnonzero(fast)
+    for place in places:
+        around = (amplitudes >= amplitudes[place]) & (amplitudes <= reach * amplitudes[place])
+        if fast[around].all():
+            return place
+    return places[0] if places.size else None
+
+
+def steepest_climb(bowl: Bowl) -> float:
+    """Return the climb up to which a part travels, the springs left as they are [rad]; NaN for none.
+
+    Source: docs/bowl.md, "How it is computed".
+    """
+    upright = bowl.drive.vibration_angle + bowl.track.climb
+
+    def travels(climb: float) -> bool:
+        drive = replace(bowl.drive, vibration_angle=max(upright - climb, 0.0))
+        there = replace(bowl, drive=drive, track=replace(bowl.track, climb=climb))
+        return float(answer.cells(there)["velocity"]) > 0.0
+
+    low, high = 0.0, min(MAX_CLIMB_RAD, upright)
+    if not travels(low):
+        return float("nan")
+    for _ in range(CLIMB_BISECTIONS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if travels(middle) else (low, middle)
+    return low
+
+
+def unreachable_rate(target: float, parts_per_metre: float, fastest: tuple[float, float]) -> ArgumentError:
+    """Return the fault that no stroke brings so many parts, and what the most is."""
+    minute = units.factor("/min", "rate")
+    speed, amplitude = fastest
+    most = f"{max(speed, 0.0) * parts_per_metre / minute:.4g}/min at {2e3 * amplitude:.3g} mm peak to peak"
+    what = f"no bowl reaches {target / minute:.6g}/min of this part: the most is {most}"
+    return ArgumentError(
+        "target", what, "split it over several bowls or tracks, or let more orientations pass"
+    )
+
+
+def _speeds(bowl: Bowl, amplitudes: Any, strokes: Any, angles: Any = None) -> Any:
+    """Slowest velocities of strokes as the bowl empties [m/s]; minus infinity where there is none.
+
+    No stroke is beyond what drives are built for: there the magnet strikes.
+    """
+    each = np.minimum(np.multiply.outer(amplitudes, strokes), greatest_amplitude(bowl))
+    drive = replace(bowl.drive, amplitude=each)
+    if angles is not None:
+        turned: Any = np.broadcast_to(angles, each.shape)
+        drive = replace(drive, vibration_angle=turned)
+    found = answer.cells(replace(bowl, drive=drive))["velocity"]
+    return np.where(np.isfinite(found), found, -np.inf).min(axis=-1)

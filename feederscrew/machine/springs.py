@@ -1,10 +1,6 @@
 """Bowl and base on inclined leaf springs: stiffness, effective mass, natural frequency, gain.
 
-The base stands on soft rubber feet, taken as free. Every formula is of small motions of two rigid bodies
-between which the leaves leave one way to move: rise and turn together, in the direction of the springs.
-
-Source: leaves clamped at both ends (Euler and Bernoulli), two masses on a spring; docs/bowl.md,
-"How it is computed".
+How a bowl whose centre of mass is off its axis rocks; sets of leaves that tune a bowl to its drive.
 """
 
 from dataclasses import dataclass, replace
@@ -12,9 +8,173 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.bowl.direction import shares
-from feederscrew.bowl.record import Machine
-from feederscrew.machine import unbalanced
+from feederscrew.bowl.record import Bowl, Machine, Sizing, shares
+from feederscrew.errors import FeederError
+from feederscrew.geometry.vectors import cross, determinant, dot
+
+BASE_DENSITY = 7850.0  # [kg/m3] of the base, taken as a round plate of it
+RIM_SAMPLES = 360  # round the bowl at which its stroke is computed
+
+
+@dataclass(frozen=True)
+class Rocking:
+    """The stroke round a bowl, over that of one which is balanced."""
+
+    least: float  # [1]
+    greatest: float  # [1]
+    angle: float  # [rad] about Z where it is greatest
+    effective_mass: float  # [kg]
+
+
+@dataclass(frozen=True, eq=False)
+class _Body:
+    """A rigid body about a point of the bowl's axis at the upper ends of the leaves."""
+
+    mass: float  # [kg]
+    moment: np.ndarray  # (3,) [kg m]
+    inertia: np.ndarray  # (3, 3) [kg m2]
+
+    def with_weight(self, mass: float, place: np.ndarray) -> "_Body":
+        """Return the body with a point of mass [kg] at a place (3,) [m]."""
+        own = mass * (dot(place, place) * np.eye(3) - np.outer(place, place))
+        return _Body(self.mass + mass, self.moment + mass * place, self.inertia + own)
+
+    def momentum(self, speed: np.ndarray, spin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Momentum (3,) [kg m/s] and moment of it (3,) [kg m2/s] of a motion."""
+        along = self.mass * speed + cross(spin, self.moment)
+        return along, cross(self.moment, speed) + dot(self.inertia, spin)
+
+    def motion(self, along: np.ndarray, around: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Motion that has a momentum: speed (3,) of the point, spin (3,)."""
+        centre = self.moment / self.mass
+        own = self.inertia - self.mass * (dot(centre, centre) * np.eye(3) - np.outer(centre, centre))
+        spin = _solved(own, around - cross(centre, along))
+        return along / self.mass - cross(spin, centre), spin
+
+
+def is_even(machine: Machine) -> bool:
+    """Return whether nothing is known of a bowl that would rock it."""
+    known = machine.unbalance
+    return not any((*known.moment[:2], *known.products))
+
+
+def unbalanced_effective_mass(machine: Machine) -> float:
+    """Return the mass [kg] that moves against the springs, of a bowl whose centre may be off its axis.
+
+    Source: own; two bodies that move in a screw; docs/bowl.md, "How it is computed".
+
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    float [kg]
+        Twice the energy of both bodies over the square of the speed between them along the springs.
+    """
+    rise, turn = _screw(machine)
+    along, around = _bowl(machine).momentum(*_bowl_motion(machine, _bowl(machine)))
+    return float(dot(rise, along) + dot(turn, around))
+
+
+def rocking(machine: Machine, radius: float, height: float, weight: Any = None) -> Rocking:
+    """Compute how the stroke of a bowl differs round its axis.
+
+    Source: own; two bodies that move in a screw; docs/bowl.md, "How it is computed".
+
+    Parameters
+    ----------
+    machine : Machine
+    radius, height : float [m]
+        Where the stroke is taken: over the upper ends of the leaves.
+    weight : (float [kg], (3,) float [m]), optional
+        Put on the bowl to balance it, over the same ends.
+
+    Returns
+    -------
+    Rocking
+    """
+    bowl = _bowl(machine) if weight is None else _bowl(machine).with_weight(weight[0], np.array(weight[1]))
+    speed, spin = _bowl_motion(machine, bowl)
+    theta = 2.0 * np.pi * np.arange(RIM_SAMPLES) / RIM_SAMPLES
+    places = np.column_stack([radius * np.cos(theta), radius * np.sin(theta), np.full(RIM_SAMPLES, height)])
+    moved = speed + cross(spin, places)
+    strokes = np.sqrt(dot(moved, moved))
+    mean = np.sqrt(dot(strokes, strokes) / RIM_SAMPLES)
+    rise, turn = _screw(machine)
+    along, around = bowl.momentum(speed, spin)
+    return Rocking(
+        least=float(strokes.min() / mean),
+        greatest=float(strokes.max() / mean),
+        angle=float(theta[int(np.argmax(strokes))]),
+        effective_mass=float(dot(rise, along) + dot(turn, around)),
+    )
+
+
+def both_rocking_modes(bowl: Bowl, solid: Any) -> tuple[Rocking, Rocking] | None:
+    """Return the stroke round a bowl where its track ends, as it is and with the weight that balances it.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    solid : BowlSolid
+        Of that bowl.
+
+    Returns
+    -------
+    two Rocking, or None
+        None where the machine was not computed with the solid.
+    """
+    plan, under = solid.plan, bowl.machine
+    if is_even(under):
+        return None
+    at = bowl.track.radius, plan.outlet_height - plan.underside
+    return rocking(under, *at), rocking(under, *at, solid.weight)
+
+
+def _screw(machine: Machine) -> tuple[np.ndarray, np.ndarray]:
+    """Speed and spin between bowl and base, of the unit of speed along the springs."""
+    turn = machine.unbalance.turns * np.cos(machine.spring_angle) / machine.spring_radius
+    return np.array([0.0, 0.0, np.sin(machine.spring_angle)]), np.array([0.0, 0.0, turn])
+
+
+def _bowl(machine: Machine) -> _Body:
+    known = machine.unbalance
+    yz, xz, xy = known.products
+    inertia = np.array(
+        [[known.upright[0], -xy, -xz], [-xy, known.upright[1], -yz], [-xz, -yz, machine.bowl_inertia]]
+    )
+    moment = np.array(known.moment)
+    if (moment[:2] ** 2).sum() >= machine.bowl_mass * machine.bowl_inertia:
+        what = f"{machine.bowl_inertia:.4g} kg m2 is less than the mass of the bowl has off its axis"
+        raise FeederError("machine.bowl_inertia", what, "give that of the bowl as it is, or leave it out")
+    return _Body(machine.bowl_mass, moment, inertia)
+
+
+def _base(machine: Machine) -> _Body:
+    """A round plate of steel below the lower ends of the leaves."""
+    mass, inertia = machine.base_mass, machine.base_inertia
+    thick = mass**2 / (2.0 * np.pi * BASE_DENSITY * inertia)
+    low = -machine.leaf_length * np.cos(machine.spring_angle) - 0.5 * thick
+    across = 0.5 * inertia + mass * (thick**2 / 12.0 + low**2)
+    return _Body(mass, np.array([0.0, 0.0, mass * low]), np.diag([across, across, inertia]))
+
+
+def _bowl_motion(machine: Machine, bowl: _Body) -> tuple[np.ndarray, np.ndarray]:
+    """Motion of the bowl where it and its base together have no momentum: (M1 + M2) V1 = M2 screw."""
+    base = _base(machine)
+    both = _Body(bowl.mass + base.mass, bowl.moment + base.moment, bowl.inertia + base.inertia)
+    return both.motion(*base.momentum(*_screw(machine)))
+
+
+def _solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """The solution (3,) of three equations, by Cramer's rule."""
+    columns = matrix.T
+    whole = determinant(columns)
+    return (
+        np.array([determinant([right if k == j else columns[k] for k in range(3)]) for j in range(3)]) / whole
+    )
+
 
 MAINS = (50.0, 60.0)  # [Hz]
 HALF_WAVE = 0.75  # [1] of its amplitude: mean pull of a magnet on the half wave, (1 + 1 / 2) / 2
@@ -39,7 +199,7 @@ class Springs:
     natural_frequency_rigid_end: float  # [Hz] the same where an end of a leaf is nearest to the axis
 
 
-def springs(machine: Machine) -> Springs:
+def analyse_springs(machine: Machine) -> Springs:
     """Compute what the springs of a machine make of it.
 
     Parameters
@@ -181,7 +341,7 @@ def effective_mass(machine: Machine) -> float:
     machine : Machine
         Of a bowl whose centre of mass may be known to lie off its axis.
     """
-    return centred_mass(machine) if unbalanced.is_even(machine) else unbalanced.effective_mass(machine)
+    return centred_mass(machine) if is_even(machine) else unbalanced_effective_mass(machine)
 
 
 def centred_mass(machine: Machine) -> float:
@@ -237,3 +397,125 @@ def gain(frequency: Any, natural: Any, damping: float) -> Any:
     q = np.asarray(frequency) / np.asarray(natural)
     with np.errstate(divide="ignore"):
         return 1.0 / np.hypot(1.0 - q**2, 2.0 * damping * q)
+
+
+THICKNESSES = (1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3)  # [m] that makers stock
+LEAF_WIDTHS_M = (30e-3, 40e-3, 50e-3, 60e-3)  # [m] the same
+LEAF_LENGTHS_M = tuple(1e-3 * n for n in range(60, 270, 10))  # [m] free, where it may be chosen
+THICKER = 0.5e-3  # [m] step of the same
+USUAL_A_BANK = 4  # leaves of one bank that makers stack; more only where nothing else does
+MOST_A_BANK = 6  # leaves of one bank
+
+
+@dataclass(frozen=True)
+class LeafSet:
+    """A number of leaves of one thickness in the machine."""
+
+    name: str  # what it is beside the set in use
+    thickness: float  # [m]
+    leaves: int
+    natural_frequency: float  # [Hz]
+    by_square: float  # [Hz] the same where a leaf's force is reckoned with t^2, as RNA does
+    detuning: float  # [1] natural frequency above the drive
+    gain: float  # [1]
+    stress: float  # [Pa] amplitude, at the stroke in use
+
+
+def leaf_set(
+    machine: Machine,
+    frequency: float,
+    amplitude: float,
+    *,
+    leaves: int,
+    thickness: float,
+    name: str = "",
+    mass: float | None = None,
+) -> LeafSet:
+    """Compute what other leaves of the same width and length do.
+
+    Source: ``springs``; docs/bowl.md, "3. The machine".
+
+    Parameters
+    ----------
+    machine : Machine
+    frequency : float [Hz]
+        Of the drive.
+    amplitude : float [m]
+        At the springs, for the stress.
+    leaves : int
+    thickness : float [m]
+    name : str
+    mass : float [kg], optional
+        Effective mass of the machine, where it is known: it is that of every such set.
+
+    Returns
+    -------
+    LeafSet
+    """
+    other = replace(machine, leaves=leaves, leaf_thickness=thickness)
+    mass = effective_mass(machine) if mass is None else mass
+    stiff, own = (one.leaves * leaf_stiffness(one) * twist(one) for one in (other, machine))
+    natural = natural_frequency(stiff, mass)
+    square = leaves / machine.leaves * (thickness / machine.leaf_thickness) ** 2
+    return LeafSet(
+        name=name,
+        thickness=thickness,
+        leaves=int(leaves),
+        natural_frequency=float(natural),
+        by_square=float(natural_frequency(own * square, mass)),
+        detuning=float(natural / frequency - 1.0),
+        gain=float(gain(frequency, natural, machine.damping)),
+        stress=float(leaf_stress(other, amplitude)),
+    )
+
+
+def leaf_changes(machine: Machine, frequency: float, amplitude: float, banks: int) -> tuple[LeafSet, ...]:
+    """Return the set in use beside a leaf more and less in each bank, and leaves 0.5 mm thicker.
+
+    Parameters
+    ----------
+    machine : Machine
+    frequency, amplitude
+        As for ``leaf_set``.
+    banks : int
+        That share the leaves.
+
+    Returns
+    -------
+    tuple of LeafSet
+    """
+    n, t = int(machine.leaves), machine.leaf_thickness
+    rows = [("as it is", n, t), ("a leaf more a bank", n + banks, t), ("a leaf less a bank", n - banks, t)]
+    rows.append(("leaves 0.5 mm thicker", n, t + THICKER))
+    return tuple(
+        leaf_set(machine, frequency, amplitude, leaves=leaves, thickness=thickness, name=name)
+        for name, leaves, thickness in rows
+        if leaves > 0
+    )
+
+
+def tuned_leaf_sets(
+    machine: Machine, frequency: float, amplitude: float, rules: Sizing
+) -> tuple[LeafSet, ...]:
+    """Return the sets that put the natural frequency a few per cent above the drive.
+
+    Parameters
+    ----------
+    machine : Machine
+    frequency, amplitude
+        As for ``leaf_set``.
+    rules : Sizing
+        Its least and greatest detuning, and its banks: each has as many leaves.
+
+    Returns
+    -------
+    tuple of LeafSet
+        Thin leaves first; at most ``MOST_A_BANK`` in each bank. Empty where no whole number of leaves does.
+    """
+    stocked, mass = sorted({*THICKNESSES, machine.leaf_thickness}), effective_mass(machine)
+    found = (
+        leaf_set(machine, frequency, amplitude, leaves=n, thickness=t, mass=mass)
+        for t in stocked
+        for n in range(int(rules.banks), MOST_A_BANK * int(rules.banks) + 1, int(rules.banks))
+    )
+    return tuple(one for one in found if rules.least_detuning <= one.detuning <= rules.greatest_detuning)

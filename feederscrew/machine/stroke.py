@@ -4,10 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.bowl.direction import direction, shares
-from feederscrew.bowl.record import Bowl, Machine, Track
+from feederscrew.bowl.record import Bowl, Machine, Track, direction, shares
 
-TURN = 2.0 * np.pi  # [rad]
+FULL_TURN_RAD = 2.0 * np.pi  # [rad]
 INNERMOST = 0.5  # of the track's radius, where the list of angles starts
 RADII = 6  # in it, besides the springs'
 
@@ -40,7 +39,7 @@ def stroke(bowl: Bowl) -> Stroke:
     """
     drive, machine = bowl.drive, bowl.machine
     angle = drive.vibration_angle + bowl.track.climb
-    peak = drive.amplitude * (TURN * drive.frequency) ** 2
+    peak = drive.amplitude * (FULL_TURN_RAD * drive.frequency) ** 2
     turn = drive.amplitude * np.cos(angle) / bowl.track.radius  # [rad] of the bowl
     against_base = turn / shares(machine)[1] * machine.spring_radius
     return Stroke(
@@ -77,5 +76,5 @@ def angles(machine: Machine, track: Track) -> tuple[np.ndarray, np.ndarray]:
 def greatest_amplitude(bowl: Bowl) -> float:
     """Return half the stroke that drives are built for at a frequency [m]."""
     rules = bowl.sizing
-    by_acceleration = rules.greatest_acceleration * bowl.gravity / (TURN * bowl.drive.frequency) ** 2
+    by_acceleration = rules.greatest_acceleration * bowl.gravity / (FULL_TURN_RAD * bowl.drive.frequency) ** 2
     return min(by_acceleration, 0.5 * rules.greatest_stroke)

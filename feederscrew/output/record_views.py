@@ -1,6 +1,8 @@
-"""The table and the picture of a record: what its command writes, for a person with a notebook."""
+"""The answer, the table and the picture of a record: what a notebook shows."""
 
 import base64
+import math
+from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from html import escape
 from importlib import import_module
@@ -9,36 +11,278 @@ from typing import Any
 import numpy as np
 
 from feederscrew.errors import ArgumentError
+from feederscrew.mechanics.floor.balance import MOTION_STATES
 from feederscrew.output import offers, tables
-from feederscrew.units import listed, printable
+from feederscrew.units import DEGREE, MINUTE, MM, counted, listed, printable
+
+UM, GRAM, PERCENT = 1e-6, 1e-3, 0.01  # [SI]
+MOST_SHARES = 8  # aspects in a line
+
+
+def answer(record: Any) -> str | None:
+    """Return what a record answers, without its class: 'bracket: A 42 %, B 17 %'; None of another class."""
+    for kind in type(record).__mro__:
+        if kind.__name__ in LINES:
+            return LINES[kind.__name__](record)
+    return None
+
+
+def number(value: Any, unit_in_si: float = 1.0, digits: int = 3) -> str:
+    """Return a number in a unit; of an array its shape, '-' of what is not known."""
+    if value is None or np.ndim(value):
+        return "-" if value is None else f"<{np.size(value)} values>"
+    return "-" if math.isnan(value) else f"{value / unit_in_si:.{digits}g}"
+
+
+def _part(part: Any) -> str:
+    mass = f"{number(part.mass, GRAM)} g"
+    if part.vertices is None:
+        return f"{part.name}: a part card, {mass}, {counted(len(part.aspects), 'aspect')}"
+    size = " x ".join(number(side, MM) for side in np.ptp(part.vertices, axis=0))
+    open_surface = ", open surface" * part.open_surface
+    return f"{part.name}: {size} mm, {mass} ({part.material}), {len(part.faces)} facets{open_surface}"
+
+
+def _bowl_line(bowl: Any) -> str:
+    drive, friction, track = bowl.drive, bowl.friction, bowl.track
+    devices = ", ".join(device.name for device in bowl.devices) or "none"
+    return (
+        f"{_origin(bowl)}: amplitude {number(drive.amplitude, MM)} mm at {number(drive.frequency)} Hz and "
+        f"{number(drive.vibration_angle, DEGREE)} deg, friction {number(friction.static)}, "
+        f"track {number(track.width, MM)} mm wide, radius {number(track.radius, MM)} mm, "
+        f"climb {number(track.climb, DEGREE)} deg, bank {number(track.bank, DEGREE)} deg, "
+        f"devices: {devices:.120}"
+    )
+
+
+def _origin(bowl: Any) -> str:
+    """Where a bowl is from: 'bowl.yaml, 2 overrides', 'defaults'; 'changed' after it was read."""
+    if not bowl.settings:
+        return "changed after it was read"
+    own = [setting for setting in bowl.settings if setting.given]
+    files = list(dict.fromkeys(s.where.rsplit(":", 2)[0] for s in own if not s.overrides))
+    overrides = sum(setting.overrides for setting in own)
+    return ", ".join([*(files or ["defaults"]), *([counted(overrides, "override")] if overrides else [])])
+
+
+def _shares(names: Any, shares: Any) -> str:
+    """Names with their shares, the largest first: 'A 42 %, B 17 %'."""
+    ranked = sorted(zip(names, np.nan_to_num(shares)), key=lambda pair: -pair[1])
+    texts = [f"{name} {number(share, PERCENT)} %" for name, share in ranked[:MOST_SHARES]]
+    return ", ".join([*texts, *([f"{len(ranked) - MOST_SHARES} more"] if len(ranked) > MOST_SHARES else [])])
+
+
+def _aspects(aspects: Any) -> str:
+    shares = _shares(aspects.names, aspects.chances[aspects.ranking])
+    return f"rests on {shares} ({aspects.source(aspects.ranking)})"
+
+
+def _convey(answer: Any) -> str:
+    return (
+        f"{number(answer.velocity, MM)} mm/s up the track, {answer.status}, regime {answer.regime}, "
+        f"throw number {number(answer.throw_number)}"
+    )
+
+
+def _rate(rate: Any) -> str:
+    one, parts = rate.orientations.lying[rate.row], rate.parts
+    low, value, high = (number(end * MINUTE) for end in (parts.low, parts.value, parts.high))
+    return (
+        f"{_orientation(one)}: {value} parts/min ({low} to {high}), "
+        f"efficiency {number(rate.efficiency, PERCENT)} %, purity {number(rate.purity, PERCENT)} %"
+    )
+
+
+def _orientation(one: Any) -> str:
+    """An orientation in words: 'A at heading 90 deg', 'A hanging'."""
+    lying = f"at heading {number(one.heading, DEGREE)} deg"
+    return f"{one.aspect} {'hanging' if one.kind == 'hanging' else lying}"
+
+
+def _tune(study: Any) -> str:
+    settings = [
+        f"{one.solution.key.name} {one.solution.shown:.4g} {one.solution.key.unit}".rstrip()
+        for one in study.settings
+    ]
+    return f"{study.part.name}: {number(study.target * MINUTE)} parts/min with {' or '.join(settings)}"
+
+
+def _slide(study: Any) -> str:
+    lines = [
+        f"at {number(one.beta, DEGREE)} deg regime {one.regime}, "
+        f"limiting friction {number(one.at_bowl['mu_limit'])}"
+        for one in study.maps[:4]
+    ]
+    return "; ".join(lines)
+
+
+def _floor(study: Any) -> str:
+    where = f"{study.part.name} on {study.posture.name} at {number(study.heading, DEGREE)} deg"
+    return f"{where}: {_states(study.cycle.state)} over a period of the drive"
+
+
+def _track(study: Any) -> str:
+    heading = number(study.headings.headings[study.row], DEGREE) if study.headings is not None else "-"
+    where = f"{study.part.name} on {study.posture.name} at heading {heading} deg"
+    return f"{where}: {_states(study.cycle.state)} over a period of the drive"
+
+
+def _states(codes: Any) -> str:
+    """States of a part in the order of their codes: 'stick and slide'."""
+    return listed([MOTION_STATES[code] for code in np.unique(codes)])
+
+
+def _headings(study: Any) -> str:
+    lines = [
+        f"{one.aspect} at {', '.join(number(angle, DEGREE) for angle in one.headings[:3])} deg"
+        for one in study.headings[:MOST_SHARES]
+    ]
+    return f"{study.part.name}: {'; '.join(lines)}"
+
+
+def _machine(sheet: Any) -> str:
+    text = (
+        f"bowl of {number(2.0 * sheet.bowl.track.radius, MM)} mm, {number(sheet.stroke.peak_to_peak, MM)} mm "
+        f"peak to peak at {number(sheet.stroke.frequency)} Hz, {number(sheet.answer.velocity, MM)} mm/s"
+    )
+    if sheet.order is None:
+        return text
+    return f"{sheet.order.part.name} at {number(sheet.order.target * MINUTE)} parts/min: {text}"
+
+
+def _tooling(study: Any) -> str:
+    designs = [_isolated(study.orientations, one) for one in study.designs if one is not None]
+    more = f"; {len(designs) - 4} more" if len(designs) > 4 else ""
+    return f"{study.part.name}: {'; '.join(designs[:4])}{more}"
+
+
+def _isolated(orientations: Any, design: Any) -> str:
+    """A design in words: 'A at heading 90 deg isolated by wiper (efficiency 80 %, purity 100 %)'."""
+    where, cuts = _orientation(orientations[design.wanted]), [cut.device.name for cut in design.cuts]
+    if not design.isolated and not cuts:
+        return f"{where} not isolated"
+    shares = f"efficiency {number(design.efficiency, PERCENT)} %, purity {number(design.purity, PERCENT)} %"
+    word = "isolated" if design.isolated else "not isolated"
+    return f"{where} {word} by {', '.join(cuts) or 'the devices of the bowl'} ({shares})"
+
+
+def _trial(study: Any) -> str:
+    runs = [
+        f"at {number(run.bowl.drive.amplitude, MM)} mm {int(run.counts[:, 0].sum())} of "
+        f"{int(run.counts.sum())} parts pass, efficiency {number(run.efficiency, PERCENT)} %, "
+        f"purity {number(run.purity, PERCENT)} %"
+        for run in study.runs[:4]
+    ]
+    return f"{study.part.name}: {'; '.join(runs)}"
+
+
+def _design(study: Any) -> str:
+    if study.bowl is None:
+        return f"{study.part.name}: {study.status} - {study.why:.300}"
+    value, low, high = (number(rate * MINUTE) for rate in study.delivered)
+    return (
+        f"{study.part.name}: {study.status}, {study.wanted} at {value} parts/min ({low} to {high}) through "
+        f"{', '.join(device.name for device in study.devices) or 'no device'}{_why(study)}"
+    )
+
+
+def _why(study: Any) -> str:
+    return f" - {study.why:.240}" if study.why else ""
+
+
+def _family(study: Any) -> str:
+    members = ", ".join(f"{one.part.name} {one.status}" for one in study.members)
+    return f"{study.status}, {'one bowl for all' if study.shared else 'a bowl for each'}: {members}"
+
+
+def _compare(study: Any) -> str:
+    return f"{study.part.name}: {counted(len(study.rules), 'rule')} beside counts of {study.measured.source}"
+
+
+def _calibrate(study: Any) -> str:
+    fits = [
+        f"{one.name} exponent {number(one.calibration.exponent)} "
+        f"({number(one.calibration.low)} to {number(one.calibration.high)})"
+        for one in study.fits[:4]
+    ]
+    return f"{study.part.name}: {'; '.join(fits)}"
+
+
+def _drop(study: Any) -> str:
+    return f"{study.part.name}: {study.drops} drops, {_shares(study.aspects.names, study.tally.p)}"
+
+
+def _plate(study: Any) -> str:
+    plates = [
+        f"throw number {number(one.throw_number)}: {_shares(study.aspects.names, one.occupancy.plate)}"
+        for one in study.plates[:3]
+    ]
+    return f"{study.part.name}: {'; '.join(plates)}"
+
+
+def _inertia(study: Any) -> str:
+    centre = ", ".join(number(value, MM) for value in study.part.centre_of_mass)
+    moments = ", ".join(number(value, 1e-9) for value in study.balance.moments)
+    mass = number(study.part.mass, GRAM)
+    return f"{study.part.name}: {mass} g, centre of mass {centre} mm, principal moments {moments} g mm2"
+
+
+LINES: dict[str, Callable[[Any], str]] = {
+    "Part": _part,
+    "Bowl": _bowl_line,
+    "Aspects": _aspects,
+    "AspectsStudy": lambda study: f"{study.part.name} {_aspects(study.aspects)}",
+    "Shares": lambda shares: _aspects(shares.aspects),
+    "Answer": _convey,
+    "ConveyStudy": lambda study: _convey(study.answer),
+    "SlideStudy": _slide,
+    "HeadingsStudy": _headings,
+    "FloorStudy": _floor,
+    "TrackStudy": _track,
+    "Rate": _rate,
+    "RateStudy": lambda study: f"{study.part.name} {_rate(study.rate)}",
+    "TuneStudy": _tune,
+    "MachineSheet": _machine,
+    "ToolingStudy": _tooling,
+    "TrialStudy": _trial,
+    "DesignStudy": _design,
+    "FamilyStudy": _family,
+    "CompareStudy": _compare,
+    "CalibrateStudy": _calibrate,
+    "DropStudy": _drop,
+    "PlateStudy": _plate,
+    "InertiaStudy": _inertia,
+    "ReportStudy": lambda study: f"{study.part.name} {_aspects(study.shares.aspects)}",
+}
+
 
 MOST_ROWS = 60  # of a table in a notebook
 VIEW = 360, 280  # [px] of a part
 # record: module and function that offer the files of its command, and what else that is handed
 OF: dict[str, tuple[Any, ...]] = {
-    "AspectsStudy": ("aspects.files", "offers"),
-    "CalibrateStudy": ("calibrate.files", "offers"),
-    "CompareStudy": ("compare.files", "offers"),
-    "SetsStudy": ("compare.sets", "offers"),
-    "ConveyStudy": ("convey.files", "offers", {}),
-    "ConveyCurve": ("convey.files", "curve_offers"),
-    "ConveyPhase": ("convey.files", "phase_offers", {}),
-    "ConveyMap": ("convey.files", "map_offers"),
-    "DesignStudy": ("designs.files", "offers", ()),
-    "DropStudy": ("drop.files", "offers"),
-    "FamilyStudy": ("designs.family_page", "offers"),
-    "FeedingStudy": ("compare.feeding", "offers"),
-    "FloorStudy": ("floor.files", "offers", {}),
-    "HeadingsStudy": ("headings.files", "offers", {}),
-    "InertiaStudy": ("inertia.files", "offers"),
+    "AspectsStudy": ("aspects", "offers"),
+    "CalibrateStudy": ("calibrate", "offers"),
+    "CompareStudy": ("compare", "offers"),
+    "SetsStudy": ("compare", "sets_offers"),
+    "ConveyStudy": ("convey", "offers", {}),
+    "ConveyCurve": ("convey", "curve_offers"),
+    "ConveyPhase": ("convey", "phase_offers", {}),
+    "ConveyMap": ("convey", "map_offers"),
+    "DesignStudy": ("design_pages", "offers", ()),
+    "DropStudy": ("drop", "offers"),
+    "FamilyStudy": ("design_pages", "family_offers"),
+    "FeedingStudy": ("compare", "feeding_offers"),
+    "FloorStudy": ("floor", "offers", {}),
+    "HeadingsStudy": ("headings", "offers", {}),
+    "InertiaStudy": ("inertia", "offers"),
     "MachineSheet": ("machine", "offers"),
-    "PlateStudy": ("plate.files", "offers"),
-    "RateStudy": ("rate.files", "offers"),
-    "SlideStudy": ("slide.files", "offers"),
+    "PlateStudy": ("plate", "offers"),
+    "RateStudy": ("rate", "offers"),
+    "SlideStudy": ("slide", "offers"),
     "ToolingStudy": ("tooling.files", "offers", ()),
-    "TrackStudy": ("track.files", "at_one_point"),
+    "TrackStudy": ("track", "at_one_point"),
     "TrialStudy": ("trial.files", "offers"),
-    "TuneStudy": ("tune.files", "offers"),
+    "TuneStudy": ("tune", "offers"),
 }
 
 
@@ -102,11 +346,10 @@ def html(record):
 
 def _view_uri(part):
     """A part on the lowest side of its file, shaded, as the address of an image."""
-    from feederscrew.output import style
-    from feederscrew.output.solid import render, thumbnail
+    from feederscrew.output import shading, style
 
-    solid = render.Rays(part.vertices, part.faces, part.centre_of_mass)
-    image = style.pixels(np.round(255.0 * thumbnail.on_its_lowest(solid, VIEW)[..., :3]).astype(np.uint8))
+    solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
+    image = style.pixels(np.round(255.0 * shading.on_its_lowest(solid, VIEW)[..., :3]).astype(np.uint8))
     return f"data:image/png;base64,{base64.b64encode(style.png(image)).decode()}"
 
 

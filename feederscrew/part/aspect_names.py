@@ -51,7 +51,7 @@ def read(path):
     """
     if str(path) == "-":
         raise ConfigError("-", "standard input is for the part", "save the names and give the file")
-    data = documents.content(path, documents.LARGEST, "a YAML file of names")
+    data = documents.content(path, documents.MAX_DOCUMENT_BYTES, "a YAML file of names")
     root, faults = documents.load(data, str(path))
     directions = _directions(_block(root, faults), faults)
     documents.raise_all(faults)

@@ -13,7 +13,7 @@ from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts.profiles import AspectProfile, Measured
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended, launched
-from feederscrew.tooling.devices.named import place
+from feederscrew.tooling.devices.orientation_names import place
 
 if TYPE_CHECKING:
     from feederscrew.dropping.plate.arrival import Arrival
@@ -24,7 +24,7 @@ TOO_LONG = (
     "the part is too small, or the drive too quick, to be followed on the moving floor: the closed form"
     " is taken"
 )
-NOTHING = "no part came to lie on the moving floor: the closed form is taken"
+NO_ARRIVALS_MESSAGE = "no part came to lie on the moving floor: the closed form is taken"
 
 
 def arrived(aspects: Aspects, found: "Arrival", seed: int) -> Aspects:
@@ -44,7 +44,7 @@ def arrived(aspects: Aspects, found: "Arrival", seed: int) -> Aspects:
     """
     parts = found.shaken.parts
     if not np.isfinite(found.p).all():
-        return replace(aspects, warnings=(*aspects.warnings, NOTHING))
+        return replace(aspects, warnings=(*aspects.warnings, NO_ARRIVALS_MESSAGE))
     said: tuple[str, ...] = () if found.settled else (UNDECIDED.format(found.reason),)
     said += (STOPPED.format(parts),) if found.shaken.partial else ()
     rule = f"fed onto the moving floor, {parts} parts, seed {seed}"

@@ -13,19 +13,28 @@ from feederscrew.conveying import answer, sensitivity
 from feederscrew.errors import ArgumentError, FeederError
 
 KNOBS = ("drive.amplitude", "drive.vibration_angle", "drive.frequency")  # turned one at a time
-GENTLE = ("forward", "stick", "both", "backward", "hop", "no steady state")  # regimes, the most wanted first
-STEPS = 241  # values of a knob that are looked at
+REGIMES_BY_GENTLENESS = (
+    "forward",
+    "stick",
+    "both",
+    "backward",
+    "hop",
+    "no steady state",
+)  # regimes, the most wanted first
+KNOB_SAMPLES = 241  # values of a knob that are looked at
 HIGHEST_THROW = 3.5  # beyond the best throw number, about 3, velocity falls and rests on chance
-HALVINGS = 45
-FASTEST = 20  # settings that are asked what they bring at most
-CLOSE = 0.01  # of the rate: no further step is made
+KNOB_BISECTIONS = 45
+MAX_RATED_SETTINGS = 20  # settings that are asked what they bring at most
+RATE_TOLERANCE = 0.01  # of the rate: no further step is made
 DECIDED = 0.03  # of the rate: as near as the parts that decide are asked for, which are known to 5 %
-WITHIN = 0.04  # of the rate: a setting gives it; what arrives is sampled, so that it jumps by a few per cent
+ACCEPTED_RATE_ERROR = (
+    0.04  # of the rate: a setting gives it; what arrives is sampled, so that it jumps by a few per cent
+)
 LED = 0.1  # of the rate: a setting that fewer parts lead no nearer to it is sought only if no other gives it
 LEADS = 2  # steps that fewer parts lead
 ROUNDS, REMEMBERED = 8, 3  # steps towards a setting, and those whose parts lead on
-ALIKE = 0.01  # of a value: two settings are one
-DIGITS = 5  # of a value as it is printed
+SETTING_TOLERANCE = 0.01  # of a value: two settings are one
+SETTING_DIGITS = 5  # of a value as it is printed
 Density = Callable[[Bowl | None], float]  # [1/m] as ``solutions`` takes it
 Starts = list[tuple["_Look", float]]  # keys, and values of them
 
@@ -55,7 +64,7 @@ class Solution:
         """Sorts the gentle ones first: regime, one velocity before several, softest impact."""
         found = self.answer
         several = found.high - found.low > answer.COEXIST * found.speed
-        return GENTLE.index(found.regime), several, found.hardest_impact
+        return REGIMES_BY_GENTLENESS.index(found.regime), several, found.hardest_impact
 
 
 def solutions(
@@ -89,8 +98,8 @@ def solutions(
     Returns
     -------
     list of Solution
-        Each gives the rate to ``WITHIN``; where none does, because the velocity jumps over the wanted one,
-        each gives more. One-way and gentle regimes first. Values are round numbers in their unit.
+        Each gives the rate to ``ACCEPTED_RATE_ERROR``; where none does, because the velocity jumps over the
+        wanted one, each gives more. One-way and gentle regimes first. Values are round numbers in their unit.
 
     Raises
     ------
@@ -106,8 +115,10 @@ def solutions(
     for count, (look, value) in enumerate(likely + others):
         if near and count >= len(likely):
             break
-        found.append(_settled(look, value, target, density, CLOSE if rough is None else DECIDED))
-        near = [one for one in _apart(found, target) if abs(one.rate - target) <= WITHIN * target]
+        found.append(_settled(look, value, target, density, RATE_TOLERANCE if rough is None else DECIDED))
+        near = [
+            one for one in _apart(found, target) if abs(one.rate - target) <= ACCEPTED_RATE_ERROR * target
+        ]
         if progress:
             progress(count + 1, len(likely + others))
     beyond = [one for one in _apart(found, target) if one.rate > target]
@@ -123,7 +134,10 @@ def _led(starts: Starts, target: float, rough: Density | None) -> tuple[Starts, 
     likely, others = Starts(), Starts()
     for look, value in starts:
         value, rate = _lead(look, value, target, rough)
-        if all(key != look.key or abs(value - near) > ALIKE * near for key, near in _places(likely + others)):
+        if all(
+            key != look.key or abs(value - near) > SETTING_TOLERANCE * near
+            for key, near in _places(likely + others)
+        ):
             near = abs(rate - target) <= LED * target
             (likely if near else others).append((look, value))
     return likely, others
@@ -148,7 +162,9 @@ def _lead(look: "_Look", value: float, target: float, rough: Density) -> tuple[f
     return value, look.speed(value) * float(np.mean(known))
 
 
-def _settled(look: "_Look", value: float, target: float, density: Density, close: float = CLOSE) -> Solution:
+def _settled(
+    look: "_Look", value: float, target: float, density: Density, close: float = RATE_TOLERANCE
+) -> Solution:
     """The setting near a start that gives the target with what arrives there, or comes nearest to it.
 
     Each step takes the parts that arrived at the step before it, since another drive brings others; they are
@@ -166,7 +182,7 @@ def _settled(look: "_Look", value: float, target: float, density: Density, close
             break
         last, value = value, float(there[np.argmin(np.abs(there - value))])
     away = [(abs(one.rate - target), one) for one in seen]
-    enough = [pair for pair in away if pair[0] <= WITHIN * target or pair[1].rate > target]
+    enough = [pair for pair in away if pair[0] <= ACCEPTED_RATE_ERROR * target or pair[1].rate > target]
     return min(enough or away, key=lambda pair: pair[0])[1]
 
 
@@ -175,7 +191,7 @@ def _apart(found: list[Solution], target: float) -> list[Solution]:
     kept: list[Solution] = []
     for one in sorted(found, key=lambda one: abs(one.rate - target)):
         others = [other.value for other in kept if other.key == one.key]
-        if all(abs(one.value - other) > ALIKE * other for other in others):
+        if all(abs(one.value - other) > SETTING_TOLERANCE * other for other in others):
             kept.append(one)
     return kept
 
@@ -195,7 +211,7 @@ def _values(bowl: Bowl, key: Key) -> np.ndarray:
         high = min(high, drive.amplitude * share)
     if key.word == "frequency":
         high = min(high, drive.frequency * np.sqrt(share))
-    values = np.linspace(low, high, STEPS)[1:-1]
+    values = np.linspace(low, high, KNOB_SAMPLES)[1:-1]
     throw = upright * np.sin(values)
     return values[throw <= HIGHEST_THROW] if key.word == "vibration_angle" else values
 
@@ -222,7 +238,7 @@ class _Look:
         above, known = self.speeds >= velocity, np.isfinite(self.speeds)
         k = np.flatnonzero((above[1:] != above[:-1]) & known[1:] & known[:-1])
         low, high, rises = self.values[k], self.values[k + 1], above[k + 1]
-        for _ in range(HALVINGS):
+        for _ in range(KNOB_BISECTIONS):
             middle = 0.5 * (low + high)
             beyond = (_speeds(self.bowl, self.key, middle, self.worst) >= velocity) == rises
             low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
@@ -231,7 +247,7 @@ class _Look:
     def readable(self, value: float) -> float:
         """The value as it is printed in the key's unit, so that it is the same when it is given back."""
         shown = value / units.factor(self.key.unit, self.key.dimension)
-        return units.quantity(f"{shown:.{DIGITS}g} {self.key.unit}", self.key.dimension)
+        return units.quantity(f"{shown:.{SETTING_DIGITS}g} {self.key.unit}", self.key.dimension)
 
     def solution(self, value: float, density: Density) -> Solution:
         """What the bowl does at a value, a Solution."""
@@ -269,7 +285,7 @@ def _unreachable(looks: list[_Look], target: float, density: Density) -> Argumen
     mend = "lower the target, or change two keys of the drive together"
     if peaks[0][0] <= 0.0:
         return ArgumentError("target", f"{what}: the part never travels up the track", mend)
-    for speed, key, value in peaks[:FASTEST]:
+    for speed, key, value in peaks[:MAX_RATED_SETTINGS]:
         parts = density(turned(bowl, key, value))
         if parts > 0.0:
             at = f"{key.name} {value / units.factor(key.unit, key.dimension):.4g} {key.unit}"

@@ -1,17 +1,98 @@
 """Every orientation of a part in the queue, and what becomes of it at each device."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from feederscrew import check
-from feederscrew.rates.spacing import needed
+from feederscrew.bowl.record import Bowl
+from feederscrew.documents import hint
+from feederscrew.errors import FeederError
 from feederscrew.rates.tipping import TrackTipping, marked
+from feederscrew.resting.counts.passed import DeviceCounts
 from feederscrew.tooling import orientations as tooling
 from feederscrew.tooling.clearing import seconds
-from feederscrew.tooling.devices.base import UNSURE
+from feederscrew.tooling.devices.base import UNSURE, Device
 from feederscrew.tooling.fates import at_entry, course
-from feederscrew.tooling.orientations import Orientation
+from feederscrew.tooling.orientations import Orientation, travel_speed
+
+
+def on_stretch(bowl: Bowl, one: Orientation) -> Bowl:
+    """Return a bowl in which parts travel as on the stretch on which an orientation lies.
+
+    Source: the balance of forces of a part on both faces of a groove; docs/tooling.md, "A groove".
+
+    Parameters
+    ----------
+    bowl : Bowl
+    one : Orientation
+        As it is there: its track, and the groove that it lies in.
+
+    Returns
+    -------
+    Bowl
+        In a groove each face carries 1 / (2 cos(angle)) of the weight, so friction acts as mu / cos(angle).
+    """
+    if not one.groove:
+        return replace(bowl, track=replace(bowl.track, climb=one.track.climb, bank=one.track.bank))
+    mu, more = bowl.friction, 1.0 / np.cos(one.groove)
+    back, kinetic_back = mu.backward
+    friction = replace(
+        mu,
+        static=mu.static * more,
+        kinetic=mu.kinetic * more,
+        static_backward=back * more,
+        kinetic_backward=kinetic_back * more,
+    )
+    return replace(bowl, friction=friction, track=replace(bowl.track, climb=one.track.climb, bank=0.0))
+
+
+def queueing(bowl: Bowl, lying: Sequence[Orientation]) -> Bowl:
+    """Return the bowl as parts queue in it, before the first device that does more than lean the track.
+
+    Source: own; docs/tooling.md, "A groove".
+
+    Parameters
+    ----------
+    bowl : Bowl
+    lying : sequence of Orientation
+        As they are at its entry: a bank or a groove that is listed first begins there. A steeper stretch
+        does not: it is where a queue comes apart.
+    """
+    one = lying[0]
+    return on_stretch(bowl, replace(one, track=replace(one.track, climb=bowl.track.climb)))
+
+
+def needed_spacing(chain: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl) -> float:
+    """Return the free way [m] between parts at the track's entry that the devices need.
+
+    Source: own; docs/tooling.md, "1. The method".
+
+    Parameters
+    ----------
+    chain : sequence of Device
+    lying : sequence of Orientation
+        Of the part.
+    bowl : Bowl
+
+    Returns
+    -------
+    float [m]
+        0 where they need none. Behind a stretch on which parts travel r times as fast, their pitch is r times
+        as large.
+    """
+    here, gap = lying[0], 0.0
+    first = travel_speed(queueing(bowl, lying))
+    shortest = min(one.length for one in lying)
+    for device in chain:
+        here = device.onward(here)
+        now = travel_speed(on_stretch(bowl, here))
+        free = max(device.gap(one, now) for one in lying)
+        if free > 0.0:
+            ratio = now / first if first > 0.0 else np.inf
+            gap = max(gap, (free + shortest) / ratio - shortest if ratio > 0.0 else np.inf)
+    return float(gap)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +213,7 @@ class Orientations:
         return np.array([aspect not in left for aspect in self.aspects], dtype=bool)
 
 
-def orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):
+def follow_orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):
     """Return every stable aspect and heading of a part, and what becomes of it at each device.
 
     Source: docs/tooling.md, "1. The method".
@@ -178,7 +259,7 @@ def along(lying, aspects, chain=(), sigma=0.0, bowl=None, rows=None):
         stops=found.stops,
         clearing=check.frozen(_clearing(found, lying, chain, bowl)),
         doubtful=found.doubtful,
-        gap=0.0 if bowl is None else needed(chain, lying, bowl),
+        gap=0.0 if bowl is None else needed_spacing(chain, lying, bowl),
         tipping=tips,
     )
 
@@ -199,3 +280,118 @@ def _interval(aspects, lying):
     rows = [aspects.names.index(one.aspect) for one in lying]
     shares = np.array([one.heading_share for one in lying])
     return np.column_stack([known.low[rows] * shares, known.high[rows] * shares])
+
+
+def counted_stations(known: Orientations, counts: DeviceCounts) -> np.ndarray:
+    """Return the stations of a chain that were counted.
+
+    Source: docs/counts.md, "A feeding test, device by device".
+
+    Parameters
+    ----------
+    known : Orientations
+    counts : DeviceCounts
+        Its devices are named as the stations are, 'gap_2', or by a kind that is there once.
+
+    Returns
+    -------
+    (D,) int [1]
+
+    Raises
+    ------
+    FeederError
+        If one is not there, or is counted twice.
+    """
+    stations = {name: place for place, name in enumerate(known.names)}
+    once = {kind: known.stations.index(kind) for kind in known.stations if known.stations.count(kind) == 1}
+    found: list[int] = []
+    for line, name in zip(counts.lines, counts.names):
+        place, where = (once | stations).get(name), f"{counts.source}:{line}"
+        if place is None:
+            what = f"the bowl has no device {name[:30]!r}"
+            raise FeederError(where, what, hint(name, list(stations)))
+        if place in found:
+            what = f"device {name!r} is that of line {counts.lines[found.index(place)]}"
+            raise FeederError(where, what, "keep one of them")
+        found.append(place)
+    return np.array(found)
+
+
+def station_shares(known: Orientations, names: Sequence[str]) -> np.ndarray:
+    """Return which share of each aspect's parts comes to each station, and which goes on from it.
+
+    Source: own; docs/counts.md, "A feeding test, device by device".
+
+    Parameters
+    ----------
+    known : Orientations
+    names : sequence of str
+        Of the A aspects.
+
+    Returns
+    -------
+    (2, stations, A) float [1]
+    """
+    on = np.cumprod(known.passes, axis=1)
+    came = np.column_stack([np.ones(len(on)), on[:, :-1]])
+    of = np.zeros((len(on), len(names)))
+    of[np.arange(len(on)), [names.index(name) for name in known.aspects]] = known.heading_shares
+    return check.frozen(np.einsum("kms,ma->ksa", np.stack([came, on]), of))
+
+
+def passing_shares(flow: np.ndarray, shares: np.ndarray) -> np.ndarray:
+    """Return the share that passes of the parts that come, (D,) [1]; NaN where none comes.
+
+    Source: own; docs/counts.md, "A feeding test, device by device".
+
+    Parameters
+    ----------
+    flow : (2, D, A) float [1]
+        From ``ways``.
+    shares : (A,) float [1]
+        Of the aspects.
+    """
+    came, on = np.einsum("kda,a->kd", flow, np.nan_to_num(shares))
+    return np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), np.nan)
+
+
+def passing_ends(flow: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return the least and the greatest share that passes if every aspect's share lies within its ends.
+
+    Source: a linear programme over a simplex with bounds; docs/conveying.md, "Commands".
+
+    Parameters
+    ----------
+    flow : (2, D, A) float [1]
+        From ``ways``.
+    low, high : (A,) float [1]
+        Of the shares of the aspects; that they sum to 1 is not used.
+
+    Returns
+    -------
+    low, high : (D,) float [1]
+        NaN where no part can come.
+
+    Notes
+    -----
+    A ratio of two linear functions on a box is greatest where the aspects of which most passes have their
+    greatest share and the others their least; each place for the cut between them is tried.
+    """
+    ends = [_extremes(came, on, np.nan_to_num(low), np.nan_to_num(high)) for came, on in zip(*flow)]
+    return tuple(np.array(ends).T)
+
+
+def _extremes(came: np.ndarray, on: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[float, float]:
+    each = np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), 0.0)
+    order = np.argsort(each, kind="stable")
+    came, on, low, high = came[order], on[order], low[order], high[order]
+    above = np.tri(len(came) + 1, len(came), -1, dtype=bool)  # row c: the first c aspects
+    found = []
+    for shares in (np.where(above, high, low), np.where(above, low, high)):
+        total = (shares * came).sum(axis=1)
+        found.append(
+            np.where(total > 0.0, (shares * on).sum(axis=1) / np.where(total > 0.0, total, 1.0), np.nan)
+        )
+    if np.isnan(found).all():
+        return np.nan, np.nan
+    return float(np.nanmin(found[0])), float(np.nanmax(found[1]))

@@ -1,16 +1,10 @@
-"""Orientations that the drive turns over on the track, apart from those that it only rocks.
+"""Orientations that the drive turns over on the track, that it only rocks, and those that stay steady."""
 
-While the line of action of the normal force lies outside the contact polygon, the part turns about the
-nearest side. Over a settled cycle the moments about that side hold it down, or the bare track would not carry
-it: it rocks. It turns over where that, followed from stroke to stroke, lifts its centre of mass over a side.
-
-A part that hops is not followed. In flight nothing holds it; each landing strikes its foot from below and
-drags it along the track, and the wall drags it back. ``landing`` says when neither can turn it.
-"""
-
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -25,20 +19,166 @@ from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.floor.balance import HOP, TIP
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import Seat, seat
-from feederscrew.rates.rocking import goes_over, rocker
-from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, speed, travelling
+from feederscrew.tooling import footprints
+from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.falling import surely_gone
+from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, travel_speed, travelling
 from feederscrew.units import factor, listed
 
-INSTANTS = 12  # of one period
+ROCKING_STEPS = 48  # of one period
+SETTLES, FOLLOWED = 12, 60  # periods until the sliding repeats itself, and that the rocking is followed
+REST_ANGULAR_SPEED = 1e-4  # [rad/s] a part that comes down slower lies still
+SENSES = (0.0, 1.0, -1.0)  # at rest, sliding ahead, sliding back
+
+
+@dataclass(frozen=True)
+class Rocker:
+    """A part that may tip over either of two opposite sides."""
+
+    near: float  # [m] from the foot of the centre of mass to the side that the drive tips it over most
+    far: float  # [m] to the side opposite
+    height: float  # [m] of the centre of mass
+    spread: float  # [m2] square of its radius of gyration about the direction of the sides
+    force: np.ndarray  # (INSTANTS,) [m/s2] of the track, over the mass
+    offset: np.ndarray  # (INSTANTS,) [m] of that force towards the near side, with the part lying
+    growth: float = 0.0  # [m/s] of the distance to the near side, from where it is at the start
+
+
+def rocker(place: Seat, gyration: Callable[[float], float], bowl: Bowl) -> Rocker:
+    """Return a part on the track of a bowl as what rocks over its weakest side.
+
+    Parameters
+    ----------
+    place : Seat
+    gyration : callable
+        Of an angle from the track [rad]: the square of its radius of gyration about that direction [m2].
+    bowl : Bowl
+        Single values.
+
+    Returns
+    -------
+    Rocker
+        With the force of the track as it is while the part lies and slides as it then does.
+    """
+    force, offset = over_period(place, bowl)
+    along = sides(place.contact)
+    along = along / np.hypot(*along.T)[:, None]
+    inside = cross(along, offset[:, None, :] - place.contact)
+    (x, y) = along[np.argmin((force[:, None] * inside).min(axis=0))]
+    reach = y * place.contact[:, 0] - x * place.contact[:, 1]
+    return Rocker(
+        near=float(reach.max()),
+        far=float(-reach.min()),
+        height=place.height,
+        spread=gyration(math.atan2(y, x)),
+        force=force,
+        offset=y * offset[:, 0] - x * offset[:, 1],
+    )
+
+
+def goes_over(rocker: Rocker, period: float, start: int = 0) -> bool:
+    """Return whether rocking brings the centre of mass of a part over one of its sides.
+
+    Parameters
+    ----------
+    rocker : Rocker
+    period : float [s]
+        Of the drive.
+    start : int
+        Instant of the period from which it is followed.
+
+    Returns
+    -------
+    bool
+
+    Notes
+    -----
+    A part tilted by a small angle over a side at distance r turns by N (o - r + h angle) / (k^2 + r^2 + h^2),
+    N the force of the track over its mass and o its offset with the part lying. When it comes down on the
+    opposite side at distance s it keeps (k^2 + h^2 - r s) / (k^2 + h^2 + s^2) of its rate.
+
+    References
+    ----------
+    G. W. Housner, "The behavior of inverted pendulum structures during earthquakes", Bulletin of the
+    Seismological Society of America 53(2), 403-417, 1963.
+    """
+    step, angle, rate = period / ROCKING_STEPS, 0.0, 0.0
+    for k in range(start, start + FOLLOWED * ROCKING_STEPS):
+        near = rocker.near + rocker.growth * step * (k - start)
+        force, offset = rocker.force[k % ROCKING_STEPS], rocker.offset[k % ROCKING_STEPS]
+        side = math.copysign(1.0, angle or rate or offset)
+        beside, other = (near, rocker.far) if side > 0.0 else (rocker.far, near)
+        still = rocker.spread + rocker.height**2
+        turning = force * (offset - side * beside + rocker.height * angle) / (still + beside**2)
+        if angle == rate == 0.0 and turning * side <= 0.0:
+            continue
+        rate += step * turning
+        after = angle + step * rate
+        if after * side <= 0.0:  # it comes down
+            rate *= max((still - beside * other) / (still + other**2), 0.0)
+            rate, after = (rate if abs(rate) > REST_ANGULAR_SPEED else 0.0), 0.0
+        angle = after
+        if abs(angle) >= math.atan2(near if angle > 0.0 else rocker.far, rocker.height):
+            return True
+    return False
+
+
+def over_period(place: Seat, bowl: Bowl) -> tuple[np.ndarray, np.ndarray]:
+    """Return what the track does to a part over a settled period.
+
+    Source: Housner 1963, the rocking block; docs/trial.md, "What other parts said of the rules".
+
+    Parameters
+    ----------
+    place : Seat
+    bowl : Bowl
+        Single values.
+
+    Returns
+    -------
+    tuple of (INSTANTS,) float [m/s2], (INSTANTS, 2) float [m]
+        Force of the track over the mass, and where it acts from the foot of the centre of mass.
+    """
+    phase = phases(ROCKING_STEPS)
+    motions = [balance.motion(place, bowl, phase, np.full(ROCKING_STEPS, sense)) for sense in SENSES]
+    senses = _senses(motions, 1.0 / bowl.drive.frequency / ROCKING_STEPS)
+    rows = np.arange(ROCKING_STEPS)
+    force = np.array([motion.normal_force for motion in motions])[senses, rows] / place.mass
+    return force, np.nan_to_num(np.array([motion.offset for motion in motions])[senses, rows])
+
+
+def _senses(motions: list[balance.TrackMotion], step: float) -> np.ndarray:
+    """How the part slides at each instant of a settled period, (INSTANTS,) int: places in ``SENSES``."""
+    gains = [step * motion.acceleration[:, 0] for motion in motions]
+    loose, speed = motions[0].slides, 0.0
+    found = np.zeros(ROCKING_STEPS, dtype=int)
+    for k in range(SETTLES * ROCKING_STEPS):
+        row = k % ROCKING_STEPS
+        if speed == 0.0:
+            speed = gains[0][row] if loose[row] else 0.0
+        else:
+            after = speed + gains[1 if speed > 0.0 else 2][row]
+            speed = after if after * speed > 0.0 else 0.0
+        found[row] = 0 if speed == 0.0 else 1 if speed > 0.0 else 2
+    return found
+
+
+TIPPING_PHASES = 12  # of one period
 MM = factor("mm", "length")
-HOPS = (
+HOP_REMARK = (
     "at this drive parts hop {:.2g} mm high and fly {:.2g} mm along the track: margins at edges across the "
     "track are less that way, all others less that height"
 )
-TURNS = "{}: a landing may tip it over, or the wall turn it, so no verdict on it is sure - see feeder trial"
-FLAT = "flat"  # a part that rolls lies on a line: it rolls where others tip, and tips over the line's ends
-ROUND = 0.98  # of the farthest place of an outline, the nearest: it is round, and no heading of it is another
-BESIDE = 10.0  # heights of the centre of mass: no force of a bowl acts so far beside it
+LANDING_REMARK = (
+    "{}: a landing may tip it over, or the wall turn it, so no verdict on it is sure - see feeder trial"
+)
+FLAT_KIND = (
+    "flat"  # a part that rolls lies on a line: it rolls where others tip, and tips over the line's ends
+)
+ROUND_OUTLINE_RATIO = (
+    0.98  # of the farthest place of an outline, the nearest: it is round, and no heading of it is another
+)
+MAX_FORCE_OFFSET_HEIGHTS = 10.0  # heights of the centre of mass: no force of a bowl acts so far beside it
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,9 +266,9 @@ def remark(lying: Sequence[Orientation]) -> tuple[str, ...]:
     said = [f"{listed(over)} can tip over on the track at this drive and count as returned"] if over else []
     hop, flight = max(((one.hop, one.flight) for one in lying), default=(0.0, 0.0))
     if hop > 0.0:
-        said.append(HOPS.format(hop / MM, flight / MM))
+        said.append(HOP_REMARK.format(hop / MM, flight / MM))
     turning = [one.name for one in lying if one.may_turn and one.hop > 0.0]
-    return (*said, TURNS.format(listed(turning))) if turning else tuple(said)
+    return (*said, LANDING_REMARK.format(listed(turning))) if turning else tuple(said)
 
 
 def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
@@ -153,7 +293,7 @@ def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
     After the stroke its weight brings it back, by g r / (r^2 + h^2) at most. Where it is then still tilted at
     the next one, or over already, its rocking is followed: ``rocking.goes_over``.
     """
-    found = [_one(one, bowl) for one in lying] if plain(bowl) else [_NEVER] * len(lying)
+    found = [_one(one, bowl) for one in lying] if plain_bowl(bowl) else [_NO_TIPPING] * len(lying)
     return TrackTipping(*(check.frozen(np.array(column)) for column in zip(*found)))
 
 
@@ -171,7 +311,7 @@ def landing_energy(bowl: Bowl) -> float:
     -------
     float [m]
     """
-    if speed(bowl) <= 0.0 or hop(bowl).height <= 0.0:
+    if travel_speed(bowl) <= 0.0 or hop(bowl).height <= 0.0:
         return 0.0
     return float(answer.answer(bowl).hardest_impact ** 2 / (2.0 * bowl.gravity))
 
@@ -191,7 +331,7 @@ def landing(one: Orientation, bowl: Bowl, energy: float) -> Orientation:
     """
     if one.falls_off or one.touching is None:
         return one
-    contact = seated(one, bowl.track.bank).contact
+    contact = seat_in_groove(one, bowl.track.bank).contact
     tips = energy > 0.0 and may_tip(contact, one, bowl, energy)
     return replace(one, may_tip=tips, may_yaw=may_yaw(one, bowl))
 
@@ -252,15 +392,15 @@ def may_yaw(one: Orientation, bowl: Bowl) -> bool:
     outline = one.outline
     along = sides(outline)
     nearest = (outline[:, 0] * along[:, 1] - outline[:, 1] * along[:, 0]) / np.hypot(*along.T)
-    if one.groove or nearest.min() > ROUND * np.hypot(*outline.T).max() or one.touching is None:
+    if one.groove or nearest.min() > ROUND_OUTLINE_RATIO * np.hypot(*outline.T).max() or one.touching is None:
         return False
     return bool(bowl.friction.wall * one.distance > one.touching[1, 0])
 
 
-_NEVER = (False, 0.0, np.nan, False)
+_NO_TIPPING = (False, 0.0, np.nan, False)
 
 
-def plain(bowl: Bowl) -> bool:
+def plain_bowl(bowl: Bowl) -> bool:
     """Return whether a bowl's drive and conveyor are of the plain kind, for which tipping is followed."""
     try:
         return limits.plain(bowl) is bowl
@@ -270,13 +410,13 @@ def plain(bowl: Bowl) -> bool:
 
 def _one(one: Orientation, bowl: Bowl) -> tuple[bool, float, float, bool]:
     """Whether one orientation tips, how far a stroke tilts it, from where it goes on, if it goes over."""
-    if one.falls_off or one.touching is None or (one.kind != FLAT and rolls_across(one)):
-        return _NEVER
-    place, phase = seated(one, bowl.track.bank), phases(INSTANTS)
+    if one.falls_off or one.touching is None or (one.kind != FLAT_KIND and rolls_across(one)):
+        return _NO_TIPPING
+    place, phase = seat_in_groove(one, bowl.track.bank), phases(TIPPING_PHASES)
     rest = balance.motion(place, bowl, phase)
     if (rest.state == HOP).any() or not (rest.state == TIP).any():
-        return _NEVER
-    motions = [rest] + [balance.motion(place, bowl, phase, np.full(INSTANTS, s)) for s in (-1.0, 1.0)]
+        return _NO_TIPPING
+    motions = [rest] + [balance.motion(place, bowl, phase, np.full(TIPPING_PHASES, s)) for s in (-1.0, 1.0)]
     force = np.concatenate([found.normal_force for found in motions])
     offset = np.concatenate([found.offset for found in motions])
     moment = force * np.maximum(-inset(place.contact, offset), 0.0)
@@ -292,16 +432,16 @@ def _one(one: Orientation, bowl: Bowl) -> tuple[bool, float, float, bool]:
     return True, float(tilt), float(lean), bool(over)
 
 
-def seated(one: Orientation, bank: float) -> Seat:
+def seat_in_groove(one: Orientation, bank: float) -> Seat:
     """Return how an orientation lies on a track of some bank [rad], a Seat.
 
     One that rolls tips over the ends of its line only, so its contact is wide beside that.
     """
     place = seat(one.posture, one.heading, one.touching, bank)
-    if one.kind == FLAT:
+    if one.kind == FLAT_KIND:
         return place
     back, ahead = place.contact[:, 0].min(), place.contact[:, 0].max()
-    side = BESIDE * place.height
+    side = MAX_FORCE_OFFSET_HEIGHTS * place.height
     return replace(place, contact=np.array([[back, -side], [ahead, -side], [ahead, side], [back, side]]))
 
 
@@ -311,3 +451,166 @@ def _to_side(contact: np.ndarray, point: np.ndarray) -> float:
     along = along / np.hypot(*along.T)[:, None]
     beyond = cross(along, point - contact)
     return max(float(cross(along, -contact)[np.argmin(beyond)]), 0.0)
+
+
+STEADINESS_PHASES = 12  # of one period
+LANDINGS = 8  # instants of the period at which it comes to lie on the far edge
+SUPPORT_LOSS_TOLERANCE_M = (
+    1e-9  # [m] a device that leaves this much less of the support takes nothing from it
+)
+
+
+def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, margin: float) -> np.ndarray:
+    """Return which orientations the drive leaves lying on what a chain of devices leaves of their feet.
+
+    Source: own; docs/trial.md, "What other parts said of the rules".
+
+    Parameters
+    ----------
+    devices : sequence of Device
+        Those up to the first that lets parts hang or turns them over are looked at.
+    lying : sequence of Orientation
+        M of them, that the devices let pass.
+    bowl : Bowl
+        Single values.
+    margin : float [m]
+        By which they shall not rock beside an edge along the track.
+
+    Returns
+    -------
+    (M,) bool
+        True also where that is not known: a drive that is not straight.
+
+    Notes
+    -----
+    A ledge, a canyon or a slot goes on: there the force of the track has to stay within what is left of the
+    foot all through the cycle, as on the bare track, or the part rocks. Over an edge across the track every
+    part rocks in the end, since its weight comes near that edge. It is steady if rocking, followed from
+    stroke to stroke, does not take it over: ahead where least carries it, however long it stands there, and
+    back over the far edge, from which it travels on at the velocity of the point mass. A landing of a part
+    that hops must not tip it over what a ledge, a canyon or a slot leaves of its foot, less the margin; over
+    an edge across the track the verdict itself is less the flight.
+    """
+    known, energy = plain_bowl(bowl), landing_energy(bowl)
+    if energy > 0.0:
+        return np.array([_lands(devices, one, bowl, margin, energy) for one in lying], dtype=bool)
+    return np.array([not known or _steady(devices, one, bowl, margin) for one in lying], dtype=bool)
+
+
+def is_surely_gone(devices: Sequence[Device], lying: Sequence[Orientation], passes: np.ndarray) -> np.ndarray:
+    """Return which orientations the first device that does not let them pass is sure to get rid of.
+
+    Source: own; docs/tooling.md, "1. The method".
+
+    Parameters
+    ----------
+    devices : sequence of Device
+    lying : sequence of Orientation
+        M of them.
+    passes : (M, 1 + D) float [1]
+        Share that the track and each device let pass.
+
+    Returns
+    -------
+    (M,) bool
+        True also of what no device returns.
+    """
+    found = np.ones(len(lying), dtype=bool)
+    for row, (one, shares) in enumerate(zip(lying, np.asarray(passes)[:, 1:])):
+        first = next((k for k, share in enumerate(shares) if share < 0.5), None)
+        if first is not None and not one.returned:
+            found[row] = surely_gone(devices[first], one)
+    return found
+
+
+def _steady(devices: Sequence[Device], one: Orientation, bowl: Bowl, margin: float) -> bool:
+    """Whether one orientation is steady at every device."""
+    if one.returned or one.touching is None:
+        return True
+    if one.kind != FLAT_KIND and rolls_across(one):
+        return not any(_takes(device, one) for device in _met(devices))
+    place = seat_in_groove(one, bowl.track.bank)
+    if (balance.motion(place, bowl, phases(STEADINESS_PHASES)).state == HOP).any():
+        return True
+    force, offset = over_period(place, bowl)
+    for device in _met(devices):
+        span, hole = device.span_on(one.track), device.hole_on(one.track)
+        if span is not None and not _keeps_down(one, span, offset, margin):
+            return False
+        if hole is not None and not _keeps_upright(one, hole, place, force, offset, bowl):
+            return False
+    return True
+
+
+def _lands(devices: Sequence[Device], one: Orientation, bowl: Bowl, margin: float, energy: float) -> bool:
+    """Whether no landing may tip an orientation at any device, by a margin [m]."""
+    if one.returned or one.touching is None:
+        return True
+    if one.kind != FLAT_KIND and rolls_across(one):
+        return not any(_takes(device, one) for device in _met(devices))
+    for device in _met(devices):
+        span = device.span_on(one.track)
+        if span is not None and _takes(device, one):
+            left = footprints.beside(one.foot, span, one.distance, one.track.radius).corners
+            if may_tip(left, one, bowl, energy, margin):
+                return False
+    return True
+
+
+def _met(devices: Sequence[Device]) -> Iterator[Device]:
+    """Those that leave less of a foot, as far as parts come to them as they lie."""
+    for device in devices:
+        if device.turns or device.hangs:
+            break
+        if device.carries:
+            yield device
+
+
+def _takes(device: Device, one: Orientation) -> bool:
+    """Whether a device takes anything from what carries an orientation."""
+    span, hole = device.span_on(one.track), device.hole_on(one.track)
+    if span is not None:
+        (first, last), radius = span, one.track.radius
+        high = radius - first if first > 0.0 else 2.0 * radius
+        return (
+            footprints.over_ring(one.standing, max(radius - last, 0.0), high)
+            <= one.margin - SUPPORT_LOSS_TOLERANCE_M
+        )
+    return (
+        hole is not None and footprints.least(one.standing, hole)[0] <= one.margin - SUPPORT_LOSS_TOLERANCE_M
+    )
+
+
+def _keeps_down(one: Orientation, span: tuple[float, float], offset: np.ndarray, margin: float) -> bool:
+    """Whether the force of the track stays within what is left of a foot beside a hole along the track."""
+    (first, last), radius = span, one.track.radius
+    high = radius - first if first > 0.0 else 2.0 * radius
+    if (
+        footprints.over_ring(one.standing, max(radius - last, 0.0), high)
+        > one.margin - SUPPORT_LOSS_TOLERANCE_M
+    ):
+        return True
+    left = footprints.beside(one.foot, span, one.distance, radius).corners
+    hull = left[convex(left)]
+    return len(hull) > 2 and bool(inset(hull, offset).min() >= margin)
+
+
+def _keeps_upright(
+    one: Orientation, hole: Any, place: Seat, force: np.ndarray, offset: np.ndarray, bowl: Bowl
+) -> bool:
+    """Whether a part neither rocks over the edge that it leaves nor back over the one that it comes to."""
+    support, _ = footprints.least(one.standing, hole)
+    if support > one.margin - SUPPORT_LOSS_TOLERANCE_M:
+        return True
+    reach, period = one.foot.corners[:, 0], 1.0 / bowl.drive.frequency
+    leaving = Rocker(
+        near=max(support, 0.0),
+        far=float(-reach.min()),
+        height=place.height,
+        spread=gyration(one, 0.5 * np.pi),
+        force=force,
+        offset=offset[:, 0],
+    )
+    coming = replace(leaving, far=float(reach.max()), offset=-offset[:, 0], growth=travel_speed(bowl))
+    starts = range(0, len(force), len(force) // LANDINGS)
+    return not (goes_over(leaving, period) or any(goes_over(coming, period, start) for start in starts))

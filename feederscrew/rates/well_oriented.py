@@ -8,25 +8,95 @@ from feederscrew.conveying import answer, sensitivity
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.mechanics.wall.stable_headings import headings, stable_row
-from feederscrew.rates.shares_on_track import (
-    RECOMMENDED,
-    efficiency,
-    efficiency_ends,
-    entering,
-    fed,
-    mean_length,
-    queued,
-)
-from feederscrew.rates.stream import Orientations, orientations
+from feederscrew.rates.stream import Orientations
 from feederscrew.records import Shown
 from feederscrew.resting.posture import posture
+from feederscrew.tooling.orientations import Orientation
+
+RECOMMENDED_RULE = "recommended"  # the rule that has an interval of its own
+
+
+def mean_length(found: Orientations, rule: str) -> float:
+    """Return the mean length along the track of the parts that stay on it [m]; NaN where none does.
+
+    What falls off at the entry, or is turned over on the track, goes back at once: it is in nobody's way.
+
+    Source: docs/conveying.md, "Commands".
+    """
+    chance, enters = entering(found, rule)
+    weights = chance * found.stays
+    return float((weights * found.lengths).sum() / enters) if enters > 0.0 else np.nan
+
+
+def entering(found: Orientations, rule: str) -> tuple[np.ndarray, float]:
+    """Return the chance (M,) [1] of each orientation by a rule, and the share [1] that stays on the track.
+
+    Source: docs/conveying.md, "Commands".
+    """
+    chance = np.nan_to_num(found.rules[rule])
+    return chance, float((chance * found.stays).sum())
+
+
+def queued(found: Orientations, row: int, rule: str, gap: float, fill: float) -> float:
+    """Return parts on a length of track before the devices [1/m]: all that stay on it.
+
+    They come end to end, or as far apart as the devices need.
+
+    Source: docs/conveying.md, "Commands"; the gap is that of docs/tooling.md, "1. The method".
+    """
+    length = mean_length(found, rule)
+    return float(fill / ((found.lengths[row] if np.isnan(length) else length) + max(gap, found.gap)))
+
+
+def efficiency(found: Orientations, row: int, rule: str) -> float:
+    """Return the share of the parts offered, which are on the track, that leave in the orientation of a row.
+
+    Source: docs/conveying.md, "Commands".
+
+    Parameters
+    ----------
+    found : Orientations
+    row : int
+    rule : str
+
+    Returns
+    -------
+    float [1]
+    """
+    chance, enters = entering(found, rule)
+    return float((chance * fed_share(found, row)).sum() / enters) if enters > 0.0 else 0.0
+
+
+def efficiency_ends(found: Orientations, row: int, rule: str) -> tuple[float, ...]:
+    """Return the least and the greatest efficiency [1], by the rule's own interval or over all rules."""
+    fed, (_, enters) = fed_share(found, row), entering(found, rule)
+    if not enters > 0.0:
+        return 0.0, 0.0
+    if rule == RECOMMENDED_RULE and not np.isnan(found.interval).any():
+        return tuple(min(float((end * fed).sum()) / enters, 1.0) for end in found.interval.T)
+    all_rules = [efficiency(found, row, one) for one in found.rules]
+    return min(all_rules), max(all_rules)
+
+
+def fed(found: Orientations, row: int) -> Orientation:
+    """Return the Orientation in which parts wanted as a row leave: as they lie, or hanging."""
+    return found.states[found.leaves_as[row]]
+
+
+def fed_share(found: Orientations, row: int) -> np.ndarray:
+    """Return the share (M,) [1] of each orientation that leaves in the state of a wanted row.
+
+    Source: docs/conveying.md, "Commands".
+    """
+    return np.where(found.rolls_back, 0.0, found.leaving[:, found.leaves_as[row]])
+
 
 __all__ = [
-    "Orientations", "Range", "Rate", "efficiency", "fed", "mean_length", "orientations",
+    "Orientations", "Range", "Rate", "efficiency", "fed", "mean_length",
     "parts_per_metre", "rate", "velocity", "wanted",
 ]  # fmt: skip
-ROLLS = "lies on its round side and rolls back down the climb"
-HOLD = "bank the track, so that friction.wall tan(bank) is above tan(climb), or take another aspect"
+ROLLS_BACK_REMARK = "lies on its round side and rolls back down the climb"
+HOLD_ADVICE = "bank the track, so that friction.wall tan(bank) is above tan(climb), or take another aspect"
 
 
 @dataclass(frozen=True)
@@ -218,7 +288,7 @@ def _blocked(found, rule):
 def _probability(found, row, rule):
     """Probability of a row by a rule, within that rule's own interval or the range of all rules."""
     value = float(found.rules[rule][row])
-    if rule == RECOMMENDED and not np.isnan(found.interval[row]).any():
+    if rule == RECOMMENDED_RULE and not np.isnan(found.interval[row]).any():
         return Range(value, *(float(end) for end in found.interval[row]))
     chances = [chance[row] for chance in found.rules.values() if not np.isnan(chance[row])]
     return Range(value, float(min(chances)), float(max(chances)))
@@ -253,7 +323,7 @@ def parts_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
 def holds(found, target):
     """Raise a FeederError where a wanted orientation rolls back down the climb."""
     if found.rolls_back[_row(found, target)]:
-        raise FeederError(_where(target), ROLLS, HOLD)
+        raise FeederError(_where(target), ROLLS_BACK_REMARK, HOLD_ADVICE)
 
 
 def _where(target):

@@ -8,15 +8,14 @@ import shapely
 from feederscrew.bowl.record import Unbalance
 from feederscrew.errors import FeederError
 from feederscrew.part import mass
-from feederscrew.solidbowl import facets, grooves_wall, stairs, track
-from feederscrew.solidbowl.bolting import BESIDE
-from feederscrew.solidbowl.plan import TURN, BowlPlan
+from feederscrew.solidbowl import facets, stairs, track
+from feederscrew.solidbowl.plan import BOLT_CLEARANCE_M, FULL_TURN, BowlPlan
 from feederscrew.solidbowl.segments import Segments
 from feederscrew.tooling import whole_surface
 
-INTO = 1e-3  # [m] by which one piece reaches into another
-FAR = 1.0  # [m] beyond everything
-PLAY = 1e-4  # [m] of a gate in its notch, to each side
+PIECE_OVERLAP_M = 1e-3  # [m] by which one piece reaches into another
+BEYOND_BOWL_M = 1.0  # [m] beyond everything
+GATE_PLAY_M = 1e-4  # [m] of a gate in its notch, to each side
 SHORTER = 0.99  # of the turns that were asked for: less is said
 EARS = 4e-3  # [m] by which a gate stands out of the wall
 
@@ -172,12 +171,12 @@ def pieces(plan, kit=facets):
     wall, *ends = [_wall(plan, kit)] if plan.stairs is None else stairs.shell(plan, kit)
     notches = [_notch(plan, kit, one) for one in _gates(plan)]
     ring = kit.without(
-        wall, [*_opening(plan, kit), *notches, *_bores(plan, kit), *grooves_wall.cuts(plan, kit)]
+        wall, [*_opening(plan, kit), *notches, *_bores(plan, kit), *track.groove_wall_cuts(plan, kit)]
     )
     slab = kit.without(track.slab(plan, kit), [_hole(plan, kit, cut) for cut in _holes(plan)])
     blades = [_plate(plan, kit, one) for one in _blades(plan) if not one.alone]
     added = [*track.sides(plan, kit), *track.yokes(plan, kit), *blades, *track.ledges(plan, kit)]
-    added += grooves_wall.faces(plan, kit)
+    added += track.groove_faces(plan, kit)
     whole = kit.united([*_floor(plan, kit), ring, *ends, slab, *added])
     whole = kit.without(whole, [*track.slots(plan, kit), *_drilled(plan, kit)])
     gates = [(f"gate_{k + 1}", _plate(plan, kit, one)) for k, one in enumerate(_gates(plan))]
@@ -189,8 +188,10 @@ def _floor(plan, kit):
     low, inner, outer = plan.underside, plan.ring, plan.way.radius + plan.material.wall
     edge = []
     if plan.stairs is not None:
-        outer = inner + INTO
-        inside = kit.drum(inner - 0.7 * INTO, low - INTO, INTO, plan.segments)
+        outer = inner + PIECE_OVERLAP_M
+        inside = kit.drum(
+            inner - 0.7 * PIECE_OVERLAP_M, low - PIECE_OVERLAP_M, PIECE_OVERLAP_M, plan.segments
+        )
         edge = [kit.without(kit.patch(stairs.floor_edge(plan, kit), low, 0.0), [inside])]
     top = [(outer, 0.0), (inner, 0.0), (0.0, plan.dome)]
     if plan.material.flat:
@@ -204,7 +205,12 @@ def _floor(plan, kit):
 def _wall(plan, kit):
     inner, outer = plan.way.radius, plan.way.radius + plan.material.wall
     return kit.turned(
-        [(inner, plan.underside + INTO), (outer, plan.underside), (outer, plan.top), (inner, plan.top)],
+        [
+            (inner, plan.underside + PIECE_OVERLAP_M),
+            (outer, plan.underside),
+            (outer, plan.top),
+            (inner, plan.top),
+        ],
         plan.segments,
     )
 
@@ -214,20 +220,23 @@ def _opening(plan, kit):
     end, far = plan.way.end, plan.way.end + 2.0 * plan.outlet
     ring = np.array([[end, 0.0], [far, 0.0], [far, plan.width], [end, plan.width]])
     low, lift = plan.outlet_height - 0.5 * plan.material.plate, plan.width * np.sin(plan.way.bank_at(end))
-    return [kit.over(plan.way, ring, low, plan.top + lift + FAR, plan.chord)]
+    return [kit.over(plan.way, ring, low, plan.top + lift + BEYOND_BOWL_M, plan.chord)]
 
 
 def _drilled(plan, kit):
     """Holes of the bolts, in the middle and on their circle, and drain holes."""
-    angles = TURN * (np.arange(plan.bolts) + 0.5) / plan.bolts
+    angles = FULL_TURN * (np.arange(plan.bolts) + 0.5) / plan.bolts
     circle = [(0.0, 0.0)] + [
         (0.5 * plan.bolt_circle * np.cos(a), 0.5 * plan.bolt_circle * np.sin(a)) for a in angles
     ]
     holes = [(one, plan.bolt) for one in circle]
-    edge = plan.ring + BESIDE - plan.drain
-    angles = TURN * np.arange(plan.drains) / max(plan.drains, 1)
+    edge = plan.ring + BOLT_CLEARANCE_M - plan.drain
+    angles = FULL_TURN * np.arange(plan.drains) / max(plan.drains, 1)
     holes += [((edge * np.cos(a), edge * np.sin(a)), plan.drain) for a in angles]
-    return [kit.disc(at, size, plan.underside - INTO, plan.dome + INTO) for at, size in holes]
+    return [
+        kit.disc(at, size, plan.underside - PIECE_OVERLAP_M, plan.dome + PIECE_OVERLAP_M)
+        for at, size in holes
+    ]
 
 
 def _bores(plan, kit):
@@ -237,8 +246,8 @@ def _bores(plan, kit):
         s = plan.first + one.place
         theta = float(plan.way.angle(s))
         towards = np.array([np.cos(theta), np.sin(theta), 0.0])
-        near = plan.way.places(s, 0.0) + [0.0, 0.0, one.height] - INTO * towards
-        made.append(kit.bore(near, towards, one.size, plan.material.wall + 2.0 * INTO))
+        near = plan.way.places(s, 0.0) + [0.0, 0.0, one.height] - PIECE_OVERLAP_M * towards
+        made.append(kit.bore(near, towards, one.size, plan.material.wall + 2.0 * PIECE_OVERLAP_M))
     return made
 
 
@@ -258,8 +267,8 @@ def _hole(plan, kit, cut):
     """The body that a cut takes out of the track."""
     ring = cut.ring + [plan.first, 0.0]
     heights = plan.way.height(ring[:, 0], ring[:, 1])
-    deep = plan.material.plate + track.fillet(plan) + INTO
-    return kit.over(plan.way, ring, heights.min() - deep, heights.max() + INTO, 0.2 * plan.chord)
+    deep = plan.material.plate + track.fillet(plan) + PIECE_OVERLAP_M
+    return kit.over(plan.way, ring, heights.min() - deep, heights.max() + PIECE_OVERLAP_M, 0.2 * plan.chord)
 
 
 def _plate(plan, kit, blade):
@@ -268,7 +277,7 @@ def _plate(plan, kit, blade):
     area = blade.area
     if blade.alone:
         x0, _, _, x3 = area.bounds
-        ear = shapely.box(-plan.material.wall - EARS, 0.0, x0 + INTO, x3)
+        ear = shapely.box(-plan.material.wall - EARS, 0.0, x0 + PIECE_OVERLAP_M, x3)
         area = shapely.union_all([area, ear])
     return _standing(plan, kit, s, blade.thickness, area, blade.lean)
 
@@ -288,6 +297,8 @@ def _standing(plan, kit, s, thickness, area, lean=0.0):
 
 def _notch(plan, kit, blade):
     """The notch of the wall in which a gate stands, open above."""
-    z = -PLAY
-    area = shapely.box(-plan.material.wall - INTO, z, INTO, FAR)
-    return _standing(plan, kit, plan.first + blade.start - PLAY, blade.thickness + 2.0 * PLAY, area)
+    z = -GATE_PLAY_M
+    area = shapely.box(-plan.material.wall - PIECE_OVERLAP_M, z, PIECE_OVERLAP_M, BEYOND_BOWL_M)
+    return _standing(
+        plan, kit, plan.first + blade.start - GATE_PLAY_M, blade.thickness + 2.0 * GATE_PLAY_M, area
+    )

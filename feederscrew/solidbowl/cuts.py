@@ -1,17 +1,139 @@
-"""What the devices of a chain take from the track and set on it, unrolled: the door to tooling's strip."""
+"""What devices take from the track and set on it, unrolled, and how the track leans and drops."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 from shapely import affinity
 
-from feederscrew.solidbowl import leaning
-from feederscrew.solidbowl.leaning import TrackLedge
-from feederscrew.tooling.devices.hole_shapes import beyond_borders
-from feederscrew.tooling.strip import strip
+from feederscrew.tooling.devices.base import room_of
+from feederscrew.tooling.devices.openings import beyond_borders
+from feederscrew.tooling.fates import leading
+from feederscrew.tooling.track_sections import build_section
 
-BEYOND = 2e-3  # [m] by which what reaches an edge of the track is cut over it
+MAX_EDGE_SLOPE_RAD = np.radians(10.0)  # slope along the track of its free edge, where the bank changes
+RAMP = np.radians(15.0)  # slope on which a ledge comes down to the track beside it
+TWIST = 0.5  # of the room that a part has to itself: over so much the bank changes at least
+
+
+@dataclass(frozen=True)
+class TrackLedge:
+    """A ledge along the wall, above the track that goes on lower; s from where the stretch begins."""
+
+    label: str  # 'tip 6 mm'
+    start: float  # [m] s where the track beside it goes on lower
+    end: float  # [m] s where it begins to come down
+    width: float  # [m]
+    drop: float  # [m] of the track beside it
+    ramp: float  # [m] over which it comes down
+
+
+def banked_height(track, devices, every):
+    """Return the track with the bank that the first devices give it from its entry on.
+
+    Parameters
+    ----------
+    track : Track
+    devices : sequence of Device
+    every : sequence of Orientation
+        Of the part on that track.
+
+    Returns
+    -------
+    Track
+    """
+    for device in lean_at_entry(devices):
+        for slope in device.standing(track, every).slopes:
+            track = track if slope.bank is None else replace(track, bank=slope.bank)
+    return track
+
+
+def lean_at_entry(devices):
+    """Return those devices that stand at the track's entry: before what does more than lean it."""
+    return leading([device for device in devices if device.placed])
+
+
+def laid_out(track, stations, every):
+    """Return stations along a solid's track, with room for what leans and drops it.
+
+    Parameters
+    ----------
+    track : Track
+        With the bank of its entry.
+    stations : sequence of Station
+    every : sequence of Orientation
+
+    Returns
+    -------
+    stations : list of Station
+    leans : tuple of (float [m], float [m], float [rad])
+        From and to which length the track twists to which bank.
+    ledges : tuple of TrackLedge
+    grooves : tuple of (float [m], float [m], float [rad], float [m])
+        From and to which length the wall leans back, by how much, and over how long it opens.
+    more : float [m]
+        By which the stretch is longer.
+    """
+    entry = len(lean_at_entry([one.device for one in stations]))
+    moved, leans, ledges, more, bank = [], [], [], 0.0, track.bank
+    for place, one in enumerate(stations):
+        one = _moved(one, more)
+        moved.append(one)
+        end = one.start + one.length
+        for slope in one.device.standing(track, every).slopes if place >= entry else ():
+            if slope.bank is not None and slope.bank != bank:
+                begin = one.start + slope.begin
+                leans.append((begin, begin + _twist(track, bank, slope.bank, every), slope.bank))
+                bank, more = slope.bank, more + max(leans[-1][1] - end, 0.0)
+        ledge = _ledge(one, every)
+        if ledge is not None:
+            ledges.append(ledge)
+            more += ledge.ramp
+    return moved, tuple(leans), tuple(ledges), _grooves(moved, entry, track, every), more
+
+
+def _grooves(stations, entry, track, every):
+    """Where the wall leans back; a groove at the entry is there from the first of the track on."""
+    found: list[tuple[float, ...]] = []
+    opens = max(one.length for one in every)
+    for place, one in enumerate(stations):
+        for slope in one.device.standing(track, every).slopes:
+            at = -np.inf if place < entry else one.start + slope.begin
+            if slope.wall is not None and found and np.isinf(found[-1][1]):
+                found[-1] = found[-1][0], at, *found[-1][2:]
+            if slope.wall:
+                found.append((at, np.inf, slope.wall, opens))
+    return tuple(one for one in found if one[1] > one[0])
+
+
+def _moved(station, by):
+    """A station further on along the track."""
+    rings = {
+        name: getattr(station, name) + np.array([by, 0.0])
+        for name in ("hole", "blade")
+        if getattr(station, name) is not None
+    }
+    return replace(station, start=station.start + by, **rings)
+
+
+def _twist(track, before, after, every):
+    """Length [m] over which one bank becomes another: the free edge rises or falls gently."""
+    edge = track.width * abs(np.sin(after) - np.sin(before))
+    return float(max(TWIST * room_of(every), edge / np.tan(MAX_EDGE_SLOPE_RAD)))
+
+
+def _ledge(station, every):
+    """The ledge of a station, None without one."""
+    drop, aside = station.device.lower(every) or (0.0, 0.0)
+    if aside <= 0.0:
+        return None
+    ramp = float(drop / np.tan(RAMP))
+    return TrackLedge(
+        station.label, station.start, station.start + station.length, float(aside), float(drop), ramp
+    )
+
+
+CUT_OVERRUN_M = 2e-3  # [m] by which what reaches an edge of the track is cut over it
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +213,8 @@ def stretch(track, devices, every):
     -------
     Stretch
     """
-    section = strip(track, devices, every)
-    stations, leans, ledges, grooves, more = leaning.laid_out(track, section.stations, every)
+    section = build_section(track, devices, every)
+    stations, leans, ledges, grooves, more = laid_out(track, section.stations, every)
     beside = {ledge.start for ledge in ledges}
     cut = [one for one in stations if one.hole is not None and one.start not in beside]
     drops = [(one.start + 0.5 * one.length, one.drop) for one in stations if one.drop > 0.0]
@@ -126,16 +248,16 @@ def _cut(station, drawn, width):
     """A hole, carried a little over the edge of the track that it reaches, and into the wall."""
     s, y = station.hole.T
     corners = np.column_stack([s, np.where(y <= 1e-9, 0.0, y)])
-    ring = beyond_borders(corners.tolist(), drawn - 1e-9, max(width - drawn, 0.0) + BEYOND)
+    ring = beyond_borders(corners.tolist(), drawn - 1e-9, max(width - drawn, 0.0) + CUT_OVERRUN_M)
     return TrackHole(station.label, station.device.kind, np.array(ring), station.device.hangs)
 
 
 def _blade(station, width):
     """The plate of a gate without its opening; it reaches into the wall."""
     free = shapely.union_all([shapely.Polygon(ring) for ring in station.openings])
-    ways = ((0.0, 0.0), (-2.0 * BEYOND, 0.0), (0.0, -2.0 * BEYOND))
+    ways = ((0.0, 0.0), (-2.0 * CUT_OVERRUN_M, 0.0), (0.0, -2.0 * CUT_OVERRUN_M))
     free = shapely.union_all([affinity.translate(free, *by) for by in ways])
-    frame = shapely.box(-BEYOND, 0.0, width, station.top)
+    frame = shapely.box(-CUT_OVERRUN_M, 0.0, width, station.top)
     return TrackBlade(
         label=station.label,
         kind=station.device.kind,

@@ -7,12 +7,12 @@ from shapely import affinity
 from feederscrew.errors import FeederError
 from feederscrew.units import MM
 
-CRUMB = 1e-9  # [m3] a loose piece smaller than this is left out
-SIDES = 48  # of a round hole
-APART = 0.5  # of a side: no corner of a hole lies on an edge of what it is drilled through
+MIN_PIECE_VOLUME_M3 = 1e-9  # [m3] a loose piece smaller than this is left out
+HOLE_SIDES = 48  # of a round hole
+HOLE_CORNER_PHASE = 0.5  # of a side: no corner of a hole lies on an edge of what it is drilled through
 
 
-SMOOTH = False  # a curve is a chain of chords
+HAS_EXACT_CURVES = False  # a curve is a chain of chords
 
 
 def swept(legs):
@@ -107,14 +107,14 @@ def over(way, ring, low, high, chord):
 
 def disc(at, size, low, high):
     """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
-    angles = 2.0 * np.pi * (np.arange(SIDES) + APART) / SIDES
+    angles = 2.0 * np.pi * (np.arange(HOLE_SIDES) + HOLE_CORNER_PHASE) / HOLE_SIDES
     ring = np.asarray(at) + 0.5 * size * np.column_stack([np.cos(angles), np.sin(angles)])
     return prism(shapely.Polygon(ring), low, high)
 
 
 def bore(place, towards, size, deep):
     """Return a round rod along a level unit vector (3,): its near end (3,), diameter and length [m]."""
-    angles = 2.0 * np.pi * (np.arange(SIDES) + APART) / SIDES
+    angles = 2.0 * np.pi * (np.arange(HOLE_SIDES) + HOLE_CORNER_PHASE) / HOLE_SIDES
     area = shapely.Polygon(0.5 * size * np.column_stack([np.cos(angles), np.sin(angles)]))
     up = np.array([0.0, 0.0, 1.0])
     return plank(area, deep, np.column_stack([np.cross(up, towards), up, towards]), place)
@@ -185,7 +185,7 @@ def one_piece(body, where):
         If more than a crumb hangs loose.
     """
     pieces = sorted(body.decompose(), key=lambda one: -one.volume())
-    loose = [one for one in pieces[1:] if one.volume() * MM**3 > CRUMB]
+    loose = [one for one in pieces[1:] if one.volume() * MM**3 > MIN_PIECE_VOLUME_M3]
     if loose:
         what = f"the cuts leave {len(loose)} loose piece{'s' * (len(loose) > 1)} of the track"
         raise FeederError(where, what, "leave some track on both sides of each cut, or move them apart")
@@ -270,7 +270,7 @@ def cut_by(body, planes):
     return [cell for cell in cells if not cell.is_empty()]
 
 
-def parts_of(body, least=CRUMB):
+def parts_of(body, least=MIN_PIECE_VOLUME_M3):
     """Return the pieces of a Manifold that hang together, those of less than a volume [m3] left out."""
     return [one for one in body.decompose() if one.volume() * MM**3 > least]
 

@@ -1,29 +1,252 @@
-"""The measures of a bowl as a solid, decided before a facet is made."""
+"""The measures of a bowl as a solid, decided before a facet is made: material, track, bolts, drains."""
 
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 
 from feederscrew.errors import FeederError
-from feederscrew.solidbowl import bolting
-from feederscrew.solidbowl.bolting import BESIDE
 from feederscrew.solidbowl.cuts import Stretch
-from feederscrew.solidbowl.materials import BowlMaterial
 from feederscrew.solidbowl.stairs import CYLINDER, Stairs, stairs
-from feederscrew.solidbowl.way import Way
 
-CHORD = 5e-5  # [m] by which an arc may be seen too flat
+STEEL_NAME = "steel"
+
+
+@dataclass(frozen=True)
+class BowlMaterial:
+    """Thicknesses and density of one way to make a bowl."""
+
+    name: str
+    wall: float  # [m]
+    floor: float  # [m]
+    plate: float  # [m] of the track
+    density: float  # [kg/m3]
+    supported: bool  # every face may hang free: welded, or held up by the powder around it
+    flat: bool  # the underside of the floor is flat, to stand on a printer's bed
+
+
+PRINTED_MATERIALS = (
+    BowlMaterial("pla", 4e-3, 5e-3, 4e-3, 1240.0, supported=False, flat=True),
+    BowlMaterial("pa12", 3e-3, 4e-3, 3e-3, 1010.0, supported=True, flat=False),
+)
+NAMES = (*(one.name for one in PRINTED_MATERIALS), STEEL_NAME)
+
+
+def material(name, rules):
+    """Return a material by name.
+
+    Parameters
+    ----------
+    name : str
+        Of ``NAMES``; 'steel' is the sheet of the bowl file.
+    rules : Sizing
+        Its thickness and density of the sheet.
+
+    Returns
+    -------
+    BowlMaterial
+    """
+    if name == STEEL_NAME:
+        sheet = rules.sheet
+        return BowlMaterial(STEEL_NAME, sheet, sheet, sheet, rules.sheet_density, supported=True, flat=False)
+    return next(one for one in PRINTED_MATERIALS if one.name == name)
+
+
+BOLT_CLEARANCE_M = 1e-3  # [m] of level floor beside the track
+WEB = 0.5  # of a hole's diameter: metal between two of them, at least
+
+
+def bolt_circle(track, asked, radius):
+    """Return the diameter [m] of the circle of bolts: as given, or by the rule as far as there is room.
+
+    Parameters
+    ----------
+    track : Track
+    asked : Asked
+    radius : float [m]
+        Of the floor, out to the wall.
+    """
+    most = 2.0 * (_room(track, radius) - 2.0 * asked.bolt)
+    ruled = asked.bolt_share * 2.0 * track.radius
+    return asked.bolt_circle or (min(ruled, most) if most > 0.0 else ruled)
+
+
+def _room(track, radius):
+    """Radius within which nothing of the track lies."""
+    return radius - track.width - 2.0 * BOLT_CLEARANCE_M
+
+
+def bolt_hub(track, asked, radius):
+    """Return the radius [m] of the hub below the floor."""
+    return 0.5 * bolt_circle(track, asked, radius) + 2.0 * asked.bolt
+
+
+def check_bolts(track, asked, extents, radius):
+    """Raise the fault of holes that the floor has no room for.
+
+    Parameters
+    ----------
+    track : Track
+    asked : Asked
+    extents : (3,) float [m]
+        Of the part along its axes.
+    radius : float [m]
+        Of the floor, out to the wall.
+
+    Raises
+    ------
+    FeederError
+        If the bolts lie under the track or run into each other, or parts fall through a drain hole.
+    """
+    room, across = _room(track, radius), bolt_circle(track, asked, radius)
+    if bolt_hub(track, asked, radius) > room + 1e-9:
+        what = f"{1e3 * across:.4g} mm lies under the track of a bowl this small"
+        most = 2e3 * (room - 2.0 * asked.bolt)
+        mend = f"give at most {most:.4g} mm, or smaller bolts"
+        if most <= 0.0:
+            mend = "give a smaller machine.bolt_hole, or a larger bowl"
+        raise FeederError("machine.bolt_circle", what, mend)
+    if _apart(asked.bolts, 0.5 * across) < (1.0 + WEB) * asked.bolt - 1e-9:
+        what = f"{asked.bolts} and one in the middle, of {1e3 * asked.bolt:.4g} mm,"
+        what += f" leave no metal between them on a circle of {1e3 * across:.4g} mm"
+        raise FeederError("machine.bolts", what, "take fewer, a smaller machine.bolt_hole, or a larger bowl")
+    least = float(min(extents))
+    if asked.drains and asked.drain >= least:
+        what = f"{1e3 * asked.drain:.4g} mm may let parts through that are {1e3 * least:.4g} mm thick"
+        raise FeederError("sizing.drain_hole", what, f"give less than {1e3 * least:.4g} mm")
+
+
+def _apart(bolts, radius):
+    """Least distance [m] between the middles of two holes, one of them that in the middle."""
+    if bolts == 0:
+        return np.inf
+    return radius * min(1.0, 2.0 * np.sin(np.pi / bolts) if bolts > 1 else 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """The foot of the wall as a line in space, and the track inwards of it.
+
+    Lengths s [m] run along the wall from where the track leaves the floor, distances y [m] from the wall
+    along the track's surface. Seen from above parts travel counter-clockwise about the Z axis and leave
+    where the outlet begins, at the angle 0.
+    """
+
+    radius: float  # [m] of the wall's inner face where the outlet begins
+    climb: float  # [rad]
+    bank: float  # [rad] down towards the wall, where it begins
+    end: float  # [m] s where the outlet begins: from there on the way is straight and level
+    drops: tuple[tuple[float, float], ...] = ()  # s of each step of the track and its height [m]
+    bends: tuple[tuple[float, float], ...] = ()  # s from which the track climbs otherwise, and how [rad]
+    flare: float = 0.0  # [1] by which the wall's radius grows over s
+    leans: tuple[tuple[float, float, float], ...] = ()  # from and to s it twists to another bank [rad]
+
+    def wall_radius(self, s):
+        """Return the radius [m] of the wall's inner face at lengths s."""
+        return self.radius + self.flare * (np.minimum(s, self.end) - self.end)
+
+    def at(self, theta):
+        """Return the lengths s at angles about the axis, at most 0."""
+        theta = np.asarray(theta, float)
+        if self.flare == 0.0:
+            return self.end + self.radius * theta
+        return self.end + self.radius * np.expm1(self.flare * theta) / self.flare
+
+    def angle(self, s):
+        """Return the angle [rad] about the axis at lengths s; it stays at 0 along the outlet."""
+        before = (np.minimum(s, self.end) - self.end) / self.radius
+        return before if self.flare == 0.0 else np.log1p(self.flare * before) / self.flare
+
+    def bank_at(self, s):
+        """Return the bank [rad] at lengths s."""
+        banks = [self.bank, *(bank for _, _, bank in self.leans)]
+        found = np.full(np.shape(s), float(self.bank))
+        for (start, end, bank), before in zip(self.leans, banks):
+            found = found + (bank - before) * np.clip((s - start) / (end - start), 0.0, 1.0)
+        return found
+
+    @property
+    def least_bank(self):
+        """The least bank [rad] anywhere: there the track is widest, seen from above."""
+        return min([self.bank, *(bank for _, _, bank in self.leans)])
+
+    def rises(self, width):
+        """Return the length s [m], at most 0, at which a track of a width first comes out of the floor.
+
+        Its free edge is the first on a banked track, and does so before the wall's side.
+        """
+        return -width * np.sin(self.bank) / np.tan(self.climb)
+
+    def plan(self, s, y):
+        """Return the places (..., 2) [m] from above at lengths s and distances y."""
+        s, y = np.broadcast_arrays(np.asarray(s, float), np.asarray(y, float))
+        theta, straight = self.angle(s), np.maximum(s - self.end, 0.0)
+        r, c, sn = self.wall_radius(s) - y * np.cos(self.bank_at(s)), np.cos(theta), np.sin(theta)
+        return np.stack([r * c - straight * sn, r * sn + straight * c], axis=-1)
+
+    def height(self, s, y=0.0):
+        """Return the height [m] of the track's surface over the floor's edge at lengths s, distances y."""
+        s = np.asarray(s, float)
+        fallen = sum((np.where(s >= at, drop, 0.0) for at, drop in self.drops), np.zeros(s.shape))
+        return self.risen(np.minimum(s, self.end)) - fallen + np.sin(self.bank_at(s)) * np.asarray(y)
+
+    def risen(self, s):
+        """Return by how much [m] the track climbs up to lengths s, its steps down left out."""
+        climbs = [self.climb, *(climb for _, climb in self.bends)]
+        found = np.tan(self.climb) * s
+        for (at, climb), before in zip(self.bends, climbs):
+            found = found + (np.tan(climb) - np.tan(before)) * np.maximum(s - at, 0.0)
+        return found
+
+    @property
+    def highest(self):
+        """Greatest height [m] of the track by the wall, its steps down left out."""
+        return float(max(self.risen(at) for at in (*(at for at, _ in self.bends), self.end)))
+
+    @property
+    def lowest(self):
+        """Least height [m] from the first other climb on."""
+        ends = [*(at for at, _ in self.bends), *(at for at, _ in self.drops), self.end]
+        return float(min(self.height(at) for at in ends))
+
+    def places(self, s, y):
+        """Return points (..., 3) [m] of the track's surface."""
+        flat = self.plan(s, y)
+        z = np.broadcast_to(self.height(s, y), flat.shape[:-1])
+        return np.concatenate([flat, z[..., None]], axis=-1)
+
+    def laid(self, ring, chord):
+        """Return a ring (K, 2) [m] of lengths and distances as a polygon seen from above.
+
+        Parameters
+        ----------
+        ring : (K, 2) float [m]
+        chord : float [m]
+            By which an arc may be seen too flat.
+
+        Returns
+        -------
+        shapely geometry [m]
+        """
+        border = shapely.linestrings(np.vstack([ring, ring[:1]]))
+        fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(4.0 * self.radius * chord)))[:-1]
+        return shapely.make_valid(shapely.Polygon(self.plan(fine[:, 0], fine[:, 1])))
+
+
+ARC_CHORD_M = 5e-5  # [m] by which an arc may be seen too flat
 DOME = np.radians(3.0)  # slope of the floor outwards
-ABOVE = 5e-3  # [m] of the wall over the tallest part on the track's end
+WALL_ABOVE_PART_M = 5e-3  # [m] of the wall over the tallest part on the track's end
 OUTLET = 15e-3  # [m] by which the outlet stands out of the wall
-LEAD = 10e-3  # [m] of track between the last device and the outlet
+OUTLET_LEAD_M = 10e-3  # [m] of track between the last device and the outlet
 DIP = 0.06  # [rad] the track begins so far below the floor: no edge where it grows from it
-CLEAR = 2e-3  # [m] more than a part needs, below rails
-NARROW = 0.75  # of the radius: no track is wider
-LOWEST = 10e-3  # [m] over the floor of a track that goes down
-STEEP = 1.5  # of the tangent of a bank: beside the chord of an arc a twist takes some of the height
-TURN = 2.0 * np.pi
-QUARTER = 0.25 * TURN  # of track at least, over floor and dome: there its width is measured
+RAIL_CLEARANCE_M = 2e-3  # [m] more than a part needs, below rails
+MAX_TRACK_WIDTH_RATIO = 0.75  # of the radius: no track is wider
+MIN_TRACK_HEIGHT_M = 10e-3  # [m] over the floor of a track that goes down
+BANK_DROP_FACTOR = (
+    1.5  # of the tangent of a bank: beside the chord of an arc a twist takes some of the height
+)
+FULL_TURN = 2.0 * np.pi
+MIN_CLEAR_TRACK_RAD = 0.25 * FULL_TURN  # of track at least, over floor and dome: there its width is measured
 SHORTEST = 0.999  # of it: what is told has four digits
 SEEN, CLEARED = 0.3, 3e-4  # of the plate, and [m] over the dome: there the free edge is measured
 
@@ -74,8 +297,8 @@ class BowlPlan:
     def segments(self):
         """How many facets a full turn has; where the track is steep across, more."""
         banks = self.way.bank, *(bank for _, _, bank in self.way.leans)
-        chord = self.chord / max(1.0, *(STEEP * float(np.tan(bank)) for bank in banks))
-        return int(np.ceil(TURN / (2.0 * np.arccos(1.0 - chord / self.way.radius)) / 4.0)) * 4
+        chord = self.chord / max(1.0, *(BANK_DROP_FACTOR * float(np.tan(bank)) for bank in banks))
+        return int(np.ceil(FULL_TURN / (2.0 * np.arccos(1.0 - chord / self.way.radius)) / 4.0)) * 4
 
     @property
     def outlet_height(self):
@@ -85,7 +308,7 @@ class BowlPlan:
     @property
     def turns(self):
         """Turns of the track from the floor to the outlet."""
-        return -float(self.way.angle(0.0)) / TURN
+        return -float(self.way.angle(0.0)) / FULL_TURN
 
     @property
     def room(self):
@@ -96,7 +319,9 @@ class BowlPlan:
     def ring(self):
         """Radius up to which the floor is level, a little more than the track covers; the dome is within."""
         lowest = self.way.rises(self.width) - DIP * self.way.radius if self.stairs else 0.0
-        return float(self.way.wall_radius(lowest)) - self.width * float(np.cos(self.way.bank)) - BESIDE
+        return (
+            float(self.way.wall_radius(lowest)) - self.width * float(np.cos(self.way.bank)) - BOLT_CLEARANCE_M
+        )
 
     @property
     def dome(self):
@@ -114,10 +339,10 @@ class BowlPlan:
 
 
 @dataclass(frozen=True)
-class Asked:
+class SolidOptions:
     """What is asked of the solid beside the sizes of the sheet."""
 
-    chord: float = CHORD
+    chord: float = ARC_CHORD_M
     material: str = "steel"
     outlet_height: float = 0.0  # [m] 0: as the track's turns make it
     outlet_angle: float = 0.0  # [rad]
@@ -163,7 +388,7 @@ def plan(size, track, made_of, tooled, asked, *, extents):
     stepped = stairs(track, made_of, tooled, asked, extents)
     way, first = _way(size, track, made_of, tooled, asked, stepped)
     lowest = float(way.wall_radius(0.0))
-    bolting.check(track, asked, extents, lowest)
+    check_bolts(track, asked, extents, lowest)
     across = track.width * np.cos(way.least_bank)
     outer = track.radius + made_of.wall
     outlet = np.sqrt(outer**2 - (track.radius - across) ** 2) + OUTLET
@@ -178,13 +403,13 @@ def plan(size, track, made_of, tooled, asked, *, extents):
         stretch=tooled,
         first=first,
         outlet=float(outlet),
-        hanging=greatest + CLEAR if hangs else 0.0,
+        hanging=greatest + RAIL_CLEARANCE_M if hangs else 0.0,
         headroom=tallest,
-        top=way.highest + max([tallest + ABOVE, *gates]),
-        hub=bolting.hub(track, asked, lowest),
+        top=way.highest + max([tallest + WALL_ABOVE_PART_M, *gates]),
+        hub=bolt_hub(track, asked, lowest),
         bolts=asked.bolts,
         bolt=asked.bolt,
-        bolt_circle=bolting.circle(track, asked, lowest),
+        bolt_circle=bolt_circle(track, asked, lowest),
         drains=asked.drains,
         drain=asked.drain,
         turned=asked.outlet_angle,
@@ -195,7 +420,7 @@ def plan(size, track, made_of, tooled, asked, *, extents):
 
 
 def _check(size, track):
-    widest = NARROW * track.radius
+    widest = MAX_TRACK_WIDTH_RATIO * track.radius
     if track.width > widest:
         what = f"{1e3 * track.width:.4g} mm is too wide for a bowl of {1e3 * size.diameter:.4g} mm"
         raise FeederError(
@@ -208,10 +433,10 @@ def _check(size, track):
 
 def _way(size, track, made_of, tooled, asked, stepped):
     """The way of the track, and where on it the tooled stretch begins."""
-    needed = 0.0 if tooled is None else tooled.length + LEAD
+    needed = 0.0 if tooled is None else tooled.length + OUTLET_LEAD_M
     drops = () if tooled is None else tooled.drops
     rise, gained = np.tan(track.climb), _gained(track, tooled, needed)
-    round_once = TURN * track.radius
+    round_once = FULL_TURN * track.radius
     free = round_once - track.width * np.sin(track.bank) / rise  # of track below, from where it rises
     falls = None if tooled is None or stepped is not None else tooled.falls
     most = np.inf if falls is None else free + needed - falls
@@ -239,7 +464,7 @@ def _way(size, track, made_of, tooled, asked, stepped):
 def _quarter(stepped):
     """Length of a quarter turn, over the wall's radius at its end."""
     flare = 0.0 if stepped is None else stepped.flare
-    return QUARTER if flare == 0.0 else -float(np.expm1(-flare * QUARTER)) / flare
+    return MIN_CLEAR_TRACK_RAD if flare == 0.0 else -float(np.expm1(-flare * MIN_CLEAR_TRACK_RAD)) / flare
 
 
 def _check_long(height, end, least, gained, rise):
@@ -261,15 +486,15 @@ def _gained(track, tooled, needed):
 
 
 def _check_bends(way, stepped, round_once, tallest):
-    if way.bends and way.lowest < LOWEST:
+    if way.bends and way.lowest < MIN_TRACK_HEIGHT_M:
         what = f"a device leads the track down to {1e3 * way.lowest:.3g} mm over the floor"
-        least = 1e3 * (float(way.height(way.end)) + LOWEST - way.lowest)
+        least = 1e3 * (float(way.height(way.end)) + MIN_TRACK_HEIGHT_M - way.lowest)
         raise TrackTooLow("devices", what, f"give a sizing.outlet_height of at least {least:.4g} mm")
     if way.bends and stepped is not None:
         _check_beside(way, stepped)
         return
     free = way.lowest - float(way.risen(way.end - round_once))
-    if way.bends and way.end > round_once and free < tallest + ABOVE:
+    if way.bends and way.end > round_once and free < tallest + WALL_ABOVE_PART_M:
         what = f"a device leads the track down to {1e3 * free:.3g} mm over the turn below"
         raise TrackTooLow("devices", what, "give a lower sizing.outlet_height")
 
@@ -277,7 +502,7 @@ def _check_bends(way, stepped, round_once, tallest):
 def _check_beside(way, stepped):
     """Raise the fault of a track that goes down too near to the turn before, beside which it lies."""
     last = np.array([*(at for at, _ in way.bends), way.end])
-    free = float((way.risen(last) - way.risen(way.at(way.angle(last) - TURN))).min())
+    free = float((way.risen(last) - way.risen(way.at(way.angle(last) - FULL_TURN))).min())
     if free < stepped.needed:
         what = f"a device leads the track down to {1e3 * free:.4g} mm over the turn before"
         mend = (

@@ -3,14 +3,14 @@
 import numpy as np
 
 from feederscrew.geometry.vectors import product
-from feederscrew.solidbowl import grooves_wall
-from feederscrew.solidbowl.plan import TURN
+from feederscrew.solidbowl import track
+from feederscrew.solidbowl.plan import FULL_TURN
 from feederscrew.solidbowl.stairs import CONICAL
 
 SPACED = 1.3  # of its length: from part to part
-FIRST = 0.12  # of the track: where the first of them is
-SETTLED = 60  # steps in which a part comes to touch wall and track, at most
-TOUCHING = 5e-6  # [m]
+FIRST_RIDER_POSITION = 0.12  # of the track: where the first of them is
+MAX_SETTLING_STEPS = 60  # steps in which a part comes to touch wall and track, at most
+RIDER_CONTACT_M = 5e-6  # [m]
 BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs, and does not touch the wall
 
 
@@ -35,9 +35,9 @@ def laid(plan, one, vertices, s):
     points, y = product(vertices, one.axes.T), one.distance
     points[:, 2] += one.posture.height
     hangs = points[:, 2].min() < -BELOW
-    for _ in range(0 if hangs else SETTLED):
+    for _ in range(0 if hangs else MAX_SETTLING_STEPS):
         beyond, over = clearances(plan, _set(plan, points, s, y), s)
-        if max(abs(beyond), abs(over)) < TOUCHING:
+        if max(abs(beyond), abs(over)) < RIDER_CONTACT_M:
             break
         y += beyond / float(np.cos(plan.way.bank_at(s)))
         points[:, 2] -= over
@@ -65,7 +65,7 @@ def clearances(plan, points, near):
     """
     way, (x, y, z) = plan.way, points.T
     theta = np.arctan2(y, x)
-    theta = theta + TURN * np.round((float(way.angle(near)) - theta) / TURN)
+    theta = theta + FULL_TURN * np.round((float(way.angle(near)) - theta) / FULL_TURN)
     straight = theta > 0.0
     s = np.where(straight, way.end + y, way.at(theta))
     out = np.where(straight, x, np.hypot(x, y)) - way.wall_radius(s)
@@ -78,12 +78,12 @@ def clearances(plan, points, near):
 def leaning(plan, s):
     """Return how far the wall leans outwards over its height [1], at lengths along it."""
     if plan.stairs is not None and plan.stairs.shape == CONICAL:
-        return np.where(plan.way.angle(s) < -TURN, 1.0 / np.tan(plan.stairs.slope), 0.0)  # upright above
+        return np.where(plan.way.angle(s) < -FULL_TURN, 1.0 / np.tan(plan.stairs.slope), 0.0)  # upright above
     found = np.zeros(np.shape(s))
-    for groove in grooves_wall.spans(plan):
+    for groove in track.groove_spans(plan):
         start, end, _, opens = groove
         there = (s >= start) & (s <= end + opens)
-        found = np.where(there, np.tan(grooves_wall.lean_at(groove, s)), found)
+        found = np.where(there, np.tan(track.lean_at(groove, s)), found)
     return found
 
 
@@ -123,7 +123,7 @@ def riders(plan, one, hung):
     """
     step = SPACED * one.length
     last = plan.first if plan.stretch is not None else plan.way.end - one.length
-    found = [(one, s) for s in np.arange(FIRST * plan.way.end, last, step)]
+    found = [(one, s) for s in np.arange(FIRST_RIDER_POSITION * plan.way.end, last, step)]
     behind = one if hung is None else hung
     start = last if plan.stretch is None else plan.first + plan.stretch.length
     end = plan.way.end + plan.outlet - 0.5 * behind.length

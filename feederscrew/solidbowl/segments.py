@@ -1,5 +1,6 @@
-"""A bowl cut into segments that fit a printer, with holes for dowels across the seams, and screws."""
+"""A bowl cut into segments that fit a printer, with dowels or screwed lugs across the seams."""
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,21 +8,177 @@ import shapely
 
 from feederscrew import units
 from feederscrew.errors import ArgumentError, FeederError
-from feederscrew.solidbowl import facets, lugs
-from feederscrew.solidbowl.plan import TURN
+from feederscrew.solidbowl import facets
+from feederscrew.solidbowl.plan import FULL_TURN
 from feederscrew.solidbowl.track import fillet
 from feederscrew.tooling import whole_surface
 from feederscrew.units import MM
 
-MOST = 6  # segments in one direction
-TURNS = 36  # positions of the seams that are tried, over a quarter turn
-DEEP = 6e-3  # [m] of a dowel's hole in each segment
+HOLE = 3.4e-3  # [m] for a screw M3, ISO 273
+FLATS, LUG_DEPTH_M = 5.7e-3, 2.6e-3  # [m] of the pocket for its nut, ISO 4032 and 0.2 mm of play
+SCREW_LENGTH_M = 16e-3  # [m] of the screw, and of both halves of a lug
+SCREW_NAME = "M3 x 16"
+WEIGHT = 1.5e-3  # [kg] of a screw, ISO 4762, with its nut
+LUG_HALF_WIDTH_M = 5e-3  # [m] of a lug to either side of its screw
+OFF, OVER = 6e-3, 5e-3  # [m] from the wall to the screw, and from there to the lug's outer face
+LUG_OVERLAP_M = 5e-4  # [m] by which a lug reaches into the wall
+SCREW_SPACING_M = 40e-3  # [m] between screws of a seam, about
+LUG_CLEARANCE_M = 15e-3  # [m] from devices and outlet
+MAX_WALL_BULGE_M = 8e-4  # [m] by which the wall may bulge between places of a lug
+MAX_LUG_LEAN_M = 16e-3  # [m] by which the wall may lean away over a lug: 45 deg
+POKE = 1e-11  # [m3] of it on the inner side of the wall at most
+BEYOND_LUGS_M = 10.0  # [m] beyond everything
+SCREW_HOLE_SIDES = 24  # corners of a hole
+STANDS = OFF + OVER  # [m] of a lug over the wall, at least
+
+
+@dataclass(frozen=True, eq=False)
+class Lug:
+    """A lug across a seam, with its screw; the seam lies in the middle of it."""
+
+    middle: np.ndarray  # (3,) [m] of the screw, in the seam
+    along: np.ndarray  # (3,) the screw's direction, from its nut to its head
+    out: np.ndarray  # (3,) off the wall
+    body: object  # Manifold [mm], without its holes
+    under: float  # [m] by which it goes on beyond its nut, where it is carried at 45 deg
+
+    @property
+    def holes(self):
+        """The hole of its screw and the pocket of its nut."""
+        side = np.cross(self.along, self.out)
+        axes = np.column_stack([self.out, side, self.along])
+        more = 1e-3 + self.under
+        end = self.middle - (0.5 * SCREW_LENGTH_M + more) * self.along
+        return [
+            facets.plank(_regular(SCREW_HOLE_SIDES, HOLE), SCREW_LENGTH_M + more + 1e-3, axes, end),
+            facets.plank(_regular(6, FLATS), LUG_DEPTH_M + more, axes, end),
+        ]
+
+
+def _regular(corners, across):
+    """A regular polygon [m] by the distance of its flats, one of them outwards."""
+    turns = FULL_TURN * (np.arange(corners) + 0.5) / corners
+    size = 0.5 * across / np.cos(np.pi / corners)
+    return shapely.Polygon(size * np.column_stack([np.cos(turns), np.sin(turns)]))
+
+
+def place_lugs(body, planes, kept, extents):
+    """Return the lugs along the seams of a bowl, none near its devices or its outlet.
+
+    Parameters
+    ----------
+    body : Manifold [mm]
+        The bowl, turned as its seams are.
+    planes : list of (int, float [m])
+        Axis and place of each seam.
+    kept : shapely geometry [m]
+        Seen from above: devices and outlet, in those axes.
+    extents : (3, 2) float [m]
+        Of the bowl in those axes.
+
+    Returns
+    -------
+    found : list of Lug
+    bare : int
+        Of the ends of seams, those that have none.
+    ends : int
+        Of seams: two of an upright one; a level one goes round and counts once.
+    """
+    found: list[Lug] = []
+    with_one, every = set(), set()
+    for axis, at in planes:
+        for frame in _upright(at, axis, extents) if axis < 2 else _level(at, extents):
+            end = axis, at, *(frame[2] if axis < 2 else ())
+            every.add(end)
+            made = _lug(body, frame, axis == 2, extents[2, 0])
+            if made is not None and _is_lug_clear(made, kept, found, planes) and _outside(made, body):
+                found.append(made)
+                with_one.add(end)
+    return found, len(every - with_one), len(every)
+
+
+def lug_remarks(bare, ends):
+    """Return what must not be overlooked of ends of seams without a lug, of how many; a tuple of str."""
+    if not bare:
+        return ()
+    what = f"{bare} of {ends} ends of seams have no room for a lug: dowels alone hold them there"
+    return (str(FeederError("join", what, "glue those seams, or take a larger bed")),)
+
+
+def _upright(at, axis, extents):
+    """Frames (place, along, out, across) of lugs at both ends of an upright seam."""
+    low, high = extents[2] + [LUG_HALF_WIDTH_M + STANDS + 2e-3, -LUG_HALF_WIDTH_M - 1e-3]
+    count = 1 + int((high - low) / SCREW_SPACING_M)
+    heights = np.linspace(low, high, count) if count > 1 else [0.5 * (low + high)]
+    unit, up = np.eye(3), np.array([0.0, 0.0, 1.0])
+    along = unit[axis] if at >= 0.0 else -unit[axis]
+    for side, z in itertools.product((1.0, -1.0), heights if high >= low else ()):
+        yield at * unit[axis] + z * up, along, side * unit[1 - axis], up
+
+
+def _level(at, extents):
+    """Frames of lugs round a level seam."""
+    around = np.pi * (extents[0, 1] - extents[0, 0])
+    up = np.array([0.0, 0.0, 1.0])
+    for turn in FULL_TURN * (np.arange(count := int(around / SCREW_SPACING_M / 2.0)) + 0.5) / count:
+        out = np.array([np.cos(turn), np.sin(turn), 0.0])
+        yield at * up, up, out, np.cross(up, out)
+
+
+def _lug(body, frame, level, low):
+    """A lug on the wall's outer face; None where that is not smooth there."""
+    place, along, out, across = frame
+    n, t = 0.5 * SCREW_LENGTH_M * np.linspace(-1.0, 1.0, 5), LUG_HALF_WIDTH_M * np.linspace(-1.0, 1.0, 3)
+    off = np.array([[_wall(body, place + a * along + b * across, out) for b in t] for a in n])
+    if not np.isfinite(off).all() or np.ptp(off) > MAX_LUG_LEAN_M:
+        return None
+    if max(np.abs(np.diff(off, 2, axis=k)).max() for k in (0, 1)) > MAX_WALL_BULGE_M:
+        return None
+    top = off.max() + STANDS
+    foot = [(a, b, off[i, j] - LUG_OVERLAP_M) for i, a in enumerate(n) for j, b in enumerate(t)]
+    rim = [(a, b, top) for a in n[[0, -1]] for b in t[[0, -1]]]
+    deep = top - off.min()
+    under = [(n[0] - deep, b) for b in t] if level else [(a, t[0] - deep) for a in n]
+    if (place + under[0][0] * along + under[0][1] * across)[2] < low:
+        return None
+    foot += [(a, b, _wall(body, place + a * along + b * across, out) - LUG_OVERLAP_M) for a, b in under]
+    corners = np.array([*foot, *rim])
+    if not np.isfinite(corners).all():
+        return None
+    places = place + corners[:, :1] * along + corners[:, 1:2] * across + corners[:, 2:] * out
+    return Lug(place + (off.max() + OFF) * out, along, out, facets.hull(places), deep if level else 0.0)
+
+
+def _wall(body, place, out):
+    """How far out [m] the outer face of the wall lies from a place; not a number without one."""
+    found = facets.first_met(body, place + BEYOND_LUGS_M * out, place)
+    return BEYOND_LUGS_M - found[0] if found else np.nan
+
+
+def _is_lug_clear(made, kept, others, planes):
+    """Whether a lug lies apart from devices, from other lugs and from other seams."""
+    if kept.distance(shapely.Point(made.middle[:2])) < LUG_CLEARANCE_M:
+        return False
+    if any(np.sum((made.middle - one.middle) ** 2) < (2.0 * SCREW_LENGTH_M) ** 2 for one in others):
+        return False
+    own = int(np.argmax(np.abs(made.along)))
+    return all(axis == own or abs(made.middle[axis] - at) > SCREW_LENGTH_M for axis, at in planes)
+
+
+def _outside(made, body):
+    """Whether a lug does not come out of the wall on its inner side."""
+    return len(facets.parts_of(facets.without(made.body, [body]), POKE)) == 1
+
+
+MAX_SEGMENTS = 6  # segments in one direction
+SEAM_POSITIONS = 36  # positions of the seams that are tried, over a quarter turn
+DOWEL_HOLE_DEPTH_M = 6e-3  # [m] of a dowel's hole in each segment
 SHARE = 0.5  # of the wall: diameter of a dowel
 LAND = 0.8  # of its diameter: solid round a dowel
-APART = 25e-3  # [m] between dowels
-GRID = 1.5e-3  # [m] at which places for dowels are looked for
-NEAR = 1e-3  # [m] of a surface
-PLACES = "floor", "wall", "track", "outlet"  # what may hang over
+DOWEL_SPACING_M = 25e-3  # [m] between dowels
+DOWEL_GRID_M = 1.5e-3  # [m] at which places for dowels are looked for
+SURFACE_DISTANCE_M = 1e-3  # [m] of a surface
+OVERHANG_PLACES = "floor", "wall", "track", "outlet"  # what may hang over
 DOWELS, SCREWS = JOINTS = ("dowels", "screws")
 
 
@@ -57,7 +214,7 @@ class Segments:
     @property
     def remarks(self):
         """What must not be overlooked of its screws, a tuple of str."""
-        return lugs.remarks(*self.ends)
+        return lug_remarks(*self.ends)
 
     @property
     def screws(self):
@@ -118,7 +275,9 @@ def segments(made, size, joint=DOWELS):
     holes = [one for plane in planes for one in _dowels(made, body, turn, plane, dowel)]
     joints, bare, of = _lugs(made, body, turn, planes) if joint == SCREWS else ([], 0, 0)
     body, joined = _joined(body, joints, turn)
-    body = facets.without(body, [facets.rod(axis, middle, dowel, DEEP) for axis, middle in holes])
+    body = facets.without(
+        body, [facets.rod(axis, middle, dowel, DOWEL_HOLE_DEPTH_M) for axis, middle in holes]
+    )
     cells = facets.cut_by(body, planes)
     found = sorted(
         (piece for cell in cells for piece in facets.parts_of(cell)), key=lambda one: one.bounding_box()
@@ -126,7 +285,9 @@ def segments(made, size, joint=DOWELS):
     pieces = tuple(_piece(f"segment_{k}", one) for k, one in enumerate(found, start=1))
     places = np.array([middle for _, middle in holes]).reshape(-1, 3)
     screwed = np.array([(one.middle, one.along, one.out) for one in joints]).reshape(-1, 3, 3)
-    return Segments(pieces, places, dowel, 2.0 * DEEP, turn, _turned(screwed, turn), joined, (bare, of))
+    return Segments(
+        pieces, places, dowel, 2.0 * DOWEL_HOLE_DEPTH_M, turn, _turned(screwed, turn), joined, (bare, of)
+    )
 
 
 def _lugs(made, body, turn, planes):
@@ -135,7 +296,7 @@ def _lugs(made, body, turn, planes):
     s = np.linspace(_tooled(plan)[0], plan.way.end + plan.outlet, 120)
     edges = [_filed(plan, plan.way.plan(s, y)) for y in (-plan.material.wall, plan.width)]
     kept = shapely.MultiLineString([_turned(one, -turn) for one in edges])
-    found = lugs.lugs(body, planes, kept, _box(made.vertices, turn))
+    found = place_lugs(body, planes, kept, _box(made.vertices, turn))
     if planes and not found[0]:
         raise FeederError("join", "no lug for a screw has room at the seams", "take dowels")
     return found
@@ -171,19 +332,19 @@ def _seams(made, size, screwed):
     Of the turns with fewest segments the one whose seams keep farthest from the devices.
     """
     found = []
-    for turn in 0.5 * np.pi * np.arange(TURNS) / TURNS:
+    for turn in 0.5 * np.pi * np.arange(SEAM_POSITIONS) / SEAM_POSITIONS:
         extents = _box(made.vertices, turn)
         counts = _counts(extents, size)
         if screwed and max(counts) > 1:
-            extents = extents + lugs.STANDS * np.array([[-1.0, 1.0], [-1.0, 1.0], [0.0, 0.0]])
+            extents = extents + STANDS * np.array([[-1.0, 1.0], [-1.0, 1.0], [0.0, 0.0]])
             counts = _counts(extents, size)
-        rank = np.prod(counts), -round(_clear(made, turn, counts, extents), 9), float(turn)
+        rank = np.prod(counts), -round(_seam_clearance(made, turn, counts, extents), 9), float(turn)
         found.append((rank, counts, float(turn), extents))
     _, counts, turn, extents = min(found, key=lambda one: one[0])
-    if max(counts) > MOST:
-        least = " x ".join(f"{1e3 * (high - low) / MOST:.4g}" for low, high in extents)
+    if max(counts) > MAX_SEGMENTS:
+        least = " x ".join(f"{1e3 * (high - low) / MAX_SEGMENTS:.4g}" for low, high in extents)
         sentence = " x ".join(f"{1e3 * side:.4g}" for side in size)
-        what = f"{sentence} mm takes more than {MOST} segments in one direction"
+        what = f"{sentence} mm takes more than {MAX_SEGMENTS} segments in one direction"
         raise FeederError("bed", what, f"give at least {least} mm, or a smaller bowl")
     return counts, turn, extents
 
@@ -198,7 +359,7 @@ def _box(vertices, turn):
     return np.column_stack([points.min(axis=0), points.max(axis=0)])
 
 
-def _clear(made, turn, counts, extents):
+def _seam_clearance(made, turn, counts, extents):
     """Least distance [m] from an upright seam to the tooled stretch."""
     corners = _box_points(made, turn)
     found = [1.0]
@@ -231,12 +392,18 @@ def _filed(plan, flat):
 def _dowels(made, body, turn, plane, size):
     """Places (axis, middle (3,) [m]) of dowels across a seam: in solid, apart, and none below a cut."""
     axis, at = plane
-    areas = [facets.cut_face(body, axis, at + off).buffer(-LAND * size) for off in (-DEEP, 0.0, DEEP)]
+    areas = [
+        facets.cut_face(body, axis, at + off).buffer(-LAND * size)
+        for off in (-DOWEL_HOLE_DEPTH_M, 0.0, DOWEL_HOLE_DEPTH_M)
+    ]
     area = areas[0].intersection(areas[1]).intersection(areas[2])
     if area.is_empty:
         return []
     low_u, low_v, high_u, high_v = area.bounds
-    u, v = np.meshgrid(np.arange(low_u, high_u + GRID, GRID), np.arange(low_v, high_v + GRID, GRID))
+    u, v = np.meshgrid(
+        np.arange(low_u, high_u + DOWEL_GRID_M, DOWEL_GRID_M),
+        np.arange(low_v, high_v + DOWEL_GRID_M, DOWEL_GRID_M),
+    )
     places = np.column_stack([u.ravel(), v.ravel()])
     places = places[shapely.contains_xy(area, *places.T)]
     ring = shapely.MultiPoint(_box_points(made, turn)).convex_hull.buffer(2.0 * size)
@@ -245,7 +412,7 @@ def _dowels(made, body, turn, plane, size):
         middle = np.insert(place, axis, at)
         if shapely.contains_xy(ring, *middle[:2]):
             continue
-        if all(np.sum((middle - other) ** 2) > APART**2 for _, other in kept):
+        if all(np.sum((middle - other) ** 2) > DOWEL_SPACING_M**2 for _, other in kept):
             kept.append((axis, middle))
     return kept
 
@@ -268,7 +435,7 @@ def overhangs(made):
     down = -across[:, 2] > (np.sqrt(0.5) + 1e-6) * 2.0 * area
     high = corners[..., 2].max(axis=1) > made.vertices[:, 2].min() + 1e-4
     where = _where(plan, facets.as_planned(plan, corners.mean(axis=1)))
-    found = {name: float(area[down & high & (where == name)].sum()) for name in PLACES}
+    found = {name: float(area[down & high & (where == name)].sum()) for name in OVERHANG_PLACES}
     return {name: one for name, one in found.items() if one > 1e-4}
 
 
@@ -276,24 +443,24 @@ def _by_the_outlet(plan, places):
     """Whether places (N, 3) [m] belong to what is straight beyond the end of the track: (N,) bool."""
     (x, y, z), far = places.T, plan.way.radius - plan.across - plan.material.wall
     high = z > plan.outlet_height - 2.0 * plan.material.plate - fillet(plan) - plan.hanging
-    return (y > -NEAR) & (x > far - NEAR) & high
+    return (y > -SURFACE_DISTANCE_M) & (x > far - SURFACE_DISTANCE_M) & high
 
 
 def _where(plan, places):
     """What of a bowl places (N, 3) [m] belong to, outlet at the angle 0: words (N,)."""
     way, (x, y, z) = plan.way, places.T
     r, theta = np.hypot(x, y), np.arctan2(y, x)
-    behind = theta - TURN * (theta > 0.0) - TURN * np.arange(int(plan.turns) + 2)[:, None]
+    behind = theta - FULL_TURN * (theta > 0.0) - FULL_TURN * np.arange(int(plan.turns) + 2)[:, None]
     s = way.at(behind)  # of each turn of the track that is there
     inwards = (way.wall_radius(s) - r) / np.cos(way.bank_at(s))
     above = z - way.height(s, inwards)
     deep = -(plan.material.plate + plan.across + plan.hanging)
-    beside = (inwards > -NEAR) & (inwards < plan.width + NEAR)
-    on_track = (beside & (above > deep) & (above < NEAR)).any(axis=0)
+    beside = (inwards > -SURFACE_DISTANCE_M) & (inwards < plan.width + SURFACE_DISTANCE_M)
+    on_track = (beside & (above > deep) & (above < SURFACE_DISTANCE_M)).any(axis=0)
     lowest = float(way.wall_radius(way.rises(plan.width)))
     kinds = [
         _by_the_outlet(plan, places),
         on_track,
-        (r < plan.ring + NEAR) | ((z < NEAR) & (r < lowest)),
+        (r < plan.ring + SURFACE_DISTANCE_M) | ((z < SURFACE_DISTANCE_M) & (r < lowest)),
     ]
     return np.select(kinds, ["outlet", "track", "floor"], "wall")

@@ -12,16 +12,16 @@ import numpy as np
 import shapely
 
 from feederscrew.errors import FeederError
-from feederscrew.machine.sizing import ABOVE
+from feederscrew.machine.sizing import MIN_WALL_ABOVE_PART_M
 
 CYLINDER, STEPPED, CONICAL = SHAPES = ("cylinder", "stepped", "conical")
-TURN = 2.0 * np.pi
-BESIDE = 1e-3  # [m] by which the next turn stands further out than the track is wide
+STAIRS_TURN = 2.0 * np.pi
+TURN_CLEARANCE_M = 1e-3  # [m] by which the next turn stands further out than the track is wide
 SLOPE, SURE = np.radians(40.0), np.radians(5.0)  # least slope, and how much steeper than parts hold still on
-PRINTED = np.radians(45.5)  # a slope that needs no support
-FLOOR = 0.5  # of the bowl's radius: no floor is smaller
-LIFT = 3e-4  # [m] by which the wall ends higher than the floor below it
-SMOOTH = 16  # places in a quarter turn that a curve is led through
+UNSUPPORTED_SLOPE_RAD = np.radians(45.5)  # a slope that needs no support
+MIN_FLOOR_RADIUS_SHARE = 0.5  # of the bowl's radius: no floor is smaller
+WALL_LIFT_M = 3e-4  # [m] by which the wall ends higher than the floor below it
+QUARTER_TURN_POINTS = 16  # places in a quarter turn that a curve is led through
 
 
 @dataclass(frozen=True)
@@ -52,11 +52,11 @@ class Stairs:
         low : float [m]
             Height below which no wall is needed.
         """
-        last = way.at(-TURN * np.arange(1, 100))
+        last = way.at(-STAIRS_TURN * np.arange(1, 100))
         turns = int(np.argmax(way.risen(last) < low)) + 1
         rows: list[np.ndarray] = []
         for k in range(turns, -1, -1):
-            s = way.at(np.asarray(theta) - TURN * k)
+            s = way.at(np.asarray(theta) - STAIRS_TURN * k)
             lower = np.column_stack([way.wall_radius(s), way.risen(s)])
             rows.append(lower)
         corners = []
@@ -97,17 +97,19 @@ def stairs(track, made_of, tooled, asked, extents):
         what = "conical leans outwards, and devices are computed by an upright wall"
         raise FeederError("sizing.shape", what, "take stepped")
     least = min([track.bank, *(bank for _, _, bank in tooled.leans)]) if tooled else track.bank
-    step = track.width * np.cos(least) + BESIDE
-    flare = -np.log1p(-step / track.radius) / TURN
+    step = track.width * np.cos(least) + TURN_CLEARANCE_M
+    flare = -np.log1p(-step / track.radius) / STAIRS_TURN
     tallest = float(max(extents)) if tooled is None else tooled.tallest
     hangs = tooled is not None and any(cut.hangs for cut in tooled.cuts)
-    slope = max(SLOPE if made_of.supported else PRINTED, float(np.arctan(asked.friction)) + SURE)
+    slope = max(
+        SLOPE if made_of.supported else UNSUPPORTED_SLOPE_RAD, float(np.arctan(asked.friction)) + SURE
+    )
     pitch = np.tan(track.climb) * step / flare
-    below = 3.0 * made_of.plate + (float(max(extents)) + ABOVE if hangs else 0.0)
+    below = 3.0 * made_of.plate + (float(max(extents)) + MIN_WALL_ABOVE_PART_M if hangs else 0.0)
     if asked.shape == CONICAL:
         slope, below, upright = float(np.arctan2(pitch, step)), 0.0, 0.0
     else:
-        upright = tallest + ABOVE
+        upright = tallest + MIN_WALL_ABOVE_PART_M
         _check(pitch, upright + step * np.tan(slope) + below, step / flare)
     return Stairs(
         asked.shape,
@@ -116,7 +118,7 @@ def stairs(track, made_of, tooled, asked, extents):
         slope,
         upright,
         below,
-        float((1.0 - FLOOR) * track.radius / flare),
+        float((1.0 - MIN_FLOOR_RADIUS_SHARE) * track.radius / flare),
     )
 
 
@@ -140,15 +142,15 @@ def shell(plan, kit):
     -------
     list of bodies [mm]
     """
-    quarters = -TURN, -0.75 * TURN, -0.5 * TURN, -0.25 * TURN, 0.0
+    quarters = -STAIRS_TURN, -0.75 * STAIRS_TURN, -0.5 * STAIRS_TURN, -0.25 * STAIRS_TURN, 0.0
     legs = [_leg(plan, kit, start, end) for start, end in itertools.pairwise(quarters)]
     halves = [kit.swept(legs[:2]), kit.swept(legs[2:])]
-    return [kit.above(one, plan.underside + LIFT) for one in (kit.united(halves), _end(plan, kit))]
+    return [kit.above(one, plan.underside + WALL_LIFT_M) for one in (kit.united(halves), _end(plan, kit))]
 
 
 def _leg(plan, kit, start, end):
     """Sections and frames of a quarter of the wall."""
-    theta = np.linspace(start, end, (SMOOTH if kit.SMOOTH else plan.segments // 4) + 1)
+    theta = np.linspace(start, end, (QUARTER_TURN_POINTS if kit.HAS_EXACT_CURVES else plan.segments // 4) + 1)
     inner = plan.stairs.sections(plan.way, theta, plan.underside - 2e-3)
     inner = np.concatenate([inner, inner[:, -1:]], axis=1)
     inner[:, -1, 1] = plan.top
@@ -157,7 +159,7 @@ def _leg(plan, kit, start, end):
     outer[:, 0::3, 1] = np.where(np.arange(outer.shape[1])[0::3] > 0, outer[:, 0::3, 1], inner[:, 0::3, 1])
     kept = _corners(plan.stairs, inner.shape[1])
     sections = np.concatenate([outer[:, kept], inner[:, kept[::-1]]], axis=1)
-    sine = np.where(theta == -TURN, 0.0, np.sin(theta))  # the two ends meet there
+    sine = np.where(theta == -STAIRS_TURN, 0.0, np.sin(theta))  # the two ends meet there
     towards = np.stack([np.cos(theta), sine], axis=-1)
     return sections, np.stack([np.zeros_like(towards), towards], axis=1)
 
@@ -187,7 +189,7 @@ def _end(plan, kit):
 
 def floor_edge(plan, kit):
     """Return the edge (K, 2) [m] of the floor, within the wall, seen from above."""
-    theta = np.linspace(-TURN, 0.0, (64 if kit.SMOOTH else plan.segments) + 1)[:-1]
+    theta = np.linspace(-STAIRS_TURN, 0.0, (64 if kit.HAS_EXACT_CURVES else plan.segments) + 1)[:-1]
     inner = plan.stairs.sections(plan.way, theta, plan.underside - 2e-3)
     r = np.array([np.interp(0.0, one[:, 1], one[:, 0]) for one in inner]) + 0.3 * plan.material.wall
     return np.column_stack([r * np.cos(theta), r * np.sin(theta)])

@@ -1,20 +1,24 @@
-"""The track as a body: a plate along its way, the sides of its outlet, and the yokes that carry rails."""
+"""The track as a body: a plate along its way, the sides of its outlet, yokes, and a groove's other face."""
 
 import itertools
 
 import numpy as np
 
-from feederscrew.solidbowl.plan import DIP, TURN
+from feederscrew.solidbowl.plan import DIP, FULL_TURN
 from feederscrew.solidbowl.stairs import CONICAL
 
-INTO = 1e-3  # [m] by which one piece reaches into another
+TRACK_PIECE_OVERLAP_M = 1e-3  # [m] by which one piece reaches into another
 ARC = 6  # facets of a fillet
-THROUGH = 1.05  # its radius over its distance from the wall: it crosses the wall, and does not touch it
+YOKE_RADIUS_RATIO = (
+    1.05  # its radius over its distance from the wall: it crosses the wall, and does not touch it
+)
 YOKE = 6e-3  # [m] thickness of what carries the inner rail from below
-QUARTER = 0.5 * np.pi  # [rad] of a curved face: a longer one takes long to cut
-SUNK = 3e-5  # [m] by which a ledge, and the outlet's side, reach into the plate: no face lies on another
+MAX_FACE_ANGLE_RAD = 0.5 * np.pi  # [rad] of a curved face: a longer one takes long to cut
+PLATE_OVERLAP_M = (
+    3e-5  # [m] by which a ledge, and the outlet's side, reach into the plate: no face lies on another
+)
 TWISTED = 4  # facets where the bank changes in place of one
-SPAN = 0.1  # [rad] of a curve between two places that it is led through
+TRACK_CURVE_STEP_RAD = 0.1  # [rad] of a curve between two places that it is led through
 
 
 def fillet(plan):
@@ -38,7 +42,7 @@ def slab(plan, kit):
     runs, way = [], plan.way
     borders = [way.rises(plan.width) - DIP * way.radius, *(at for at, _ in way.drops), way.end + plan.outlet]
     for start, end in itertools.pairwise(borders):
-        turned = way.at(-QUARTER * np.arange(1.0, 100.0)) if kit.SMOOTH else ()
+        turned = way.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
         changes = *(at for at, _ in way.bends), *(at for lean in way.leans for at in lean[:2])
         breaks = sorted(at for at in {*changes, way.end, *turned} if start < at < end)
         legs = [start, *breaks, end]
@@ -47,25 +51,29 @@ def slab(plan, kit):
     for (at, drop), run in zip(way.drops, runs[1:]):
         joined += [_riser(plan, kit, at, drop), run]  # in this order: what is apart cannot be united exactly
     whole = kit.united(joined) if len(runs) > 1 else runs[0]
-    return kit.above(whole, plan.underside + 0.5 * INTO)
+    return kit.above(whole, plan.underside + 0.5 * TRACK_PIECE_OVERLAP_M)
 
 
 def _leg(plan, kit, leg, run):
     """Sections and frames of a piece of a run, which goes on past its ends at the same height."""
     s = steps(plan, kit, *leg)
     inside = np.clip(s, run[0] + 1e-9, run[1] - 1e-9)
-    strips = 1 if kit.SMOOTH else _strips(plan)
+    strips = 1 if kit.HAS_EXACT_CURVES else _strips(plan)
     return _sections(plan, s, plan.way.height(inside), strips), frames(plan, s)
 
 
 def steps(plan, kit, start, end):
     """Return the lengths (M,) [m] along the wall at which a piece of track has its sections."""
-    return _smooth_steps(plan, start, end) if kit.SMOOTH else _steps(plan, start, end)
+    return _smooth_steps(plan, start, end) if kit.HAS_EXACT_CURVES else _steps(plan, start, end)
 
 
 def _smooth_steps(plan, start, end):
     """Lengths along the wall through which a curve is led; the two ends of what is straight."""
-    count = 2 if start >= plan.way.end else max(int((end - start) / plan.way.radius / SPAN), 3) + 1
+    count = (
+        2
+        if start >= plan.way.end
+        else max(int((end - start) / plan.way.radius / TRACK_CURVE_STEP_RAD), 3) + 1
+    )
     return np.linspace(start, end, count)
 
 
@@ -98,7 +106,7 @@ def _strips(plan):
     fastest = max(
         [0.0, *(abs(b - a) / (lean[1] - lean[0]) for a, b, lean in zip(banks, banks[1:], way.leans))]
     )
-    step = TURN * way.radius / plan.segments / TWISTED
+    step = FULL_TURN * way.radius / plan.segments / TWISTED
     twist = max(twist, 0.25 * fastest * step * plan.across)
     return int(np.ceil(twist / (0.3 * plan.chord))) + 1
 
@@ -109,12 +117,12 @@ def _sections(plan, s, heights, strips):
     r = fillet(plan)
     inward = np.arange(strips + 1) / strips * np.ones((len(s), 1)) * (plan.width * np.cos(bank))[:, None]
     edge = inward[:, -1:].copy()
-    inward[:, 0] = -INTO  # no edge lies on the wall
-    turn, own = 0.5 * np.pi * np.arange(ARC + 1) / ARC, THROUGH * r  # the arc goes on into the wall
+    inward[:, 0] = -TRACK_PIECE_OVERLAP_M  # no edge lies on the wall
+    turn, own = 0.5 * np.pi * np.arange(ARC + 1) / ARC, YOKE_RADIUS_RATIO * r  # the arc goes on into the wall
     arc = np.column_stack([-r + own * np.sin(turn), -plate - own + own * np.cos(turn)])
     arc = arc if plan.material.supported else arc[[0, -1]]
     level = np.ones((len(s), 1))
-    out = np.hstack([-inward, -edge, arc[:, 0] * level, INTO * level])
+    out = np.hstack([-inward, -edge, arc[:, 0] * level, TRACK_PIECE_OVERLAP_M * level])
     below = np.hstack([0.0 * inward, -plate * level, arc[:, 1] * level, (-plate - own) * level])
     slanted = np.hstack([out[:, :-1], 0.0 * level])  # all but the corner deep in the wall
     sections = np.stack([out, below - slanted * np.tan(bank)[:, None]], axis=-1)
@@ -128,7 +136,7 @@ def _within_wall(plan, sections, above):
     if plan.stairs is None or plan.stairs.shape != CONICAL:
         return sections
     under = sections[0, above:]  # no device changes the bank of a conical bowl
-    most = INTO + under[:, 1] / np.tan(plan.stairs.slope)
+    most = TRACK_PIECE_OVERLAP_M + under[:, 1] / np.tan(plan.stairs.slope)
     last = int(np.argmax(under[:, 0] > most))  # the first corner that is deep enough in the wall
     kept = sections[:, : above + last + 1].copy()
     kept[:, -1, 0] = most[last]
@@ -139,7 +147,14 @@ def _riser(plan, kit, at, drop):
     """The face below a step down, a plate thick."""
     plate = plan.material.plate
     s = np.array([at - plate, at + 1e-4])
-    ring = np.array([[s[0], -INTO], [s[1], -INTO], [s[1], plan.width], [s[0], plan.width]])
+    ring = np.array(
+        [
+            [s[0], -TRACK_PIECE_OVERLAP_M],
+            [s[1], -TRACK_PIECE_OVERLAP_M],
+            [s[1], plan.width],
+            [s[0], plan.width],
+        ]
+    )
     low = float(plan.way.height(at))
     return kit.over(plan.way, ring, low - plate, low + drop - 0.5 * plate, plan.chord)
 
@@ -164,7 +179,7 @@ def _ledge(plan, kit, ledge):
     at, half = plan.first + ledge.start, 0.5 * plan.material.plate
     end = plan.first + ledge.end
     breaks = [at - half, at, end, end + ledge.ramp * (1.0 + 0.8 * half / ledge.drop)]
-    turned = plan.way.at(-QUARTER * np.arange(1.0, 100.0)) if kit.SMOOTH else ()
+    turned = plan.way.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
     legs = sorted({*breaks, *(one for one in turned if breaks[0] < one < breaks[-1])})
     return kit.swept([_ledge_leg(plan, kit, ledge, leg) for leg in itertools.pairwise(legs)])
 
@@ -175,10 +190,10 @@ def _ledge_leg(plan, kit, ledge, leg):
     at, end = plan.first + ledge.start, plan.first + ledge.end
     s = steps(plan, kit, *leg)
     low = way.height(s) - ledge.drop * (s < at)
-    high = low + ledge.drop * (1.0 - np.maximum((s - end) / ledge.ramp, 0.0)) - SUNK
-    strips = 1 if kit.SMOOTH else _strips(plan)
+    high = low + ledge.drop * (1.0 - np.maximum((s - end) / ledge.ramp, 0.0)) - PLATE_OVERLAP_M
+    strips = 1 if kit.HAS_EXACT_CURVES else _strips(plan)
     inward = ledge.width * np.cos(way.bank_at(s))[:, None] * np.arange(strips + 1) / strips
-    inward[:, 0] = -INTO
+    inward[:, 0] = -TRACK_PIECE_OVERLAP_M
     rise = inward * np.tan(way.bank_at(s))[:, None]
     top = np.stack([-inward, high[:, None] + rise], axis=-1)
     under = np.stack([-inward, low[:, None] - half + rise], axis=-1)[:, [-1, 0]]
@@ -193,12 +208,12 @@ def sides(plan, kit):
     low, top = height - plan.material.plate - fillet(plan), height + plan.headroom
     lift = plan.width * np.sin(way.bank_at(way.end))
     outer = np.array([[way.end + 2e-3, -wall], [end, -wall], [end, 0.0], [way.end + 2e-3, 0.0]])
-    y = plan.width - SUNK
+    y = plan.width - PLATE_OVERLAP_M
     inner = np.array([[way.end, y], [end, y], [end, y + wall], [way.end, y + wall]])
     inside = kit.drum(
         float(way.wall_radius(way.at(-2.0 * np.pi)) if plan.stairs else way.radius) + 0.4 * wall,
-        low + lift - INTO,
-        top + lift + INTO,
+        low + lift - TRACK_PIECE_OVERLAP_M,
+        top + lift + TRACK_PIECE_OVERLAP_M,
         plan.segments,
     )
     open_there = plan.stretch is not None and any(np.isinf(one[1]) for one in plan.stretch.grooves)
@@ -229,7 +244,7 @@ def slots(plan, kit):
         ring[cut.ring[:, 0] >= cut.span[1] - 1e-9, 0] = plan.way.end + plan.outlet + 5e-3
         heights = plan.way.height(ring[:, 0], ring[:, 1])
         deep = heights.min() - plan.material.plate - plan.hanging
-        made.append(kit.over(plan.way, ring, deep, heights.max() + INTO, 0.2 * plan.chord))
+        made.append(kit.over(plan.way, ring, deep, heights.max() + TRACK_PIECE_OVERLAP_M, 0.2 * plan.chord))
     return made
 
 
@@ -257,7 +272,129 @@ def _yoke(plan, kit, s):
     ends, plate = np.array([s, s + YOKE]), plan.material.plate
     foot, bank = plan.way.height(ends), plan.way.bank_at(ends)
     across, low = plan.width * np.cos(bank), foot[0] - plate - plan.hanging - YOKE
-    out = np.stack([-across, [INTO, INTO], [INTO, INTO], -across], axis=-1)
+    out = np.stack(
+        [
+            -across,
+            [TRACK_PIECE_OVERLAP_M, TRACK_PIECE_OVERLAP_M],
+            [TRACK_PIECE_OVERLAP_M, TRACK_PIECE_OVERLAP_M],
+            -across,
+        ],
+        axis=-1,
+    )
     up = foot[:, None] - 0.5 * plate - out[:, 2:] * np.tan(bank)[:, None]
     sections = np.stack([out, np.hstack([np.full((2, 2), low), up])], axis=-1)
     return kit.swept([(sections, frames(plan, ends))])
+
+
+MIN_GROOVE_WALL_LEAN_RAD = np.radians(3.0)  # by which it leans at once: no face lies on the bowl's wall
+GROOVE_WALL_FOOT_M = 5e-4  # [m] by which its face goes on into the track
+GROOVE_WALL_CUT_DEPTH_M = (
+    0.8 * GROOVE_WALL_FOOT_M
+)  # by which the wall is cut lower: three faces that meet in one line cut badly
+GROOVE_CUT_MARGIN_M = 5e-3  # [m] beyond what is cut away
+BEYOND_WALL_M = 1.0  # [m] beyond everything
+GROOVE_WALL_MARGIN_M = 5e-3  # [m] of the face beyond the tallest part
+OPENING = 24  # sections of a stretch over which the wall opens
+STRIPS = 8  # of the face upwards: its facets are about as wide as high where it turns fast
+MAX_GROOVE_WALL_RAD = 0.85 * FULL_TURN  # [rad] before the outlet: above it the bowl's wall is open
+
+
+def groove_wall_cuts(plan, kit):
+    """Return what grooves take from the bowl's wall.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+
+    Returns
+    -------
+    list of bodies [mm]
+    """
+    return [_swept(plan, kit, groove, _cut) for groove in groove_spans(plan)]
+
+
+def groove_faces(plan, kit):
+    """Return the walls of grooves.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+
+    Returns
+    -------
+    list of bodies [mm]
+    """
+    return [_swept(plan, kit, groove, _face) for groove in groove_spans(plan)]
+
+
+def groove_spans(plan):
+    """Return the grooves of a bowl: (from, to, lean, opens), lengths [m] along the wall, an angle [rad].
+
+    They lie in the last turn: above them there is no other.
+    """
+    earliest, last = float(plan.way.at(-MAX_GROOVE_WALL_RAD)), plan.way.end + plan.outlet
+    grooves = () if plan.stretch is None else plan.stretch.grooves
+    return [
+        (max(plan.first + start, earliest, GROOVE_CUT_MARGIN_M), min(plan.first + end, last), lean, opens)
+        for start, end, lean, opens in grooves
+    ]
+
+
+def lean_at(groove, s):
+    """Return by how much [rad] the wall of a groove leans back from upright at lengths s."""
+    start, end, lean, opens = groove
+    share = np.clip((s - start) / opens, 0.0, 1.0) * (1.0 - np.clip((s - end) / opens, 0.0, 1.0))
+    return np.maximum(lean * share, MIN_GROOVE_WALL_LEAN_RAD)
+
+
+def _swept(plan, kit, groove, section):
+    """A body along a groove, of sections that its lean makes."""
+    way, last = plan.way, plan.way.end + plan.outlet
+    start, end, _, opens = groove
+    stop = min(end + opens, last)
+    turned = way.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
+    inner = {start + opens, end, way.end, *turned}
+    legs = [start, *sorted(one for one in inner if start < one < stop), stop]
+    made = []
+    for low, high in itertools.pairwise(legs):
+        s = steps(plan, kit, low, high)
+        if min(start + opens, high) > low or low >= end:
+            s = np.linspace(low, high, max(len(s), int(np.ceil(OPENING * (high - low) / opens)) + 1))
+        made.append(
+            (
+                section(plan, lean_at(groove, s), 1 if kit.HAS_EXACT_CURVES else STRIPS)
+                + way.height(s)[:, None, None] * [0.0, 1.0],
+                frames(plan, s),
+            )
+        )
+    return kit.swept(made)
+
+
+def _sloping(plan, lean):
+    """Unit vectors (M, 2) up the face and off its back; its width [m]."""
+    c, s = np.cos(lean), np.sin(lean)
+    return np.stack([s, c], axis=-1), np.stack([c, -s], axis=-1), plan.headroom + GROOVE_WALL_MARGIN_M
+
+
+def _face(plan, lean, strips):
+    """Sections (M, K, 2) of the wall: outwards and up from the track's foot."""
+    up, back, wide = _sloping(plan, lean)
+    along = np.linspace(-GROOVE_WALL_FOOT_M, wide, strips + 1)[:, None]
+    outer = plan.material.wall * back[:, None] + along * up[:, None]
+    return np.concatenate([outer, along[::-1] * up[:, None]], axis=1)
+
+
+def _cut(plan, lean, strips):
+    """Sections (M, K, 2) of what is above it, out of the wall: its border is hidden in face and track."""
+    up, _, wide = _sloping(plan, lean)
+    along = np.linspace(-GROOVE_CUT_MARGIN_M, wide, strips + 1)[:, None]
+    sloping = along * up[:, None] - [0.0, GROOVE_WALL_CUT_DEPTH_M]
+    foot, top = sloping[:, 0], sloping[:, -1]
+    out = plan.material.wall + GROOVE_CUT_MARGIN_M
+    far = np.full(len(lean), BEYOND_WALL_M)
+    corners = [
+        (top[:, 0] + out, top[:, 1]), (top[:, 0] + out, far), (foot[:, 0], far),
+    ]  # fmt: skip
+    return np.concatenate([sloping, np.stack([np.column_stack(one) for one in corners], axis=1)], axis=1)

@@ -10,15 +10,24 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew import check, units
-from feederscrew.bowl.direction import vibration_angle
-from feederscrew.bowl.record import Bowl, Track
+from feederscrew.bowl.record import Bowl, Track, vibration_angle
 from feederscrew.bowl.settings import Setting, has_machine
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError, FeederError
-from feederscrew.machine import checks, drive_sought, feasibility, filling, sizing, throughput, tuning
-from feederscrew.machine.springs import Springs, gain, leaf_stress, springs, upright_pull
+from feederscrew.machine import checks, drive_sizing, sizing
+from feederscrew.machine.springs import (
+    LeafSet,
+    Rocking,
+    Springs,
+    analyse_springs,
+    both_rocking_modes,
+    gain,
+    leaf_changes,
+    leaf_stress,
+    tuned_leaf_sets,
+    upright_pull,
+)
 from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, stroke
-from feederscrew.machine.unbalanced import Rocking, both
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.rates import stream, well_oriented
@@ -51,7 +60,7 @@ class Order(Shown):
     lying: sizing.Lying
     size: sizing.Size
     steepest: float  # [rad] climb up to which the part travels
-    flow: throughput.Flow
+    flow: sizing.Flow
     hopper: float  # [m3]
     handbook: float  # [1/s] the handbook's estimate for the same share
     shape: sizing.SizedShape  # one part on the track, to draw
@@ -84,14 +93,14 @@ class MachineSheet(Shown):
     magnet: float  # [N] amplitude of a magnet that pulls upright
     radii: np.ndarray  # (N,) [m]
     angles: np.ndarray  # (N,) [rad] of the motion to the horizontal
-    changes: tuple[tuning.LeafSet, ...]
-    sets: tuple[tuning.LeafSet, ...]
+    changes: tuple[LeafSet, ...]
+    sets: tuple[LeafSet, ...]
     depth: float  # [m] of the bowl
-    fill: filling.Fill
+    fill: sizing.Fill
     filled_with: str  # of PART, FILE and ASSUMED
     turns: float  # [1] of the track from the floor to the outlet; NaN of a level one
-    mismatch: feasibility.DriveMismatch | None  # with the drive that the machine makes; None where it does
-    emptying: filling.Emptying
+    mismatch: drive_sizing.DriveMismatch | None  # with the drive that the machine makes; None where it does
+    emptying: sizing.Emptying
     velocities: np.ndarray  # (M,) [m/s] at each level of the emptying bowl, the controller left alone
     controlled: np.ndarray  # (M,) [m/s] the same under amplitude control
     order: Order | None
@@ -111,7 +120,7 @@ class MachineSheet(Shown):
     @property
     def rocking(self) -> tuple[Rocking, Rocking] | None:
         """Stroke round the bowl where its track ends, as it is and with its weight; None without a solid."""
-        return None if self.solid is None else both(self.bowl, self.solid)
+        return None if self.solid is None else both_rocking_modes(self.bowl, self.solid)
 
     @property
     def _asked(self) -> Order:
@@ -124,9 +133,11 @@ class MachineSheet(Shown):
         """The Lowest rate from the full bowl to the empty one; of a sheet with an order."""
         alone, controlled = (self.rates(v) for v in (self.velocities, self.controlled))
         enough = alone.min() >= ENOUGH * self._asked.target or alone.min() >= controlled.min()
-        rates, way = (alone, drive_sought.ALONE) if enough else (controlled, drive_sought.CONTROLLED)
+        rates, way = (alone, drive_sizing.ALONE) if enough else (controlled, drive_sizing.CONTROLLED)
         row = int(np.argmin(rates))
-        return Lowest(float(rates[row]), float(self.emptying.levels[row]), drive_sought.WAYS[way])
+        return Lowest(
+            float(rates[row]), float(self.emptying.levels[row]), drive_sizing.STROKE_CONTROL_LABELS[way]
+        )
 
     def rates(self, velocities: np.ndarray) -> np.ndarray:
         """Return counted parts [1/s] at velocities; of a sheet with an order."""
@@ -201,9 +212,9 @@ def bowl(
     own = check.options("bowl", solidbowl.SizingOptions, options)
     plain = solidbowl.in_material(answer.conveying(bowls.record(settings)), own.solid)
     found = arriving(part, plain, rule) if known is None else known
-    straight = replace(sizing.STRAIGHT, climb=plain.track.climb)
+    straight = replace(sizing.STRAIGHT_TRACK, climb=plain.track.climb)
     wanted = None if aspect is None else well_oriented.wanted(part, found, straight, aspect, heading)
-    lying = sizing.lying(part, found, wanted)
+    lying = sizing.find_lying(part, found, wanted)
     _check_rule(rule, found)
     counted: dict[str, Any] = {"rule": rule, "gap": own.gap, "fill": own.fill}
     least = None
@@ -218,17 +229,17 @@ def bowl(
             )
             break
         except TrackTooLow as fault:
-            if fault.climb is None or "climb" in drive_sought.given(settings, "track"):
+            if fault.climb is None or "climb" in drive_sizing.user_keys(settings, "track"):
                 raise
             least = fault.climb
     wanted, counted["target"], plain = one, one, replace(plain, track=track)
     room = cast(float, part.volume if part.hull is None else part.hull.volume)  # a card has no size
-    sought = drive_sought.Sought(plain, size, tuple(settings), target, part.mass / room)
+    sought = drive_sizing.DriveSearch(plain, size, tuple(settings), target, part.mass / room)
     bare = _ways(part, found, track, ())
     driven, flow, note = _driven(
         sought,
-        lambda bowl: throughput.flow(ways(bowl), **counted),
-        (lambda bowl: throughput.flow(bare(bowl), **counted)) if as_tried else None,
+        lambda bowl: sizing.flow(ways(bowl), **counted),
+        (lambda bowl: sizing.flow(bare(bowl), **counted)) if as_tried else None,
     )
     order = Order(
         part=part,
@@ -239,11 +250,11 @@ def bowl(
         tipping=remark(ways(driven).lying),
         lying=lying,
         size=size,
-        steepest=throughput.steepest(driven),
+        steepest=sizing.steepest_climb(driven),
         flow=flow,
         hopper=target * plain.sizing.hopper_interval * room / plain.sizing.packing,
         handbook=plain.sizing.handbook_speed * flow.share / flow.length,
-        shape=sizing.shape(part, found, track, wanted),
+        shape=sizing.size_shape(part, found, track, wanted),
         climb_for_devices=least is not None,
         static_drive=note,
     )
@@ -251,22 +262,22 @@ def bowl(
 
 
 def _driven(
-    sought: drive_sought.Sought,
-    flow: Callable[[Bowl | None], throughput.Flow],
-    bare: Callable[[Bowl | None], throughput.Flow] | None,
-) -> tuple[Bowl, throughput.Flow, str]:
+    sought: drive_sizing.DriveSearch,
+    flow: Callable[[Bowl | None], sizing.Flow],
+    bare: Callable[[Bowl | None], sizing.Flow] | None,
+) -> tuple[Bowl, sizing.Flow, str]:
     """The bowl with its drive, its flow, and what the static rule takes where that is another drive.
 
     ``bare`` is the flow without devices of what was tried: it is taken where the rule lets nothing through
     them. None of what was not tried.
     """
     if bare is None:
-        return (*drive_sought.brought(sought, flow), "")
-    driven = drive_sought.as_given(sought)
+        return (*drive_sizing.bring_target(sought, flow), "")
+    driven = drive_sizing.with_own_drive(sought)
     rate, own = f"{sought.target * units.MINUTE:.4g}/min", 2e3 * driven.drive.amplitude
     lead = f"the drive is the one that was tried, {own:.3g} mm peak to peak"
     try:
-        other, _ = drive_sought.brought(sought, flow)
+        other, _ = drive_sizing.bring_target(sought, flow)
     except FeederError:
         return driven, _flow(driven, flow, bare), f"{lead}: the static rule finds none for {rate}"
     stroke = 2e3 * other.drive.amplitude
@@ -274,7 +285,7 @@ def _driven(
     return driven, flow(driven), "" if same else f"{lead}: the static rule takes {stroke:.3g} mm for {rate}"
 
 
-def _flow(driven: Bowl, *flows: Callable[[Bowl | None], throughput.Flow]) -> throughput.Flow:
+def _flow(driven: Bowl, *flows: Callable[[Bowl | None], sizing.Flow]) -> sizing.Flow:
     """The first flow that lets anything through."""
     for flow in flows[:-1]:
         with contextlib.suppress(FeederError):
@@ -300,7 +311,7 @@ def _on_its_springs(bowl: Bowl, settings: Sequence[Setting]) -> Bowl:
         "frequency": bowl.machine.supply,
         "vibration_angle": float(vibration_angle(bowl.machine, bowl.track.radius, bowl.track.climb)),
     }
-    said = drive_sought.given(settings, "drive")
+    said = drive_sizing.user_keys(settings, "drive")
     return replace(bowl, drive=replace(bowl.drive, **{k: v for k, v in made.items() if k not in said}))
 
 
@@ -320,9 +331,9 @@ def _size(
     climb: float | None = None,
 ) -> sizing.Size:
     """The size of the bowl; what the file says of its track is kept, and a ``climb`` that devices ask for."""
-    said, track = drive_sought.given(settings, "track"), plain.track
+    said, track = drive_sizing.user_keys(settings, "track"), plain.track
     greatest = float(np.ptp(np.asarray(part.vertices), axis=0).max())
-    return sizing.size(
+    return sizing.size_bowl(
         replace(lying, hanging=greatest if any(one.hangs for one in plain.devices) else 0.0),
         part.source,
         plain.sizing,
@@ -346,11 +357,11 @@ def _sheet(
 ) -> MachineSheet:
     """Everything of a bowl with its machine; ``bulk`` is the density of what fills it, and whence it is."""
     under, rules, moved = bowl.machine, bowl.sizing, stroke(bowl)
-    made = springs(under)
+    made = analyse_springs(under)
     magnified = float(gain(moved.frequency, made.natural_frequency, under.damping))
     room = None if order is None else order.size.room
-    fill = filling.full(room or bowl.track.radius, depth, bulk[0], rules)
-    emptied = filling.emptying(bowl, fill)
+    fill = sizing.full_bowl(room or bowl.track.radius, depth, bulk[0], rules)
+    emptied = sizing.emptying(bowl, fill)
     turns = _turns(bowl, depth) if order is None else order.size.turns
     radii, turned = angles(under, bowl.track)
     force = float(made.stiffness * moved.springs / magnified)
@@ -367,13 +378,13 @@ def _sheet(
         magnet=upright_pull(force, under),
         radii=check.frozen(radii),
         angles=check.frozen(turned),
-        changes=tuning.changes(under, moved.frequency, moved.springs, int(rules.banks)),
-        sets=tuning.sets(under, moved.frequency, moved.springs, rules),
+        changes=leaf_changes(under, moved.frequency, moved.springs, int(rules.banks)),
+        sets=tuned_leaf_sets(under, moved.frequency, moved.springs, rules),
         depth=depth,
         fill=fill,
         filled_with=bulk[1],
         turns=float(turns),
-        mismatch=feasibility.can_make(bowl),
+        mismatch=drive_sizing.can_make(bowl),
         emptying=emptied,
         velocities=_velocities(bowl, emptied.strokes, emptied.angles),
         controlled=_velocities(bowl, emptied.controlled, emptied.angles),

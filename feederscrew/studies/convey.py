@@ -9,13 +9,13 @@ from functools import cached_property
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.reading import KeyRange
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting
-from feederscrew.bowl.vary import KeyRange
 from feederscrew.conveying import answer, phase, radius, sensitivity, trace
 from feederscrew.conveying.steady import STATUSES
 from feederscrew.geometry import grids
-from feederscrew.machine import speeds
+from feederscrew.machine import checks
 from feederscrew.records import Shown
 from feederscrew.units import DEG, MM
 
@@ -50,7 +50,7 @@ class ConveyStudy(Shown):
     @property
     def warnings(self) -> tuple[str, ...]:
         """What is odd about the velocity, a tuple of at most one sentence."""
-        return tuple(speeds.remark(self.answer.velocity, self.bowl.sizing))
+        return tuple(checks.speed_remark(self.answer.velocity, self.bowl.sizing))
 
     def trace(self) -> trace.CycleTrace:
         """Follow plate and part over one steady cycle, as a ``conveying.trace.CycleTrace``."""

@@ -15,7 +15,7 @@ from feederscrew.mechanics.standing import standing
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.posture import Posture
-from feederscrew.studies.rate import arriving
+from feederscrew.studies.rate import likeliest
 
 TOP_ANGLE, TOP_FRICTION = np.pi / 2.0, 1.0  # [rad], [1] as Figure 5-6
 LEAST_FREQUENCY, TOP_FREQUENCY, TOP_AMPLITUDE = 10.0, 120.0, 0.5e-3  # [Hz], [Hz], [m] as Figure 5-7, or more
@@ -138,7 +138,7 @@ def floor(part: Part, bowl: Bowl, aspect: str | None = None, heading: float = 0.
         If the part has no such aspect, or the drive is not ``limits.plain``.
     """
     limits.plain(bowl)
-    stand, why = standing(part, aspect, "floor", partial(arriving, bowl=bowl))
+    stand, why = standing(part, aspect, "floor", partial(likeliest, bowl=bowl))
     cycle, course = balance.over_cycle(stand, bowl, heading)
     return FloorStudy(
         part=part,

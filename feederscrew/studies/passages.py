@@ -13,7 +13,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
-from feederscrew.rates import passing, stream
+from feederscrew.rates import stream
 from feederscrew.rates.tipping import marked
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
@@ -21,7 +21,7 @@ from feederscrew.resting.counts.passed import DeviceCounts
 from feederscrew.studies.rate import shares
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import Orientation, orientations
-from feederscrew.tooling.tightest import Passage, until_returned
+from feederscrew.tooling.track_sections import Passage, until_returned
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +154,7 @@ def feeding(
     flow, stations = counted_ways(part, found, bowl, counts)
     if (known := found.recommended) is None:
         raise ArgumentError("part", "is a part card, which meets no device", "give a mesh")
-    low, high = passing.passing_ends(flow, known.low, known.high)
+    low, high = stream.passing_ends(flow, known.low, known.high)
     return FeedingStudy(
         part=part,
         bowl=bowl,
@@ -162,7 +162,7 @@ def feeding(
         aspects=found,
         measured=counts,
         stations=stations,
-        answers={rule: check.frozen(passing.passing(flow, p)) for rule, p in found.chances.items()},
+        answers={rule: check.frozen(stream.passing_shares(flow, p)) for rule, p in found.chances.items()},
         low=check.frozen(low),
         high=check.frozen(high),
     )
@@ -198,7 +198,7 @@ def counted_ways(
     tuple of str
         (D,) names of the devices.
     """
-    known = stream.orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
-    places = passing.places(known, counts)
-    flow = passing.ways(known, aspects.names)[:, places]
+    known = stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
+    places = stream.counted_stations(known, counts)
+    flow = stream.station_shares(known, aspects.names)[:, places]
     return flow, tuple(known.names[place] for place in places)

@@ -12,11 +12,11 @@ from feederscrew.bowl.devices import strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import hop
 from feederscrew.conveying.answer import conveying
-from feederscrew.machine import speeds
+from feederscrew.machine import checks
 from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
-from feederscrew.rates import arrivals, stretches, well_oriented
+from feederscrew.rates import arrivals, stream, well_oriented
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
@@ -26,10 +26,11 @@ from feederscrew.running import CoresKeywords, OnCores
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.simulated import memory
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.isolating.design import PLAY, TOLERANCE
+from feederscrew.tooling.isolating.design import PLAY_M, TOLERANCE_M
 
 ALIKE = 1.0 - 1e-9  # of the most frequent orientation: as frequent
 LEAST = 1e-6  # of what must be above 0
+CHOOSING = 400  # parts that show which aspect is the likeliest, where its share is well above all others
 SEED = 1  # of the parts that are fed onto the moving floor
 
 
@@ -119,6 +120,31 @@ def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED_ANSWER) -> Aspects:
     return shares(part, bowl, rule=rule).aspects
 
 
+def likeliest(part: Part, bowl: Bowl) -> Aspects:
+    """Return the aspects of a part with what arrives, of as few parts as show which aspect is the likeliest.
+
+    CHOOSING parts are fed first. Where the interval of the most frequent aspect is apart from that of every
+    other one, they decide. Else the answer is that of ``arriving``.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+
+    Returns
+    -------
+    Aspects
+        Its ``likeliest`` is that of ``arriving``; its shares are of fewer parts.
+    """
+    sample = shares(part, bowl, fed=CHOOSING)
+    answer = sample.aspects.recommended
+    if not sample.fed or answer is None:
+        return sample.aspects
+    first = int(np.argmax(answer.p))
+    others = np.delete(answer.high, first)
+    return sample.aspects if answer.low[first] > others.max(initial=0.0) else arriving(part, bowl)
+
+
 def _on_the_floor(part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed: int, run: OnCores) -> Any:
     """What lies at the track's entry, followed once in a run."""
     from feederscrew.dropping.plate import arrival as floor
@@ -181,7 +207,7 @@ class RateStudy(Shown):
     def of_size(self) -> tuple[str, ...]:
         """What to say of a part not much larger than play and tolerance, or than its track is wide."""
         usual = "play and tolerance as usual" if self.sigma == 0.0 else "play and tolerance"
-        allowances = {usual: self.sigma or float(np.hypot(PLAY, TOLERANCE))} if self.devices else {}
+        allowances = {usual: self.sigma or float(np.hypot(PLAY_M, TOLERANCE_M))} if self.devices else {}
         return small_part_remarks(self.part, allowances, self.bowl.track.width)
 
     @property
@@ -197,7 +223,7 @@ class RateStudy(Shown):
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each: of the devices, the aspects, the velocity."""
-        odd = speeds.remark(self.rate.velocity.value, self.bowl.sizing)
+        odd = checks.speed_remark(self.rate.velocity.value, self.bowl.sizing)
         other = () if self.measured is None else self.measured.warnings(self.part)
         return (
             *strangers(self.devices, self.aspects.names),
@@ -263,9 +289,9 @@ def rate(
     known = shares(part, bowl, rule=rule) if known is None else known
     found = known.aspects
     target = None if aspect is None else well_oriented.wanted(part, found, bowl.track, aspect, heading)
-    ways = well_oriented.orientations(part, found, bowl.track, chain, own.sigma, bowl)
+    ways = stream.follow_orientations(part, found, bowl.track, chain, own.sigma, bowl)
     lying = arrivals.oriented(ways, known.measured)
-    speed = well_oriented.velocity(stretches.queueing(bowl, lying.lying))
+    speed = well_oriented.velocity(stream.queueing(bowl, lying.lying))
     target = most_frequent(lying, rule) if target is None else target
     return RateStudy(
         part=part,

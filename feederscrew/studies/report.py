@@ -93,7 +93,7 @@ class ReportStudy(Shown):
         """Velocity over vibration angle and stroke, with the bowl's own point, a ConveyMap."""
         top = 1e3 * max(ROOM * self.bowl.drive.amplitude, LEAST_STROKE)
         strokes = f"drive.amplitude={0.02 * top:.4g}mm:{top:.4g}mm:{STROKES}"
-        spans = bowls.ranges((f"drive.vibration_angle=5deg:60deg:{ANGLES}", strokes))
+        spans = bowls.key_ranges((f"drive.vibration_angle=5deg:60deg:{ANGLES}", strokes))
         return convey.velocity_map(self.settings, spans, drawn="point")
 
     @cached_property

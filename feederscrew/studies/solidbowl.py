@@ -14,15 +14,22 @@ from feederscrew.machine.sizing import Size
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import Aspects
-from feederscrew.solidbowl import cuts, leaning, lugs, riding, segments
+from feederscrew.solidbowl import cuts, riding, segments
 from feederscrew.solidbowl.closed_body import BowlSolid, body, screwed
 from feederscrew.solidbowl.exact import exact_body, exact_file
-from feederscrew.solidbowl.materials import STEEL, material
-from feederscrew.solidbowl.plan import CHORD, Asked, BowlPlan, TrackTooLow, plan
-from feederscrew.solidbowl.ways_down import ways_down
+from feederscrew.solidbowl.measuring import ways_down
+from feederscrew.solidbowl.plan import (
+    ARC_CHORD_M,
+    STEEL_NAME,
+    BowlPlan,
+    SolidOptions,
+    TrackTooLow,
+    material,
+    plan,
+)
 from feederscrew.studies.rate import Spacing, SpacingKeywords
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.hanging import hung, neck
+from feederscrew.tooling.orientations import hang, neck
 
 CLIMB_STEP_RAD = np.radians(0.25)  # in which a climb is sought that leaves room below the tooled stretch
 STEEPEST_RAD = np.radians(
@@ -34,13 +41,13 @@ STEEPEST_RAD = np.radians(
 class SizingOptions(Spacing):
     """How parts stand along the track of the bowl that is sized, and whether it is made a solid."""
 
-    solid: Asked | None = None  # its rise and mass take the place of the estimate
+    solid: SolidOptions | None = None  # its rise and mass take the place of the estimate
 
 
 class SizingKeywords(SpacingKeywords, total=False):
     """The same as keywords."""
 
-    solid: Asked | None
+    solid: SolidOptions | None
 
 
 def asked(
@@ -52,7 +59,7 @@ def asked(
     bed: str | None = None,
     step: bool = False,
     join: str | None = None,
-) -> Asked | None:
+) -> SolidOptions | None:
     """Return what is asked of the solid, None where none is.
 
     Parameters
@@ -84,7 +91,7 @@ def asked(
     if step:
         exact_body.check()
     given = {s.key.name for s in settings if s.given}
-    return Asked(
+    return SolidOptions(
         chord=chord,
         material=material,
         shape=rules.shape,
@@ -124,8 +131,11 @@ def drawable_climb(bowl: Bowl, part: Part, coming: stream.Orientations) -> float
     rules, track = bowl.sizing, bowl.track
     depth = rules.outlet_height if rules.outlet_height > 0.0 else 2.0 * rules.depth * track.radius
     size = Size(2.0 * track.radius, {}, track.width, 0.0, 0.0, track.climb, depth, np.nan, np.nan)
-    wanted = Asked(
-        material=STEEL, shape=rules.shape, outlet_height=rules.outlet_height, friction=bowl.friction.static
+    wanted = SolidOptions(
+        material=STEEL_NAME,
+        shape=rules.shape,
+        outlet_height=rules.outlet_height,
+        friction=bowl.friction.static,
     )
     made = in_material(bowl, wanted)
     try:
@@ -137,7 +147,7 @@ def drawable_climb(bowl: Bowl, part: Part, coming: stream.Orientations) -> float
     return track.climb
 
 
-def in_material(bowl: Bowl, asked: Asked | None) -> Bowl:
+def in_material(bowl: Bowl, asked: SolidOptions | None) -> Bowl:
     """Return the bowl with the thickness and density of what its solid is made of.
 
     Parameters
@@ -162,7 +172,7 @@ def solid(
     size: Size,
     part: Part,
     coming: stream.Orientations,
-    asked: Asked | None,
+    asked: SolidOptions | None,
     counted: Mapping[str, Any],
 ) -> tuple[Size, BowlSolid | None]:
     """Return the size of a bowl and its solid.
@@ -206,7 +216,7 @@ def solid(
     made = replace(made, falls=ways_down(made), turns_of_sheet=float(wanted))
     if asked.bed is not None:
         made = replace(made, segments=segments.segments(made, asked.bed, asked.joint))
-        made = screwed(made, lugs.WEIGHT)
+        made = screwed(made, segments.WEIGHT)
     if asked.step:
         made = replace(made, step=exact_file.step_file(made))
     own = {"depth": made.plan.outlet_height, "turns": made.plan.turns, "room": made.plan.room}
@@ -214,16 +224,18 @@ def solid(
     return size, replace(made, riders=_riders(made.plan, bowl.devices, coming, counted))
 
 
-def _planned(bowl: Bowl, size: Size, part: Part, coming: stream.Orientations, asked: Asked) -> BowlPlan:
+def _planned(
+    bowl: Bowl, size: Size, part: Part, coming: stream.Orientations, asked: SolidOptions
+) -> BowlPlan:
     """The measures of the solid, its tooled stretch on the track that devices bank."""
-    track = leaning.banked(bowl.track, bowl.devices, coming.lying)
+    track = cuts.banked_height(bowl.track, bowl.devices, coming.lying)
     tooled = cuts.stretch(track, bowl.devices, coming.lying) if _tooled(bowl.devices) else None
     extents = np.ptp(np.asarray(part.vertices), axis=0)
     return plan(size, track, material(asked.material, bowl.sizing), tooled, asked, extents=extents)
 
 
 def _least_climb(
-    bowl: Bowl, size: Size, part: Part, coming: stream.Orientations, asked: Asked
+    bowl: Bowl, size: Size, part: Part, coming: stream.Orientations, asked: SolidOptions
 ) -> float | None:
     """The least climb [rad], in whole steps, at which the solid has its measures; None up to STEEPEST_RAD."""
     first = int(np.floor(bowl.track.climb / CLIMB_STEP_RAD + 1e-9)) + 1
@@ -254,8 +266,8 @@ def of_sheet(sheet: Any, settings: Sequence[Setting], aspects: Aspects) -> BowlS
     BowlSolid
     """
     order, bowl = sheet.order, sheet.bowl
-    coming = stream.orientations(order.part, aspects, bowl.track, bowl.devices)
-    wanted = asked(settings, solid=True, material=STEEL, chord=CHORD)
+    coming = stream.follow_orientations(order.part, aspects, bowl.track, bowl.devices)
+    wanted = asked(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
     counted = {"rule": order.rule, "target": order.wanted}
     return solid(bowl, order.size, order.part, coming, wanted, counted)[1]
 
@@ -270,7 +282,7 @@ def _riders(
     leaving = often * coming.through
     one = coming.lying[int(np.argmax(leaving if leaving.any() else often))]
     spans = [device.span for device in devices if device.hangs]
-    return tuple(riding.riders(plan, one, hung(one, spans[-1]) if spans and neck(one) else None))
+    return tuple(riding.riders(plan, one, hang(one, spans[-1]) if spans and neck(one) else None))
 
 
 def _tooled(devices: Sequence[Device]) -> bool:

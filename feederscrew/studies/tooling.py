@@ -16,8 +16,7 @@ from feederscrew.errors import ArgumentError
 from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
-from feederscrew.rates.steadiness import steady
-from feederscrew.rates.tipping import marked, remark
+from feederscrew.rates.tipping import marked, remark, steady
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import arriving
@@ -25,11 +24,10 @@ from feederscrew.studies.wishes import ToolingKeywords, ToolingOptions, asked_fo
 from feederscrew.tooling.devices.kinds import names
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import tracks
-from feederscrew.tooling.isolating.design import MARGIN, PLAY, TOLERANCE, place
+from feederscrew.tooling.isolating.design import MARGIN_M, PLAY_M, TOLERANCE_M, place
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Design, Goal
-from feederscrew.tooling.mirrored import named
-from feederscrew.tooling.orientations import Orientation, orientations
+from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations
 
 WIDER = "the track has to be {:.4g} mm wide"
 LATE = "the search stopped at the time limit: another machine may find more - raise the limit"
@@ -49,8 +47,8 @@ class ToolingStudy(Shown):
     designs: tuple[Design | None, ...]  # (M,) None where it was not asked for
     wanted: int | None  # the orientation asked for; None for all of them
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
-    play: float = PLAY  # [m] of the part from the wall, within the margin
-    tolerance: float = TOLERANCE  # [m] of its size, within the margin
+    play: float = PLAY_M  # [m] of the part from the wall, within the margin
+    tolerance: float = TOLERANCE_M  # [m] of its size, within the margin
     trials: tuple[Any, ...] = ()  # designing.own_trial.TriedDesign of what was tried, that of `design` first
 
     def trial_of(self, place: int) -> Any:
@@ -109,7 +107,7 @@ def tooling(
     *,
     heading: float | None = None,
     rule: str = "recommended",
-    margin: float = MARGIN,
+    margin: float = MARGIN_M,
     known: Aspects | None = None,
     **wishes: Unpack[ToolingKeywords],
 ) -> ToolingStudy:
@@ -176,7 +174,7 @@ def tooling(
     search = HoleSearch(seed=own.seed, verdicts=own.verdicts, until=time.monotonic() + own.seconds)
     margin += own.play + own.tolerance
     may_use = asked_for(part, bowl, found, own)
-    asked_of_each = {"goal": Goal(own.purity, own.efficiency), "before": bowl.devices, "wishes": may_use}
+    asked_of_each = {"goal": Goal(own.purity, own.efficiency), "before": bowl.devices, "constraints": may_use}
     asked_of_each |= {"margin": margin, "search": search}
     asked = range(len(every)) if wanted is None else [wanted]
     designs: list[Design | None] = [None] * len(every)
@@ -218,7 +216,7 @@ class _Track:
 @functools.lru_cache(maxsize=32)
 def _coming(part: Part, found: Aspects, bowl: Bowl) -> tuple[Orientation, ...]:
     """Every orientation of a part as it comes in a bowl."""
-    every, _ = marked(named(orientations(part, found, bowl.track)), bowl)
+    every, _ = marked(name_mirror_images(orientations(part, found, bowl.track)), bowl)
     return at_entry(every, bowl.devices)
 
 
@@ -228,7 +226,7 @@ def _best(
     """The design of an orientation on the bowl's track, or on one of another width that gives more."""
     own = next(iter(cache.values()))
     best = _designed(own, wanted, asked)
-    if best.isolated or not asked["wishes"].vary or asked["before"]:
+    if best.isolated or not asked["constraints"].vary or asked["before"]:
         return best
     for width in tracks.widths(own.orientations, own.shares, wanted, asked["margin"]):
         if width not in cache:
@@ -243,7 +241,7 @@ def _best(
 
 def _designed(there: _Track, wanted: int, asked: dict[str, Any]) -> Design:
     given = there.orientations, there.shares, wanted, there.bowl
-    return tracks.designed(*given, steady=steady, cache=there.cache, **asked)
+    return tracks.design_with_track(*given, steady=steady, cache=there.cache, **asked)
 
 
 def tooling_without(

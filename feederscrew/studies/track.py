@@ -8,9 +8,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.reading import KeyRange
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting
-from feederscrew.bowl.vary import KeyRange
 from feederscrew.geometry import grids
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.cycle import Cycle
@@ -24,7 +24,7 @@ from feederscrew.part.record import Part
 from feederscrew.rates import tipping
 from feederscrew.records import Shown
 from feederscrew.resting.posture import Posture
-from feederscrew.studies.rate import arriving
+from feederscrew.studies.rate import likeliest
 from feederscrew.tooling import orientations
 
 USUAL = ("track.bank=0deg:30deg:41", "track.climb=0deg:8deg:41")  # of a map
@@ -66,7 +66,7 @@ class TrackStudy(Shown):
         Grid
             Columns as ``mechanics.track.cells`` names them, in SI; NaN where the part does not fit.
         """
-        first, second = ranges or bowls.ranges(USUAL)
+        first, second = ranges or bowls.key_ranges(USUAL)
 
         def function(x: np.ndarray, y: np.ndarray) -> dict[str, np.ndarray]:
             bowl = limits.plain(bowls.swept(settings, {first.key.name: x, second.key.name: y}))
@@ -100,7 +100,7 @@ def track(part: Part, bowl: Bowl, aspect: str | None = None, heading: float | No
         the drive is not ``limits.plain``.
     """
     limits.plain(bowl)
-    posture, why = standing(part, aspect, "track", partial(arriving, bowl=bowl))
+    posture, why = standing(part, aspect, "track", partial(likeliest, bowl=bowl))
     seat, found, row = cells.seated(posture, bowl, heading)
     now, held_across = _from_rest(seat, bowl)
     cycle, course = balance.over_cycle(seat, bowl)
@@ -126,7 +126,7 @@ def track(part: Part, bowl: Bowl, aspect: str | None = None, heading: float | No
 def _stands(
     posture: Posture, found: Headings, row: int, bowl: Bowl, cycle: balance.TrackMotion
 ) -> tipping.Stands:
-    one = orientations.at(posture, found, row, {}, bowl.track)
+    one = orientations.orientation_at(posture, found, row, {}, bowl.track)
     return tipping.stands(one, bowl, bool((cycle.state == HOP).any()))
 
 

@@ -17,7 +17,7 @@ from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.rates import arrivals, stream
-from feederscrew.rates.well_oriented import RECOMMENDED
+from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
@@ -25,7 +25,7 @@ from feederscrew.resting.rules.recommended import LAUNCH
 from feederscrew.running import RunKeywords, RunSettings
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.rate import shares as arriving
-from feederscrew.tooling.devices.named import rows
+from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.trial import course, outlet
 from feederscrew.trial import landing as landings
 from feederscrew.trial.outlet import Outlet
@@ -54,13 +54,13 @@ class TrialStudy(Shown):
     def answer(self) -> str:
         """Say whose shares parts arrive in: 'hops, launch feed', 'csa'."""
         known = self.aspects.recommended
-        return known.rule if self.rule == RECOMMENDED and known is not None else self.rule
+        return known.rule if self.rule == RECOMMENDED_RULE and known is not None else self.rule
 
     @property
     def launch(self) -> str | None:
         """What is done to the parts: 'feed', 'drop'; None where a rule knows no launch."""
         known = self.aspects.recommended
-        return known.launch if self.rule == RECOMMENDED and known is not None else None
+        return known.launch if self.rule == RECOMMENDED_RULE and known is not None else None
 
     def outlet(self, run: TrialRun) -> Outlet | None:
         """Return what left one run's queue by aspect, an Outlet; None without a queue."""
@@ -105,6 +105,7 @@ class TrialOptions(RunSettings):
     queue: int | None = None
     poured: bool = False
     seconds: float = 10.0  # [s]
+    frames: int = 0
 
 
 class TrialKeywords(RunKeywords, total=False):
@@ -115,6 +116,7 @@ class TrialKeywords(RunKeywords, total=False):
     queue: int | None
     poured: bool
     seconds: float
+    frames: int
 
 
 def trial(
@@ -122,7 +124,7 @@ def trial(
     bowls: Sequence[Bowl],
     aspect: str | None = None,
     *,
-    rule: str = RECOMMENDED,
+    rule: str = RECOMMENDED_RULE,
     known: Shares | None = None,
     measured: profiles.Measured | None = None,
     **options: Unpack[TrialKeywords],
@@ -150,6 +152,7 @@ def trial(
         queue : int, so many parts that push each other, as well.
         poured : bool, whether those fall onto the track in any attitude; in a row without it.
         seconds : float [s], the queue is followed.
+        frames : int, poses of the queue that are noted for a film; none without it.
         seed : int.
         jobs : int, cores to use; the outcome does not depend on it.
         progress : callable, called with how many are done, and of how many.
@@ -177,13 +180,17 @@ def trial(
     count = own.parts or (FEW if own.queue else PARTS)
     launch = LAUNCH if found.recommended is None else found.recommended.launch
     fall = None if own.landing is None else {"launch": launch, "parts": own.landing}
-    crowd = None if own.queue is None else QueuePlan(own.queue, own.seconds, None if own.poured else GAPS)
+    crowd = (
+        None
+        if own.queue is None
+        else QueuePlan(own.queue, own.seconds, None if own.poured else GAPS, own.frames)
+    )
     run = RunSettings(own.seed, own.jobs, own.progress)
     made: list[TrialRun] = []
     stopped = False
     for bowl in bowls:
         answer.answer(bowl)  # refuses a drive that cannot convey
-        ways = stream.orientations(part, found, bowl.track, bowl.devices, bowl=bowl)
+        ways = stream.follow_orientations(part, found, bowl.track, bowl.devices, bowl=bowl)
         ways = arrivals.oriented(ways, known.measured)
         tried = _tried(part, found, ways, aspect)
         shares = _shares(ways, rule, tried)

@@ -12,12 +12,11 @@ from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.kinds import KINDS, leaning
-from feederscrew.tooling.isolating.chain import WHERE, Wishes
-from feederscrew.tooling.isolating.design import PLAY, TOLERANCE
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, DesignConstraints
+from feederscrew.tooling.isolating.design import PLAY_M, TOLERANCE_M
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Goal
-from feederscrew.tooling.isolating.shop_values import FINE
-from feederscrew.tooling.orientations import speed
+from feederscrew.tooling.orientations import travel_speed
 from feederscrew.units import shown
 
 OUTCOMES = ("lying", "hanging", "any")
@@ -29,16 +28,16 @@ class ToolingOptions:
 
     purity: float = Goal.purity
     efficiency: float = Goal.efficiency
-    outcome: str = Wishes.outcome
-    without: str | Sequence[str] = Wishes.without
-    step: float = Wishes.step
-    up: str | Sequence[str] = Wishes.up
-    cutter: float = Wishes.cutter
-    vary: bool = Wishes.vary
-    turn: bool = Wishes.turn
-    air: bool = Wishes.air
-    play: float = PLAY
-    tolerance: float = TOLERANCE
+    outcome: str = DesignConstraints.outcome
+    without: str | Sequence[str] = DesignConstraints.without
+    step: float = DesignConstraints.step
+    up: str | Sequence[str] = DesignConstraints.up
+    cutter: float = DesignConstraints.cutter
+    vary: bool = DesignConstraints.vary
+    turn: bool = DesignConstraints.turn
+    air: bool = DesignConstraints.air
+    play: float = PLAY_M
+    tolerance: float = TOLERANCE_M
     seed: int = HoleSearch.seed
     verdicts: int = HoleSearch.verdicts
     seconds: float = 600.0
@@ -66,13 +65,13 @@ class ToolingKeywords(TypedDict, total=False):
     told: Callable[[int, int], None] | None
 
 
-def asked_for(part: Part, bowl: Bowl, found: Aspects, own: ToolingOptions) -> Wishes:
-    """Return what a design may use, checked, as Wishes."""
+def asked_for(part: Part, bowl: Bowl, found: Aspects, own: ToolingOptions) -> DesignConstraints:
+    """Return what a design may use, checked, as DesignConstraints."""
     if own.outcome not in OUTCOMES:
         raise ArgumentError("outcome", f"{own.outcome!r} is unknown", f"choose {', '.join(OUTCOMES)}")
-    check.argument("step", own.step, FINE)
+    check.argument("step", own.step, SHOP_ROUNDING_M)
     kinds = may_be_left_out(own.without)
-    wishes = Wishes(
+    wishes = DesignConstraints(
         outcome=own.outcome,
         without=kinds,
         step=float(own.step),
@@ -110,10 +109,10 @@ def may_be_up(part: Part, found: Aspects, up: str | Sequence[str]) -> tuple[str,
     return listed(up)
 
 
-def _separation(bowl: Bowl, wishes: Wishes) -> Device | None:
+def _separation(bowl: Bowl, wishes: DesignConstraints) -> Device | None:
     """The stretch that makes gaps in this bowl; None where it may not be used or makes none."""
     for kind in leaning():
-        steeper = kind.parting(WHERE) if wishes.allows(kind.kind) else None
-        if steeper is not None and speed(steeper.onward(bowl)) > speed(bowl):
+        steeper = kind.parting(DESIGN_KEY) if wishes.allows(kind.kind) else None
+        if steeper is not None and travel_speed(steeper.onward(bowl)) > travel_speed(bowl):
             return steeper
     return None

@@ -7,10 +7,8 @@ import matplotlib
 import numpy as np
 
 from feederscrew.mechanics.limits import published_ratio
+from feederscrew.output import compare, slide, tables
 from feederscrew.output import style as plots
-from feederscrew.output import tables
-from feederscrew.output.compare import figures as profile_plots
-from feederscrew.output.slide import figures as slide_plots
 from feederscrew.output.tables import Frame
 from feederscrew.thesis import figures
 from feederscrew.thesis.figures import Bars, ByRatio, Curves, Figure, FigureGrid
@@ -86,7 +84,7 @@ def _bars(title: str, data: Bars) -> "Drawing":
     figure = plots.figure(width, 3.6)
     axes = plots.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
     room = (width - 0.9) / (len(data.aspects) * (len(data.profiles) + 0.9))
-    profile_plots.bars(axes, data.aspects, data.profiles, data.printed, room)
+    compare.bars(axes, data.aspects, data.profiles, data.printed, room)
     handles = list(axes.containers)
     if data.printed:
         handles += axes.plot([], [], color=plots.INK, linewidth=1.1, label="in print")
@@ -131,9 +129,9 @@ def _curves(title: str, data: Curves) -> "Drawing":
     """As published, and over G: there the curves part, and cross."""
     figure = plots.figure(9.4, 4.2)
     left, right = figure.subplots(1, 2)
-    plots.tidy(left, title=title, x=slide_plots.RATIO, y=slide_plots.FRICTION)
-    plots.tidy(right, title="The same, divided by G", x=slide_plots.RATIO, y="limiting friction / G [1]")
-    shades = matplotlib.colormaps[slide_plots.SHADES](np.linspace(0.05, 0.8, len(data.limits)))
+    plots.tidy(left, title=title, x=slide.RATIO, y=slide.FRICTION)
+    plots.tidy(right, title="The same, divided by G", x=slide.RATIO, y="limiting friction / G [1]")
+    shades = matplotlib.colormaps[slide.SHADES](np.linspace(0.05, 0.8, len(data.limits)))
     for (beta, values), shade in zip(data.limits.items(), shades):
         left.plot(data.ratios, values, color=shade, linewidth=1.8, label=f"β = {beta:g}°")
         right.plot(data.ratios[1:], values[1:] / data.ratios[1:], color=shade, linewidth=1.8)
@@ -154,10 +152,10 @@ def _turning(beta: float) -> tuple[float, float]:
 def _limit_surface(title: str, data: FigureGrid) -> "Drawing":
     figure = plots.figure(6.4, 5.0)
     axes = figure.add_subplot(projection="3d", computed_zorder=False)
-    shades: dict[str, Any] = {"cmap": slide_plots.SHADES, "vmin": 0.0, "vmax": slide_plots.HIGHEST}
+    shades: dict[str, Any] = {"cmap": slide.SHADES, "vmin": 0.0, "vmax": slide.HIGHEST}
     lines: dict[str, Any] = {"rcount": 34, "ccount": 46, "edgecolor": "white", "linewidth": 0.2}
     axes.plot_surface(np.degrees(data.x), data.y[:, None], data.values, **shades, **lines)
-    _dress_3d(axes, title, (slide_plots.ANGLE, slide_plots.RATIO, slide_plots.FRICTION))
+    _dress_3d(axes, title, (slide.ANGLE, slide.RATIO, slide.FRICTION))
     axes.set(xlim=(-90, 90), ylim=(0.0, figures.DRIVE_RATIOS[-1]))
     axes.set_zlim(bottom=0.0)
     axes.set_xticks(np.arange(-90, 91, 30))
@@ -166,11 +164,9 @@ def _limit_surface(title: str, data: FigureGrid) -> "Drawing":
 
 def _contours(title: str, data: FigureGrid, beta: float) -> "Drawing":
     figure = plots.figure(6.6, 4.2)
-    axes = plots.tidy(
-        figure.add_subplot(), title=title, x=slide_plots.ANGLE, y=slide_plots.RATIO, grid="none"
-    )
-    levels = [level for level in slide_plots.LEVELS if level <= data.values.max()]
-    shades = matplotlib.colormaps[slide_plots.SHADES](np.linspace(0.05, 0.75, len(levels)))
+    axes = plots.tidy(figure.add_subplot(), title=title, x=slide.ANGLE, y=slide.RATIO, grid="none")
+    levels = [level for level in slide.LEVELS if level <= data.values.max()]
+    shades = matplotlib.colormaps[slide.SHADES](np.linspace(0.05, 0.75, len(levels)))
     angles = np.linspace(-89.9, 89.9, 361)
     for level, shade in zip(levels, shades):
         ratios = published_ratio(level, beta, np.radians(angles))
@@ -194,7 +190,7 @@ def _acceleration(
         across,
         up,
         data.values,
-        cmap=slide_plots.SHADES,
+        cmap=slide.SHADES,
         rcount=46,
         ccount=46,
         edgecolor="white",
@@ -204,7 +200,7 @@ def _acceleration(
     flat = plots.tidy(
         figure.add_subplot(right), title="Where the part slides", x=x_label, y=y_label, grid="none"
     )
-    filled = flat.contourf(x, y, data.values, 14, cmap=slide_plots.SHADES)
+    filled = flat.contourf(x, y, data.values, 14, cmap=slide.SHADES)
     _hop_region(flat, x, y, data)
     _stick_region(flat, x, y, data)
     bar = figure.colorbar(filled, ax=flat, pad=0.02)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from importlib import resources
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import bowl
 from feederscrew.mechanics import limits
@@ -30,6 +31,7 @@ class Finding:
     """A slip, a silence, or what explains a number."""
 
     id: str
+    title: str  # in words
     where: str  # in the thesis
     what: str
     evidence: Callable[[], str]  # how it shows, its numbers computed, never typed
@@ -389,6 +391,84 @@ def _wall_pulls() -> str:
     return (
         f"At the upper reversal R1 + R2 is {printed.walls.sum() / MILLI:.2f} mN as printed; the complete"
         f" equations give {complete.walls.sum() / MILLI:.2f} mN, and open a contact rather than let it pull."
+    )
+
+
+@_evidence("dual-numbers")
+def _dual_numbers() -> str:
+    a, b, c, d = 1.0, 2.0, 3.0, 4.0
+    step = 1e-6  # both are derivatives at 0: of (a + b x)(c + d x), and of (a + b x)/(c + d x)
+    product, quotient = (
+        (rule(step) - rule(-step)) / (2.0 * step)
+        for rule in (lambda x: (a + b * x) * (c + d * x), lambda x: (a + b * x) / (c + d * x))
+    )
+    return (
+        f"For a, b, c, d = 1, 2, 3, 4 the dual parts are {product:.4f} and {quotient:.4f}; with ad - bc the"
+        f" print gives {a * d - b * c:.4f} and {(a * d - b * c) / c**2:.4f}."
+    )
+
+
+@_evidence("momentum-cross")
+def _momentum_cross() -> str:
+    value = chapter_4("arc_chute")
+    return (
+        f"At 1 rad/s and 1 mm/s across the force is m w v = {value['mass']:.3f} uN; the print has the moment"
+        f" I w^2 there, {value['I_zz']:.2f} nN m."
+    )
+
+
+@_evidence("equation-4-24")
+def _equation_4_24() -> str:
+    return "docs/equations.md has each printed equation with its function."
+
+
+def _gap(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+    """Total variation of two profiles [1]."""
+    return 0.5 * float(np.abs(one - other).sum())
+
+
+@_evidence("conclusion-1")
+def _conclusion_1() -> str:
+    low, high = (table("3-4").numbers(name) for name in ("MDBT_78", "MDBT_80"))
+    return (
+        f"Between 78 and 80 percent of the drive the measured shares change by {100.0 * _gap(low, high):.1f}"
+        " percent of the parts."
+    )
+
+
+@_evidence("conclusion-2")
+def _conclusion_2() -> str:
+    names = ("csa", "experiment")
+    csa, measured = (table("3-1").numbers(name) / table("3-1").numbers(name).sum() for name in names)
+    pmi = parts.t_aspects(0.6).pmi
+    return (
+        f"Total variation of PMI from CSA {_gap(pmi, csa):.3f} and from the experiment"
+        f" {_gap(pmi, measured):.3f}, of CSA from the experiment {_gap(csa, measured):.3f}."
+    )
+
+
+@_evidence("conclusion-4")
+def _conclusion_4() -> str:
+    return _t_shape_drawing()
+
+
+@_evidence("conclusion-5")
+def _conclusion_5() -> str:
+    size = _omitted("radial gravity, -m g cos(phi) sin(delta)")
+    hops = 100.0 * np.mean(figures.figure_5_7().hops)
+    return (
+        f"At 10 deg of bank {size:.2f} mN of a weight of {_weight():.1f} mN are left out; Figure 5-7 is drawn"
+        f" over {hops:.0f} percent where the part has left the floor."
+    )
+
+
+@_evidence("conclusion-8")
+def _conclusion_8() -> str:
+    ratio, beta, turn = 0.5, np.radians(20.0), np.radians(60.0)
+    beside, free = (float(limits.published_limit(ratio, beta, angle)) for angle in (turn, 0.0))
+    return (
+        f"At G = {ratio:.1f}, beta 20 deg and alpha - theta 60 deg it says {beside:.3f}; the open floor needs"
+        f" {free:.3f}."
     )
 
 

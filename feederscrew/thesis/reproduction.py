@@ -38,6 +38,23 @@ BEARS_ON = {  # findings that no single cell carries
     "figure 3-7": ("figure-references",),
     "figure 3-8": ("drawings-lost", "csa-ratio"),
 }
+LOST = {  # drawings of which nothing survives but what other numbers give: no item has them
+    "3-1": "Axes of the T shape",
+    "3-2": "Resting aspects of the T shape",
+    "3-3": "Dimensions of the T shape",
+    "3-4": "Resting aspects of the Arc Chute",
+    "3-5": "Resting aspects of the Magnet",
+}
+CONCLUSIONS = {  # of chapter 6, and what bears on each
+    "1": ("conclusion-1", "dominant-aspect"),
+    "2": ("conclusion-2", "csa-ratio"),
+    "3": ("conclusion-2",),
+    "4": ("conclusion-4",),
+    "5": ("conclusion-5", "wall-pulls"),
+    "6": ("beta-sliding",),
+    "7": ("hop",),
+    "8": ("conclusion-8",),
+}
 MARK_OF = {EXACT_TO_PRINT: "exact", EXPLAINED: "explained", DIFFERS: "differs", NOT_CHECKED: "given"}
 COUNTS = ("cells", "exact", "explained", "differs", "given")
 CELL_COLUMNS = ("row", "column", "published", "recomputed", "deviation", "verdict", "explaining", "finding")
@@ -58,8 +75,10 @@ PAGE_OPENING = (
     "explained: print → ours, and in brackets what a finding below the table makes of it. A cell in italics "
     "is given: measured, or read off a drawing that is lost. A cell marked DIFFERS has no explanation.",
 )
-CHAPTER_4_TITLE = "Chapter 4: inertial data, levers and equations"
-CHAPTER_4_OPENING = "Chapter 4 has no tables, but its data feed chapter 5. What checking them showed:"
+CHAPTER_4_TITLE = "Chapters 2 and 4: screws, inertial data, levers and equations"
+CHAPTER_4_OPENING = (
+    "Chapters 2 and 4 have no tables, but their equations and data feed chapter 5. What checking them showed:"
+)
 
 
 @dataclass(frozen=True)
@@ -141,10 +160,13 @@ def unexplained(items: Sequence[Item]) -> list[Item]:
 
 
 def overview(items: Sequence[Item]) -> Frame:
-    """Return one row an item: its cells by verdict."""
-    columns: dict[str, list] = {"item": [item.name for item in items]}
-    columns |= {name: [item.counts[name] for item in items] for name in COUNTS}
-    return frame(columns | {"findings": ["; ".join(item.findings) for item in items]})
+    """Return one row an item: its cells by verdict; then the lost drawings and the conclusions."""
+    others: dict[str, tuple[str, ...]] = {f"figure {number}": ("drawings-lost",) for number in LOST}
+    others |= {f"conclusion {number}": ids for number, ids in CONCLUSIONS.items()}
+    columns: dict[str, list] = {"item": [item.name for item in items] + list(others)}
+    columns |= {name: [item.counts[name] for item in items] + [0] * len(others) for name in COUNTS}
+    ids = [item.findings for item in items] + list(others.values())
+    return frame(columns | {"findings": ["; ".join(FINDING_OF[id].title for id in each) for each in ids]})
 
 
 def entries(item: Item) -> Frame:
@@ -182,7 +204,14 @@ def document(items: Sequence[Item], files: Mapping[str, Sequence[str]]) -> dict[
         }
         for item in items
     ]
-    return {"items": rows, "findings": [_finding_row(finding) for finding in FINDINGS]}
+    return {
+        "items": rows,
+        "lost": [{"id": number, "kind": "figure", "caption": text} for number, text in LOST.items()],
+        "conclusions": [
+            {"id": f"conclusion {number}", "findings": ids} for number, ids in CONCLUSIONS.items()
+        ],
+        "findings": [_finding_row(finding) for finding in FINDINGS],
+    }
 
 
 def write(save: Callable[[str, str | bytes], object], items: Sequence[Item]) -> dict[str, list[str]]:
@@ -250,6 +279,7 @@ def page(items: Sequence[Item], pictures: Mapping[str, bytes]) -> Page:
             Chapter(third, anchor="chapter-3", title="Chapter 3: natural resting aspects"),
             Chapter(_chapter_4(items), anchor="chapter-4", title=CHAPTER_4_TITLE),
             Chapter(fifth, anchor="chapter-5", title="Chapter 5: simulation results"),
+            Chapter(_chapter_6(), anchor="chapter-6", title="Chapter 6: conclusions"),
             Chapter(tuple(_errata(items)), anchor="findings", title="Findings and errata"),
         ),
     )
@@ -300,7 +330,7 @@ def _item(item: Item, pictures: Mapping[str, bytes]) -> list:
         printed = table(item.id)
         blocks += [Text(f"Source: {printed.source}. Units: {printed.units}."), cell_matrix(item)]
     if item.findings:
-        blocks.append(Links(tuple((id, id, FINDING_OF[id].what) for id in item.findings)))
+        blocks.append(Links(tuple((id, FINDING_OF[id].title, FINDING_OF[id].what) for id in item.findings)))
     return blocks
 
 
@@ -338,21 +368,40 @@ def _chapter_4(items: Sequence[Item]) -> tuple:
     """The findings that no table or figure carries."""
     carried = {id for item in items for id in item.findings}
     rest = [finding for finding in FINDINGS if finding.id not in carried or "4." in finding.where]
-    links = [(each.id, each.id, f"{each.where}. {each.what} {each.evidence()}") for each in rest]
+    links = [
+        (each.id, each.title, f"{each.where}. {each.what} {each.evidence()}")
+        for each in rest
+        if not each.id.startswith("conclusion-")
+    ]
     return Text(CHAPTER_4_OPENING), Links(tuple(links))
+
+
+def _chapter_6() -> tuple:
+    """What bears on each conclusion."""
+    rows = [
+        (MarkedCell(number), MarkedCell("; ".join(FINDING_OF[id].what for id in ids)))
+        for number, ids in CONCLUSIONS.items()
+    ]
+    return (Matrix(("conclusion", "what checking it showed"), tuple(rows)),)
 
 
 def _errata(items: Sequence[Item]) -> Iterator[Heading | Text]:
     """Each finding, with its evidence and the items it bears on."""
     for finding in FINDINGS:
         names = [item.name for item in items if finding.id in item.findings]
-        yield Heading(f"{finding.id}: {finding.where}", finding.id)
+        yield Heading(f"{finding.title[:1].upper()}{finding.title[1:]}: {finding.where}", finding.id)
         bears = f" Bears on {', '.join(names)}." if names else ""
         yield Text(f"{finding.what} {finding.evidence()}{bears}")
 
 
 def _finding_row(finding: Finding) -> dict[str, str]:
-    return {"id": finding.id, "where": finding.where, "what": finding.what, "shown": finding.evidence()}
+    return {
+        "id": finding.id,
+        "title": finding.title,
+        "where": finding.where,
+        "what": finding.what,
+        "shown": finding.evidence(),
+    }
 
 
 def _bears(entry: Cell | Claim) -> bool:

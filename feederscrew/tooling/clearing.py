@@ -9,8 +9,8 @@ import math
 from feederscrew.errors import FeederError
 
 PERIODS, SETTLED = 60, 20  # of the drive, in all and until the motion is taken
-STEPS = 240  # of one period
-STILL = 1e-6  # [m/s] what slides more slowly does not leave
+CLEARING_STEPS = 240  # of one period
+REST_SPEED = 1e-6  # [m/s] what slides more slowly does not leave
 
 
 def limit(friction):
@@ -30,7 +30,7 @@ def limit(friction):
     return 0.5 * math.pi - math.atan(friction)
 
 
-def seconds(device, one, bowl):
+def seconds(device, orientation, bowl):
     """Return how long [s] an orientation that a device returns blocks the track; 0 of what drops at once.
 
     Source: docs/tooling.md, "1. The method".
@@ -38,7 +38,7 @@ def seconds(device, one, bowl):
     Parameters
     ----------
     device : Device
-    one : Orientation
+    orientation : Orientation
     bowl : Bowl
         Single values.
     """
@@ -47,8 +47,8 @@ def seconds(device, one, bowl):
     sweep, friction = device.face
     friction = bowl.friction.static if friction is None else friction
     speed = along_blade(bowl, sweep, friction)
-    way = max(one.track.width - one.distance, 0.0)
-    return way / speed if speed > STILL else math.inf
+    distance = max(orientation.track.width - orientation.distance, 0.0)
+    return distance / speed if speed > REST_SPEED else math.inf
 
 
 @functools.lru_cache(maxsize=64)
@@ -80,15 +80,15 @@ def along_blade(bowl, sweep, friction):
     if sweep >= limit(friction):
         return 0.0
     drive, grip, g = bowl.drive, bowl.friction, bowl.gravity
-    w, dt = 2.0 * math.pi * drive.frequency, 1.0 / drive.frequency / STEPS
+    w, dt = 2.0 * math.pi * drive.frequency, 1.0 / drive.frequency / CLEARING_STEPS
     fore = drive.amplitude * w * math.cos(drive.vibration_angle)
     lift = drive.amplitude * w * w * math.sin(drive.vibration_angle)
     pull = -g * math.sin(bowl.track.climb), -g * math.sin(bowl.track.bank)
     normal = g * math.cos(bowl.track.climb) * math.cos(bowl.track.bank)
     c, s = math.cos(sweep), math.sin(sweep)
     x = y = u = v = start = 0.0
-    for step in range(PERIODS * STEPS):
-        if step == SETTLED * STEPS:
+    for step in range(PERIODS * CLEARING_STEPS):
+        if step == SETTLED * CLEARING_STEPS:
             start = y
         phase = w * dt * step
         press = max(normal - lift * math.sin(phase + drive.phase), 0.0)
@@ -103,10 +103,10 @@ def along_blade(bowl, sweep, friction):
         if x * s - y * c > 0.0:
             over = x * s - y * c
             x, y = x - over * s, y + over * c
-    found = (y - start) / ((PERIODS - SETTLED) / drive.frequency)
-    if not math.isfinite(found):
+    mean_velocity = (y - start) / ((PERIODS - SETTLED) / drive.frequency)
+    if not math.isfinite(mean_velocity):
         raise FeederError("devices", "the motion along a blade has no end", "lower the drive")
-    return max(found, 0.0)
+    return max(mean_velocity, 0.0)
 
 
 def _rubbed(u, v, track, most):

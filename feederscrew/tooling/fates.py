@@ -7,12 +7,11 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.bowl.devices import unfit
-from feederscrew.tooling import touching
+from feederscrew.tooling import footprints
 from feederscrew.tooling.devices.base import CARRIED, RETURNED, STOPPED, Device, Verdict
-from feederscrew.tooling.falling_through import surely_gone
-from feederscrew.tooling.hanging import Hanging, hung
-from feederscrew.tooling.orientations import Orientation
-from feederscrew.tooling.verdicts import Meeting, verdict
+from feederscrew.tooling.falling import surely_gone
+from feederscrew.tooling.orientations import Hanging, Orientation, hang
+from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,66 +33,68 @@ class DeviceFlow:
     @cached_property
     def passes(self):
         """(M, 1 + D) [1] share that the track and each device let on, of those that come to it."""
-        reached, found = self._reached, [self.starts]
+        reached, shares = self._reached, [self.starts]
         for step, matrix in enumerate(self.matrices):
             there, on = reached[step].sum(axis=1), reached[step + 1].sum(axis=1)
             alone = matrix[: len(self.starts)].sum(axis=1)
-            found.append(np.where(there > 0.0, on / np.where(there > 0.0, there, 1.0), alone))
-        return check.frozen(np.column_stack(found))
+            shares.append(np.where(there > 0.0, on / np.where(there > 0.0, there, 1.0), alone))
+        return check.frozen(np.column_stack(shares))
 
     @cached_property
     def margins(self):
         """(M, 1 + D) [m] by which most of it passes or fails each device; NaN: not known."""
         rows, reached = np.arange(len(self.starts)), self._reached
-        found = [np.full(len(rows), np.nan)]
-        for step, shown in enumerate(self.verdicts):
+        columns = [np.full(len(rows), np.nan)]
+        for step, verdicts in enumerate(self.verdicts):
             most = np.where(reached[step].sum(axis=1) > 0.0, reached[step].argmax(axis=1), rows)
-            found.append(np.array([np.nan if shown[k] is None else shown[k].margin for k in most]))
-        return check.frozen(np.column_stack(found))
+            columns.append(np.array([np.nan if verdicts[k] is None else verdicts[k].margin for k in most]))
+        return check.frozen(np.column_stack(columns))
 
     @cached_property
     def decided(self):
         """(M,) bool, whether statics tells what every device that it comes to does with it."""
-        found = np.ones(len(self.starts), bool)
-        for reached, shown in zip(self._reached, self.verdicts):
-            moved = np.array([one is not None and not one.decided for one in shown])
-            found &= ~(reached[:, moved] > 0.0).any(axis=1)
-        return check.frozen(found)
+        sure = np.ones(len(self.starts), bool)
+        for reached, verdicts in zip(self._reached, self.verdicts):
+            moved = np.array([verdict is not None and not verdict.decided for verdict in verdicts])
+            sure &= ~(reached[:, moved] > 0.0).any(axis=1)
+        return check.frozen(sure)
 
     @cached_property
     def ends(self):
         """(M, 2, 1 + D) [1] share that the track and each device return, and that they stop."""
         count, reached = len(self.starts), self._reached
-        found = np.zeros((count, 2, 1 + len(self.devices)))
-        found[:, 0, 0] = 1.0 - self.starts
+        shares = np.zeros((count, 2, 1 + len(self.devices)))
+        shares[:, 0, 0] = 1.0 - self.starts
         for step, device in enumerate(self.devices):
             lost = reached[step] * np.array(
                 [0.0 if k is None else 1.0 - k.passes for k in self.verdicts[step]]
             )
             for state in np.flatnonzero((lost > 0.0).any(axis=0)):
-                met = Meeting(self.came[step][state], self.came[0][:count])
-                found[:, int(device.fate(met) == STOPPED), 1 + step] += lost[:, state]
-        return check.frozen(found)
+                encounter = DeviceEncounter(self.came[step][state], self.came[0][:count])
+                shares[:, int(device.fate(encounter) == STOPPED), 1 + step] += lost[:, state]
+        return check.frozen(shares)
 
     @cached_property
     def doubtful(self):
         """(M,) [1] share of each orientation that leaves as well where no verdict is sure to return it."""
         reached = self.starts[:, None] * np.eye(len(self.starts), len(self.states))
-        for step, (matrix, shown) in enumerate(zip(self.matrices, self.verdicts)):
-            unsure = [one is not None and self._may_stay(step, k, one) for k, one in enumerate(shown)]
-            ways = np.where(np.array(unsure)[:, None], np.eye(len(matrix)), matrix)
-            reached = np.einsum("ms,st->mt", reached, ways)
+        for step, (matrix, verdicts) in enumerate(zip(self.matrices, self.verdicts)):
+            unsure = [
+                verdict is not None and self._may_stay(step, k, verdict) for k, verdict in enumerate(verdicts)
+            ]
+            matrix_or_stay = np.where(np.array(unsure)[:, None], np.eye(len(matrix)), matrix)
+            reached = np.einsum("ms,st->mt", reached, matrix_or_stay)
         return check.frozen(np.maximum(reached.sum(axis=1) - self.leaving.sum(axis=1), 0.0))
 
-    def _may_stay(self, step, state, shown):
+    def _may_stay(self, step, state, outcome):
         """Whether a device is not sure to return a state that it does not let pass, nor to stop it."""
-        if shown.passes >= 1.0:
+        if outcome.passes >= 1.0:
             return False
-        device, one = self.devices[step], self.came[step][state]
-        if one.along_a_bank:  # off the wall, where a device may miss it
+        device, orientation = self.devices[step], self.came[step][state]
+        if orientation.along_a_bank:  # off the wall, where a device may miss it
             return True
-        stands = one.grip <= 0.0 or device.fate(Meeting(one, self.came[0])) == STOPPED
-        return not shown.sure or not (stands or surely_gone(device, one))
+        stands = orientation.grip <= 0.0 or device.fate(DeviceEncounter(orientation, self.came[0])) == STOPPED
+        return not outcome.sure or not (stands or surely_gone(device, orientation))
 
     @property
     def stops(self):
@@ -120,7 +121,7 @@ class DeviceFlow:
         return reached
 
 
-def course(devices, every, sigma=0.0, rows=None):
+def course(devices, orientations, sigma=0.0, rows=None):
     """Return what becomes of every orientation along a chain of devices.
 
     Source: a chain of conditional shares; docs/tooling.md, "1. The method".
@@ -129,7 +130,7 @@ def course(devices, every, sigma=0.0, rows=None):
     ----------
     devices : sequence of Device
         In the order parts meet them.
-    every : sequence of Orientation
+    orientations : sequence of Orientation
         Of the part.
     sigma : float [m]
         Standard deviation of play and tolerance together, of every device.
@@ -147,90 +148,99 @@ def course(devices, every, sigma=0.0, rows=None):
     """
     for fault in unfit(devices):
         raise fault
-    every = tuple(every)
-    states, here = list(every), list(every)  # `here`: as they are at this device, a slot below them or not
-    starts = [float(not one.returned and (rows is None or k in rows)) for k, one in enumerate(every)]
-    ways: list[list] = []  # a list a device, a tuple of Way an orientation
+    orientations = tuple(orientations)
+    states, here = (
+        list(orientations),
+        list(orientations),
+    )  # `here`: as they are at this device, a slot below them or not
+    starts = [
+        float(not orientation.returned and (rows is None or k in rows))
+        for k, orientation in enumerate(orientations)
+    ]
+    transitions: list[list] = []  # a list a device, a tuple of Way an orientation
     verdicts, came = [], []
     for device in devices:
         came.append(tuple(here))
-        asked = _followed(ways, len(here), rows)
-        listed = [verdict(device, one, every, sigma) if k in asked else None for k, one in enumerate(here)]
-        ways.append([
-            _way(device, k, one, found, states) if found else ()
-            for k, (one, found) in enumerate(zip(here, listed))
+        followed = _followed(transitions, len(here), rows)
+        listed = [
+            verdict(device, orientation, orientations, sigma) if k in followed else None
+            for k, orientation in enumerate(here)
+        ]
+        transitions.append([
+            _way(device, k, orientation, outcome, states) if outcome else ()
+            for k, (orientation, outcome) in enumerate(zip(here, listed))
         ])  # fmt: skip
         verdicts.append(listed)
-        here = [device.onward(one) for one in here] + states[len(here) :]
+        here = [device.onward(orientation) for orientation in here] + states[len(here) :]
         if device.hangs:
-            here = [astride(one, device.span) for one in here]
+            here = [astride(orientation, device.span) for orientation in here]
     return DeviceFlow(
         states=tuple(states),
         verdicts=tuple(tuple(listed + [None] * (len(states) - len(listed))) for listed in verdicts),
-        matrices=check.frozen(_matrices(ways, len(states))),
+        matrices=check.frozen(_matrices(transitions, len(states))),
         devices=tuple(devices),
         came=tuple(came),
         starts=check.frozen(np.array(starts)),
     )
 
 
-def _followed(ways, count, rows):
+def _followed(transitions, count, rows):
     """The states (set of int) in which some rows come to the next device; all where None are given."""
     if rows is None:
         return set(range(count))
-    found = set(rows)
-    for way in ways:
-        found = {onto for k in found for onto, share in way[k] if share > 0.0}
-    return found
+    rows_here = set(rows)
+    for transition in transitions:
+        rows_here = {onto for k in rows_here for onto, share in transition[k] if share > 0.0}
+    return rows_here
 
 
-def at_entry(every, devices):
+def at_entry(orientations, devices):
     """Return orientations as they come: where devices that lean the track come first, they begin there."""
     for device in leading(devices):
-        every = tuple(device.onward(one) for one in every)
-    return tuple(every)
+        orientations = tuple(device.onward(orientation) for orientation in orientations)
+    return tuple(orientations)
 
 
 def leading(devices):
     """Return the devices that come first and lean the track from its entry on, up to the end of a groove."""
-    found, grooved = [], False
+    first_devices, grooved = [], False
     for device in devices:
         if not device.leans or (grooved and device.grooved is False):
             break
-        found.append(device)
+        first_devices.append(device)
         grooved = grooved or bool(device.grooved)
-    return tuple(found)
+    return tuple(first_devices)
 
 
-def _way(device, place, one, found, states):
+def _way(device, place, orientation, outcome, states):
     """Where a state goes on from a device: (place, share) of what passes; new hanging states are added."""
-    if found.onto:
-        return [(onto, share) for onto, share in found.onto if not states[onto].returned]
-    if not found.hangs:
-        return [(place, found.passes)]
-    known = [other for other in states if isinstance(other, Hanging)]
-    down = hung(one, device.span, known)
+    if outcome.onto:
+        return [(onto, share) for onto, share in outcome.onto if not states[onto].returned]
+    if not outcome.hangs:
+        return [(place, outcome.passes)]
+    hanging = [other for other in states if isinstance(other, Hanging)]
+    down = hang(orientation, device.span, hanging)
     if down not in states:
         states.append(down)
-    return [(states.index(down), found.passes)]
+    return [(states.index(down), outcome.passes)]
 
 
-def _matrices(ways, count):
-    out = np.zeros((len(ways), count, count))
-    for matrix, rows in zip(out, ways):
+def _matrices(transitions, count):
+    out = np.zeros((len(transitions), count, count))
+    for matrix, rows in zip(out, transitions):
         for place, row in enumerate(rows):
             for onto, share in row:
                 matrix[place, onto] += share
     return out
 
 
-def astride(one, span):
+def astride(orientation, span):
     """Return an orientation over the rails' slot, which goes on: lying, it stands on what is beside it."""
-    if isinstance(one, Hanging) or one.falls_off:
-        return one
-    foot = touching.beside(one.foot, span, one.distance, one.track.radius)
+    if isinstance(orientation, Hanging) or orientation.falls_off:
+        return orientation
+    foot = footprints.beside(orientation.foot, span, orientation.distance, orientation.track.radius)
     if not len(foot.corners):  # it fell
-        return one
-    over = replace(one)
+        return orientation
+    over = replace(orientation)
     vars(over)["foot"] = foot  # a cached property of its own
     return over

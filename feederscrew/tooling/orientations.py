@@ -1,27 +1,29 @@
-"""Every way a part can lie on the track, and what a device sees of it."""
+"""Every way a part can lie on the track or hang between rails, and what a device sees of it."""
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
 from typing import cast
 
 import numpy as np
 import shapely
 import shapely.affinity
 
+from feederscrew import check
 from feederscrew.bowl.record import Track
 from feederscrew.conveying import answer
 from feederscrew.conveying.hop import STAYS, hop
 from feederscrew.errors import ConfigError
-from feederscrew.geometry.polygons import turned
+from feederscrew.geometry import vectors
+from feederscrew.geometry.polygons import convex, cross, outline, sides, turned
+from feederscrew.mechanics.wall import sameness
 from feederscrew.mechanics.wall.stable_headings import headings
 from feederscrew.resting.posture import Posture, posture
-from feederscrew.tooling import foot as feet
-from feederscrew.tooling import touching
+from feederscrew.tooling import footprints
+from feederscrew.tooling.footprints import Footprint, silhouette
 from feederscrew.tooling.sensor_views import area
-from feederscrew.tooling.touching import silhouette
 from feederscrew.units import GRAVITY
 
-ROUNDED = 5e-5  # [m] by which the borders of a cut are rounded: less depth does not catch
+CUT_BORDER_RADIUS_M = 5e-5  # [m] by which the borders of a cut are rounded: less depth does not catch
 FALLEN = 2.0  # time constants after which a part that tips is lost
 
 
@@ -106,8 +108,8 @@ class Orientation:
     @cached_property
     def foot(self):
         """What of it touches the track: a Footprint."""
-        whole = touching.footprint(self.posture, self.heading)
-        return touching.within(whole, self.distance, self.track.radius, self.track.width)
+        whole = footprints.find_footprint(self.posture, self.heading)
+        return footprints.within(whole, self.distance, self.track.radius, self.track.width)
 
     @cached_property
     def foot_reach(self):
@@ -117,12 +119,12 @@ class Orientation:
     @cached_property
     def standing(self):
         """Its foot as the compiled verdict takes it."""
-        return feet.standing(self.foot, self.distance, self.track.radius, self.shift)
+        return footprints.standing(self.foot, self.distance, self.track.radius, self.shift)
 
     @cached_property
     def margin(self):
         """How far the foot of the centre of mass lies inside the supported hull on the whole track [m]."""
-        return feet.over_ring(self.standing, 0.0, 0.0)
+        return footprints.over_ring(self.standing, 0.0, 0.0)
 
     @cached_property
     def outline(self):
@@ -144,36 +146,44 @@ class Orientation:
         """Its outline seen from the bowl's axis: distances ahead of its weight and heights, shapely."""
         points = self.posture.surface
         plan = turned(points[:, :2], self.heading)
-        seen = area(np.column_stack([plan, points[:, 2]]), self.posture.facets, "side")
-        return shapely.affinity.translate(seen, plan[:, 0].max())
+        side_view = area(np.column_stack([plan, points[:, 2]]), self.posture.facets, "side")
+        return shapely.affinity.translate(side_view, plan[:, 0].max())
 
     @cached_property
     def balcony(self):
         """Least width of track that carries it [m]; infinite where none does."""
-        return feet.balcony(self.standing, self.track.radius)
+        return footprints.balcony(self.standing, self.track.radius)
 
     @cached_property
     def canyon(self):
         """Greatest width of a strip removed along the wall that it passes [m]; 0 for none."""
-        return feet.canyon(self.standing, self.track.radius)
+        return footprints.canyon(self.standing, self.track.radius)
 
     @cached_property
     def gap(self):
         """Greatest gap across the track that it passes [m]; 0 for none."""
-        return feet.longest_gap(self.standing, self.track.radius)
+        return footprints.longest_gap(self.standing, self.track.radius)
 
 
-def placed(found):
+def place(orientations):
     """Return orientations as they are where nothing carries them on; what is known of them stays."""
-    return tuple(_placed(one) for one in found)
+    return tuple(_place_one(orientation) for orientation in orientations)
 
 
-def _placed(one):
+def _place_one(orientation):
     other = replace(
-        one, carry=0.0, carry_ahead=0.0, grip=0.0, speed=0.0, swing=0.0, climbs=0.0, hop=0.0, flight=0.0
+        orientation,
+        carry=0.0,
+        carry_ahead=0.0,
+        grip=0.0,
+        speed=0.0,
+        swing=0.0,
+        climbs=0.0,
+        hop=0.0,
+        flight=0.0,
     )
-    known = {name for name, value in vars(Orientation).items() if isinstance(value, cached_property)}
-    vars(other).update({name: value for name, value in vars(one).items() if name in known})
+    cached_names = {name for name, value in vars(Orientation).items() if isinstance(value, cached_property)}
+    vars(other).update({name: value for name, value in vars(orientation).items() if name in cached_names})
     return other
 
 
@@ -199,21 +209,23 @@ def orientations(part, aspects, track):
     FeederError
         If the part is a card without an outline, or larger than the bowl.
     """
-    found = []
+    orientations = []
     for row in np.flatnonzero(aspects.stable):
         lying = posture(part, aspects, aspects.names[row])
         chances = {rule: float(chance[row]) for rule, chance in aspects.chances.items()}
-        known = headings(lying, track)
-        found += [at(lying, known, k, chances, track) for k in range(len(known.headings))]
-    return tuple(found)
+        stable = headings(lying, track)
+        orientations += [
+            orientation_at(lying, stable, k, chances, track) for k in range(len(stable.headings))
+        ]
+    return tuple(orientations)
 
 
-def travelling(found, bowl):
+def travelling(orientations, bowl):
     """Return orientations that know how a bowl carries them on: over an edge, by friction, and rolling back.
 
     Parameters
     ----------
-    found : sequence of Orientation
+    orientations : sequence of Orientation
     bowl : Bowl
         Its velocity is that of the point mass; one that does not convey carries nothing.
 
@@ -231,16 +243,18 @@ def travelling(found, bowl):
     wall by g sin(climb) / (1 + k^2 / r^2) in the mean, whatever the drive. Friction of the wall may hold it,
     or even carry it on as it does what slides.
     """
-    along, track = speed(bowl), bowl.track
+    along, track = travel_speed(bowl), bowl.track
     thrown = hop(bowl) if along > 0.0 else STAYS
     fastest = 2.0 * np.pi * bowl.drive.frequency * bowl.drive.amplitude
     swing = fastest * np.cos(bowl.drive.vibration_angle)
     held = np.tan(track.climb) <= bowl.friction.wall * np.tan(track.bank)
     return tuple(
         replace(
-            one,
-            carry=FALLEN * along * _tipping_time(one, _greatest(one), bowl.gravity),
-            carry_ahead=FALLEN * along * _tipping_time(one, gyration(one, 0.5 * np.pi), bowl.gravity),
+            orientation,
+            carry=FALLEN * along * _tipping_time(orientation, _greatest(orientation), bowl.gravity),
+            carry_ahead=FALLEN
+            * along
+            * _tipping_time(orientation, gyration(orientation, 0.5 * np.pi), bowl.gravity),
             grip=float(bowl.friction.static),
             speed=along,
             hop=thrown.height,
@@ -248,68 +262,508 @@ def travelling(found, bowl):
             swing=swing,
             gravity=float(bowl.gravity),
             wall_grip=float(bowl.friction.wall),
-            climbs=float(ROUNDED + fastest**2 / (2.0 * bowl.gravity)),
-            may_roll_back=bool(not held and rolls_across(one)),
+            climbs=float(CUT_BORDER_RADIUS_M + fastest**2 / (2.0 * bowl.gravity)),
+            may_roll_back=bool(not held and rolls_across(orientation)),
         )
-        for one in found
+        for orientation in orientations
     )
 
 
-def rolls_across(one):
+def rolls_across(orientation):
     """Return whether it rolls along the track: about an axis across it, round in a circle, or as a ball."""
-    return one.kind == "rolling" and bool(np.isfinite(one.posture.rolling_circle) or not one.rolls_along)
+    return orientation.kind == "rolling" and bool(
+        np.isfinite(orientation.posture.rolling_circle) or not orientation.rolls_along
+    )
 
 
-def speed(bowl):
+def travel_speed(bowl):
     """Return the velocity up the track [m/s]; 0 of a bowl that does not convey, if its gravity can be."""
     try:
-        found = answer.answer(bowl).velocity
+        velocity = answer.answer(bowl).velocity
     except ConfigError as fault:
         if fault.where == "gravity":
             raise
         return 0.0
-    return max(float(found), 0.0) if np.isfinite(found) else 0.0
+    return max(float(velocity), 0.0) if np.isfinite(velocity) else 0.0
 
 
-def _tipping_time(one, spread, gravity):
+def _tipping_time(orientation, spread, gravity):
     """Time constant [s] of tipping over an edge below the centre of mass; ``spread`` as from ``gyration``."""
-    height = one.posture.height
+    height = orientation.posture.height
     return float(np.sqrt((spread + height**2) / (gravity * height)))
 
 
-def _greatest(one):
+def _greatest(orientation):
     """Square of the greatest radius of gyration about a level axis [m2]."""
-    inertia = one.posture.inertia
+    inertia = orientation.posture.inertia
     mean, lean = 0.5 * (inertia[0, 0] + inertia[1, 1]), 0.5 * (inertia[0, 0] - inertia[1, 1])
-    return (mean + np.hypot(lean, inertia[0, 1])) / one.posture.mass
+    return (mean + np.hypot(lean, inertia[0, 1])) / orientation.posture.mass
 
 
-def gyration(one, angle):
+def gyration(orientation, angle):
     """Return the square of the radius of gyration [m2] about a level axis at an angle [rad] to the track.
 
     Source: Steiner's theorem about a level axis.
     """
-    inertia, turn = one.posture.inertia, angle - one.heading
+    inertia, turn = orientation.posture.inertia, angle - orientation.heading
     c, s = np.cos(turn), np.sin(turn)
     moment = c * c * inertia[0, 0] + s * s * inertia[1, 1] + 2.0 * s * c * inertia[0, 1]
-    return float(moment / one.posture.mass)
+    return float(moment / orientation.posture.mass)
 
 
-def at(lying, known, row, chances, track):
+def orientation_at(lying, headings_of, row, chances, track):
     """Return a Posture at row ``row`` of its Headings, with the chances of its aspect by rule."""
-    share = float(known.shares[row])
+    share = float(headings_of.shares[row])
     return Orientation(
         posture=lying,
         track=track,
         aspect=lying.name,
-        heading=float(known.headings[row]),
+        heading=float(headings_of.headings[row]),
         heading_share=share,
         chances={rule: chance * share for rule, chance in chances.items()},
-        length=float(known.lengths[row]),
-        width=float(known.widths[row]),
+        length=float(headings_of.lengths[row]),
+        width=float(headings_of.widths[row]),
         height=float(lying.corners[:, 2].max()),
-        distance=float(known.distances[row]),
-        falls_off=bool(known.falls_off[row] and known.overhangs[row] > 0.0),  # one that rolls stays on
+        distance=float(headings_of.distances[row]),
+        falls_off=bool(
+            headings_of.falls_off[row] and headings_of.overhangs[row] > 0.0
+        ),  # one that rolls stays on
         kind=lying.kind,
-        touching=known.touching[row],
+        touching=headings_of.touching[row],
     )
+
+
+def name_mirror_images(orientations):
+    """Return orientations with the names of their mirror images, fore and aft.
+
+    Parameters
+    ----------
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    tuple of Orientation
+    """
+    looks = [_support_and_moment(orientation) for orientation in orientations]
+    pairs = {}
+    for i in range(len(orientations)):
+        for j in range(len(orientations)):
+            near = abs(orientations[i].length - orientations[j].length) < 1e-2 * orientations[i].length
+            if i != j and near and sameness.looks_alike(looks[i], looks[j], mirrored=True):
+                pairs[i] = orientations[j].name
+    return tuple(replace(orientation, mirror=pairs.get(k, "")) for k, orientation in enumerate(orientations))
+
+
+def _support_and_moment(orientation):
+    supports, moments = sameness.looks(orientation.posture, [orientation.heading])
+    return supports[0], None if moments is None else moments[0]
+
+
+SLICES = 80  # along the part
+MAX_SHANK_ANGLE_RAD = np.radians(
+    45.0
+)  # a part that stands or lies across the track does not go down by its shank
+SAME_HEAD_COSINE = np.cos(
+    np.radians(5.0)
+)  # parts that hang by the same head hang alike, however they lay before
+HANGING = "hanging"  # what the hanging pose is called, in place of an aspect
+TIP_BEYOND_RAIL_SHARE = (
+    0.38  # of the shank's radius: how far beyond a rail the middle of its tip has to lie ...
+)
+STRAIGHT_SHANK_SHARE = (
+    0.05  # of its diameter: ... unless its tip lies no farther aside than that from its weight
+)
+BARE, FULL = 1.05, 0.9  # of the shank's and of its own width: where the underside of a head begins and ends
+SEATED = 0.1  # of the head's height: how much of a cone's underside counts as resting on the rails
+
+
+@dataclass(frozen=True, eq=False)
+class Neck:
+    """Shank and head of a part, across its own long axis."""
+
+    shank: float  # [m] greatest width of the stretch that holds the centre of mass and reaches to one end
+    head: float  # [m] of the other end, in the way it is narrowest
+    widest: float  # [m] of that end, in any way it turns about the long axis
+    tip: float  # [m] from the foot of the centre of mass, inwards: the long axis at the shank's end
+    rise: float  # [1] of the head's underside from the shank outwards: 0 of a flat one, 1 of a cone of 90 deg
+    lever: float  # [m] from the head's end to the centre of mass, along the long axis
+    down: np.ndarray  # (3,) [1] from head to shank, in the file's axes
+
+
+@dataclass(frozen=True, eq=False)
+class Hanging(Orientation):
+    """A part that hangs by its head between rails: its foot is what of the head rests on them."""
+
+    neck: Neck = field(kw_only=True)
+    span: tuple[float, ...] = ()  # [m] of the slot, from the wall
+    lies_on: tuple[float, ...] = ()  # [m] shank's and head's middle from the foot of the centre of mass
+
+    @property
+    def name(self):
+        """'hanging'; of a part with two heads also 'hanging 2'."""
+        return self.aspect
+
+    @property
+    def shift(self):
+        """A hanging part's weight pulls through its own slot, however the track is banked."""
+        return 0.0
+
+    @cached_property
+    def foot(self):
+        """What of the head rests on the rails: a Footprint."""
+        size = np.ptp(cast(np.ndarray, self.posture.corners), axis=0).max()
+        for depth in (footprints.TOUCHING * size, SEATED * self.height):
+            rings = footprints.rings(self._rests(depth), footprints.SLIVER * size**2)
+            if len(rings) > 1 or depth > footprints.TOUCHING * size:
+                break
+        return Footprint(rings=rings, edges=np.empty((0, 2, 2)), points=np.empty((0, 2)))
+
+    def over(self, span):
+        """Return the margin [m] by which shank and head fit rails at another distance; negative if not."""
+        first, last = (end - self.distance for end in span)
+        (shank, head), wide = self.lies_on, self.neck
+        free = min(shank - 0.5 * wide.shank - first, last - shank - 0.5 * wide.shank)
+        return float(min(free, first - head + 0.5 * wide.head, head + 0.5 * wide.head - last))
+
+    def _rests(self, depth):
+        """What of the part lies lower over the rails than a depth, as an area about the foot."""
+        points, faces = self.posture.surface, self.posture.facets
+        area = footprints.area_below(points[:, :2], points[:, 2], faces, depth, True)
+        reach = np.hypot(*cast(np.ndarray, self.posture.corners)[:, :2].T).max()
+        return area.difference(footprints.ring(self.span, self.distance, self.track.radius, 2.0 * reach))
+
+
+def neck(orientation):
+    """Return shank and head of a part, as it lies.
+
+    Parameters
+    ----------
+    orientation : Orientation
+
+    Returns
+    -------
+    Neck or None
+        None where no end is wider than the rest of the part, or its long axis does not lie along the track.
+    """
+    return _neck(_Lying(orientation))
+
+
+class _Lying:
+    """An orientation, equal to any other of the same solid that is turned alike, on whatever track."""
+
+    def __init__(self, orientation):
+        self.one, self.solid, self.axes = orientation, orientation.posture.solid, orientation.axes.tobytes()
+
+    def __eq__(self, other):
+        return self.solid is other.solid and self.axes == other.axes
+
+    def __hash__(self):
+        return hash((id(self.solid), self.axes))
+
+
+@lru_cache(maxsize=512)
+def _neck(lying):
+    orientation = lying.one
+    axis = _axis(orientation)
+    if abs(axis[2]) > np.sin(MAX_SHANK_ANGLE_RAD) or abs(axis[1]) > np.sin(MAX_SHANK_ANGLE_RAD) * np.hypot(
+        axis[0], axis[1]
+    ):
+        return None
+    places, widths = _widths(orientation, axis)
+    steps = []
+    for sign, along, across in ((1.0, places, widths), (-1.0, -places[::-1], widths[::-1])):
+        for k in range(1, len(across)):
+            if along[k] > 0.0:  # the head must end before the centre of mass
+                break
+            head, shank = across[:k].max(), across[k:].max()
+            steps.append((head - shank, shank, head, sign, float(along[k])))
+    step, shank, head, sign, end = max(steps, default=(0.0, 0.0, 0.0, 1.0, 0.0))
+    least, widest = _turned_about(orientation, sign * axis, end)
+    head = min(head, least)
+    if not step > 0.0 or head <= shank:
+        return None
+    down, tip = np.einsum("ij,i->j", orientation.axes, sign * axis), sign * axis[1] * max(sign * places)
+    between = (sign * places <= end) & (widths > BARE * shank) & (widths < FULL * head)
+    rise = float(between.sum() * np.ptp(places) / SLICES / (0.5 * step))
+    lever = max(
+        -orientation[4] for orientation in steps if orientation[3] == sign and orientation[0] > 0.95 * step
+    )
+    return Neck(float(shank), float(head), widest, float(tip), rise, lever, check.frozen(down))
+
+
+def _turned_about(orientation, axis, end):
+    """Least width and diameter [m] of a head that turns about its axis: one that is flat turns edge on."""
+    solid = orientation.posture.solid
+    points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
+    points = points[vectors.product(points, axis) <= end]
+    across = vectors.unit(np.array([-axis[1], axis[0], 0.0]))
+    flat = np.column_stack([vectors.product(points, across), vectors.product(points, np.cross(axis, across))])
+    if len(convex(flat)) < 3:  # the head ends in an edge: it is as narrow as that
+        return 0.0, 0.0
+    ring = outline(flat)
+    along = sides(ring)
+    along = along / np.hypot(*along.T)[:, None]
+    least = min(float(np.ptp(cross(unit, ring))) for unit in along)
+    return least, 2.0 * float(np.hypot(*ring.T).max())
+
+
+def head_first(orientation):
+    """Return whether a part with a head that lies along the track comes with its head ahead of its shank."""
+    headed = neck(orientation)
+    return headed is not None and vectors.dot(orientation.axes[0], headed.down) < 0.0
+
+
+def hanging_margin(orientation, width, widest=None):
+    """Return by how much [m] a slot of some width lets the shank down and holds the head; negative if not.
+
+    The head is held where the slot is ``widest``, if that is another width.
+
+    Source: docs/tooling.md, "1. The method".
+    """
+    headed, widest = neck(orientation), width if widest is None else widest
+    return -np.inf if headed is None else min(width - headed.shank, headed.head - widest)
+
+
+def tip_goes_down(orientation, near):
+    """Return whether the end of a shank that lies askew goes down beside the rail at the wall.
+
+    Source: own; docs/tooling.md, "1. The method": rails begin with a lead-in.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    near : float [m]
+        From the wall: where the slot begins.
+
+    Notes
+    -----
+    A round end whose middle lies x beyond the rail's edge rests on it by a flank that leans by asin(x / r):
+    the less, the less it is pushed aside. In trials of four screws, six of each, those with up to 0.33 r
+    lay askew over the slot to its end, or some of them, and those with 0.39 r and more went down.
+    """
+    headed = neck(orientation)
+    if headed is None:
+        return False
+    beyond = orientation.distance + headed.tip - near
+    return (
+        abs(headed.tip) <= STRAIGHT_SHANK_SHARE * headed.shank
+        or beyond >= TIP_BEYOND_RAIL_SHARE * 0.5 * headed.shank
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Shoulders:
+    """What of a part, as it lies, goes down into a slot, and what then holds it on both sides."""
+
+    stem: float  # [m] width across the track of what goes down
+    nearest: float  # [m] from the foot of the centre of mass, inwards: what of it comes nearest to the wall
+    middle: float  # [m] of it, from the foot of the centre of mass
+    drop: float  # [m] by which it goes down
+    spare: float  # [m] from the foot to the border of what holds it: by how much it stands upright there
+
+
+def shoulders(orientation, width):
+    """Return how a part goes down into a slot along the track as it lies and is held: a T-nut, stem down.
+
+    Source: own; docs/tooling.md, "1. The method".
+
+    Parameters
+    ----------
+    orientation : Orientation
+    width : float [m]
+        Of the slot, in whose middle what goes down is taken to lie.
+
+    Returns
+    -------
+    Shoulders or None
+        None where nothing goes down, or what rests on both sides then does not hold the centre of mass; of a
+        part that has a head and a shank along the track, too.
+    """
+    if isinstance(orientation, Hanging) or orientation.kind == "rolling" or neck(orientation) is not None:
+        return None
+    return _shoulders(
+        _Lying(orientation), orientation.posture.height, orientation.track.radius, orientation.distance, width
+    )
+
+
+@lru_cache(maxsize=512)
+def _shoulders(lying, height, radius, distance, width):
+    """Shoulders of what lies so on a track of some radius at some distance from its wall [m]."""
+    orientation = lying.one
+    solid = orientation.posture.solid
+    points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
+    points = points + [0.0, 0.0, height]
+    size = float(np.ptp(points, axis=0).max())
+    flat = footprints.TOUCHING * size
+    foot = points[points[:, 2] < flat]
+    stem, middle = float(np.ptp(foot[:, 1])), float(0.5 * (foot[:, 1].min() + foot[:, 1].max()))
+    if stem >= width or np.abs(points[:, 1] - middle).max() < 0.5 * width:
+        return None
+    drop = _underside(points, solid.faces, middle, 0.5 * width)
+    if not flat < drop <= np.ptp(foot[:, 0]):
+        return None
+    area = footprints.area_below(points[:, :2], points[:, 2] - drop, solid.faces, flat, True)
+    half = 0.5 * width
+    resting = area.difference(shapely.box(-2.0 * size, middle - half, 2.0 * size, middle + half))
+    hull, weight = resting.convex_hull, shapely.Point(0.0, 0.0)
+    if resting.area <= footprints.SLIVER * size**2 or not hull.contains(weight):
+        return None
+    centre = radius - distance
+    nearest = centre - np.hypot(foot[:, 0], centre - foot[:, 1]).max()  # the wall is curved
+    return Shoulders(stem, float(nearest), middle, drop, float(hull.exterior.distance(weight)))
+
+
+def shoulder_margin(orientation, span):
+    """Return by how much [m] shoulders hold a part in a slot between two distances from the wall.
+
+    0 where it has to move across the track before its stem goes down; -inf where none hold it.
+    """
+    stemmed = shoulders(orientation, span[1] - span[0])
+    if stemmed is None:
+        return -np.inf
+    inner = orientation.distance + stemmed.nearest - span[0]
+    outer = span[1] - orientation.distance - stemmed.middle - 0.5 * stemmed.stem
+    return float(max(min(inner, outer, stemmed.spare), 0.0))
+
+
+def hang(orientation, span, hanging=()):
+    """Return a part hanging between rails that it came to lying: docs/tooling.md, "1. The method".
+
+    Parameters
+    ----------
+    orientation : Orientation
+        From which it goes down by its shank.
+    span : (float, float) [m]
+        Of the slot, from the wall.
+    hanging : sequence of Hanging
+        That hang in this slot already: parts that hang by the same head are one orientation, however they
+        lay before and however they are turned about the vertical.
+
+    Returns
+    -------
+    Hanging
+    """
+    held = shoulders(orientation, span[1] - span[0])
+    headed = neck(orientation) if held is None else _neck_of(orientation, held)
+    for other in hanging:
+        if vectors.dot(headed.down, other.neck.down) > SAME_HEAD_COSINE:
+            return other
+    if held is not None:
+        solid = orientation.posture.solid
+        points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
+        rail = held.drop - orientation.posture.height
+        return _hanging_record(
+            orientation, headed, span, orientation.axes, points, rail, held.middle, len(hanging)
+        )
+    up = -headed.down
+    across = orientation.axes[1] - up * vectors.dot(orientation.axes[1], up)
+    across = vectors.unit(across)
+    axes = np.array([np.cross(across, up), across, up])
+    points = vectors.product(
+        orientation.posture.solid.vertices - orientation.posture.solid.centre_of_mass, axes.T
+    )
+    below = points[:, 2] < 0.0
+    shank = float(0.5 * (points[below, 1].min() + points[below, 1].max()))
+    rail = _underside(points, orientation.posture.solid.faces, shank, 0.5 * (span[1] - span[0]))
+    return _hanging_record(orientation, headed, span, axes, points, rail, shank, len(hanging))
+
+
+def _neck_of(orientation, held):
+    """The Neck of a part that its shoulders hold as it lies: its stem is the shank."""
+    solid = orientation.posture.solid
+    points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
+    head = points[
+        points[:, 2]
+        > held.drop - orientation.posture.height - footprints.TOUCHING * np.ptp(points, axis=0).max()
+    ]
+    wide, lever = float(np.ptp(head[:, 1])), float(points[:, 2].max())
+    down = check.frozen(np.einsum("ij,i->j", orientation.axes, [0.0, 0.0, -1.0]))
+    return Neck(held.stem, wide, wide, held.middle, 0.0, lever, down)
+
+
+def _hanging_record(orientation, headed, span, axes, points, rail, shank, count):
+    """The record, from corners (V, 3) about the centre of mass and the height of the rails over it [m]."""
+    points = points - [0.0, 0.0, rail]
+    head = points[points[:, 2] > 0.0, 1]
+    plan, distance = outline(points[:, :2]), 0.5 * sum(span) - shank
+    lying = replace(
+        orientation.posture,
+        name=HANGING,
+        kind=HANGING,
+        height=float(-rail),
+        inertia=check.frozen(
+            vectors.product(vectors.product(axes, orientation.posture.solid.inertia), axes.T)
+        ),
+        contact=check.frozen(plan),
+        outline=check.frozen(plan),
+        corners=check.frozen(points),
+        axes=check.frozen(axes),
+    )
+    return Hanging(
+        posture=lying,
+        track=orientation.track,
+        aspect=HANGING if not count else f"{HANGING} {count + 1}",
+        heading=0.0,
+        heading_share=1.0,
+        chances={},
+        length=float(np.ptp(points[:, 0])),
+        width=float(distance + points[:, 1].max()),
+        height=float(points[:, 2].max()),
+        distance=float(distance),
+        falls_off=False,
+        kind=HANGING,
+        neck=headed,
+        span=tuple(span),
+        lies_on=(shank, float(0.5 * (head.min() + head.max()))),
+    )
+
+
+def _underside(points, faces, middle, half):
+    """Height [m] of the lowest place of a surface beyond half a slot's width to either side of its middle."""
+    away = np.abs(points[:, 1] - middle)
+    ends = np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])), axis=0)
+    a, b = points[ends[:, 0]], points[ends[:, 1]]
+    heights = [points[away >= half, 2]]
+    for side in (middle - half, middle + half):
+        crosses = (a[:, 1] > side) != (b[:, 1] > side)
+        share = (side - a[crosses, 1]) / (b[crosses, 1] - a[crosses, 1])
+        heights.append(a[crosses, 2] + share * (b[crosses, 2] - a[crosses, 2]))
+    return float(np.concatenate(heights).min())
+
+
+def _axis(orientation):
+    """The part's own long axis (3,) in the track's axes: the principal one nearest to that of its outline."""
+    turn = _long_axis(orientation.outline)
+    near = np.array([np.cos(turn), np.sin(turn), 0.0])
+    _, principal = vectors.eigen(orientation.posture.solid.inertia)
+    principal = vectors.product(principal.T, orientation.axes.T)
+    best = principal[np.argmax(np.round(np.abs(vectors.product(principal, near)), 9))]
+    return best if best[0] > 0.0 else -best
+
+
+def _widths(orientation, axis):
+    """Places along an axis from the centre of mass (N,) [m], and the part's level width there (N,) [m]."""
+    solid = orientation.posture.solid
+    points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
+    across = vectors.unit(np.array([-axis[1], axis[0], 0.0]))
+    along, level = vectors.product(points, axis), vectors.product(points, across)
+    faces = solid.faces
+    ends = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    ends = np.unique(ends, axis=0)
+    a, b = along[ends[:, 0]], along[ends[:, 1]]
+    places = along.min() + (np.arange(SLICES) + 0.5) / SLICES * np.ptp(along)
+    rise = b - a
+    crossed = (a > places[:, None]) != (b > places[:, None])
+    share = (places[:, None] - a) / np.where(rise == 0.0, 1.0, rise)
+    y = level[ends[:, 0]] + share * (level[ends[:, 1]] - level[ends[:, 0]])
+    top, bottom = np.where(crossed, y, -np.inf).max(axis=1), np.where(crossed, y, np.inf).min(axis=1)
+    return places, np.maximum(top - bottom, 0.0)
+
+
+def _long_axis(outline):
+    """Direction [rad] across which a convex outline is narrowest."""
+    along = sides(outline)
+    along = along / np.hypot(*along.T)[:, None]
+    extents = [np.ptp(cross(unit, outline)) for unit in along]
+    best = along[int(np.argmin(extents))]
+    return float(np.arctan2(best[1], best[0]))

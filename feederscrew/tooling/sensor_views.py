@@ -9,25 +9,27 @@ import shapely.affinity
 from feederscrew.geometry import shaded
 from feederscrew.geometry.polygons import turned
 
-FINE = 1e-4  # [m] between places of a border at which two are compared
-PLAIN = 1e-4  # of the part's size: corners that stand out by less are left out
-KEPT = 1e-6  # of an area, that closing its slits may lose by rounding
-GRID = 1e-6  # [m] to which sections are rounded: where facets meet they meet
-ASKEW = tuple(np.radians((-4.0, -2.0, 0.0, 2.0, 4.0)))  # by which parts come turned from their heading
-ABOUT = np.radians(10.0)  # by which an outline is turned, either way, until it fits
+BORDER_STEP_M = 1e-4  # [m] between places of a border at which two are compared
+VIEW_DETAIL_SHARE = 1e-4  # of the part's size: corners that stand out by less are left out
+SLIT_AREA_TOLERANCE = 1e-6  # of an area, that closing its slits may lose by rounding
+SECTION_GRID_M = 1e-6  # [m] to which sections are rounded: where facets meet they meet
+VIEW_TURNS_RAD = tuple(
+    np.radians((-4.0, -2.0, 0.0, 2.0, 4.0))
+)  # by which parts come turned from their heading
+MAX_VIEW_TURN_RAD = np.radians(10.0)  # by which an outline is turned, either way, until it fits
 COARSE, SHRINKS, GOLDEN = 9, 10, 0.5 * (np.sqrt(5.0) - 1.0)  # turns that are tried first, then between them
-NOTHING = 1e-7  # [m] of what is not there
+MIN_FEATURE_M = 1e-7  # [m] of what is not there
 SLIT = 2e-5  # [m] half the width of slits between facets that are closed
 
 
-def difference(one, other, sees):
+def difference(orientation, other, sees):
     """Return by how much [m] two orientations differ for a sensor.
 
     Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
-    one, other : Orientation
+    orientation, other : Orientation
     sees : str
         'outline' from above, 'side' from the bowl's axis, 'height', or 'relief' along the line over which
         the other one's centre of mass goes.
@@ -40,55 +42,55 @@ def difference(one, other, sees):
         turned until it fits, seen otherwise the first may come askew.
     """
     if sees == "height":
-        return abs(one.height - other.height)
-    if one is other:
+        return abs(orientation.height - other.height)
+    if orientation is other:
         return 0.0
-    return _difference(_lies(one, other.distance, sees), _lies(other, other.distance, sees), sees)
+    return _difference(_lies(orientation, other.distance, sees), _lies(other, other.distance, sees), sees)
 
 
 @functools.lru_cache(maxsize=4096)
-def _difference(one, other, sees):
+def _difference(orientation, other, sees):
     wanted = _outline(other, sees)
     if sees == "outline":
-        return fitted(_outline(one, sees), wanted)
-    return min(apart(_outline(one, sees, by), wanted) for by in ASKEW)
+        return fitted(_outline(orientation, sees), wanted)
+    return min(apart(_outline(orientation, sees, by), wanted) for by in VIEW_TURNS_RAD)
 
 
-def askew(one, sees):
+def askew(orientation, sees):
     """Return by how much [m] an orientation may differ from itself for a sensor, as parts come askew."""
     if sees in ("outline", "height"):
         return 0.0
-    return _askew(_lies(one, one.distance, sees), sees)
+    return _askew(_lies(orientation, orientation.distance, sees), sees)
 
 
 @functools.lru_cache(maxsize=512)
 def _askew(lies, sees):
-    return max(apart(_outline(lies, sees, by), _outline(lies, sees)) for by in ASKEW)
+    return max(apart(_outline(lies, sees, by), _outline(lies, sees)) for by in VIEW_TURNS_RAD)
 
 
-def _lies(one, line, sees):
+def _lies(orientation, line, sees):
     """What a sensor sees depends on: the posture, the heading, and how far from its line it lies [m]."""
-    return one.posture, one.heading, one.distance - line if sees == "relief" else 0.0
+    return orientation.posture, orientation.heading, orientation.distance - line if sees == "relief" else 0.0
 
 
-def fitted(seen, wanted, enough=0.0):
+def fitted(view, wanted, enough=0.0):
     """Return by how much [m] an area seen from above differs from another one, turned until it fits best.
 
     Once they differ by no more than ``enough`` [m], or by more at any turn, no better fit is sought.
     """
 
     def off(turn):
-        other = shapely.affinity.rotate(seen, turn, (0.0, 0.0), use_radians=True) if turn else seen
+        other = shapely.affinity.rotate(view, turn, (0.0, 0.0), use_radians=True) if turn else view
         _, low, front, _ = other.bounds
         return apart(shapely.affinity.translate(other, -front, -low), wanted)
 
     best = off(0.0)
     if best <= enough:
         return best
-    turns = np.linspace(-ABOUT, ABOUT, COARSE)
+    turns = np.linspace(-MAX_VIEW_TURN_RAD, MAX_VIEW_TURN_RAD, COARSE)
     tried = [off(turn) for turn in turns]
     k = int(np.argmin(tried))
-    if tried[k] - _between(seen, turns[1] - turns[0]) > enough > 0.0:
+    if tried[k] - _between(view, turns[1] - turns[0]) > enough > 0.0:
         return min(best, tried[k])
     low, high = turns[max(k - 1, 0)], turns[min(k + 1, COARSE - 1)]
     first, second = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
@@ -105,13 +107,13 @@ def fitted(seen, wanted, enough=0.0):
     return min(best, here, there)
 
 
-def _between(seen, step):
+def _between(view, step):
     """By how much [m] an area may fit better than at the nearest of turns that are a step [rad] apart.
 
     A turn by half a step moves no place of it by more than its distance from the middle times that, and its
     front and its side, to which it is laid, as far again, each across the other.
     """
-    far = np.sqrt((shapely.get_coordinates(seen) ** 2).sum(axis=1)).max()
+    far = np.sqrt((shapely.get_coordinates(view) ** 2).sum(axis=1)).max()
     return float((1.0 + np.sqrt(2.0)) * far * 0.5 * step)
 
 
@@ -122,18 +124,18 @@ def apart(first, second):
 
 def _reach(area, other):
     """Greatest distance [m] of the places of an area's border from another area's, and of holes alike."""
-    places = shapely.get_coordinates(shapely.segmentize(area.boundary, 10.0 * FINE))
+    places = shapely.get_coordinates(shapely.segmentize(area.boundary, 10.0 * BORDER_STEP_M))
     return float(shapely.distance(shapely.points(places), other.boundary).max())
 
 
-def outline(one, sees, line=0.0, by=0.0):
+def outline(orientation, sees, line=0.0, by=0.0):
     """Return the area that a sensor sees of an orientation [m]: ahead from its front, and from its side.
 
     Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
     sees : str
         'outline' from above, 'side' from the bowl's axis, or 'relief'.
     line : float [m]
@@ -141,7 +143,7 @@ def outline(one, sees, line=0.0, by=0.0):
     by : float [rad]
         By which it comes turned from its heading.
     """
-    return _outline(_lies(one, line, sees), sees, by)
+    return _outline(_lies(orientation, line, sees), sees, by)
 
 
 @functools.lru_cache(maxsize=2048)
@@ -174,9 +176,11 @@ def area(points, faces, sees, resolution=0.0, line=0.0):
     """
     if sees == "relief":
         return _relief(points[faces], line, resolution)
-    seen = points[:, :2] if sees == "outline" else points[:, [0, 2]]
-    seen = seen - [seen[:, 0].max(), seen[:, 1].min() if sees == "outline" else 0.0]
-    whole = _without_slits(shaded.area(seen, faces)).simplify(PLAIN * np.ptp(points, axis=0).max())
+    projected = points[:, :2] if sees == "outline" else points[:, [0, 2]]
+    projected = projected - [projected[:, 0].max(), projected[:, 1].min() if sees == "outline" else 0.0]
+    whole = _without_slits(shaded.area(projected, faces)).simplify(
+        VIEW_DETAIL_SHARE * np.ptp(points, axis=0).max()
+    )
     coarse = shapely.set_precision(whole, resolution) if resolution > 0.0 else whole
     return whole if coarse.is_empty else coarse
 
@@ -186,7 +190,7 @@ def _relief(facets, line, resolution):
     off = facets[:, :, 1] - line
     crossing = (off.min(axis=1) < 0.0) & (off.max(axis=1) >= 0.0)
     facets, off = facets[crossing], off[crossing]
-    nothing = shapely.box(-NOTHING, 0.0, 0.0, NOTHING)
+    nothing = shapely.box(-MIN_FEATURE_M, 0.0, 0.0, MIN_FEATURE_M)
     if not len(facets):
         return nothing
     row, k = np.nonzero((off < 0.0) != (np.roll(off, -1, axis=1) < 0.0))  # two sides of each cross the line
@@ -194,8 +198,8 @@ def _relief(facets, line, resolution):
     ends = _at(first, last, before[:, None], beyond[:, None]).reshape(-1, 2, 3)[:, :, [0, 2]]
     ends = ends - [ends[:, :, 0].max(), 0.0]
     ends = np.round(ends / resolution) * resolution if resolution > 0.0 else ends
-    seen = shaded.below(np.stack([ends[:, :, 0], np.maximum(ends[:, :, 1], 0.0)], axis=2), GRID)
-    return nothing if seen.is_empty else seen  # the line may graze a corner
+    profile = shaded.below(np.stack([ends[:, :, 0], np.maximum(ends[:, :, 1], 0.0)], axis=2), SECTION_GRID_M)
+    return nothing if profile.is_empty else profile  # the line may graze a corner
 
 
 def _at(first, last, before, beyond):
@@ -210,6 +214,6 @@ def _without_slits(whole):
     """
     for width in (SLIT, 0.9 * SLIT, 1.1 * SLIT):
         closed = whole.buffer(width, join_style="mitre").buffer(-width, join_style="mitre")
-        if closed.area >= (1.0 - KEPT) * whole.area:
+        if closed.area >= (1.0 - SLIT_AREA_TOLERANCE) * whole.area:
             return closed
     return whole

@@ -8,14 +8,14 @@ from shapely import affinity
 
 from feederscrew import check
 from feederscrew.tooling import whole_surface
-from feederscrew.tooling.devices.hole_shapes import beyond_borders
-from feederscrew.tooling.strip import CHORD, bent
+from feederscrew.tooling.devices.openings import beyond_borders
+from feederscrew.tooling.track_sections import DRAWN_CHORD_M, bend_ring
 from feederscrew.units import MM
 
 PLATE, WALL = 3e-3, 3e-3  # [m] thickness of track and wall
-ABOVE = 5e-3  # [m] of the wall above the tallest part
-INTO = 1e-3  # [m] by which wall and gates reach into plate and wall, so that they are one body
-SEAM = 2e-5  # [m] of the plate left along the wall
+WALL_MARGIN_M = 5e-3  # [m] of the wall above the tallest part
+WALL_OVERLAP_M = 1e-3  # [m] by which wall and gates reach into plate and wall, so that they are one body
+SEAM_WIDTH_M = 2e-5  # [m] of the plate left along the wall
 
 
 def solid(section):
@@ -42,9 +42,11 @@ def solid(section):
 def triangles(section):
     """Return the triangles (F, 3, 3) [m] of the section, counter-clockwise seen from outside."""
     radius, width = section.track.radius, section.width
-    holes = [_bent(_clear(one.hole, width), radius) for one in section.stations if one.hole is not None]
+    holes = [
+        _bent(_clear(station.hole, width), radius) for station in section.stations if station.hole is not None
+    ]
     levels = _levels(section)
-    body = _walls(section, -INTO + levels[-1][2], section.tallest + ABOVE)
+    body = _walls(section, -WALL_OVERLAP_M + levels[-1][2], section.tallest + WALL_MARGIN_M)
     holes = shapely.union_all(holes)
     for start, end, level in levels:
         plate = _bent([[start, -WALL], [end, -WALL], [end, width], [start, width]], radius)
@@ -61,15 +63,15 @@ def triangles(section):
 
 def _walls(section, low, high):
     """The wall, upright, or leaning back where it is the other face of a groove."""
-    made = []
+    walls = []
     for begin, end, lean in section.walls:
-        start, stop = max(begin, INTO), min(end + INTO, section.length - INTO)
+        start, stop = max(begin, WALL_OVERLAP_M), min(end + WALL_OVERLAP_M, section.length - WALL_OVERLAP_M)
         if lean:
-            made.append(_leaning(section.track.radius, start, stop, lean, high))
+            walls.append(_leaning(section.track.radius, start, stop, lean, high))
         else:
-            ring = [[start, INTO - WALL], [stop, INTO - WALL], [stop, 0.0], [start, 0.0]]
-            made.append(_extruded(_bent(ring, section.track.radius), low, high))
-    return sum(made[1:], made[0])
+            ring = [[start, WALL_OVERLAP_M - WALL], [stop, WALL_OVERLAP_M - WALL], [stop, 0.0], [start, 0.0]]
+            walls.append(_extruded(_bent(ring, section.track.radius), low, high))
+    return sum(walls[1:], walls[0])
 
 
 def leaning_wall(radius, start, stop, lean, high):
@@ -86,9 +88,9 @@ def _leaning(radius, start, stop, lean, high):
     from manifold3d import CrossSection, Manifold
 
     up, out = np.array([np.sin(lean), np.cos(lean)]), np.array([np.cos(lean), -np.sin(lean)])
-    low, top = -INTO * up, high * up
+    low, top = -WALL_OVERLAP_M * up, high * up
     across = np.array([low, low + WALL * out, top + WALL * out, top]) + [radius, 0.0]
-    round_once = int(np.ceil(np.pi / np.sqrt(2.0 * CHORD / radius)))
+    round_once = int(np.ceil(np.pi / np.sqrt(2.0 * DRAWN_CHORD_M / radius)))
     turned, first = np.degrees((stop - start) / radius), np.degrees(start / radius) - 90.0
     body = Manifold.revolve(CrossSection([across / MM]), round_once, turned)
     return body.rotate((0.0, 0.0, first)).translate((0.0, radius / MM, 0.0))
@@ -115,13 +117,13 @@ def prism(area, low, high):
 
 def _levels(section):
     """Stretches of the track between steps: from, to (a little into the next one), height [m]."""
-    found, start, level = [], 0.0, 0.0
+    levels, start, level = [], 0.0, 0.0
     for station in section.stations:
         if station.drop > 0.0:
             middle = station.start + 0.5 * station.length
-            found.append((start, middle, level))
-            start, level = middle - INTO, level - station.drop
-    return [*found, (start, section.length, level)]
+            levels.append((start, middle, level))
+            start, level = middle - WALL_OVERLAP_M, level - station.drop
+    return [*levels, (start, section.length, level)]
 
 
 def _level(levels, station):
@@ -132,12 +134,12 @@ def _level(levels, station):
 
 def _clear(ring, width):
     """A hole moved a little off the wall and on over the track's other edge: no two faces then coincide."""
-    clear = np.column_stack([ring[:, 0], np.maximum(ring[:, 1], SEAM)])
-    return np.array(beyond_borders(clear.tolist(), width, INTO))
+    clear = np.column_stack([ring[:, 0], np.maximum(ring[:, 1], SEAM_WIDTH_M)])
+    return np.array(beyond_borders(clear.tolist(), width, WALL_OVERLAP_M))
 
 
 def _bent(ring, radius):
-    return shapely.make_valid(shapely.Polygon(bent(np.asarray(ring), radius)))
+    return shapely.make_valid(shapely.Polygon(bend_ring(np.asarray(ring), radius)))
 
 
 def _extruded(area, low, high):
@@ -154,9 +156,9 @@ def _gate(station, section):
     """The blade of a gate: a plate across the track without its opening."""
     free = shapely.union_all([shapely.Polygon(ring) for ring in station.openings])
     free = shapely.union_all(
-        [affinity.translate(free, *by) for by in ((0, 0), (-2 * INTO, 0), (0, -2 * INTO))]
+        [affinity.translate(free, *by) for by in ((0, 0), (-2 * WALL_OVERLAP_M, 0), (0, -2 * WALL_OVERLAP_M))]
     )
-    frame = shapely.box(-INTO, -INTO, section.width - INTO, station.top)
+    frame = shapely.box(-WALL_OVERLAP_M, -WALL_OVERLAP_M, section.width - WALL_OVERLAP_M, station.top)
     thick = station.blade[1, 0] - station.blade[0, 0]
     lean = (station.blade[3, 0] - station.blade[0, 0]) / section.width
     blade = _extruded(frame.difference(free), 0.0, thick)
@@ -174,7 +176,7 @@ def _across(angle, radius, lean):
 
 def _in_order(corners):
     """The triangles in one order, whatever the order they were made in."""
-    first = np.array([min(range(3), key=lambda k: tuple(one[k])) for one in corners])
+    first = np.array([min(range(3), key=lambda k: tuple(corner[k])) for corner in corners])
     rows = np.arange(len(corners))[:, None]
     turned = corners[rows, (first[:, None] + np.arange(3)) % 3]
     return turned[np.lexsort(turned.reshape(len(turned), 9).T[::-1])]

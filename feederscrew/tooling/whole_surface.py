@@ -15,11 +15,15 @@ from feederscrew.geometry.graphs import components
 from feederscrew.units import MM
 
 SIMPLER = 0.0, 1e-5, 2e-4, 2e-3  # [mm] corners nearer than this become one: the first that closes
-CRUMB = 1.0  # [mm3] a film of air that closes in itself, or a piece, smaller than this is left out
-ROUNDED = 1e-6  # of a volume: by that and a crumb at most may rounding change it
-NEAR = 2e-4  # [mm] corners nearer than this are at one place; readers of STL unite what lies within 1e-5
-AWAY = 1e-3  # [mm] by which corners that meet are moved apart
-ROUNDS = 60
+MIN_VOID_VOLUME_MM3 = (
+    1.0  # [mm3] a film of air that closes in itself, or a piece, smaller than this is left out
+)
+VOLUME_ROUNDING = 1e-6  # of a volume: by that and a crumb at most may rounding change it
+MERGE_DISTANCE_MM = (
+    2e-4  # [mm] corners nearer than this are at one place; readers of STL unite what lies within 1e-5
+)
+SEPARATION_MM = 1e-3  # [mm] by which corners that meet are moved apart
+MAX_MERGE_ROUNDS = 60
 
 
 def mesh(body):
@@ -52,12 +56,15 @@ def _surface(body, simpler):
 
     The library's own simplifying takes whole wedges off some bodies, whatever the length.
     """
-    one = body.simplify(simpler) if simpler else body
-    found = one.to_mesh64()
-    points = _single(np.asarray(found.vert_properties)[:, :3])
-    points, faces = closed(points, _without_crumbs(points, np.asarray(found.tri_verts).astype(int)))
+    orientation = body.simplify(simpler) if simpler else body
+    surface = orientation.to_mesh64()
+    points = _single(np.asarray(surface.vert_properties)[:, :3])
+    points, faces = closed(points, _without_crumbs(points, np.asarray(surface.tri_verts).astype(int)))
     a, b, c = points[faces].transpose(1, 0, 2)
-    if abs(float((a * np.cross(b, c)).sum()) / 6.0 - body.volume()) > CRUMB + ROUNDED * body.volume():
+    if (
+        abs(float((a * np.cross(b, c)).sum()) / 6.0 - body.volume())
+        > MIN_VOID_VOLUME_MM3 + VOLUME_ROUNDING * body.volume()
+    ):
         raise FeederError("the body", "its surface closes another volume", "take other sizes")
     used, faces = np.unique(faces, return_inverse=True)
     points, places = np.unique(points[used], axis=0, return_inverse=True)
@@ -88,13 +95,13 @@ def closed(points, faces):
         If sixty rounds do not do it.
     """
     points = np.array(points, float)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_MERGE_ROUNDS):
         faces, stuck = _with_area(points, _collapsed(points, faces))
-        met = np.union1d(_sharing_a_place(points, faces), stuck).astype(int)
-        if not len(met):
+        coincident = np.union1d(_sharing_a_place(points, faces), stuck).astype(int)
+        if not len(coincident):
             return points, faces
-        points = _apart(points, faces, met)
-    what = f"{len(met)} corners of its surface lie on others"
+        points = _apart(points, faces, coincident)
+    what = f"{len(coincident)} corners of its surface lie on others"
     raise FeederError("the body", what, "move its cuts apart, or take other sizes")
 
 
@@ -109,25 +116,25 @@ def _without_crumbs(points, faces):
     a, b, c = points[faces].transpose(1, 0, 2)
     own = shells[faces[:, 0]]
     volumes = np.abs(np.bincount(own, (a * np.cross(b, c)).sum(axis=1) / 6.0, count))
-    return faces[(volumes[own] > CRUMB) | (own == np.argmax(volumes))]
+    return faces[(volumes[own] > MIN_VOID_VOLUME_MM3) | (own == np.argmax(volumes))]
 
 
 def _sharing_a_place(points, faces):
     """The corners in use that lie at the place of another."""
     used = np.unique(faces)
-    return used[np.unique(cKDTree(points[used]).query_pairs(NEAR, output_type="ndarray"))]
+    return used[np.unique(cKDTree(points[used]).query_pairs(MERGE_DISTANCE_MM, output_type="ndarray"))]
 
 
-def _apart(points, faces, met):
+def _apart(points, faces, coincident):
     """The points, those given moved towards the middle of their neighbours."""
     moved = points.copy()
-    for one in met:
-        near = np.unique(faces[(faces == one).any(axis=1)])
-        ways = points[near] - points[one]
-        sizes = np.sqrt((ways**2).sum(axis=1, keepdims=True))
-        way = np.divide(ways, sizes, out=np.zeros_like(ways), where=sizes > 0.0).sum(axis=0)
-        size = np.sqrt((way**2).sum())
-        moved[one] = _single(points[one] + AWAY * way / max(size, 1e-3))
+    for orientation in coincident:
+        near = np.unique(faces[(faces == orientation).any(axis=1)])
+        offsets = points[near] - points[orientation]
+        sizes = np.sqrt((offsets**2).sum(axis=1, keepdims=True))
+        direction = np.divide(offsets, sizes, out=np.zeros_like(offsets), where=sizes > 0.0).sum(axis=0)
+        size = np.sqrt((direction**2).sum())
+        moved[orientation] = _single(points[orientation] + SEPARATION_MM * direction / max(size, 1e-3))
     return moved
 
 
@@ -137,20 +144,20 @@ def _collapsed(points, faces):
     while len(faces) < before:
         before = len(faces)
         ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-        short = ends[((points[ends[:, 0]] - points[ends[:, 1]]) ** 2).sum(axis=1) < NEAR**2]
-        for kept, gone in short[short[:, 0] < short[:, 1]]:
-            faces = _without_edge(faces, kept, gone)
+        short = ends[((points[ends[:, 0]] - points[ends[:, 1]]) ** 2).sum(axis=1) < MERGE_DISTANCE_MM**2]
+        for surviving, gone in short[short[:, 0] < short[:, 1]]:
+            faces = _without_edge(faces, surviving, gone)
     return faces
 
 
-def _without_edge(faces, kept, gone):
+def _without_edge(faces, corner, gone):
     """The faces with a corner in place of its neighbour; as they are where that would join two sheets."""
-    with_kept, with_gone = (faces == kept).any(axis=1), (faces == gone).any(axis=1)
+    with_kept, with_gone = (faces == corner).any(axis=1), (faces == gone).any(axis=1)
     both = with_kept & with_gone
-    common = np.setdiff1d(np.intersect1d(faces[with_kept], faces[with_gone]), (kept, gone))
+    common = np.setdiff1d(np.intersect1d(faces[with_kept], faces[with_gone]), (corner, gone))
     if both.sum() != 2 or len(common) != 2:
         return faces
-    return np.where(faces == gone, kept, faces)[~both]
+    return np.where(faces == gone, corner, faces)[~both]
 
 
 def _with_area(points, faces):
@@ -159,7 +166,7 @@ def _with_area(points, faces):
     The long side of such a facet is turned in its neighbour.
     """
     stuck = set()
-    for _ in range(ROUNDS * ROUNDS):
+    for _ in range(MAX_MERGE_ROUNDS * MAX_MERGE_ROUNDS):
         flat = [row for row in _flat(points, faces) if row[2] not in stuck]
         if not flat:
             break
@@ -171,13 +178,13 @@ def _with_area(points, faces):
 def _flat(points, faces):
     """The facets whose three places lie on a line, as (one end, other end, corner between)."""
     a, b, c = points[faces].transpose(1, 0, 2)
-    found = []
-    for one in faces[~np.cross(b - a, c - a).any(axis=1)]:
-        sides = ((points[one] - points[np.roll(one, 1)]) ** 2).sum(axis=1)
+    slivers = []
+    for orientation in faces[~np.cross(b - a, c - a).any(axis=1)]:
+        sides = ((points[orientation] - points[np.roll(orientation, 1)]) ** 2).sum(axis=1)
         k = int(np.argmax(sides))
-        if sides.min() > NEAR**2:
-            found.append((int(one[k - 1]), int(one[k]), int(one[k - 2])))
-    return found
+        if sides.min() > MERGE_DISTANCE_MM**2:
+            slivers.append((int(orientation[k - 1]), int(orientation[k]), int(orientation[k - 2])))
+    return slivers
 
 
 def _turned(faces, a, b, c):
@@ -187,12 +194,12 @@ def _turned(faces, a, b, c):
     across = (faces == b) & (following == a)
     row = int(np.flatnonzero(across.any(axis=1))[0])
     d = int(faces[row][(int(np.argmax(across[row])) + 2) % 3])
-    kept = faces[~(own | across).any(axis=1)]
+    unturned = faces[~(own | across).any(axis=1)]
     if d == c:
-        return kept, True
-    if ((kept == c).any(axis=1) & (kept == d).any(axis=1)).any():
+        return unturned, True
+    if ((unturned == c).any(axis=1) & (unturned == d).any(axis=1)).any():
         return faces, False
-    return np.concatenate([kept, [(b, c, d), (c, a, d)]]), True
+    return np.concatenate([unturned, [(b, c, d), (c, a, d)]]), True
 
 
 def _in_order(faces):

@@ -16,7 +16,7 @@ class Watch:
 
     place: float  # [m] along the wall
     nozzles: float  # [m] where those jets are
-    sensor: object  # tooling.devices.pieces.Sensor
+    sensor: object  # tooling.devices.base.Sensor
     jets: slice  # rows of the stage's jets
     seconds: float  # [s] for which those blow
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import check
+from feederscrew.dropping.kernel import body
 from feederscrew.trial import air, runs, sensed_rides, staging, stations, whereabouts
 from feederscrew.trial.arrays import crowd_of, move_on
 from feederscrew.trial.kernel import crowd_records, jets, travel
@@ -119,10 +120,12 @@ class PartsOnTrack:
         out = travel.slides_to(self.surface, self.arrays.states[n])
         return bool(out > self.stage.width / self.known.length)
 
-    def blown_off(self, n):
-        """Return whether part n is beyond the free edge, where the track does not hold it any more."""
-        out = travel.across(self.surface, self.arrays.states[n])
-        return bool(out > self.stage.width / self.known.length + runs.OVER * self.solid.radius)
+    def blown_off(self):
+        """Return (N,) bool, which parts are beyond the free edge, where the track holds them no more."""
+        states = self.arrays.states
+        x, y = states[:, body.X], self.known.radius - states[:, body.Y]
+        out = self.known.radius - np.sqrt(x * x + y * y)
+        return out > self.stage.width / self.known.length + runs.OVER * self.solid.radius
 
     def watch(self, lying, before, ways, turn):
         """Let sensors look at the parts whose centres of mass have come past them in a period.
@@ -171,7 +174,3 @@ class PartsOnTrack:
         """Return, by part, how far it reaches along the wall, rear and front, and its lowest point."""
         states = self.arrays.states[list(rows)]
         return dict(zip(rows, whereabouts.reaches(states, self.hull, self.known.radius).tolist()))
-
-    def extents(self, n):
-        """Return how far part n reaches along the wall, rear and front, and its lowest point."""
-        return self.reaches([n])[n]

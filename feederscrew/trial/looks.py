@@ -12,7 +12,7 @@ from feederscrew.part.hull import convex_hull
 from feederscrew.resting.tumbling.by_class import ground
 from feederscrew.resting.tumbling.half_edges import half_edges
 from feederscrew.resting.tumbling.walk import LOST, roll_from_corner, roll_from_facet
-from feederscrew.tooling.hanging import Hanging
+from feederscrew.tooling.orientations import Hanging
 from feederscrew.trial import whereabouts
 
 ALIKE = 0.05  # of the part's size: a part whose outline is off by more lies in no known orientation

@@ -2,19 +2,20 @@
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from feederscrew import check
 from feederscrew.dropping.kernel import body
-from feederscrew.rates import spacing
-from feederscrew.tooling.hanging import Hanging
+from feederscrew.rates import stream
+from feederscrew.tooling.orientations import Hanging
 from feederscrew.trial import course, crowd, runs, starts, whereabouts
 from feederscrew.trial.kernel.motion import BEHIND, BELOW
 from feederscrew.trial.looks import OTHER, AspectsBelow, Looks
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
+from feederscrew.trial.staging import Stage
 
 GAPS = 0.2  # of a part's length: mean free way between parts as they come in a row
 HOLD = 1.0  # [s] a part that stands at a device with nothing before it is taken out by hand after so long
@@ -50,6 +51,11 @@ class QueuedParts:
     depth: float  # [m] the deepest that anything was in anything
     partial: bool  # stopped by the user: of the seconds until then
     relieved: int = 0  # of those returned, backed up at a pressure break and pushed off there
+    # (F, N, 7) position [m] and attitude w x y z (principal axes to bowl), evenly over the time; NaN of a
+    # part that waits to enter
+    poses: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 7)))
+    moments: tuple[tuple[float, int, int], ...] = ()  # time [s], parts left and returned by then, of each
+    stage: Stage | None = None  # the track with all its devices, on which they lie
 
     @property
     def rate(self):
@@ -76,6 +82,7 @@ class QueuePlan:
     # [1] mean free way between parts as they come in a row, over their length, beside the room that devices
     # need; 0 where they come touching. None: they fall onto the track in any attitude, not in a row
     gaps: float | None = GAPS
+    frames: int = 0  # poses of all parts that are noted for a film
 
 
 def queue_of(part, bowl, aspects, every, poses, shares, plan, run):
@@ -143,7 +150,7 @@ class PartsQueue:
         self.track = crowd.crowded(bowl, every, bowl.devices, room)
         self.placed = [device for device in bowl.devices if device.placed]
         self.outlet, self.windows = self.track.outlet / known.length, self.track.windows / known.length
-        self.apart = spacing.needed(bowl.devices, every, bowl) / known.length
+        self.apart = stream.needed_spacing(bowl.devices, every, bowl) / known.length
         self.crowd = crowd.PartsOnTrack(known, self.track, parts)
         self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
         self.mark, self.since, self.on_others = np.zeros(parts), np.zeros(parts), np.zeros(parts, bool)
@@ -153,6 +160,7 @@ class PartsQueue:
         self.way, self.free, self.touch, self.depth = [], [], [], 0.0
         self.pressure, self.whole, self.first, self.most = np.zeros(len(self.windows)), 0, None, 0
         self.periods, self.waiting, self.deep = 0, list(range(parts)), solid.radius * length
+        self.frames, self.poses, self.moments = plan.frames, [], []
         self.coming, self.start = None, 0.0  # drawn, without room yet; how much of the first one had left
         self.enter()
 
@@ -182,6 +190,8 @@ class PartsQueue:
         count = self.periods_in(seconds)
         while self.periods < count:
             self.ride(self.periods)
+            if self.periods * self.frames >= (len(self.poses) + 1) * count:
+                self.note()
             if tell:
                 tell(self.periods, count)
 
@@ -235,17 +245,26 @@ class PartsQueue:
         self.periods += 1
         ways = whereabouts.ways(self.crowd.arrays.states, self.known.radius)
         self.crowd.watch(lying, before, ways, turn + 1)
-        on = [n for n in lying if not self.crowd.blown_off(n)]
-        if on:
+        fallen = self.fallen()
+        on = lying[~self.crowd.blown_off()[lying]]
+        if len(on):
             self.way.append((ways - before)[on].mean())
         reach = self.crowd.reaches(lying)
-        order = sorted(lying, key=lambda n: -ways[n])
+        order = lying[np.argsort(-ways[lying], kind="stable")].tolist()
         self.free += [max(reach[a][0] - reach[b][1], 0.0) for a, b in itertools.pairwise(order)]
         self.touch.append((self.crowd.forces[lying, BEHIND] > 0.0).mean())
         self.carried(lying, reach)
         for n in order:
-            self.look(n, ways[n], reach, order)
+            self.look(n, ways[n], reach, order, fallen[n])
         self.enter()
+
+    def note(self):
+        """Note where all parts are, for a film."""
+        states = self.crowd.arrays.states
+        poses = np.concatenate([states[:, :3] * self.known.length, states[:, body.Q : body.Q + 4]], axis=1)
+        poses[~self.crowd.on] = np.nan
+        self.poses.append(poses)
+        self.moments.append((self.time, self.whole, self.returned))
 
     def carried(self, lying, reach):
         """Count parts that have come to lie on others."""
@@ -254,10 +273,9 @@ class PartsQueue:
             self.climbs += bool(on and not self.on_others[n])
             self.on_others[n] = on
 
-    def look(self, n, way, reach, order):
+    def look(self, n, way, reach, order, fell):
         """What became of one part: left, fell, stands at a device, goes on."""
         rear, front, _ = reach[n]
-        fell = self.fell(n)
         if self.first is None and front > self.outlet and not fell:
             self.first = self.time
             self.start = self.outside(rear, front)
@@ -312,12 +330,10 @@ class PartsQueue:
             self.jams += 1
             self.again(n)
 
-    def fell(self, n):
-        """Whether a part has fallen off the track it is at, or was blown off it."""
-        return (
-            self.crowd.blown_off(n)
-            or self.crowd.arrays.states[n, body.Z] * self.known.length < self.track.levels.min() - self.deep
-        )
+    def fallen(self):
+        """Which parts, (N,) bool, have fallen off the track they are at, or were blown off it."""
+        heights = self.crowd.arrays.states[:, body.Z] * self.known.length
+        return self.crowd.blown_off() | (heights < self.track.levels.min() - self.deep)
 
     def at_outlet(self, n):
         """The state of a part as if the track were at the level at which it began."""
@@ -358,4 +374,7 @@ class PartsQueue:
             depth=self.depth * length,
             partial=partial,
             relieved=self.relieved,
+            poses=check.frozen(np.reshape(self.poses, (len(self.poses), self.parts, 7))),
+            moments=tuple(self.moments),
+            stage=self.track.stage,
         )

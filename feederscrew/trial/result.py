@@ -10,9 +10,9 @@ from feederscrew.conveying import sensitivity
 from feederscrew.conveying.hop import hop
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.rates import stream
-from feederscrew.rates.steadiness import gone, steady
-from feederscrew.tooling.hanging import neck
-from feederscrew.tooling.holding import too_near
+from feederscrew.rates.tipping import is_surely_gone, steady
+from feederscrew.tooling.falling import too_near
+from feederscrew.tooling.orientations import neck
 from feederscrew.trial import course
 from feederscrew.trial.landing import Landing
 from feederscrew.trial.queue import QueuedParts
@@ -186,7 +186,7 @@ class TrialRun:
         lying, found = self.known.lying, self.known.sure.copy()
         rows = np.flatnonzero(found & self.predicted)
         found[rows] = steady(self.bowl.devices, [lying[k] for k in rows], self.bowl, CLEAR)
-        return found & gone(self.bowl.devices, lying, self.known.passes)
+        return found & is_surely_gone(self.bowl.devices, lying, self.known.passes)
 
     @property
     def differs(self):

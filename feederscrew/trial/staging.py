@@ -6,9 +6,9 @@ import numpy as np
 import shapely
 
 from feederscrew import check
-from feederscrew.tooling.devices.hole_shapes import beyond_borders
-from feederscrew.tooling.orientations import ROUNDED
-from feederscrew.tooling.strip import bent
+from feederscrew.tooling.devices.openings import beyond_borders
+from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
+from feederscrew.tooling.track_sections import bend_ring
 from feederscrew.trial import air
 from feederscrew.trial.air import Air
 
@@ -169,7 +169,9 @@ def _floor(holes, track, size, ends, own, level, depth=THICK):
         taken = np.array(outline, float)
         taken[:, 0] = np.minimum(taken[:, 0] + start, last + behind)
         taken = np.array(beyond_borders(taken.tolist(), width - 1e-9, 2.0 * behind))
-        area = area.difference(shapely.make_valid(shapely.Polygon(bent(taken, track.radius, chord=CHORD))))
+        area = area.difference(
+            shapely.make_valid(shapely.Polygon(bend_ring(taken, track.radius, chord=CHORD)))
+        )
     frame = np.array([[0.0, 0.0, level], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     return frame, depth, OWN, rings(area, lambda a, b: drawn_end(a, b, track.radius, ends))
 
@@ -260,7 +262,7 @@ def stacked(plates):
     rows, first = [], 0
     for frame, depth, friction, borders in plates:
         last = first + len(borders)
-        rows.append([*frame.ravel(), depth, ROUNDED, first, last, friction])
+        rows.append([*frame.ravel(), depth, CUT_BORDER_RADIUS_M, first, last, friction])
         first = last
     borders = np.concatenate([borders for *_, borders in plates])
     return check.frozen(np.array(rows, float)), check.frozen(borders)

@@ -61,7 +61,7 @@ def quaternion(axes):
 
 
 def matrix(state):
-    """Return the rotation matrix (3, 3) [1] of a state (13,), body to bowl."""
+    """Return the rotation matrix (3, 3) [1] of a state (13,), body to bowl; (3, 3, N) of states (13, N)."""
     a, b, c, d = state[body.Q : body.Q + 4]
     return np.array(
         [
@@ -93,7 +93,7 @@ def reaches(states, corners, radius):
     radius : float [L]
         Of the wall.
     """
-    turns = np.array([matrix(state) for state in states]).reshape(-1, 3, 3)
+    turns = np.ascontiguousarray(matrix(states.T).transpose(2, 0, 1))
     x, y, z = states[:, :3].T[:, :, None] + np.einsum("nij,cj->inc", turns, corners)
     along = radius * np.arctan2(x, radius - y)
     return np.stack([along.min(axis=1), along.max(axis=1), z.min(axis=1)], axis=1)

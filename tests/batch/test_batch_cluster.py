@@ -118,12 +118,12 @@ def test_what_a_worker_had_done_before_it_died_is_waited_for_again(monkeypatch):
     def done_again(_):
         client.held[1].status = "finished"
 
-    monkeypatch.setattr("feederscrew.batch.cluster.time.sleep", done_again)
+    monkeypatch.setattr("feederscrew.batch.workers.time.sleep", done_again)
     assert list(gathered) == ["b"]
 
 
 def test_no_scheduler_is_one_line(tmp_path, three, monkeypatch):  # noqa: F811
-    monkeypatch.setattr("feederscrew.batch.cluster.PATIENCE", 1)
+    monkeypatch.setattr("feederscrew.batch.workers.CLUSTER_TIMEOUT_S", 1)
     with pytest.raises(FeederError, match=r"^tcp://127.0.0.1:1: no scheduler answers"):
         ran(three, tmp_path / "out", workers=batch.Cluster("tcp://127.0.0.1:1"))
 
@@ -139,5 +139,5 @@ def test_workers_of_another_version_are_refused(tmp_path, three, monkeypatch):  
     with cluster(tmp_path, workers=1) as (address, _):
         monkeypatch.setattr(task, "LIBRARIES", ("numpy",))
         with pytest.raises(FeederError, match=r"has another version of feederscrew - "):
-            monkeypatch.setattr("feederscrew.batch.cluster.__version__", "0.0.1")
+            monkeypatch.setattr("feederscrew.batch.workers.__version__", "0.0.1")
             ran(three, tmp_path / "out", workers=batch.Cluster(address), choices=TABLES_ONLY)

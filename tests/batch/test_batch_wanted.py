@@ -8,7 +8,7 @@ import shapes
 
 from feederscrew import batch
 from feederscrew.batch import summary, task, work
-from feederscrew.output.batch import contact_sheet
+from feederscrew.output import batch as batch_output
 from feederscrew.part import load
 from feederscrew.part.repair import gate, shells
 from feederscrew.resting.aspects import find
@@ -35,7 +35,7 @@ def test_a_list_asks_for_an_aspect(block, tmp_path):
     made = row(wanted)
     assert made.row["aspect"] == "C" and made.row["orientation"].startswith("C@")
     part = load(str(block))
-    assert made.files[work.THUMBNAIL] == contact_sheet.thumbnail(part, find(part), "C")
+    assert made.files[work.THUMBNAIL] == batch_output.thumbnail(part, find(part), "C")
     assert made.files[work.THUMBNAIL] != row(usual).files[work.THUMBNAIL]
     failed = work.work(task.Task.of(none, batch.Choices(), block.read_bytes()))
     assert failed.reason == "list.csv:4: aspect of block.stl: there is no aspect 'q' - choose one of A, B, C"

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from feederscrew import bowl, units
-from feederscrew.bowl import documentation, json_schema, schema
+from feederscrew.bowl import documentation, schema
 from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
 from feederscrew.mechanics import limits
@@ -66,7 +66,7 @@ def test_the_template_holds_the_defaults(file):
 
 
 def test_every_key_stands_in_the_template_with_its_meaning():
-    for key in schema.KEYS:
+    for key in schema.BOWL_KEYS:
         assert f"{key.word}: " in documentation.template()
         assert key.meaning in documentation.template()
 
@@ -89,7 +89,7 @@ def test_the_shipped_files():
 
 
 def test_the_schema_beside_it_is_as_the_program_has_it():
-    assert (ROOT / "configs" / documentation.SCHEMA_FILE).read_text() == json_schema.text()
+    assert (ROOT / "configs" / documentation.SCHEMA_FILE).read_text() == documentation.schema_text()
 
 
 @pytest.mark.parametrize(
@@ -261,7 +261,9 @@ def test_a_sweep_leaves_what_is_given_alone():
 
 
 def test_ranges():
-    angle, stroke = bowl.ranges(["drive.vibration_angle=5:60:12", "drive.peak_to_peak = 0.1mm : 2 mm : 3"])
+    angle, stroke = bowl.key_ranges(
+        ["drive.vibration_angle=5:60:12", "drive.peak_to_peak = 0.1mm : 2 mm : 3"]
+    )
     assert np.allclose(np.degrees(angle.values), np.arange(5, 61, 5), rtol=1e-15, atol=0)
     assert stroke.values == pytest.approx((1e-4, 1.05e-3, 2e-3), rel=1e-15)
     assert (angle.key.column, stroke.key.column) == ("vibration_angle_deg", "peak_to_peak_mm")
@@ -293,21 +295,21 @@ def test_ranges():
 )
 def test_a_fault_in_a_range(text, line):
     with pytest.raises(FeederError) as caught:
-        bowl.ranges([text])
+        bowl.key_ranges([text])
     assert caught.value.lines == (f"vary {line}",)
 
 
 def test_one_field_is_varied_once():
     with pytest.raises(FeederError) as caught:
-        bowl.ranges(["drive.amplitude=0:1:3", "drive.peak_to_peak=0:1:3"])
+        bowl.key_ranges(["drive.amplitude=0:1:3", "drive.peak_to_peak=0:1:3"])
     assert caught.value.lines == ("vary drive.peak_to_peak: is varied twice - vary two different keys",)
 
 
 def test_the_schema_agrees_with_the_record():
-    assert bowl.texts(bowl.settings()).keys() == {k.name for k in schema.KEYS if k.section != "machine"}
+    assert bowl.texts(bowl.settings()).keys() == {k.name for k in schema.BOWL_KEYS if k.section != "machine"}
     with_machine = bowl.settings(None, ["machine.leaves=10"])
-    assert bowl.texts(with_machine).keys() == {key.name for key in schema.KEYS}
-    for key in (key for key in schema.KEYS if not key.choices):
+    assert bowl.texts(with_machine).keys() == {key.name for key in schema.BOWL_KEYS}
+    for key in (key for key in schema.BOWL_KEYS if not key.choices):
         low, high = (units.quantity(text, key.dimension) for text in (key.lowest, key.highest))
         default = next(s.value for s in bowl.settings() if s.key is key)
         assert low <= default <= high

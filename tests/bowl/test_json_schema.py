@@ -6,13 +6,13 @@ import pytest
 import yaml
 
 from feederscrew import units
-from feederscrew.bowl import documentation, json_schema, settings
-from feederscrew.bowl.schema import KEYS, SECTIONS
+from feederscrew.bowl import documentation, settings
+from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS
 from feederscrew.errors import Faults, FeederError
 
 jsonschema = pytest.importorskip("jsonschema")
 ROOT = Path(__file__).parents[2]
-VALIDATOR = jsonschema.Draft7Validator(json_schema.schema())
+VALIDATOR = jsonschema.Draft7Validator(documentation.json_schema())
 
 
 def accepted(text):
@@ -34,13 +34,13 @@ def line(key, value):
 
 
 def test_the_schema_is_one():
-    jsonschema.Draft7Validator.check_schema(json_schema.schema())
+    jsonschema.Draft7Validator.check_schema(documentation.json_schema())
 
 
 def test_it_has_every_section_key_and_device_with_its_meaning():
-    made = json_schema.schema()["properties"]
-    assert {"devices", *SECTIONS} <= set(made)
-    for key in KEYS:
+    made = documentation.json_schema()["properties"]
+    assert {"devices", *BOWL_SECTIONS} <= set(made)
+    for key in BOWL_KEYS:
         told = made[key.section]["properties"][key.word] if key.section else made[key.word]
         assert key.meaning in told["description"] and key.lowest in told["description"]
         assert told["x-highest"] == key.highest and told["x-dimension"] == key.dimension
@@ -57,16 +57,18 @@ def test_bowl_files_that_are_right_are_accepted(path):
 
 
 def test_every_default_and_bound_is_accepted():
-    for key in KEYS:
+    for key in BOWL_KEYS:
         for value in (key.lowest, key.highest):
             assert accepted(line(key, value)), (key.name, value)
 
 
 def test_every_unit_and_spelling_that_the_checks_read_is_accepted(tmp_path):
-    for dimension in {key.dimension for key in KEYS if not key.choices}:
-        key = next(key for key in KEYS if key.dimension == dimension)
-        spelt = [name for name, unit in units.SPELLINGS.items() if unit in units.UNITS[dimension]]
-        for unit in [*units.UNITS[dimension], *spelt]:
+    for dimension in {key.dimension for key in BOWL_KEYS if not key.choices}:
+        key = next(key for key in BOWL_KEYS if key.dimension == dimension)
+        spelt = [
+            name for name, unit in units.SPELLINGS.items() if unit in units.UNITS_BY_DIMENSION[dimension]
+        ]
+        for unit in [*units.UNITS_BY_DIMENSION[dimension], *spelt]:
             assert accepted(line(key, f"'1.5 {unit}'")), (key.name, unit)
     for value in ("9.81 m/s²", "9.81 m/s^2", "9.81m/s2"):
         assert accepted(f"gravity: {value}\n") and read(f"gravity: {value}\n", tmp_path)

@@ -3,7 +3,7 @@
 import pytest
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl import json_schema
+from feederscrew.bowl import documentation
 from feederscrew.errors import FeederError
 
 
@@ -20,7 +20,7 @@ def test_another_word_is_refused():
 
 def test_a_word_cannot_be_varied():
     with pytest.raises(FeederError) as fault:
-        bowls.ranges(("track.hand=0:1:5",))
+        bowls.key_ranges(("track.hand=0:1:5",))
     assert str(fault.value) == "vary track.hand: is a word, not a number - set it to right or left"
 
 
@@ -30,5 +30,5 @@ def test_bolts_do_not_make_a_machine():
 
 
 def test_the_schema_knows_the_words():
-    made = json_schema.schema()["properties"]["track"]["properties"]["hand"]
+    made = documentation.json_schema()["properties"]["track"]["properties"]["hand"]
     assert made["enum"] == ["right", "left"] and made["type"] == "string" and made["default"] == "right"

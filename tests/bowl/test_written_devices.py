@@ -15,10 +15,10 @@ from feederscrew.bowl.reading import settings_of_text
 from feederscrew.designing import proposals, pulses
 from feederscrew.designing.record import DesignRequest, DesignStudy
 from feederscrew.errors import FeederError
-from feederscrew.output.designs import design_file
+from feederscrew.output import designs
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.devices.sensing import VIEWS
+from feederscrew.tooling.devices.pneumatics import SENSOR_VIEWS
 from feederscrew.tooling.isolating.chain import Cut
 
 NAMES = ("A", "b 2", "side: up", "x, y", "[C]", "Größe", "#1")
@@ -68,7 +68,7 @@ def draw(kind, rng):
         "jet": lambda: jet,
         "sorter": lambda: {
             "like": (pick(NAMES), turn(), length()),
-            "sees": pick(VIEWS),
+            "sees": pick(SENSOR_VIEWS),
             **some(
                 also=tuple((pick(NAMES), turn()) for _ in range(2)), resolution=length(), **jet,
                 time=float(rng.uniform(1e-3, 1.0)), nozzles=float(rng.integers(1, 21)),
@@ -175,7 +175,7 @@ def test_drive_track_and_machine_are_read_back_as_they_were_tried():
         )  # fmt: skip
         machine = replace(plain.machine, bowl_mass=float(rng.uniform(1.0, 20.0)), spring_angle=0.3)
         bowl = replace(plain, drive=drive, track=track)
-        text = design_file.bowl_file(made(bowl), (), SimpleNamespace(bowl=replace(bowl, machine=machine)))
+        text = designs.bowl_file(made(bowl), (), SimpleNamespace(bowl=replace(bowl, machine=machine)))
         found = bowls.record(settings_of_text(text, "design.yaml"))
         assert devices.differences(drive, found.drive) == devices.differences(track, found.track) == []
         assert devices.differences(machine, found.machine) == []
@@ -196,4 +196,4 @@ def test_a_value_that_the_file_would_not_give_back_is_refused(changed):
         own = replace(getattr(bowl, name), **value) if isinstance(value, dict) else value
         bowl = replace(bowl, **{name: own})
     with pytest.raises(FeederError, match="not the bowl that was tried"):
-        design_file.bowl_file(made(bowl), ())
+        designs.bowl_file(made(bowl), ())

@@ -15,7 +15,7 @@ from feederscrew.errors import ConfigError
 from feederscrew.mechanics.floor.balance import HOP
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import seat
-from feederscrew.output.convey import figures as convey_plots
+from feederscrew.output import convey
 from feederscrew.studies.slide import slide
 
 DEG = np.pi / 180.0
@@ -340,7 +340,7 @@ def test_title_of_a_cycle_says_what_is_shown(overrides, title):
     names = {text.partition("=")[0] for text in overrides}
     drive = tuple(text for text in drive if text.partition("=")[0] not in names)
     found = answer.answer(bowls.read(None, (*drive, *overrides)))
-    assert re.fullmatch(title, convey_plots.cycle_title(trace(found.setting), found))
+    assert re.fullmatch(title, convey.cycle_title(trace(found.setting), found))
 
 
 def test_a_phase_of_the_second_harmonic_may_be_written_as_a_whole_turn_more():

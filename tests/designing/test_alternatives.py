@@ -12,8 +12,8 @@ from feederscrew.designing import exploring, loop, proposals
 from feederscrew.designing.alternatives import alternatives
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy, FilledQueue, RobustRun
 from feederscrew.designing.searching import Search
+from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
-from feederscrew.output.designs import tables
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.isolating.chain import Cut
 
@@ -60,12 +60,12 @@ def test_what_was_stopped_shows_no_figures():
 
 def test_the_document_has_every_key_of_every_class_and_says_what_it_needs():
     rows = alternatives([study(GAP), study(SORTER)], [], [1, 2, 3])
-    found = tables.document(study(GAP, alternatives=rows))["alternatives"]
+    found = designs.document(study(GAP, alternatives=rows))["alternatives"]
     names = {"class", "status", "delivered_per_minute", "purity", "yield", "chain", "needs"}
     assert len(found) == 3 and all(names <= set(one) for one in found)
     assert found[0]["delivered_per_minute"] == pytest.approx(45.0) and found[0]["needs"] == []
     assert found[2]["needs"] == ["camera from above", "a valve", "compressed air"]
-    printed = tables_of.text(tables.summary(study(GAP, alternatives=rows)), "table")
+    printed = tables_of.text(designs.summary(study(GAP, alternatives=rows)), "table")
     assert "with steel alone" in printed and "yield 90 %" in " ".join(printed.split())
 
 

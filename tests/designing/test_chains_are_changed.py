@@ -252,7 +252,7 @@ def test_a_sensor_sees_something_of_every_drawn_part():
     bracket = load(PARTS / "lbracket_30x20x15.stl")
     other = robust.drawn_part(bracket, 1e-4, np.random.default_rng((1, 1)))
     bowl = bowls.default()
-    ways = stream.orientations(other, find(other), bowl.track, (), bowl=bowl)
+    ways = stream.follow_orientations(other, find(other), bowl.track, (), bowl=bowl)
     turned = next(
         one for one in ways.lying if one.name == "B@264"
     )  # closing its slits by 0.02 mm left nothing

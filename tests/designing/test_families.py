@@ -10,7 +10,7 @@ from feederscrew import bowl as bowls
 from feederscrew.designing import families
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
 from feederscrew.errors import FeederError
-from feederscrew.output.designs import family, family_page
+from feederscrew.output import design_pages
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.isolating.chain import Cut
 
@@ -62,7 +62,7 @@ def test_one_track_and_one_chain_are_shared_whatever_the_drive():
     gap = cut("gap", 4.0, 3.0, 5.0)
     study = families.FamilyStudy((design(SMALL, gap), design(LARGE, gap, bowl=slow)))
     assert study.shared and study.status == "holds"
-    (row,) = family.document(study)["changeover"]
+    (row,) = design_pages.family_document(study)["changeover"]
     assert (row["what"], row["how"]) == ("drive.amplitude", "set") and set(row["values"]) == {
         "small",
         "large",
@@ -70,19 +70,19 @@ def test_one_track_and_one_chain_are_shared_whatever_the_drive():
     wide = replace(BOWL, track=replace(BOWL.track, width=1.5 * BOWL.track.width))
     other = families.FamilyStudy((design(SMALL, gap), design(LARGE, gap, bowl=wide, held=10)))
     assert not other.shared and other.status == "falls short"
-    assert [row["what"] for row in family.document(other)["changeover"]] == ["track.width"]
+    assert [row["what"] for row in design_pages.family_document(other)["changeover"]] == ["track.width"]
 
 
 def test_what_is_swapped_is_listed_device_by_device():
     chains = (cut("gap", 4.0, 3.0, 5.0),), (cut("gap", 6.0, 5.5, 7.0), cut("canyon", 9.0, 8.0, 10.0))
     study = families.FamilyStudy((design(SMALL, *chains[0]), design(LARGE, *chains[1])))
-    rows = family.changeover(study)
+    rows = design_pages.changeover(study)
     assert rows == {
         "what": ["gap 1", "canyon 1"], "how": ["swapped", "swapped"], "small": ["4 mm", "-"],
         "large": ["6 mm", "9 mm"],
     }  # fmt: skip
     assert not study.shared
-    said = dict(zip(*family.summary(study).values(), strict=True))
+    said = dict(zip(*design_pages.family_summary(study).values(), strict=True))
     assert said["one bowl for all"] == "no" and said["swapped: gap 1"] == "4 mm; 6 mm"
 
 
@@ -130,9 +130,9 @@ def test_parts_of_one_name_are_refused():
 def test_the_page_of_a_family_has_the_changeover_and_what_each_part_delivers():
     first = design(SMALL, cut("gap", 4.0, 3.0, 5.0))
     other = design(LARGE, cut("gap", 6.0, 5.5, 7.0), held=10)
-    page = family_page.page(families.FamilyStudy((first, other)))
+    page = design_pages.family_page(families.FamilyStudy((first, other)))
     assert "one bowl for several parts: falls short" in page and "do not share one chain" in page
     assert "gap 1" in page and "swapped" in page and "4 mm" in page and "6 mm" in page
-    same = family_page.page(families.FamilyStudy((first, replace(first, part=LARGE))))
+    same = design_pages.family_page(families.FamilyStudy((first, replace(first, part=LARGE))))
     assert "Nothing is changed from one part to the next." in same
     assert "One track and one chain of devices suit all parts" in same

@@ -10,7 +10,7 @@ from feederscrew import bowl as bowls
 from feederscrew.designing import long_rides, loop, queues
 from feederscrew.designing.record import DesignRequest, RobustRun
 from feederscrew.dropping.ensemble import wilson
-from feederscrew.output.designs import tables
+from feederscrew.output import designs
 from feederscrew.trial.long_ride import LEFT, RideOfTrack
 
 NAMES = ("A@0", "A@180", "B@0")
@@ -37,7 +37,7 @@ def test_each_orientation_says_how_many_stay_turn_and_leave():
         "share_arriving": pytest.approx(0.24 / 0.8),
     }  # fmt: skip
     assert (rows[2]["stays"], rows[2]["left"], rows[2]["becomes"]) == (0, 10, {})
-    table = tables.long_ride(rows)
+    table = designs.long_ride(rows)
     assert list(table["becomes"]) == ["-", "A@0: 2", "-"] and list(table["left"]) == [0, 0, 10]
     assert list(table["arriving [%]"]) == [70.0, 30.0, 0.0]
 
@@ -119,5 +119,5 @@ def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypat
         for apart, touching in seen
     )
     assert all(shares == pytest.approx(0.5 * (ride.arriving + ride.entering)) for shares in drawn)
-    (row,) = tables.document(found)["long_ride"][:1]
+    (row,) = designs.document(found)["long_ride"][:1]
     assert row["parts"] >= long_rides.EACH and row["stays"] + row["left"] <= row["parts"]

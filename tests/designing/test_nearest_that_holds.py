@@ -21,8 +21,8 @@ from feederscrew.designing.record import (
 )
 from feederscrew.designing.searching import Candidate, Search
 from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
-from feederscrew.output.designs import tables
 from feederscrew.resting.aspects import find
 
 PART = shapes.part(shapes.box(20, 12, 5))
@@ -94,11 +94,11 @@ def test_a_design_that_only_lacks_rate_holds_at_a_lower_one(ways):
     found, made = nearest.nearest(slow, search, [(slow, one)], None)
     assert made is slow and 60.0 * found.rate == pytest.approx(46.0) and "lower rate" in found.change
     assert (found.draws_held, found.parts_right, found.queue_seconds) == (20, 135, 180.0)
-    document = tables.document(replace(slow, nearest=found))
+    document = designs.document(replace(slow, nearest=found))
     assert document["nearest"]["rate_per_minute"] == 46.0 and document["cause"] == "arrival"
     assert document["nearest"]["tried"]["draws"] == 20 and document["nearest"]["change"]
     assert "46/min with a lower rate" in replace(slow, nearest=found).why
-    assert "nearest that holds" in tables_of.text(tables.summary(replace(slow, nearest=found)), "table")
+    assert "nearest that holds" in tables_of.text(designs.summary(replace(slow, nearest=found)), "table")
 
 
 def test_what_was_clean_and_slow_is_proved_and_no_other_after_one_that_holds(ways):
@@ -129,7 +129,7 @@ def test_where_nothing_holds_what_was_tried_is_counted(ways):
     found, made = nearest.nearest(study(600.0, queues=()), search, [], prove)
     assert made is None and found.rate is None and len(asked) == nearest.PROOFS == len(found.denied)
     assert (found.trials, found.proofs) == (9, 3) and "nothing near it holds" in found.text
-    assert tables.nearest(replace(study(600.0), nearest=found))["rate_per_minute"] is None
+    assert designs.nearest(replace(study(600.0), nearest=found))["rate_per_minute"] is None
 
 
 @pytest.mark.parametrize("given", [frozenset(), frozenset({"drive.amplitude"})])
@@ -194,12 +194,12 @@ def test_one_of_four_causes_is_said(cause, more):
     made = study(400.0, held=held, **values)
     made = replace(made, bowl=None, attempts=()) if "bowl" in more else made
     assert made.cause == cause and cause in CAUSES and f"the cause is the {cause}:" in made.why
-    assert tables.document(made)["cause"] == cause
+    assert designs.document(made)["cause"] == cause
 
 
 def test_what_holds_or_was_stopped_has_no_cause():
-    assert study(10.0).cause == "" and tables.document(study(10.0))["cause"] is None
-    assert study(400.0, partial=True).cause == "" and tables.document(study(10.0))["nearest"] is None
+    assert study(10.0).cause == "" and designs.document(study(10.0))["cause"] is None
+    assert study(400.0, partial=True).cause == "" and designs.document(study(10.0))["nearest"] is None
 
 
 def test_what_left_instead_is_said_and_up_is_offered(ways):
@@ -207,7 +207,7 @@ def test_what_left_instead_is_said_and_up_is_offered(ways):
     made = study(40.0, queues=fills(right=0, left=11, instead=instead))
     assert made.left_instead == (("A, heading off", 33),)
     assert "A, heading off: 33 of 33" in made.why and "--up A" in made.why
-    assert tables.document(made)["queues"][0]["left_instead"] == "A, heading off: 11 of 11"
+    assert designs.document(made)["queues"][0]["left_instead"] == "A, heading off: 11 of 11"
     other = study(40.0, queues=fills(right=0, left=11, instead=(("B@0", 11),)))
     assert "B@0: 33 of 33" in other.why and "--up" not in other.why
 

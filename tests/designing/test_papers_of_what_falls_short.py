@@ -17,9 +17,8 @@ from feederscrew.designing import beside, loop
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
 from feederscrew.errors import FeederError
-from feederscrew.output import marking, solidbowl, style
+from feederscrew.output import design_pages, designs, marking, solidbowl, style
 from feederscrew.output import report as report_page
-from feederscrew.output.designs import design_file, design_page, family, family_page, files, tables
 from feederscrew.output.machine import figures
 from feederscrew.output.machine import sheet as sheets
 from feederscrew.output.page import as_html
@@ -27,7 +26,7 @@ from feederscrew.output.page.blocks import Chapter, Page
 from feederscrew.output.solidbowl import turnable
 from feederscrew.output.tooling import drawing
 from feederscrew.part import load
-from feederscrew.tooling.strip import strip
+from feederscrew.tooling.track_sections import build_section
 
 PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
 SHORT = "FALLS SHORT"
@@ -63,11 +62,11 @@ def built():
 
 
 def offered(one, built=None):
-    return {offer.name: offer for offer in files.offers(one, (), built)}
+    return {offer.name: offer for offer in design_pages.offers(one, (), built)}
 
 
 def test_a_design_says_which_machine_it_asks_for(sensing):
-    told = tables.document(study(bowl=sensing))["machine"]
+    told = designs.document(study(bowl=sensing))["machine"]
     assert (told["drive"], told["cameras"], told["valves"], told["air"]) == ("leaf-spring drive", 1, 1, True)
     assert (told["frequency_hz"], told["stroke_peak_to_peak_mm"]) == pytest.approx((50.0, 0.84))
     # A w^2 sin(25 deg) over g cos(3.7 deg)
@@ -77,26 +76,26 @@ def test_a_design_says_which_machine_it_asks_for(sensing):
     # 1.77 g / w^2 at the throw number 1.8
     assert told["hop_height_mm"] == pytest.approx(1.77 * 9.80665e3 / (100.0 * np.pi) ** 2, rel=0.03)
     assert (told["vibration_angle_at_the_springs_deg"], told["hop_flight_mm"] > 1.0) == (None, True)
-    drawn = tables.machine(study(bowl=sensing, machine_drawn=True))
-    assert "30 deg at the springs, 25 deg to the track" in tables.machine_text(drawn)
-    plain = tables.document(study())["machine"]
+    drawn = designs.machine_facts(study(bowl=sensing, machine_drawn=True))
+    assert "30 deg at the springs, 25 deg to the track" in designs.machine_text(drawn)
+    plain = designs.document(study())["machine"]
     assert (plain["cameras"], plain["valves"], plain["air"]) == (0, 0, False)
     phased = replace(sensing, drive=replace(sensing.drive, phase=-1.0))
-    told = tables.document(study(bowl=phased))["machine"]
+    told = designs.document(study(bowl=phased))["machine"]
     assert told["drive"] == "two-axis drive" and "two magnets" in told["drive_needs"]
-    assert tables.document(DesignStudy(PART, DesignRequest(0.5), None, None, None))["machine"] is None
+    assert designs.document(DesignStudy(PART, DesignRequest(0.5), None, None, None))["machine"] is None
 
 
 def test_the_machine_is_in_the_first_lines_of_text_and_page(sensing):
     one = study(bowl=sensing)
-    first = list(tables.summary(one)["quantity"][:9])
+    first = list(designs.summary(one)["quantity"][:9])
     assert first == [
         "status", "drive", "frequency [Hz]", "stroke, peak to peak [mm]", "vibration angle", "throw number",
         "a part hops", "velocity [mm/s]", "cameras, valves, air",
     ]  # fmt: skip
     calm = replace(sensing, drive=replace(sensing.drive, amplitude=0.21e-3))
-    assert "a part hops" not in list(tables.summary(study(bowl=calm))["quantity"])
-    page = design_page.page(one).partition("<table")[0].lower()
+    assert "a part hops" not in list(designs.summary(study(bowl=calm))["quantity"])
+    page = design_pages.page(one).partition("<table")[0].lower()
     assert all(word in page for word in ("leaf spring", "throw number", "stroke", "1 camera", "1 valve"))
 
 
@@ -114,9 +113,9 @@ def test_a_phase_that_is_given_is_kept_and_said():
 def test_a_family_says_the_machine_and_the_warnings_of_each_part():
     other = replace(study(part=replace(PART, name="other")), machine_warnings=("the magnet strikes",))
     both = FamilyStudy((study(), other), False)
-    page = family_page.page(both)
+    page = design_pages.family_page(both)
     assert page.lower().count("throw number") == 2 and "other: the magnet strikes" in page
-    rows = family.summary(both)
+    rows = design_pages.family_summary(both)
     text = " ".join(rows["value"])
     assert text.count("leaf-spring drive") == 2 and "machine of other" in list(rows["quantity"])
 
@@ -151,7 +150,7 @@ def test_a_mark_is_laid_over_a_picture_of_pixels():
 def test_drawings_of_cuts_bear_a_mark_on_a_layer_of_its_own(sensing):
     gap = replace(sensing, devices=sensing.devices[1:])
     every = beside.machines.orientations(PART, loop.find(PART), gap.track)
-    made = strip(gap.track, gap.devices, every)
+    made = build_section(gap.track, gap.devices, every)
     read = ezdxf.read(io.StringIO(drawing.dxf(made, mark=marking.MARK).decode()))
     across = [one for one in read.modelspace() if one.dxf.layer == "MARK"]
     assert [one.dxftype() for one in across] == ["TEXT"] and SHORT in across[0].dxf.text
@@ -177,7 +176,7 @@ def test_what_delivers_nothing_leaves_no_papers(built):
     for one in (study(right=0), study(right=0, left=0), study(queues=())):
         assert one.status in ("falls short", "none")
         assert set(offered(one, machine)) == kept
-        assert "acceptance" not in design_page.page(one, machine).lower().replace("acceptance.csv", "")
+        assert "acceptance" not in design_pages.page(one, machine).lower().replace("acceptance.csv", "")
     assert set(offered(study(queues=(), partial=True), machine)) < kept
 
 
@@ -185,21 +184,21 @@ def test_the_bowl_file_has_the_leaves_of_the_machine_that_is_drawn():
     """Leaves of 30 mm, which a design may choose, were written as the usual 40 mm."""
     lines = ("machine.leaf_width=30 mm", "machine.leaf_length=110 mm", "machine.leaves=6")
     sheet = beside.machines.machine(bowls.settings(None, (*BOWL, *lines)))
-    text = design_file.bowl_file(study(), (), sheet)
+    text = designs.bowl_file(study(), (), sheet)
     assert "leaf_width: 30 mm" in text and "leaf_length: 110 mm" in text and "leaves: 6" in text
 
 
 def test_the_trial_that_papers_have_is_that_of_the_bowl_file(built, tmp_path):
     one, machine = built
     one = replace(one, request=DesignRequest(1.6, up=("A", "B")))
-    (tmp_path / "design.yaml").write_text(design_file.bowl_file(one, (), machine.sheet))
-    read, own = bowls.verified(tmp_path / "design.yaml"), design_file.trial(one)
+    (tmp_path / "design.yaml").write_text(designs.bowl_file(one, (), machine.sheet))
+    read, own = bowls.verified(tmp_path / "design.yaml"), designs.trial_of(one)
     for name in ("status", "wanted", "up", "jams", "draws", "held", "version", "part", "body", "bowl"):
         assert getattr(read, name) == getattr(own, name), name
     for name in ("target", "delivered", "low", "high", "purity", "queue_seconds"):
         assert getattr(read, name) == pytest.approx(getattr(own, name), rel=1e-3), name
     assert "falls short" in sheets.rate_of_trial(own)
-    assert design_file.trial(study(queues=())) is None
+    assert designs.trial_of(study(queues=())) is None
     assert figures.bowl(machine.sheet, own) is not None
 
 
@@ -229,7 +228,7 @@ def test_a_stopped_design_leaves_the_files_of_an_earlier_one(run, tmp_path, monk
 
 def test_feeder_bowl_of_a_file_that_falls_short_marks_its_picture(built, run, tmp_path, monkeypatch):
     one, machine = built
-    text = design_file.bowl_file(replace(one, request=DesignRequest(1.6)), (), machine.sheet)
+    text = designs.bowl_file(replace(one, request=DesignRequest(1.6)), (), machine.sheet)
     (tmp_path / "design.yaml").write_text(text)
     drawn = []
     monkeypatch.setattr(marking, "across", lambda figure, mark: drawn.append(mark) or figure)
@@ -247,7 +246,7 @@ def test_feeder_bowl_shows_the_machine_that_was_tried_where_its_rule_finds_none(
     part = load(path)
     one = replace(study(part=part), request=DesignRequest(4000.0 / 60.0))
     sheet = beside.machines.machine(bowls.settings(None, BOWL))
-    (tmp_path / "design.yaml").write_text(design_file.bowl_file(one, (), sheet))
+    (tmp_path / "design.yaml").write_text(designs.bowl_file(one, (), sheet))
 
     def unreachable(*_, **__):
         raise FeederError("target", "no bowl reaches it", "split it")
@@ -265,7 +264,7 @@ def test_feeder_bowl_takes_the_drive_that_was_tried_until_the_file_is_changed(ru
     path, config = tmp_path / "box.stl", tmp_path / "design.yaml"
     shapes.box(12.0, 10.0, 8.0).export(path)
     sheet = beside.machines.machine(bowls.settings(None, BOWL))
-    config.write_text(design_file.bowl_file(study(part=load(path)), (), sheet))
+    config.write_text(designs.bowl_file(study(part=load(path)), (), sheet))
     line = ("bowl", path, "--target", "30/min", "--format", "json", "--config", config)
     tried, static = run(*line), run(*line, "--set", "friction.static=0.5")
     document = json.loads(tried.stdout)
@@ -281,7 +280,7 @@ def test_feeder_bowl_takes_it_too_where_the_static_rule_finds_none(run, tmp_path
     path, config = tmp_path / "box.stl", tmp_path / "design.yaml"
     shapes.box(12.0, 10.0, 8.0).export(path)
     sheet = beside.machines.machine(bowls.settings(None, BOWL))
-    config.write_text(design_file.bowl_file(study(part=load(path)), (), sheet))
+    config.write_text(designs.bowl_file(study(part=load(path)), (), sheet))
     line = ("bowl", path, "--target", "20000/min", "--format", "json")
     done = run(*line, "--config", config)
     assert "the static rule finds none for 2e+04/min" in done.stderr
@@ -293,7 +292,7 @@ def test_a_report_takes_the_drive_that_was_tried_as_well(run, tmp_path, monkeypa
     path, config, seen = tmp_path / "box.stl", tmp_path / "design.yaml", []
     shapes.box(12.0, 10.0, 8.0).export(path)
     sheet = beside.machines.machine(bowls.settings(None, BOWL))
-    config.write_text(design_file.bowl_file(study(part=load(path)), (), sheet))
+    config.write_text(designs.bowl_file(study(part=load(path)), (), sheet))
 
     def page(found, _):
         seen.append(2e3 * found.machine.bowl.drive.amplitude)

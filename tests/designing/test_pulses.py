@@ -10,9 +10,9 @@ from feederscrew import bowl as bowls
 from feederscrew.designing import proposals, pulses, trying
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import made
-from feederscrew.tooling.devices.sensing import PULSE
-from feederscrew.tooling.isolating.chain import judged
-from feederscrew.tooling.verdicts import Meeting
+from feederscrew.tooling.devices.pneumatics import PULSE
+from feederscrew.tooling.isolating.chain import judge_cut
+from feederscrew.tooling.verdicts import DeviceEncounter
 
 
 def tried(ways, right, wrong):
@@ -36,12 +36,12 @@ def wedge():
     like = {"like": (one.aspect, one.heading, 1e-3), "text": "{of: A@0, play: 1 mm, sees: outline}"}
     device = made("sorter", "test", **like)
     must = np.arange(len(ways.lying)) > 0
-    return ways, judged(ways.lying, 0, device, must, device, device)
+    return ways, judge_cut(ways.lying, 0, device, must, device, device)
 
 
 def reserve(cut, every, time):
     """The least way [m] beyond the edge over which a share of a pulse carries what the cut returns."""
-    gone = [Meeting(one, every) for one in every if one.name in cut.returns]
+    gone = [DeviceEncounter(one, every) for one in every if one.name in cut.returns]
     return min(met.blown(*cut.device.jet.push(met.one, every), time / pulses.RESERVE) for met in gone)
 
 

@@ -24,8 +24,8 @@ def ways():
 
 def told(ways, shares, purity=1.0):
     """What is said of no device at all, behind which the first orientation is wanted."""
-    task = proposal.task(ways.lying, np.array(shares), 0, 1e-4, purity, ())
-    return proposal.told(task, (), np.zeros(len(ways.lying), bool))
+    task = proposal.design_task(ways.lying, np.array(shares), 0, 1e-4, purity, ())
+    return proposal.propose(task, (), np.zeros(len(ways.lying), bool))
 
 
 def test_a_rare_orientation_is_not_isolated_by_others_that_are_rare_too(ways):

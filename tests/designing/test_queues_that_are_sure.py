@@ -216,3 +216,20 @@ def test_touching_parts_come_as_they_entered_the_track(monkeypatch):
         made.queue(gaps, 1)
     assert [offered[gaps] is entering for _, gaps in queues.FILLS] == [False, False, True]
     assert [offered[gaps] is arriving for _, gaps in queues.FILLS] == [True, True, False]
+
+
+@pytest.mark.parametrize("rates", [(8.0, 8.0, 8.0), (1.2, 1.2, 1.2), (0.3, 2.0, 2.0)])
+@pytest.mark.parametrize("jams_at", [np.inf, 9.0, 25.0])
+def test_fills_side_by_side_end_as_in_turn(rates, jams_at):
+    """On two cores the outcome is that of one, also where one fill denies what others go on with."""
+
+    def made(jobs):
+        fakes = FakeQueue(rates[0]), FakeQueue(rates[1], jams_at), FakeQueue(rates[2])
+        return replace(row(*fakes), jobs=jobs)
+
+    assert followed(made(2)) == followed(made(1))
+
+
+def test_what_is_stopped_side_by_side_is_handed_over():
+    stopped = FakeQueue(2.0), FakeQueue(2.0, stop_at=13.0), FakeQueue(2.0)
+    assert followed(replace(row(*stopped), jobs=2)) == [("low", 20.0, False), ("normal", 13.0, True)]

@@ -21,8 +21,8 @@ from feederscrew.designing.record import (
     RobustRun,
 )
 from feederscrew.errors import FeederError
+from feederscrew.output import design_pages, designs
 from feederscrew.output import tables as tables_of
-from feederscrew.output.designs import design_file, design_page, files, tables
 from feederscrew.output.page import blocks
 from feederscrew.output.page.as_html import html
 
@@ -58,7 +58,7 @@ def test_it_holds_only_where_nothing_is_missing():
 def test_the_bowl_file_says_what_counted_as_one(tmp_path):
     for up, said in (((), "of A@0, purity"), (("A", "B"), "of A@0, A, B at any heading counted in: a rule")):
         made = replace(study(queue()), request=DesignRequest(40.0 / 60.0, up=up))
-        (tmp_path / "design.yaml").write_text(design_file.bowl_file(made, ()))
+        (tmp_path / "design.yaml").write_text(designs.bowl_file(made, ()))
         assert said in bowls.verified(tmp_path / "design.yaml").sentence
 
 
@@ -76,7 +76,7 @@ def test_what_was_stopped_early_says_so():
 
 def test_what_no_queue_was_followed_of_verifies_nothing(tmp_path):
     some = replace(study(queue()), queues=(), partial=True)
-    (tmp_path / "design.yaml").write_text(design_file.bowl_file(some, ()))
+    (tmp_path / "design.yaml").write_text(designs.bowl_file(some, ()))
     assert bowls.verified(tmp_path / "design.yaml") is None
     assert "Nothing is verified" in (tmp_path / "design.yaml").read_text()
 
@@ -85,25 +85,25 @@ def test_a_queue_that_was_stopped_is_no_verdict_in_any_output(tmp_path):
     """Of 0.4 s of a queue: not 0 a minute, 8,150 jams an hour and a purity of nothing."""
     begun = replace(queue(0, 0, 0), seconds=0.4, counted=0.0, delivered=0.0, partial=True)
     for some in (study(begun, partial=True), study(queue(), partial=True)):
-        told = tables.document(some)
+        told = designs.document(some)
         assert (some.status, told["status"]) == ("not proved", "not proved")
-        assert all(told[name] is None for name in tables.PROOF)
+        assert all(told[name] is None for name in designs.PROOF)
         assert told["proved_so_far"] and told["robust"]["held"] == 20
-        printed = tables_of.text(tables.summary(some), "table")
+        printed = tables_of.text(designs.summary(some), "table")
         assert "not proved" in printed and "20 of 20 draws sort" in " ".join(printed.split())
         assert not any(word in printed for word in ("holds", "falls short", "an hour", "nan"))
-        names = [one.name for one in files.offers(some, ())]
+        names = [one.name for one in design_pages.offers(some, ())]
         assert names == ["design.json", "design_trials.csv", "design.yaml"]
-        (tmp_path / "design.yaml").write_text(design_file.bowl_file(some, ()))
+        (tmp_path / "design.yaml").write_text(designs.bowl_file(some, ()))
         assert "\nverified:" not in (tmp_path / "design.yaml").read_text()
         assert bowls.verified(tmp_path / "design.yaml") is None
-    assert tables.document(study(begun, partial=True))["queues"][0]["delivered_per_minute"] is None
+    assert designs.document(study(begun, partial=True))["queues"][0]["delivered_per_minute"] is None
     assert "stopped after 0.4 s" in study(begun, partial=True).why
 
 
 def test_a_design_of_which_no_part_has_left_verifies_nothing():
     """Its purity is a share of nothing, and no number of a block."""
-    text = design_file.bowl_file(study(queue(0, 0, 50)), ())
+    text = designs.bowl_file(study(queue(0, 0, 50)), ())
     assert "\nverified:" not in text and "nan" not in text
 
 
@@ -195,7 +195,7 @@ def test_what_is_followed_for_longer_is_one_queue_of_other_seeds():
 
 
 def test_each_chapter_of_the_page_to_hand_on_says_something_and_is_reached():
-    page = design_page.page(study(queue()))
+    page = design_pages.page(study(queue()))
     chapters = dict(re.findall(r'<section id="(\w+)">\n<h2>.*?</h2>(.*?)</section>', page, re.DOTALL))
     assert list(chapters) == ["answer", "loop", "proof", "acceptance"]
     least = "lower end of the rate is at least 36 a minute, the purity at least 98 %"
@@ -207,7 +207,7 @@ def test_each_chapter_of_the_page_to_hand_on_says_something_and_is_reached():
 def test_no_line_of_the_answer_is_longer_than_a_hundred_letters():
     long = "its leading side rises from the track by 17.6 deg only, and friction holds up to 31 deg " * 2
     lines = tables_of.text(
-        tables.summary(study(queue(), risks=(Risk("shingles", long),))), "table"
+        designs.summary(study(queue(), risks=(Risk("shingles", long),))), "table"
     ).splitlines()
     assert max(map(len, lines)) <= 100
     assert " ".join(" ".join(lines).split()).count(long.strip()) == 1
@@ -221,8 +221,8 @@ def test_the_page_names_the_devices_of_a_trial_and_leaves_their_dimensions_to_th
     )
     tried = Attempt("A@0", chain, "proposed", 0.0, 0.1, 8, 0.4, 1.0, 0.0, 1.0, ())
     one = study(queue(), attempts=(tried,))
-    assert tables.short_attempts(one)["chain"][0] == "separation, gap 9.5 mm, cut_out"
-    assert tables.attempts(one)["chain"][0] == ", ".join(chain)
+    assert designs.short_attempts(one)["chain"][0] == "separation, gap 9.5 mm, cut_out"
+    assert designs.attempts(one)["chain"][0] == ", ".join(chain)
 
 
 def test_what_no_picture_stands_in_for_is_printed():

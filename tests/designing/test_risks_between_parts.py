@@ -11,7 +11,7 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
 from feederscrew.designing.hazards import risks, wedging
 from feederscrew.designing.record import FilledQueue
-from feederscrew.output.designs import risk_pictures
+from feederscrew.output import designs
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
 
@@ -143,8 +143,8 @@ def test_each_pair_is_drawn_without_one_in_the_other(keel, kind):
     (one, _) = keel
     width = np.mean(wedging.walls_between(one, 0.6))
     said = next(some for some in found(one, 0.6, width=width) if some.kind == kind)
-    first, second = risk_pictures.bodies(one.posture.solid, said.pair)
+    first, second = designs.bodies(one.posture.solid, said.pair)
     bodies = [trimesh.Trimesh(*some) for some in (first, second)]
     assert not bodies[1].contains(first[0]).any()
     assert not bodies[0].contains(second[0]).any()
-    assert risk_pictures.drawn(one.posture.solid, said).axes[0].images
+    assert designs.risk_picture(one.posture.solid, said).axes[0].images

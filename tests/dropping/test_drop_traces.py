@@ -10,8 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew.dropping import drop_test, key_moments, traces
 from feederscrew.dropping.traces import telling
-from feederscrew.output import style, tables
-from feederscrew.output.drop import trace_curve, trace_strip, trace_tables
+from feederscrew.output import drop, style, tables
 from feederscrew.output.tables import data_frame
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
@@ -122,7 +121,7 @@ def test_a_long_drop_stays_small():
     most = traces.MOST + 2 * traces.HITS + 3
     assert max(len(trace.times) for trace in result.traces) <= most
     assert max(trace.times[-1] for trace in result.traces) > 2.0
-    text = tables.text(trace_tables.traces(DropStudy(part, aspects, result)), "csv")
+    text = tables.text(drop.traces(DropStudy(part, aspects, result)), "csv")
     assert len(text) < 150e3 * len(result.traces)
 
 
@@ -155,9 +154,9 @@ def test_a_drop_that_never_settles_has_no_class(tmp_path):
     (trace,) = result.traces
     assert result.tally.unsettled == 2
     assert trace.row == trace.face == -1 and not trace.still
-    told = trace_tables.traces(DropStudy(part, aspects, result))
+    told = drop.traces(DropStudy(part, aspects, result))
     assert set(told["aspect"]) == {"none"} and told["event"][-1] != "still"
-    drawn = trace_strip.strip(part, aspects, trace, "box")
+    drawn = drop.strip(part, aspects, trace, "box")
     assert any(
         "line: path of the centre of mass" in text.get_text()
         for text in drawn.axes[-1].texts + drawn.axes[0].texts
@@ -166,7 +165,7 @@ def test_a_drop_that_never_settles_has_no_class(tmp_path):
 
 def test_the_table_is_what_was_followed(bracket):
     part, aspects, result = bracket
-    told = data_frame(trace_tables.traces(DropStudy(part, aspects, result)))
+    told = data_frame(drop.traces(DropStudy(part, aspects, result)))
     assert list(told) == [
         "drop", "time_s", "x_mm", "y_mm", "z_mm", "q_w", "q_x", "q_y", "q_z", "energy_mm", "event", "aspect",
     ]  # fmt: skip
@@ -183,11 +182,11 @@ def test_the_table_is_what_was_followed(bracket):
 def test_the_same_seed_gives_the_same_bytes(bracket):
     part, aspects, result = bracket
     again = followed(PARTS / "lbracket_30x20x15.stl", drops=20, run=RunSettings(jobs=2))[2]
-    one, two = (tables.text(trace_tables.traces(DropStudy(part, aspects, r)), "csv") for r in (result, again))
+    one, two = (tables.text(drop.traces(DropStudy(part, aspects, r)), "csv") for r in (result, again))
     assert one == two
     shown = telling(result.traces)
-    assert style.png(trace_strip.strip(part, aspects, shown, "a")) == style.png(
-        trace_strip.strip(part, aspects, telling(again.traces), "a")
+    assert style.png(drop.strip(part, aspects, shown, "a")) == style.png(
+        drop.strip(part, aspects, telling(again.traces), "a")
     )
 
 
@@ -207,21 +206,21 @@ def test_stills_go_from_the_first_impact_to_the_end(bracket):
         rows = key_moments.chosen(trace, 12)
         assert rows[0] == np.argmax(trace.impacts) and rows[-1] == len(trace.times) - 1
         assert len(rows) == 12 and (np.diff(rows) > 0).all()
-        end = trace_strip.said(trace, rows[-1], aspects.names, 0.0)
+        end = drop.still_caption(trace, rows[-1], aspects.names, 0.0)
         assert end == f"{1e3 * trace.times[-1]:.0f} ms, rests on {aspects.names[trace.row]}"
-        assert trace_strip.said(trace, rows[0], aspects.names, 0.0).endswith("ms, hits")
+        assert drop.still_caption(trace, rows[0], aspects.names, 0.0).endswith("ms, hits")
 
 
 def test_the_curve_shows_energy_over_the_heights_it_comes_down_to(bracket):
     _, aspects, result = bracket
     trace = result.traces[0]
     axes = style.figure().add_subplot()
-    trace_curve.curve(axes, trace, aspects, key_moments.chosen(trace, 12))
+    drop.curve(axes, trace, aspects, key_moments.chosen(trace, 12))
     assert axes.get_xlabel() == "time [ms]" and axes.get_ylabel() == "energy as height [mm]"
     energy, height = axes.get_lines()[:2]
     assert energy.get_ydata() == pytest.approx(trace.energies / MM)
     assert (energy.get_ydata() >= height.get_ydata() - 1e-9).all()
-    saddle = next(line for line in trace_curve.references(trace, aspects) if "tips" in line[1])
+    saddle = next(line for line in drop.references(trace, aspects) if "tips" in line[1])
     assert saddle[0] == pytest.approx((aspects.heights + aspects.barriers)[trace.row] / MM)
 
 
@@ -229,4 +228,4 @@ def test_the_curve_shows_energy_over_the_heights_it_comes_down_to(bracket):
     ("longest", "step"), [(1.0, 1.0), (1.9, 1.0), (2.0, 2.0), (7.0, 5.0), (10.0, 10.0), (0.3, 0.2)]
 )
 def test_the_grid_has_round_steps(longest, step):
-    assert trace_strip.grid_step(longest * MM) == pytest.approx(step * MM)
+    assert drop.grid_step(longest * MM) == pytest.approx(step * MM)

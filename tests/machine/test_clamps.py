@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from feederscrew import bowl as bowls
-from feederscrew.machine.springs import in_plane, leaf_stiffness, springs, twist
+from feederscrew.machine.springs import analyse_springs, in_plane, leaf_stiffness, twist
 
 SET = (
     "machine.bowl_mass=6 kg", "machine.bowl_inertia=0.06 kg m2", "machine.base_mass=25 kg",
@@ -65,7 +65,7 @@ def test_rigid_clamps_bend_a_leaf_in_its_own_plane(psi, thick, at_an_end):
 
 def test_rigid_clamps_make_the_frequency_more_than_a_few_per_cent_higher():
     """Leaf 40 x 2.5 x 80 mm at 20 deg: 1.68 times where its middle is nearest to the axis, 2.40 at an end."""
-    found = springs(MACHINE)
+    found = analyse_springs(MACHINE)
     plain = found.natural_frequency_without_twist
     assert found.natural_frequency_rigid / plain == pytest.approx(1.68, abs=0.01)
     assert found.natural_frequency_rigid_end / plain == pytest.approx(2.40, abs=0.01)

@@ -29,7 +29,7 @@ SHEET = SimpleNamespace(
 
 
 def causes(**values):
-    return condition.found(SHEET, values).causes
+    return condition.diagnose(SHEET, values).causes
 
 
 def own(natural, ratio):
@@ -78,7 +78,7 @@ def test_of_a_machine_below_the_drive_more_leaves_bring_it_nearer(ratio, said):
     sheet = SimpleNamespace(**vars(SHEET) | {"emptying": SimpleNamespace(
         levels=np.array([1.0, 0.0]), strokes=np.array([0.8, 1.0]), natural_frequencies=np.array([94.0, 95.0])
     )})  # fmt: skip
-    first, *others = condition.found(sheet, {"stroke": ratio * STROKE}).causes
+    first, *others = condition.diagnose(sheet, {"stroke": ratio * STROKE}).causes
     now = DRIVE / np.sqrt(1.0 + abs(1.0 - (DRIVE / 95.0) ** 2) / ratio)
     assert said in first and hertz(first) == pytest.approx([now, 95.0], rel=1e-3)
     assert (now > 95.0) == (ratio > 1.0)

@@ -10,15 +10,15 @@ import shapes
 from matplotlib.text import Text
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.direction import shares, vibration_angle
 from feederscrew.bowl.reading import settings_of_text
+from feederscrew.bowl.record import shares, vibration_angle
 from feederscrew.conveying import answer
 from feederscrew.designing import beside, calm_drive
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
-from feederscrew.machine import building, drive_sought, drive_units, feasibility, sizing, tuning
-from feederscrew.machine.springs import leaf_stress, springs
+from feederscrew.machine import drive_sizing, drive_units, sizing, springs
+from feederscrew.machine.springs import analyse_springs, leaf_stress
 from feederscrew.machine.stroke import stroke
-from feederscrew.output.designs import design_file, design_page, tables
+from feederscrew.output import design_pages, designs
 from feederscrew.output.machine import figures
 from feederscrew.output.machine import tables as machine_tables
 from feederscrew.output.solidbowl import drawing_sheet
@@ -49,7 +49,7 @@ def at_track(machine):
 def test_springs_are_moved_outwards_and_then_stood_up_until_they_make_the_angle(wanted):
     """25 deg at 150 mm are 42 deg at 90 mm, which nobody builds: a larger circle needs 33."""
     bowl = bowls.read(None, (*ONE, f"drive.vibration_angle={wanted} deg"))
-    made = building.machine_for(bowl, sized(bowl), set(), exact=True)
+    made = drive_sizing.machine_for(bowl, sized(bowl), set(), exact=True)
     assert at_track(made) == pytest.approx(wanted, abs=0.1)
     assert made.spring_radius + 0.5 * made.leaf_width <= 0.15 + 1e-9
     assert made.spring_angle <= bowl.sizing.steepest_spring_angle + 1e-9
@@ -60,7 +60,7 @@ def test_springs_are_moved_outwards_and_then_stood_up_until_they_make_the_angle(
 
 def test_a_usual_angle_keeps_the_usual_circle():
     bowl = bowls.read(None, (*ONE, "drive.vibration_angle=14 deg"))
-    made = building.machine_for(bowl, sized(bowl), set(), exact=True)
+    made = drive_sizing.machine_for(bowl, sized(bowl), set(), exact=True)
     assert made.spring_radius == pytest.approx(0.09, rel=0.03)
     assert made.spring_angle < bowl.sizing.greatest_spring_angle
 
@@ -68,7 +68,7 @@ def test_a_usual_angle_keeps_the_usual_circle():
 @pytest.mark.parametrize("kept", ["spring_angle", "spring_radius"])
 def test_what_the_user_gave_of_the_springs_stays(kept):
     bowl = bowls.read(None, (*ONE, "drive.vibration_angle=20 deg", "machine.spring_angle=28 deg"))
-    made = building.machine_for(bowl, sized(bowl), {kept}, exact=True)
+    made = drive_sizing.machine_for(bowl, sized(bowl), {kept}, exact=True)
     assert getattr(made, kept) == getattr(bowl.machine, kept)
     assert at_track(made) == pytest.approx(20.0, abs=0.1)
 
@@ -82,7 +82,7 @@ def test_springs_too_near_make_less_and_both_drives_are_told():
          "machine.bowl_inertia=0.06 kg m2", "machine.base_inertia=0.252 kg m2"),
     )  # fmt: skip
     bowl = bowls.record(settings)
-    other = feasibility.can_make(bowl)
+    other = drive_sizing.can_make(bowl)
     assert other is not None and other.other_angle and not other.two_axis
     assert np.degrees(other.machine.track_angle) == pytest.approx(15.61, abs=0.01)
     assert np.degrees(other.wanted.spring_angle) == pytest.approx(42.0, abs=0.3)
@@ -102,7 +102,7 @@ def test_springs_too_near_make_less_and_both_drives_are_told():
 def test_a_drive_that_the_springs_make_is_no_mismatch():
     settings = bowls.settings(None, ONE)
     assert machines.machine(settings).mismatch is None
-    assert feasibility.can_make(machines.machine(settings).bowl) is None
+    assert drive_sizing.can_make(machines.machine(settings).bowl) is None
 
 
 def proved(*texts):
@@ -127,23 +127,23 @@ def test_a_drive_out_of_phase_stands_first_in_every_output(two_axis, tmp_path):
     rows = machine_tables.summary(sheet)
     assert rows["quantity"][0] == "drive" and "-60 deg" in rows["value"][0]
     assert "two magnets" in rows["value"][0]
-    table = tables.summary(found)
+    table = designs.summary(found)
     assert table["quantity"][1] == "drive" and "phase -60 deg" in table["value"][1]
     document = machine_tables.document(sheet)
     assert (document["drive_kind"], document["phase_deg"]) == ("two-axis drive", pytest.approx(-60.0))
-    assert tables.document(found)["bowl"]["phase_deg"] == pytest.approx(-60.0)
+    assert designs.document(found)["bowl"]["phase_deg"] == pytest.approx(-60.0)
     assert any("phase" in text.get_text() for text in figures.bowl(sheet).texts)
-    assert any("two magnets" in line for line in tables.document(found)["warnings"])
+    assert any("two magnets" in line for line in designs.document(found)["warnings"])
     drawn = drawing_sheet.sheet(built.drawn).figure.findobj(Text)
     assert any("two magnets" in text.get_text() for text in drawn)
-    assert "two magnets" in design_page.page(found, built).partition("leaves as")[0]
-    assert "two magnets" in design_file.bowl_file(found, (), sheet).splitlines()[1]
+    assert "two magnets" in design_pages.page(found, built).partition("leaves as")[0]
+    assert "two magnets" in designs.bowl_file(found, (), sheet).splitlines()[1]
 
 
 def test_a_design_warns_of_what_feeder_bowl_warns_of_for_its_file(two_axis, run, tmp_path):
     found, built = two_axis
     path = tmp_path / "design.yaml"
-    path.write_text(design_file.bowl_file(found, (), built.sheet))
+    path.write_text(designs.bowl_file(found, (), built.sheet))
     alone = json.loads(run("bowl", "--config", str(path), "--format", "json").stdout)
     assert alone["warnings"] and set(alone["warnings"]) <= set(found.warnings)
     own = machine_tables.document(built.sheet)
@@ -195,12 +195,12 @@ def test_longer_leaves_where_none_of_the_usual_length_tunes_a_slow_drive():
     light = bowls.read(None, ("machine.bowl_mass=1.5 kg", "machine.bowl_inertia=0.008 kg m2"))
     bowl = replace(light, drive=replace(light.drive, frequency=14.0, amplitude=1e-3))
     at_springs = stroke(bowl).springs
-    assert not tuning.sets(bowl.machine, 14.0, at_springs, bowl.sizing)
-    made = drive_sought.on_leaves(bowl, ())
+    assert not springs.tuned_leaf_sets(bowl.machine, 14.0, at_springs, bowl.sizing)
+    made = drive_sizing.on_leaves(bowl, ())
     assert made.leaf_length > bowl.machine.leaf_length
-    assert 1.03 <= springs(made).natural_frequency / 14.0 <= 1.08
+    assert 1.03 <= analyse_springs(made).natural_frequency / 14.0 <= 1.08
     assert leaf_stress(made, at_springs) <= bowl.sizing.fatigue_stress
-    assert drive_sought.on_leaves(bowl, {"leaf_length"}) == bowl.machine
+    assert drive_sizing.on_leaves(bowl, {"leaf_length"}) == bowl.machine
 
 
 def test_a_design_whose_drawn_springs_do_not_make_its_angle_does_not_hold():
@@ -229,11 +229,11 @@ def test_the_machine_that_is_drawn_makes_the_drive_that_is_chosen(name):
     made = beside.with_machine(found, built)
     assert made.drive_mismatch is None and made.machine_lacks == () and made.status == "holds"
     under = made.bowl.machine
-    assert 1.03 <= springs(under).natural_frequency / bowl.drive.frequency <= 1.08
+    assert 1.03 <= analyse_springs(under).natural_frequency / bowl.drive.frequency <= 1.08
     assert under.leaves <= 18 and 1e-3 <= under.leaf_thickness <= 4e-3
     assert leaf_stress(under, stroke(made.bowl).springs) <= bowl.sizing.fatigue_stress
     if name is not None:
         own = bowls.record(settings).machine
         kept = ("leaves", "leaf_thickness", "leaf_length", "spring_angle", "spring_radius", "bowl_mass")
         assert [getattr(under, word) for word in kept] == pytest.approx([getattr(own, word) for word in kept])
-    assert design_file.bowl_file(made, settings, built.sheet)  # it is read back and compared
+    assert designs.bowl_file(made, settings, built.sheet)  # it is read back and compared

@@ -11,15 +11,15 @@ from feederscrew.designing import calm_drive
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.machine import drive_units
-from feederscrew.machine.feasibility import can_make
-from feederscrew.machine.springs import springs
+from feederscrew.machine.drive_sizing import can_make
+from feederscrew.machine.springs import analyse_springs
 from feederscrew.machine.stroke import greatest_amplitude
 
 # makers' strokes peak to peak [mm], as the key sizing.greatest_acceleration names them
 STROKES = {50.0: 2.0, 60.0: 1.5, 100.0: 0.6, 120.0: 0.4}
 
 
-@pytest.mark.parametrize("unit", drive_units.UNITS, ids=lambda one: one.name)
+@pytest.mark.parametrize("unit", drive_units.DRIVE_UNITS, ids=lambda one: one.name)
 def test_the_bowl_file_of_a_drive_unit_is_a_tuned_machine(unit):
     bowl = bowls.record(settings_of_text(drive_units.bowl_file(unit), "bowl.yaml"))
     assert bowl.drive.frequency == unit.frequency in STROKES
@@ -27,7 +27,7 @@ def test_the_bowl_file_of_a_drive_unit_is_a_tuned_machine(unit):
     assert can_make(bowl) is None
     assert 15.0 < np.degrees(bowl.drive.vibration_angle) < 25.0
     assert np.degrees(bowl.machine.spring_angle) == pytest.approx(30.0)
-    assert 1.03 <= springs(bowl.machine).natural_frequency / unit.frequency <= 1.08
+    assert 1.03 <= analyse_springs(bowl.machine).natural_frequency / unit.frequency <= 1.08
     assert bowl.machine.leaves <= 12
     assert 2e3 * greatest_amplitude(bowl) == pytest.approx(STROKES[unit.frequency], rel=1e-6)
     assert bowl.sizing.mains_frequency == unit.mains
@@ -59,14 +59,14 @@ def test_a_frequency_controller_runs_an_owned_machine_below_its_natural_frequenc
     made = owned("d300-100hz")
     bowl = replace(made.bowl, sizing=replace(made.bowl.sizing, control="frequency"))
     driven = calm_drive.driven(replace(made, bowl=bowl), 0.06)
-    natural = springs(made.bowl.machine).natural_frequency
+    natural = analyse_springs(made.bowl.machine).natural_frequency
     assert natural / driven.drive.frequency == pytest.approx(1.055, abs=1e-3)
 
 
 def test_each_drive_unit_has_a_line_and_a_name_of_its_own():
-    names = [one.name for one in drive_units.UNITS]
+    names = [one.name for one in drive_units.DRIVE_UNITS]
     assert len(set(names)) == len(names) == len(drive_units.lines()) >= 6
-    for one, line in zip(drive_units.UNITS, drive_units.lines(), strict=True):
+    for one, line in zip(drive_units.DRIVE_UNITS, drive_units.lines(), strict=True):
         assert line.startswith(one.name) and f"{one.frequency:.0f} Hz" in line
         assert "typical, not from a data sheet" in line
 

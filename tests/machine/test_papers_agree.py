@@ -13,13 +13,13 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl import reading
 from feederscrew.designing import beside
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
-from feederscrew.output.designs import design_file, files, tables
+from feederscrew.output import design_pages, designs
 from feederscrew.output.machine import figures
 from feederscrew.output.machine import tables as machine_tables
 from feederscrew.output.solidbowl import drawing_sheet
 from feederscrew.output.tooling import drawing
 from feederscrew.studies import bowl as machines
-from feederscrew.tooling.orientations import ROUNDED
+from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
 
 PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
 BOWL = """
@@ -45,13 +45,13 @@ def papers(tmp_path_factory):
     built = beside.built(study, ())
     assert not built.why, built.why
     study = beside.with_machine(study, built)
-    offered = {one.name: one for one in files.offers(study, (), built)}
+    offered = {one.name: one for one in design_pages.offers(study, (), built)}
     (path.parent / "design.yaml").write_text(offered["design.yaml"].make())
     return {
         "study": study,
         "built": built,
         "design": json.loads(offered["design.json"].make()),
-        "summary": rows(tables.summary(study)),
+        "summary": rows(designs.summary(study)),
         "acceptance": offered["acceptance.csv"].view(),
         "bowl": json.loads(offered["bowl.json"].make()),
         "sheet": rows(machine_tables.summary(built.sheet)),
@@ -177,7 +177,7 @@ def test_edges_are_broken_as_they_were_tried_in_sheet_and_dxf(papers):
     said_of_edges = {
         re.search(r"edges broken at most ([\d.]+) mm", text)[1] for text in (papers["drawing"], drawing.SHOP)
     }
-    assert said_of_edges == {f"{1e3 * ROUNDED:g}"}
+    assert said_of_edges == {f"{1e3 * CUT_BORDER_RADIUS_M:g}"}
 
 
 def test_a_design_of_an_angle_that_a_larger_circle_makes_holds(papers):
@@ -213,7 +213,7 @@ def test_a_design_warns_of_what_feeder_bowl_warns_of_for_its_part_and_rate(paper
 
 
 def test_the_title_block_has_orientation_and_rate_of_the_trial(papers):
-    tried = design_file.trial(papers["study"])
+    tried = designs.trial_of(papers["study"])
     drawn = words(drawing_sheet.sheet(papers["built"].drawn, tried).figure)
     assert re.search(r"orientation\nA@0\n", drawn) and re.search(r"rate of its trial\n60/min", drawn)
     assert "all that pass" not in drawn and "FALLS SHORT" not in drawn

@@ -8,7 +8,7 @@ import pytest
 
 from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
-from feederscrew.machine import sizing, throughput
+from feederscrew.machine import sizing
 from feederscrew.mechanics.wall.stable_headings import headings
 from feederscrew.rates import stream
 from feederscrew.resting.posture import posture
@@ -20,7 +20,7 @@ LYING = sizing.Lying(longest=0.031, tallest=0.026, length=0.03, width=0.0175)
 def test_a_turn_rises_by_the_free_height_and_the_sheet_under_it(tallest, sheet):
     """Between the sheet of the next turn and the track there is the part's height and its headroom."""
     rules = replace(awkward.bowl().sizing, sheet=sheet, least_climb=0.0)
-    found = sizing.size(replace(LYING, tallest=tallest), "a part", rules, sorts=False)
+    found = sizing.size_bowl(replace(LYING, tallest=tallest), "a part", rules, sorts=False)
     assert found.pitch - sheet == pytest.approx(rules.headroom * tallest, rel=1e-9)
     assert found.pitch == pytest.approx(np.pi * found.diameter * np.tan(found.climb), rel=1e-9)
 
@@ -30,23 +30,23 @@ def test_parts_a_metre_are_those_counted_on_a_drawn_queue(wanted):
     """Parts of every orientation, laid end to end with their gap, counted over their length."""
     part, aspects = awkward.part()
     bowl = awkward.bowl()
-    found = stream.orientations(part, aspects, bowl.track, bowl=bowl)
+    found = stream.follow_orientations(part, aspects, bowl.track, bowl=bowl)
     target = None if wanted is None else (found.aspects[wanted], found.headings[wanted])
     gap, fill, count = 7.3e-3, 0.8, 400_000
     chances = found.rules["csa"] / found.rules["csa"].sum()
     drawn = np.random.default_rng(3).choice(len(chances), count, p=chances)
     way = (found.lengths[drawn] + gap).sum() / fill
     counts = found.through[drawn].sum() if wanted is None else found.leaving[drawn, wanted].sum()
-    told = throughput.flow(found, "csa", target=target, gap=gap, fill=fill)
+    told = sizing.flow(found, "csa", target=target, gap=gap, fill=fill)
     assert told.parts == pytest.approx(counts / way, rel=0.01)
-    assert told.parts < 0.9 * throughput.flow(found, "csa", target=target, fill=fill).parts
+    assert told.parts < 0.9 * sizing.flow(found, "csa", target=target, fill=fill).parts
 
 
 def test_what_the_track_does_not_carry_takes_no_room_on_it():
     """Of a queue with every second orientation half as often: its parts that leave over its length."""
     part, aspects = awkward.part()
     bowl = awkward.bowl()
-    found = stream.orientations(part, aspects, bowl.track, bowl=bowl)
+    found = stream.follow_orientations(part, aspects, bowl.track, bowl=bowl)
     passes = found.passes.copy()
     passes[::2, 0] *= 0.5
     passes[0, 0] = 0.0
@@ -55,7 +55,7 @@ def test_what_the_track_does_not_carry_takes_no_room_on_it():
     comes = found.rules["csa"] * passes[:, 0] * ~found.rolls_back
     assert comes.sum() < 0.8 and (comes > 0.0).sum() > 3
     leave = (comes * some.passes[:, -1]).sum()
-    told = throughput.flow(some, "csa", gap=gap, fill=fill)
+    told = sizing.flow(some, "csa", gap=gap, fill=fill)
     assert told.share == pytest.approx(leave / comes.sum(), rel=1e-12)
     assert told.parts == pytest.approx(fill * leave / (comes * (found.lengths + gap)).sum(), rel=1e-12)
 
@@ -64,8 +64,8 @@ def test_what_the_track_does_not_carry_takes_no_room_on_it():
 def test_beside_a_slope_a_turn_rises_by_the_slope_and_three_sheets_more(shape):
     """The track, the wall that leads to it and the wall above are a sheet each; the slope is 0.9 in 1."""
     rules = replace(awkward.bowl().sizing, sheet=0.003, least_climb=0.0)
-    found = sizing.size(LYING, "a part", replace(rules, shape=shape), sorts=False)
-    upright = sizing.size(LYING, "a part", rules, sorts=False)
+    found = sizing.size_bowl(LYING, "a part", replace(rules, shape=shape), sorts=False)
+    upright = sizing.size_bowl(LYING, "a part", rules, sorts=False)
     rise = np.pi * (found.diameter - found.track_width) * np.tan(found.climb)
     own = np.pi * upright.diameter * np.tan(upright.climb)
     assert rise - own == pytest.approx(0.9 * found.track_width + 3.0 * rules.sheet, rel=1e-9)
@@ -76,7 +76,8 @@ def test_below_rails_a_turn_rises_by_what_hangs_as_well(hanging, free):
     """By 1.5 times a long part, and a short one and 5 mm: so much upright wall a stepped solid needs."""
     rules = replace(awkward.bowl().sizing, shape="stepped", headroom=1.5, least_climb=0.0)
     level, hung = (
-        sizing.size(replace(LYING, hanging=deep), "a part", rules, sorts=False) for deep in (0.0, hanging)
+        sizing.size_bowl(replace(LYING, hanging=deep), "a part", rules, sorts=False)
+        for deep in (0.0, hanging)
     )
     rise = np.pi * (hung.diameter - hung.track_width) * (np.tan(hung.climb) - np.tan(level.climb))
     assert rise == pytest.approx(free, rel=1e-9, abs=1e-12)
@@ -88,13 +89,13 @@ def test_a_bowl_is_rounded_up_unless_it_is_a_whole_number_of_steps(more, diamete
     for least in (0.3, 0.1 * 3, np.nextafter(0.1 * 3, 1.0)):
         rules = replace(awkward.bowl().sizing, least_diameter=least + more, diameter_step=0.1)
         rules = replace(rules, diameter_per_length=1.0, diameter_per_width=0.1)
-        found = sizing.size(LYING, "a part", rules, sorts=False)
+        found = sizing.size_bowl(LYING, "a part", rules, sorts=False)
         assert found.diameter == pytest.approx(diameter, rel=1e-12)
 
 
 def test_what_no_stroke_brings_is_told_in_parts_a_minute_and_millimetres_peak_to_peak():
     """3 parts a metre at 0.05 m/s are 0.15 a second; 0.4 mm of amplitude are 0.8 mm of stroke."""
-    told = str(throughput.unreachable(2.0, 3.0, (0.05, 0.4e-3)))
+    told = str(sizing.unreachable_rate(2.0, 3.0, (0.05, 0.4e-3)))
     assert "no bowl reaches 120/min" in told
     assert "the most is 9/min at 0.8 mm peak to peak" in told
 
@@ -103,19 +104,19 @@ def test_where_no_part_passes_the_devices_are_to_blame_and_not_the_climb():
     """Something leaves but for the climb, or nothing leaves anyway."""
     part, aspects = awkward.part()
     bowl = awkward.bowl()
-    known = stream.orientations(part, aspects, bowl.track, bowl=bowl)
+    known = stream.follow_orientations(part, aspects, bowl.track, bowl=bowl)
     none = replace(known, passes=np.zeros_like(known.passes))
     with pytest.raises(FeederError, match="devices: let no part pass"):
-        throughput.flow(none, "csa")
+        sizing.flow(none, "csa")
     rolls = tuple(replace(one, may_roll_back=True) for one in known.lying)
     with pytest.raises(FeederError, match=r"track\.climb"):
-        throughput.flow(replace(known, lying=rolls), "csa")
+        sizing.flow(replace(known, lying=rolls), "csa")
 
 
 def test_the_steepest_climb_is_that_to_which_the_springs_as_they_are_carry_a_part():
     """Springs of 25 deg to a track that climbs by 2 deg stand at 27 deg to the level, whatever the climb."""
     bowl = awkward.bowl("drive.vibration_angle=25 deg", "track.bank=0 deg")
-    found = throughput.steepest(bowl)
+    found = sizing.steepest_climb(bowl)
 
     def speed(climb):
         drive = replace(bowl.drive, vibration_angle=np.radians(27.0) - climb)
@@ -127,17 +128,17 @@ def test_the_steepest_climb_is_that_to_which_the_springs_as_they_are_carry_a_par
 
 def test_a_stroke_without_a_steady_state_is_slower_than_every_other():
     slides = awkward.bowl("track.climb=40 deg", "track.bank=0 deg")
-    assert throughput._speeds(slides, np.array([1e-4, 2e-4]), (1.0,)).tolist() == [-np.inf, -np.inf]
+    assert sizing._speeds(slides, np.array([1e-4, 2e-4]), (1.0,)).tolist() == [-np.inf, -np.inf]
 
 
 def test_a_part_takes_the_longest_way_along_the_wall_and_the_widest_across():
     """Wanted in one orientation, only that counts; the nearest heading is meant, any turns away."""
     part, aspects = awkward.part()
     found = [
-        headings(posture(part, aspects, name), sizing.STRAIGHT)
+        headings(posture(part, aspects, name), sizing.STRAIGHT_TRACK)
         for name in np.array(aspects.names)[aspects.stable]
     ]
-    every = sizing.lying(part, aspects)
+    every = sizing.find_lying(part, aspects)
     stood = [posture(part, aspects, name) for name in np.array(aspects.names)[aspects.stable]]
     assert every.tallest == max(np.ptp(one.corners[:, 2]) for one in stood)
     assert every.length == every.longest == max(one.lengths.max() for one in found)
@@ -146,10 +147,10 @@ def test_a_part_takes_the_longest_way_along_the_wall_and_the_widest_across():
     for one in found[:2]:
         for heading, length, width in zip(one.headings, one.lengths, one.widths):
             for turns in (-1, 1):
-                own = sizing.lying(part, aspects, (one.aspect, heading + 2.0 * np.pi * turns + 1e-3))
+                own = sizing.find_lying(part, aspects, (one.aspect, heading + 2.0 * np.pi * turns + 1e-3))
                 assert (own.length, own.width, own.longest) == (length, width, every.longest)
                 uneven += abs(length - width) > 1e-3
-            laid = sizing.shape(part, aspects, sizing.STRAIGHT, (one.aspect, heading))
+            laid = sizing.size_shape(part, aspects, sizing.STRAIGHT_TRACK, (one.aspect, heading))
             assert laid.length == length and np.ptp(laid.outline[:, 0]) == pytest.approx(length)
     assert uneven
 
@@ -177,13 +178,13 @@ def test_a_bowl_that_is_given_is_twice_as_wide_as_the_part_is_long(share, fits):
 def test_what_is_wanted_has_another_heading_on_a_bend():
     """On a straight track and on one of 40 mm some headings of the skew body differ by more than 3 deg."""
     part, aspects = awkward.part()
-    track, away = replace(sizing.STRAIGHT, radius=0.04), []
+    track, away = replace(sizing.STRAIGHT_TRACK, radius=0.04), []
     for name in np.array(aspects.names)[aspects.stable]:
         lying = posture(part, aspects, name)
-        straight, bent = headings(lying, sizing.STRAIGHT), headings(lying, track)
+        straight, bent = headings(lying, sizing.STRAIGHT_TRACK), headings(lying, track)
         for heading in straight.headings:
             off = np.abs(np.angle(np.exp(1j * (bent.headings - heading))))
             away.append(np.degrees(off.min()))
-            laid = sizing.shape(part, aspects, track, (name, heading))
+            laid = sizing.size_shape(part, aspects, track, (name, heading))
             assert laid.length == bent.lengths[np.argmin(off)]
     assert max(away) > 3.0

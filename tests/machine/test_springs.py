@@ -9,15 +9,15 @@ from hypothesis import strategies as st
 from two_masses import amplitude, driven
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.direction import direction, vibration_angle
-from feederscrew.machine import building, drive_sought, filling, stroke, tuning
+from feederscrew.bowl.record import direction, vibration_angle
+from feederscrew.machine import drive_sizing, sizing, springs, stroke
 from feederscrew.machine.springs import (
+    analyse_springs,
     gain,
     held_fast,
     leaf_stiffness,
     leaf_stress,
     mean_pull,
-    springs,
     twist,
     upright_pull,
 )
@@ -42,7 +42,7 @@ def test_the_stiffness_of_a_leaf(thickness, stiffness):
 
 @pytest.mark.parametrize("leaves, free, held", [(9, 99.1, 89.0), (10, 104.4, 93.8), (12, 114.4, 102.7)])
 def test_the_natural_frequency_of_sets_of_leaves(leaves, free, held):
-    found = springs(replace(MACHINE, leaves=leaves))
+    found = analyse_springs(replace(MACHINE, leaves=leaves))
     assert found.natural_frequency_without_twist == pytest.approx(free, abs=0.05)
     assert found.natural_frequency_held == pytest.approx(held, abs=0.05)
     assert found.effective_mass == pytest.approx(5.841, abs=5e-4)
@@ -57,7 +57,7 @@ def test_the_twist_of_steel_leaves():
     """About 0.128 (L / r_s)^2 at a level drive."""
     level = replace(MACHINE, spring_angle=0.0, spring_radius=MACHINE.leaf_length)
     assert twist(level) == pytest.approx(1.128, abs=5e-4)
-    assert springs(MACHINE).natural_frequency / springs(
+    assert analyse_springs(MACHINE).natural_frequency / analyse_springs(
         MACHINE
     ).natural_frequency_without_twist == pytest.approx(np.sqrt(twist(MACHINE)), rel=1e-12)
 
@@ -99,9 +99,9 @@ def test_the_acceleration_of_the_makers_strokes(frequency, stroke_mm, ratio):
 def test_gain_angle_and_drift_against_two_bodies_in_time(share):
     """A bowl empty and full: the closed forms within 1e-6 of an integration of rise and turn."""
     machine = replace(MACHINE, damping=0.04, base_inertia=0.4)
-    fill = filling.full(0.15, 0.09, 7850.0, BOWL.sizing)
-    machine = filling.loaded(machine, fill, share * BOWL.sizing.carried)
-    found, frequency, force = springs(machine), 100.0, 50.0
+    fill = sizing.full_bowl(0.15, 0.09, 7850.0, BOWL.sizing)
+    machine = sizing.loaded_bowl(machine, fill, share * BOWL.sizing.carried)
+    found, frequency, force = analyse_springs(machine), 100.0, 50.0
     damping = 2.0 * machine.damping * np.sqrt(found.stiffness * found.effective_mass)
     way, rise, turn = driven(machine, found.stiffness, damping, force, frequency, 90)
     magnified = gain(frequency, found.natural_frequency, machine.damping)
@@ -135,46 +135,48 @@ def test_a_machine_scaled_in_size_keeps_its_angles(factor):
         leaf_thickness=MACHINE.leaf_thickness * factor,
         leaf_length=MACHINE.leaf_length * factor,
     )
-    assert springs(large).natural_frequency * factor == pytest.approx(springs(MACHINE).natural_frequency)
+    assert analyse_springs(large).natural_frequency * factor == pytest.approx(
+        analyse_springs(MACHINE).natural_frequency
+    )
     assert direction(large, 0.1 * factor) == pytest.approx(direction(MACHINE, 0.1))
 
 
 def test_a_heavy_base_is_one_held_fast():
     heavy = replace(MACHINE, base_mass=1e9, base_inertia=1e9)
-    assert springs(heavy).effective_mass == pytest.approx(
-        springs(held_fast(MACHINE)).effective_mass, rel=1e-7
+    assert analyse_springs(heavy).effective_mass == pytest.approx(
+        analyse_springs(held_fast(MACHINE)).effective_mass, rel=1e-7
     )
 
 
 def test_a_leaf_by_the_cube_and_by_the_square():
     """One leaf of 3.5 mm for two of 2.5: 2.744 by the cube, 1.96 by RNA's square."""
-    one = tuning.leaf_set(MACHINE, 100.0, 1e-4, leaves=10, thickness=3.5e-3)
-    here = springs(MACHINE).natural_frequency
+    one = springs.leaf_set(MACHINE, 100.0, 1e-4, leaves=10, thickness=3.5e-3)
+    here = analyse_springs(MACHINE).natural_frequency
     assert (one.natural_frequency / here) ** 2 == pytest.approx(1.4**3, rel=1e-9)
     assert (one.by_square / here) ** 2 == pytest.approx(1.4**2, rel=1e-9)
 
 
 def test_the_sets_that_tune():
-    found = tuning.sets(MACHINE, 100.0, 1e-4, BOWL.sizing)
+    found = springs.tuned_leaf_sets(MACHINE, 100.0, 1e-4, BOWL.sizing)
     assert all(0.03 <= one.detuning <= 0.08 for one in found)
     assert (2.5e-3, 9) in {(one.thickness, one.leaves) for one in found}
     assert {one.leaves % 3 for one in found} == {0}
-    assert max(one.leaves for one in found) <= 3 * tuning.MOST_A_BANK
-    assert {one.thickness for one in found} <= {*tuning.THICKNESSES, MACHINE.leaf_thickness}
+    assert max(one.leaves for one in found) <= 3 * springs.MOST_A_BANK
+    assert {one.thickness for one in found} <= {*springs.THICKNESSES, MACHINE.leaf_thickness}
     rules = replace(BOWL.sizing, banks=4.0)
-    longer = [replace(MACHINE, leaf_length=length) for length in tuning.LENGTHS]
-    fours = [one for machine in longer for one in tuning.sets(machine, 100.0, 1e-4, rules)]
+    longer = [replace(MACHINE, leaf_length=length) for length in springs.LEAF_LENGTHS_M]
+    fours = [one for machine in longer for one in springs.tuned_leaf_sets(machine, 100.0, 1e-4, rules)]
     assert fours and {one.leaves % 4 for one in fours} == {0}
-    rows = tuning.changes(MACHINE, 100.0, 1e-4, 3)
+    rows = springs.leaf_changes(MACHINE, 100.0, 1e-4, 3)
     assert [(one.name, one.leaves) for one in rows] == [
         ("as it is", 10), ("a leaf more a bank", 13), ("a leaf less a bank", 7), ("leaves 0.5 mm thicker", 10)
     ]  # fmt: skip
-    assert len(tuning.changes(replace(MACHINE, leaves=3), 100.0, 1e-4, 3)) == 3
+    assert len(springs.leaf_changes(replace(MACHINE, leaves=3), 100.0, 1e-4, 3)) == 3
 
 
 def test_an_upright_magnet_works_by_the_sine_of_the_springs_angle():
     """Its power is pull times rise: as much as damping takes from the way along the springs."""
-    found, drive, at = springs(MACHINE), 100.0, 0.2e-3
+    found, drive, at = analyse_springs(MACHINE), 100.0, 0.2e-3
     force = found.stiffness * at / gain(drive, found.natural_frequency, MACHINE.damping)
     pull = upright_pull(force, MACHINE)
     assert pull == pytest.approx(2.9238 * force, rel=1e-4)
@@ -204,39 +206,39 @@ def test_leaves_are_as_makers_stock_them(radius, frequency, degrees):
     amplitude = 2.3 * BOWL.gravity / (omega**2 * np.sin(np.radians(degrees)))  # at a throw number of 2.3
     drive = replace(BOWL.drive, frequency=frequency, amplitude=amplitude, vibration_angle=np.radians(degrees))
     bowl = replace(BOWL, track=track, drive=drive)
-    bowl = replace(bowl, machine=building.machine_on(bowl, (), exact=True))
-    made = drive_sought.on_leaves(bowl, ())
-    natural = springs(made).natural_frequency
+    bowl = replace(bowl, machine=drive_sizing.machine_on(bowl, (), exact=True))
+    made = drive_sizing.on_leaves(bowl, ())
+    natural = analyse_springs(made).natural_frequency
     assert 1.055 <= natural / frequency <= 1.08
     assert made.leaves % 3 == 0 and made.leaves <= 12
     assert 1e-3 <= made.leaf_thickness <= 4e-3 and 60e-3 <= made.leaf_length <= 260e-3
     bowl = replace(bowl, machine=made)
     assert leaf_stress(made, stroke.stroke(bowl).springs) <= BOWL.sizing.fatigue_stress
-    assert drive_sought.lacks(bowl, frozenset()) == "" == drive_sought.leaves_lack(bowl)
+    assert drive_sizing.drive_shortfall(bowl, frozenset()) == "" == drive_sizing.leaf_shortfall(bowl)
 
 
 def test_a_drive_that_no_machine_makes_says_why():
     bowl = replace(BOWL, track=replace(BOWL.track, radius=0.15, climb=np.radians(3.0)))
-    assert drive_sought.lacks(bowl, frozenset()) == ""
+    assert drive_sizing.drive_shortfall(bowl, frozenset()) == ""
     weak = replace(bowl, sizing=replace(bowl.sizing, fatigue_stress=1.0))
-    assert "bend to" in drive_sought.lacks(weak, frozenset())
+    assert "bend to" in drive_sizing.drive_shortfall(weak, frozenset())
     steep = replace(bowl, drive=replace(bowl.drive, vibration_angle=np.radians(50.0)))
-    assert "at the track" in drive_sought.lacks(steep, frozenset())
+    assert "at the track" in drive_sizing.drive_shortfall(steep, frozenset())
     known = replace(bowl, machine=replace(bowl.machine, leaves=30.0))
-    assert "% above the drive" in drive_sought.lacks(known, frozenset({"machine.leaves"}))
+    assert "% above the drive" in drive_sizing.drive_shortfall(known, frozenset({"machine.leaves"}))
     heavy = replace(bowl, track=replace(bowl.track, radius=0.4), machine=replace(bowl.machine, damping=0.5))
-    assert "have to pull" in drive_sought.lacks(heavy, frozenset())
+    assert "have to pull" in drive_sizing.drive_shortfall(heavy, frozenset())
 
 
 def test_the_stroke_as_a_bowl_empties():
     """From full to empty it falls, and amplitude control holds it while the controller reaches."""
-    fill = filling.full(0.15, 0.09, 7850.0, replace(BOWL.sizing, fill_height=1 / 3))
+    fill = sizing.full_bowl(0.15, 0.09, 7850.0, replace(BOWL.sizing, fill_height=1 / 3))
     assert fill.volume == pytest.approx(np.pi * 0.15**2 * 0.03)
     assert fill.mass == pytest.approx(fill.volume * 0.5 * 7850.0)
-    found = filling.emptying(moved(leaves=12), fill)
+    found = sizing.emptying(moved(leaves=12), fill)
     assert (found.levels[0], found.levels[-1], found.strokes[-1]) == (1.0, 0.0, 1.0)
     assert np.all(np.diff(found.strokes) < 0.0) and np.all(found.controlled == 1.0)
-    below = filling.emptying(moved(leaves=6), fill)
+    below = sizing.emptying(moved(leaves=6), fill)
     assert below.strokes[0] < 1.0
     assert below.controlled[0] == pytest.approx(min(1.0, below.strokes[0] / 0.8))
 
@@ -255,11 +257,11 @@ def test_the_stroke_of_the_bowl_from_full_to_empty_against_two_bodies_in_time(fr
     """Rise and turn of the bowl itself at its track: what parts in it take from its share is in neither."""
     bowl = moved(frequency, leaves=leaves, damping=0.04, base_inertia=0.4)
     radius, carried = bowl.track.radius, bowl.sizing.carried
-    fill = filling.full(0.15, 0.09, 7850.0, bowl.sizing)
-    told, ways = filling.emptying(bowl, fill), []
+    fill = sizing.full_bowl(0.15, 0.09, 7850.0, bowl.sizing)
+    told, ways = sizing.emptying(bowl, fill), []
     for share in (1.0, 0.0):
-        machine = filling.loaded(bowl.machine, fill, share * carried)
-        found = springs(machine)
+        machine = sizing.loaded_bowl(bowl.machine, fill, share * carried)
+        found = analyse_springs(machine)
         damping = 2.0 * machine.damping * np.sqrt(found.stiffness * found.effective_mass)
         way, rise, turn = driven(machine, found.stiffness, damping, 50.0, frequency, 36)
         ways.append([amplitude(way), amplitude(rise), radius * amplitude(turn)])

@@ -9,9 +9,16 @@ from scipy.optimize import minimize
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Unbalance
 from feederscrew.errors import FeederError
-from feederscrew.machine import filling
-from feederscrew.machine.springs import centred_mass, held_fast, springs
-from feederscrew.machine.unbalanced import STEEL, effective_mass, is_even, rocking
+from feederscrew.machine import sizing
+from feederscrew.machine.springs import (
+    BASE_DENSITY,
+    analyse_springs,
+    centred_mass,
+    held_fast,
+    is_even,
+    rocking,
+    unbalanced_effective_mass,
+)
 
 MACHINE = bowls.read(None, ("machine.base_mass=20 kg", "machine.base_inertia=0.3 kg m2")).machine
 
@@ -34,7 +41,7 @@ def cloud(rng, turns=1.0):
 def base(machine):
     """Points of the base: eight of a round plate of steel, that has its inertia about every axis."""
     mass, inertia = machine.base_mass, machine.base_inertia
-    thick = mass / (STEEL * np.pi * 2.0 * inertia / mass)
+    thick = mass / (BASE_DENSITY * np.pi * 2.0 * inertia / mass)
     low = -machine.leaf_length * np.cos(machine.spring_angle) - 0.5 * thick
     r, h = np.sqrt(inertia / mass), thick / np.sqrt(12.0)
     theta = 0.5 * np.pi * np.arange(4)
@@ -65,7 +72,7 @@ def least_energy(machine, at, kg):
 def test_the_motion_of_least_energy(turns, rng):
     at, kg, machine = cloud(rng, turns)
     motion, energy = least_energy(machine, at, kg)
-    assert effective_mass(machine) == pytest.approx(2.0 * energy, rel=1e-8)
+    assert unbalanced_effective_mass(machine) == pytest.approx(2.0 * energy, rel=1e-8)
     found = rocking(machine, 0.15, 0.08)
     theta = 2.0 * np.pi * np.arange(3600) / 3600
     ring = np.column_stack([0.15 * np.cos(theta), 0.15 * np.sin(theta), np.full(3600, 0.08)])
@@ -88,8 +95,8 @@ def test_a_weight_is_a_point_more_of_the_cloud(rng):
 
 def test_an_even_bowl_is_that_of_the_closed_form():
     even = replace(MACHINE, unbalance=Unbalance((0.0, 0.0, 0.3), (0.05, 0.05)))
-    assert is_even(even) and springs(even) == springs(MACHINE)
-    assert effective_mass(even) == pytest.approx(centred_mass(even), rel=1e-12)
+    assert is_even(even) and analyse_springs(even) == analyse_springs(MACHINE)
+    assert unbalanced_effective_mass(even) == pytest.approx(centred_mass(even), rel=1e-12)
     found = rocking(even, 0.1, 0.05)
     assert (found.least, found.greatest) == pytest.approx((1.0, 1.0), abs=1e-12)
 
@@ -97,10 +104,10 @@ def test_an_even_bowl_is_that_of_the_closed_form():
 def test_off_its_axis_it_moves_less_mass_and_on_a_held_base_as_much(rng):
     """On a base that is held, a screw is all that is left: the place of the mass is in the inertia."""
     _, _, machine = cloud(rng)
-    found = springs(machine)
+    found = analyse_springs(machine)
     assert found.effective_mass < centred_mass(machine)
     assert found.effective_mass_held == pytest.approx(centred_mass(held_fast(machine)), rel=1e-12)
-    higher = springs(replace(machine, unbalance=Unbalance()))
+    higher = analyse_springs(replace(machine, unbalance=Unbalance()))
     assert found.natural_frequency > higher.natural_frequency
 
 
@@ -115,7 +122,7 @@ def test_the_weight_of_a_solid_steadies_it(rng):
 
 def test_a_fill_lies_evenly(rng):
     _, _, machine = cloud(rng)
-    full = filling.loaded(machine, filling.Fill(1e-3, 2.0, 0.02), 0.5)
+    full = sizing.loaded_bowl(machine, sizing.Fill(1e-3, 2.0, 0.02), 0.5)
     assert full.unbalance.moment == machine.unbalance.moment
     gained = np.subtract(full.unbalance.upright, machine.unbalance.upright)
     assert gained == pytest.approx([0.005, 0.005])
@@ -124,4 +131,4 @@ def test_a_fill_lies_evenly(rng):
 def test_an_inertia_that_cannot_be(rng):
     _, _, machine = cloud(rng)
     with pytest.raises(FeederError, match=r"^machine.bowl_inertia: 0.0001 kg m2 is less than"):
-        effective_mass(replace(machine, bowl_inertia=1e-4))
+        unbalanced_effective_mass(replace(machine, bowl_inertia=1e-4))

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from feederscrew.output import style
-from feederscrew.output.aspects import picture
-from feederscrew.output.solid import marks, render, shading, smoothing, stance
+from feederscrew.output import aspects, style
+from feederscrew.output import shading as shading_output
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import find
 
@@ -42,12 +41,16 @@ def cylinder(sections):
 
 
 def solid_of(part):
-    return render.Rays(part.vertices, part.faces, part.centre_of_mass)
+    return shading_output.Rays(part.vertices, part.faces, part.centre_of_mass)
 
 
 def standing(part, row=0):
     solid, found = solid_of(part), find(part)
-    return solid, stance.stance(solid.points, found.normals[row], found.heights[row] / solid.size), found
+    return (
+        solid,
+        shading_output.stance(solid.points, found.normals[row], found.heights[row] / solid.size),
+        found,
+    )
 
 
 def test_a_ray_meets_the_top_first():
@@ -91,8 +94,8 @@ def test_the_camera_is_a_right_handed_frame_that_looks_down():
     frame = np.stack([stand.camera.right, stand.camera.up, stand.camera.back])
     assert frame @ frame.T == pytest.approx(np.eye(3), abs=1e-12)
     assert np.linalg.det(frame) == pytest.approx(1.0)
-    assert stand.camera.back @ stand.floor_axes[2] == pytest.approx(np.sin(stance.ELEVATION))
-    assert stand.camera.up @ stand.floor_axes[2] == pytest.approx(np.cos(stance.ELEVATION))
+    assert stand.camera.back @ stand.floor_axes[2] == pytest.approx(np.sin(shading_output.ELEVATION))
+    assert stand.camera.up @ stand.floor_axes[2] == pytest.approx(np.cos(shading_output.ELEVATION))
 
 
 @pytest.mark.parametrize("row", [0, 1, 2])
@@ -105,8 +108,8 @@ def test_turning_and_moving_the_file_changes_no_outline(row):
 
 def test_background_is_paper_and_the_part_is_not():
     solid, stand, _ = standing(box())
-    frame = shading.Shot(-1.5, -1.5, 0.03, 100, 100)
-    image = shading.picture(solid, stand, frame)
+    frame = shading_output.Shot(-1.5, -1.5, 0.03, 100, 100)
+    image = shading_output.picture(solid, stand, frame)
     assert image.shape == (100, 100, 3)
     assert image[0] == pytest.approx(1.0)
     assert image[50, 50].max() < 0.95
@@ -117,36 +120,36 @@ def test_background_is_paper_and_the_part_is_not():
 def test_each_face_of_a_box_has_its_own_shade():
     _, stand, _ = standing(box())
     normals = np.array([n for n in (*np.eye(3), *-np.eye(3)) if n @ stand.camera.back > 0.0])
-    shades = shading.lit(normals, stand.camera, shading.STEEL).mean(axis=1)
+    shades = shading_output.lit(normals, stand.camera, shading_output.STEEL).mean(axis=1)
     assert len(shades) == 3
     assert np.diff(np.sort(shades)).min() > 0.03
 
 
 def test_the_floor_is_darkest_under_the_part():
     solid, stand, _ = standing(box())
-    shadow, _, _ = shading._shadow(solid, stand)
-    middle = shading.FLOOR_GRID // 2
-    assert shadow[middle, middle] == pytest.approx(shading.SHADE, rel=0.05)
-    assert shadow[0, 0] < 0.02 * shading.SHADE
+    shadow, _, _ = shading_output._shadow(solid, stand)
+    middle = shading_output.FLOOR_GRID // 2
+    assert shadow[middle, middle] == pytest.approx(shading_output.SHADE, rel=0.05)
+    assert shadow[0, 0] < 0.02 * shading_output.SHADE
 
 
 def test_a_tessellated_cylinder_is_shaded_round():
     points, faces = cylinder(24)
-    normals = smoothing.corner_normals(points, faces)
+    normals = shading_output.corner_normals(points, faces)
     radial = points[faces] * [1.0, 1.0, 0.0]
     assert np.einsum("fki,fki->fk", normals, radial).min() > np.cos(np.radians(3.0))
 
 
 def test_a_coarse_prism_keeps_its_edges():
     points, faces = cylinder(8)
-    normals = smoothing.corner_normals(points, faces)
+    normals = shading_output.corner_normals(points, faces)
     assert np.ptp(normals, axis=1) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_a_large_mesh_is_not_smoothed(monkeypatch):
-    monkeypatch.setattr(smoothing, "MOST_FACETS", 10)
-    assert smoothing.corner_normals(*cylinder(24)) is None
-    solid = render.Rays(*cylinder(24), centre=np.zeros(3))
+    monkeypatch.setattr(shading_output, "MOST_FACETS", 10)
+    assert shading_output.corner_normals(*cylinder(24)) is None
+    solid = shading_output.Rays(*cylinder(24), centre=np.zeros(3))
     _, normals, _ = solid.hits([[3.0, 0.02, 0.3]], [-1.0, 0.0, 0.0])
     assert normals[0, 0] == pytest.approx(np.cos(np.pi / 24), rel=1e-6)
 
@@ -154,7 +157,7 @@ def test_a_large_mesh_is_not_smoothed(monkeypatch):
 def test_outermost_points_reach_as_far_as_all():
     points = np.random.default_rng(1).normal(size=(50_000, 3))
     points /= np.linalg.norm(points, axis=1, keepdims=True)
-    few = stance.outermost(points)
+    few = shading_output.outermost(points)
     assert len(few) < 10_000
     assert np.ptp(few, axis=0) == pytest.approx(np.ptp(points, axis=0), rel=0.002)
 
@@ -162,7 +165,7 @@ def test_outermost_points_reach_as_far_as_all():
 def test_the_sheet_has_one_panel_a_class_in_one_scale():
     part = box()
     found = find(part)
-    figure = picture.aspects(part, found, range(3))
+    figure = aspects.aspect_views(part, found, range(3))
     images = [axes for axes in figure.axes if axes.images]
     assert len(images) == 3
     scales = [np.ptp(axes.images[0].get_extent()[:2]) / axes.get_window_extent().width for axes in images]
@@ -171,14 +174,14 @@ def test_the_sheet_has_one_panel_a_class_in_one_scale():
     assert {"A", "B", "C", "flat ×2", "PMI", "CSA", "stability", "box", "centre of mass"} <= set(texts)
     for chance in found.probabilities.values():
         assert f"{100.0 * chance[0]:.1f} %" in texts
-    assert style.png(figure) == style.png(picture.aspects(part, found, range(3)))
+    assert style.png(figure) == style.png(aspects.aspect_views(part, found, range(3)))
 
 
 def test_the_recommended_answer_comes_first_with_its_interval():
     part = box()
     found = find(part)
     answer = found.recommended
-    figure = picture.aspects(part, found, range(3), answer)
+    figure = aspects.aspect_views(part, found, range(3), answer)
     texts = [text.get_text() for axes in figure.axes for text in axes.texts]
     share, low, high = (100.0 * ends[0] for ends in (answer.p, answer.low, answer.high))
     assert f"{share:.0f} % ({low:.0f}–{high:.0f})" in texts
@@ -187,13 +190,13 @@ def test_the_recommended_answer_comes_first_with_its_interval():
 
 @pytest.mark.parametrize("share", [0.0, 0.05, 0.5, 1.0])
 def test_the_numbers_of_the_answer_stay_beside_its_bar(share):
-    figure = style.page(picture.PANEL, 40)
+    figure = style.page(aspects.PANEL_PX, 40)
     axes = figure.add_axes((0, 0, 1, 1))
-    axes.set(xlim=(0, picture.PANEL), ylim=(0, 40))
-    picture._answer(axes, 20.0, share, 0.9 * share, 1.0)
+    axes.set(xlim=(0, aspects.PANEL_PX), ylim=(0, 40))
+    aspects._answer(axes, 20.0, share, 0.9 * share, 1.0)
     label, number = (text.get_window_extent() for text in axes.texts)
-    assert label.x1 < picture.BARS
-    assert picture.BARS + picture.BAR < number.x0 < number.x1 <= picture.RIGHT + 1
+    assert label.x1 < aspects.BARS_PX
+    assert aspects.BARS_PX + aspects.BAR_PX < number.x0 < number.x1 <= aspects.RIGHT_PX + 1
 
 
 @pytest.mark.parametrize(
@@ -201,17 +204,17 @@ def test_the_numbers_of_the_answer_stay_beside_its_bar(share):
 )
 def test_panels_stay_on_the_page_and_apart(count, grid):
     _, stand, _ = standing(box())
-    sheet = picture._sheet([stand] * count, 3, False)
+    sheet = aspects._layout([stand] * count, 3, False)
     assert (sheet.columns, sheet.rows) == grid
     places = [sheet.place(k) for k in range(count)]
     assert len(set(places)) == count
-    assert min(bottom for _, bottom in places) - sheet.caption >= picture.FOOT
+    assert min(bottom for _, bottom in places) - sheet.caption >= aspects.FOOT_PX
     assert max(left for left, _ in places) + sheet.image[0] <= sheet.page[0]
 
 
 def test_the_scale_bar_is_round_and_true():
     axes = style.figure().add_subplot()
-    marks.scale_bar(axes, right=500.0, y=0.0, pixel=0.00013)  # [m] a data unit
+    shading_output.scale_bar(axes, right=500.0, y=0.0, pixel=0.00013)  # [m] a data unit
     text = axes.texts[0].get_text()
     left, right = axes.lines[0].get_xdata()
     assert text == "10 mm"
@@ -221,9 +224,9 @@ def test_the_scale_bar_is_round_and_true():
 def test_the_axis_of_a_rolling_class_goes_through_the_centre():
     solid, stand, _ = standing(box())
     axes = style.figure().add_subplot()
-    marks.rolling_axis(axes, solid, stand, np.full(3, np.nan))
+    shading_output.rolling_axis(axes, solid, stand, np.full(3, np.nan))
     assert not axes.lines
-    marks.rolling_axis(axes, solid, stand, np.array([1.0, 0.0, 0.0]))
+    shading_output.rolling_axis(axes, solid, stand, np.array([1.0, 0.0, 0.0]))
     x, y = axes.lines[0].get_data()
     assert (x[0], y[0]) == pytest.approx((-x[1], -y[1]))
 
@@ -231,7 +234,7 @@ def test_the_axis_of_a_rolling_class_goes_through_the_centre():
 @pytest.mark.parametrize("name", ["a$b$_{x}", "部品", "n" * 200, "tab\there"])
 def test_any_name_of_a_part_can_be_drawn(name):
     part = box()
-    figure = picture.aspects(Part(**{**part.__dict__, "name": name}), find(part), [0])
+    figure = aspects.aspect_views(Part(**{**part.__dict__, "name": name}), find(part), [0])
     assert style.png(figure)
     texts = [text for axes in figure.axes for text in axes.texts]
     page = figure.bbox.width
@@ -241,5 +244,5 @@ def test_any_name_of_a_part_can_be_drawn(name):
 def test_an_open_surface_is_labelled():
     part = box()
     fields = {**part.__dict__, "open_surface": True}
-    figure = picture.aspects(Part(**fields), find(part), [0])
+    figure = aspects.aspect_views(Part(**fields), find(part), [0])
     assert any("open surface" in text.get_text() for axes in figure.axes for text in axes.texts)

@@ -6,8 +6,7 @@ import matplotlib.pyplot
 import numpy as np
 import pytest
 
-from feederscrew.output import style
-from feederscrew.output.aspects import bars
+from feederscrew.output import aspects, style
 from feederscrew.resting.rules import registry
 
 LOOKED_AT = True
@@ -21,7 +20,7 @@ def heights(axes):
 
 
 def test_bars_show_percentages_by_aspect_and_rule():
-    axes = bars.probabilities(NAMES, PROFILES, title="nut").axes[0]
+    axes = aspects.profile_bars(NAMES, PROFILES, title="nut").axes[0]
     assert heights(axes) == pytest.approx([50.0, 30.0, 20.0, 60.0, 40.0, 0.0])
     assert [label.get_text() for label in axes.get_xticklabels()] == NAMES
     assert [text.get_text() for text in axes.texts] == ["50.0", "30.0", "20.0", "60.0", "40.0"]
@@ -37,20 +36,20 @@ ANSWER = [[0.5, 0.3, 0.2], [0.4, 0.1, 0.0], [0.7, 0.4, 0.35]]
 
 
 def test_the_recommended_answer_is_a_bar_with_its_interval_and_comes_first():
-    figure = bars.answered(NAMES, ANSWER, PROFILES, title="nut")
+    figure = aspects.answer_bars(NAMES, ANSWER, PROFILES, title="nut")
     axes = figure.axes[0]
     assert heights(axes) == pytest.approx([50.0, 30.0, 20.0])
     ends = [segment[:, 1] for segment in axes.collections[0].get_segments()]
     assert np.array(ends) == pytest.approx(100.0 * np.array(ANSWER[1:]).T)
     assert [text.get_text() for text in axes.texts] == ["50.0", "30.0", "20.0"]
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == [bars.ANSWERED, "PMI", "CSA"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [aspects.ANSWERED, "PMI", "CSA"]
 
 
 @pytest.mark.parametrize("count", [1, 3, 6, 24])
 def test_the_answered_chart_keeps_everything_on_its_page(count):
     names = [chr(65 + k) for k in range(count)]
     share = np.full(count, 0.123)
-    figure = bars.answered(
+    figure = aspects.answer_bars(
         names, [share, 0.5 * share, 2.0 * share], dict.fromkeys(registry.RULE_NAMES, share)
     )
     figure.draw_without_rendering()
@@ -62,36 +61,36 @@ def test_the_answered_chart_keeps_everything_on_its_page(count):
 
 
 def test_bars_of_one_aspect_stand_side_by_side():
-    axes = bars.probabilities(["A"], {"pmi": [1.0], "csa": [1.0], "stability": [1.0]}).axes[0]
+    axes = aspects.profile_bars(["A"], {"pmi": [1.0], "csa": [1.0], "stability": [1.0]}).axes[0]
     left = [bar.get_x() for bar in axes.patches]
     assert np.all(np.diff(left) >= axes.patches[0].get_width())
 
 
 def test_many_bars_keep_their_numbers_apart():
     names = [chr(65 + k) for k in range(20)]
-    figure = bars.probabilities(names, {rule: np.full(20, 0.05) for rule in registry.RULE_NAMES})
-    assert figure.get_figwidth() <= bars.WIDE
+    figure = aspects.profile_bars(names, {rule: np.full(20, 0.05) for rule in registry.RULE_NAMES})
+    assert figure.get_figwidth() <= aspects.WIDE_IN
     figure.draw_without_rendering()
     boxes = [text.get_window_extent() for text in figure.axes[0].texts]
     assert not any(a.overlaps(b) for a, b in pairwise(boxes))
 
 
 def test_the_numbers_stay_below_the_top():
-    figure = bars.probabilities(NAMES, PROFILES)
+    figure = aspects.profile_bars(NAMES, PROFILES)
     figure.draw_without_rendering()
     top = figure.axes[0].get_window_extent().y1
     assert all(text.get_window_extent().y1 <= top for text in figure.axes[0].texts)
 
 
 def test_the_same_figure_gives_the_same_bytes_and_no_version():
-    first, second = (style.png(bars.probabilities(NAMES, PROFILES)) for _ in range(2))
+    first, second = (style.png(aspects.profile_bars(NAMES, PROFILES)) for _ in range(2))
     assert first == second
     assert first.startswith(b"\x89PNG")
     assert b"atplotlib" not in first
 
 
 def test_figures_leave_no_global_state():
-    style.png(bars.probabilities(NAMES, PROFILES))
+    style.png(aspects.profile_bars(NAMES, PROFILES))
     assert matplotlib.pyplot.get_fignums() == []
 
 
@@ -128,10 +127,10 @@ def test_tidy_labels_an_axes():
 
 
 def test_the_rules_are_told_apart_without_their_colours():
-    axes = bars.answered(NAMES, ANSWER, PROFILES).axes[0]
+    axes = aspects.answer_bars(NAMES, ANSWER, PROFILES).axes[0]
     marks = [line.get_marker() for line in axes.lines if line.get_label() in map(rule_label, PROFILES)]
     assert len(set(marks)) == len(PROFILES) > 1
-    assert len(bars.MARKS) >= len(registry.RULE_NAMES)
+    assert len(aspects.MARKS) >= len(registry.RULE_NAMES)
 
 
 def rule_label(name):

@@ -19,7 +19,7 @@ from feederscrew.output.report import cutting, page
 from feederscrew.output.report.chapters import CHAPTERS
 from feederscrew.output.report.files import BESIDE
 from feederscrew.output.report.scene import scene
-from feederscrew.output.solid.meshes import reduced
+from feederscrew.output.shading import reduced_mesh
 from feederscrew.part import load
 from feederscrew.resting import aspects
 from feederscrew.studies.report import report
@@ -106,7 +106,7 @@ def sphere(rings):
 
 def test_a_large_mesh_is_reduced_to_its_shape():
     corners, faces = sphere(120)
-    points, kept = reduced(corners, faces, most=10_000)
+    points, kept = reduced_mesh(corners, faces, most=10_000)
     assert 2_000 < len(kept) <= 10_000
     assert np.allclose(np.linalg.norm(points, axis=1), 1.0, rtol=0.02, atol=0)
     assert np.linalg.det(points[kept]).sum() / 6.0 == pytest.approx(4.0 * np.pi / 3.0, rel=0.02)
@@ -114,12 +114,12 @@ def test_a_large_mesh_is_reduced_to_its_shape():
 
 def test_a_small_mesh_is_left_alone():
     corners, faces = sphere(6)
-    points, kept = reduced(corners, faces)
+    points, kept = reduced_mesh(corners, faces)
     assert points is corners and kept is faces
 
 
 def test_a_simplified_view_says_so(bracket, monkeypatch):
-    monkeypatch.setattr("feederscrew.output.solid.meshes.reduced", lambda v, f: (v, f[:-2]))
+    monkeypatch.setattr("feederscrew.output.shading.reduced_mesh", lambda v, f: (v, f[:-2]))
     made = page(report(bracket, None, ()), chapters=LIGHT[:1])
     count = len(bracket.faces)
     assert f"a coarser surface of {count - 2} facets; every number is of all {count}" in html(made)

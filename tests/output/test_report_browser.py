@@ -15,8 +15,7 @@ import shapes
 from PIL import Image
 
 from feederscrew import bowl as bowls
-from feederscrew.output import style, tables
-from feederscrew.output.aspects import tables as aspects_tables
+from feederscrew.output import aspects, style, tables
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture, Table, Views
 from feederscrew.output.report import page
@@ -134,7 +133,7 @@ def test_views_are_drawn_and_turn(told, case):
 
 
 def test_the_table_is_that_of_the_csv(told, case):
-    written = tables.text(aspects_tables.aspects(AspectsStudy(case.part, case.resting.aspects)), "csv")
+    written = tables.text(aspects.aspects(AspectsStudy(case.part, case.resting.aspects)), "csv")
     assert told["table"] == list(csv.reader(io.StringIO(written)))
 
 

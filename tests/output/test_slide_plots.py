@@ -8,9 +8,8 @@ from matplotlib.colors import to_rgba_array
 
 from feederscrew import bowl
 from feederscrew.mechanics.limits import published_ratio
+from feederscrew.output import slide as slide_output
 from feederscrew.output import style
-from feederscrew.output.slide import figures as slide_plots
-from feederscrew.output.slide import files
 from feederscrew.studies.slide import sliding_map
 
 SMALL = (61, 51)  # cells, for speed
@@ -34,7 +33,7 @@ def own_point(axes):
 
 
 def test_maps_name_their_axes_and_their_angle():
-    for draw in (slide_plots.contours, slide_plots.regimes):
+    for draw in (slide_output.contours, slide_output.regimes):
         axes = draw(slide()).axes[0]
         assert axes.get_xlabel() == "α − θ, from heading to drive [deg]"
         assert axes.get_ylabel() == "acceleration ratio G = A ω² / g [1]"
@@ -44,7 +43,7 @@ def test_maps_name_their_axes_and_their_angle():
 
 def test_the_own_point_is_marked_where_the_bowl_works():
     one = slide(20, "drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.direction=25 deg")
-    for draw in (slide_plots.contours, slide_plots.regimes):
+    for draw in (slide_output.contours, slide_output.regimes):
         figure = draw(one)
         assert own_point(figure.axes[0]) == pytest.approx([25, one.ratio])
         assert "this bowl, G = 0.724" in texts(figure)
@@ -52,30 +51,32 @@ def test_the_own_point_is_marked_where_the_bowl_works():
 
 def test_the_regime_map_shows_its_codes_and_names_them():
     one = slide(20)
-    figure = slide_plots.regimes(one)
+    figure = slide_output.regimes(one)
     (image,) = figure.axes[0].images
-    colours = 255.0 * to_rgba_array([slide_plots.REGIMES[name][0] for name in one.grid.names])
+    colours = 255.0 * to_rgba_array([slide_output.REGIMES[name][0] for name in one.grid.names])
     assert (np.asarray(image.get_array()) == np.round(colours)[one.grid.codes.T]).all()
     named = texts(figure)
     for name, share in one.grid.shares().items():
         label = (
-            "no friction prevents forward slip (part hops)" if name == "hop" else slide_plots.REGIMES[name][1]
+            "no friction prevents forward slip (part hops)"
+            if name == "hop"
+            else slide_output.REGIMES[name][1]
         )
         assert (label in [text.replace("\n", " ") for text in named]) == (share > 0), name
 
 
 def test_the_hop_begins_at_its_ratio():
-    for draw, start in ((slide_plots.regimes, math.cos(math.radians(3))), (slide_plots.contours, 1.0)):
+    for draw, start in ((slide_output.regimes, math.cos(math.radians(3))), (slide_output.contours, 1.0)):
         heights = [line.get_ydata()[0] for line in draw(slide(20)).axes[0].lines if line.get_marker() != "o"]
         assert heights == pytest.approx([start / math.sin(math.radians(20))])
 
 
 def test_no_hop_is_drawn_where_none_is():
-    assert not any("hops" in text for text in texts(slide_plots.regimes(slide(0))))
+    assert not any("hops" in text for text in texts(slide_output.regimes(slide(0))))
 
 
 def test_contour_lines_follow_4_27_and_carry_their_values():
-    figure = slide_plots.contours(sliding_map(bowl.default(), math.radians(20), shape=files.PICTURE))
+    figure = slide_output.contours(sliding_map(bowl.default(), math.radians(20), shape=slide_output.PICTURE))
     axes = figure.axes[0]
     assert {"μ = 0.1", "μ = 1", "μ = 2", "this bowl's μ = 0.6"} <= set(texts(figure))
     assert "μ = 0.6" not in texts(figure)
@@ -88,7 +89,7 @@ def test_contour_lines_follow_4_27_and_carry_their_values():
 
 
 def test_the_surface_is_cut_and_carries_the_bowls_friction():
-    figure = slide_plots.surface(slide(20))
+    figure = slide_output.surface(slide(20))
     axes = figure.axes[0]
     assert axes.get_zlabel() == "limiting friction μ [1]"
     assert axes.get_zlim() == (0, 2)
@@ -99,9 +100,9 @@ def test_the_surface_is_cut_and_carries_the_bowls_friction():
 
 def test_curves_are_4_28_for_each_angle():
     one, two = slide(10), slide(40)
-    figure = slide_plots.curves([one, two])
+    figure = slide_output.curves([one, two])
     axes, labels = figure.axes[0], [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == ["β = 10°", "β = 40°", "backward slip, this track", slide_plots.OWN]
+    assert labels == ["β = 10°", "β = 40°", "backward slip, this track", slide_output.OWN]
     line = next(line for line in axes.lines if line.get_label() == "β = 40°")
     ratio, friction = line.get_xydata()[np.isfinite(line.get_ydata())].T
     b = math.radians(40)
@@ -111,11 +112,11 @@ def test_curves_are_4_28_for_each_angle():
 @pytest.mark.parametrize("beta", [0, 1, 90])
 def test_extreme_angles_draw_without_a_warning(beta):
     one = slide(beta, "friction.static=0", "drive.amplitude=0 mm")
-    for draw in (slide_plots.surface, slide_plots.contours, slide_plots.regimes):
+    for draw in (slide_output.surface, slide_output.contours, slide_output.regimes):
         assert style.png(draw(one))[:4] == b"\x89PNG"
-    assert style.png(slide_plots.curves([one]))[:4] == b"\x89PNG"
+    assert style.png(slide_output.curves([one]))[:4] == b"\x89PNG"
 
 
 def test_the_same_map_gives_the_same_bytes():
-    for draw in (slide_plots.contours, slide_plots.regimes):
+    for draw in (slide_output.contours, slide_output.regimes):
         assert style.png(draw(slide())) == style.png(draw(slide()))

@@ -18,8 +18,7 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
 from feederscrew.errors import FeederError
-from feederscrew.output.designs import tables as design_tables
-from feederscrew.output.solid import pair
+from feederscrew.output import designs, shading
 from feederscrew.output.tooling import (
     bowl_file,
     drawing,
@@ -36,11 +35,11 @@ from feederscrew.output.tooling import tables as tooling_tables
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling import solid, tightest
+from feederscrew.tooling import solid, track_sections
 from feederscrew.tooling.devices.base import UNSURE, Verdict
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.orientations import orientations, travelling
-from feederscrew.tooling.strip import bent, strip
+from feederscrew.tooling.track_sections import bend_ring, build_section
 from feederscrew.tooling.verdicts import verdict
 
 LOOKED_AT = True
@@ -74,7 +73,7 @@ def lying(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def drawn(lying):
-    return strip(lying[0].track, lying[0].devices, lying[1])
+    return build_section(lying[0].track, lying[0].devices, lying[1])
 
 
 def test_the_drawing_opens_in_millimetres_with_closed_polylines(drawn):
@@ -123,7 +122,7 @@ def test_the_section_to_print_is_one_closed_body(drawn):
 
 def test_bent_keeps_the_distance_from_the_wall():
     ring = np.array([[0.0, 0.0], [0.1, 0.0], [0.1, 0.02], [0.0, 0.02]])
-    found = bent(ring, 0.15)
+    found = bend_ring(ring, 0.15)
     away = np.hypot(found[:, 0], found[:, 1] - 0.15)
     assert away.min() == pytest.approx(0.13, rel=1e-9)
     assert away.max() == pytest.approx(0.15, rel=1e-9)
@@ -135,7 +134,7 @@ def test_the_hull_drawn_at_the_worst_place_is_that_of_the_verdict(lying):
     bowl, every = lying
     cut = next(device for device in bowl.devices if device.kind == "cut_out")
     for one in every:
-        found = tightest.passage(cut, one, every)
+        found = track_sections.worst_passage(cut, one, every)
         hull, weight = shapely.MultiPoint(found.supported).convex_hull, shapely.Point(found.weight)
         away = hull.boundary.distance(weight) if hull.contains(weight) else -hull.distance(weight)
         assert away == pytest.approx(found.verdict.margin, abs=2e-5), one.name
@@ -192,7 +191,7 @@ def test_what_the_bare_track_returns_has_a_picture_too(lying):
 def test_a_part_that_a_gate_stops_is_drawn_in_front_of_it(lying):
     bowl, every = lying
     gates = [device for device in bowl.devices if device.kind in ("wiper", "profile")]
-    met = [tightest.passage(device, one, every) for device in gates for one in every]
+    met = [track_sections.worst_passage(device, one, every) for device in gates for one in every]
     stopped = [one for one in met if one.verdict.passes <= 0.0]
     assert {met.device.kind for met in stopped} == {"wiper", "profile"}
     for met in stopped:
@@ -205,15 +204,15 @@ def test_a_part_that_a_gate_stops_is_drawn_in_front_of_it(lying):
 def test_no_gate_hides_the_part_that_is_drawn_at_it(lying):
     bowl, every = lying
     gates = [device for device in bowl.devices if device.kind in ("wiper", "profile")]
-    for met in (tightest.passage(device, one, every) for device in gates for one in every):
+    for met in (track_sections.worst_passage(device, one, every) for device in gates for one in every):
         section = relief.station_of(met, every)
         body = relief.placed(met, section.stations[0]), met.orientation.posture.solid.faces
         centre = 0.5 * (body[0].min(axis=0) + body[0].max(axis=0))
         angle, half = met.angle(section.stations[0]), np.ptp(body[0], axis=0).max()
         track = solid.solid(section)
         (view,) = relief.clearest([track], [body], [centre], [angle], half)
-        share = pair.shown_share(track, body, centre, view, half)
-        former = pair.shown_share(track, body, centre, relief.camera_at(angle), half)
+        share = shading.shown_share(track, body, centre, view, half)
+        former = shading.shown_share(track, body, centre, relief.camera_at(angle), half)
         assert share >= max(former, 0.6)
 
 
@@ -274,7 +273,7 @@ def test_a_design_names_its_devices_as_the_trade_does():
     found = {"status": "holds", "wanted": "A@0"} | {f"{name}_per_minute": 1.0 for name in rates}
     found |= {"delivered_low": 1.0, "delivered_high": 1.0, "purity": None, "jams": 0, "queue_seconds": 0.0}
     found |= {"jams_per_hour_high": None, "robust": {"held": 0, "draws": 0}, "up": []}
-    name, said = design_tables.outcome(found, (sorter,))[-1]
+    name, said = designs.outcome(found, (sorter,))[-1]
     assert name == "device 1" and said.startswith(
         "vision reject (camera from the side): keeps A at heading 0 deg"
     )
@@ -296,7 +295,7 @@ def test_a_table_of_polygons_fits_a_page():
 
 @pytest.mark.needs("OCP")
 def test_step_where_opencascade_is(lying):
-    short = strip(lying[0].track, lying[0].devices[1:3], lying[1])
+    short = build_section(lying[0].track, lying[0].devices[1:3], lying[1])
     made = written_step.step(short)
     assert made == written_step.step(short)
     assert made.startswith(b"ISO-10303-21;") and b"track section" in made

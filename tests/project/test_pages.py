@@ -134,7 +134,6 @@ def test_the_folders_on_the_page_are_there():
 def test_a_release_knows_its_version_and_its_changes():
     text = (ROOT / "CHANGELOG.md").read_text()
     version = re.search(r'__version__ = "(.*)"', (ROOT / "feederscrew/__init__.py").read_text())[1]
-    assert f'version = "{version}"' in (ROOT / "pyproject.toml").read_text()
     assert re.search(r"^## (\S+?),", text, re.MULTILINE)[1] == version
     said = subprocess.run([sys.executable, "docs/release.py"], cwd=ROOT, capture_output=True, text=True)
     assert f"git tag v{version}" in said.stdout and not said.stderr
@@ -148,4 +147,6 @@ def test_every_picture_of_the_pages_is_made_by_make_docs():
 def test_every_picture_is_shown_on_a_page():
     """One was made and never shown: the page spoke of 'the picture above'."""
     shown = {target for page in PAGES for target in re.findall(r"!\[[^\]]+\]\(([^)]+)\)", page.read_text())}
-    assert {Path(target).name for target in shown} == {path.name for path in DOCS.glob("*.png")}
+    assert {Path(target).name for target in shown} == {
+        path.name for path in DOCS.iterdir() if path.suffix in (".png", ".gif")
+    }

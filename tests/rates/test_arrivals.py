@@ -87,7 +87,7 @@ def test_what_arrives_is_named_and_what_is_undecided_is_said(part):
         arrivals.arrived(aspects, stopped, 1).warnings[-1] == "the parts on the floor were stopped after 80"
     )
     nothing = arrivals.arrived(aspects, arrival(p=np.full(3, np.nan)), 1)
-    assert nothing.recommended is aspects.recommended and nothing.warnings[-1] == arrivals.NOTHING
+    assert nothing.recommended is aspects.recommended and nothing.warnings[-1] == arrivals.NO_ARRIVALS_MESSAGE
 
 
 def test_a_bowl_of_its_own_feeds_parts_onto_its_floor(part, plain):

@@ -41,9 +41,9 @@ def test_gentle_solutions_lead():
     orders = [one.order for one in found]
     assert orders == sorted(orders)
     assert (
-        drive_settings.GENTLE.index("forward")
-        < drive_settings.GENTLE.index("both")
-        < drive_settings.GENTLE.index("hop")
+        drive_settings.REGIMES_BY_GENTLENESS.index("forward")
+        < drive_settings.REGIMES_BY_GENTLENESS.index("both")
+        < drive_settings.REGIMES_BY_GENTLENESS.index("hop")
     )
 
 
@@ -92,14 +92,16 @@ def test_what_arrives_at_a_setting_counts_there():
     assert {one.key.name for one in found} == set(drive_settings.KNOBS)
     for one in found:
         there = drive_settings.turned(BOWL, one.key, one.value)
-        assert answer.answer(there).velocity * fewer(there) == pytest.approx(0.05, rel=drive_settings.CLOSE)
-        assert one.rate == pytest.approx(0.05, rel=drive_settings.CLOSE)
+        assert answer.answer(there).velocity * fewer(there) == pytest.approx(
+            0.05, rel=drive_settings.RATE_TOLERANCE
+        )
+        assert one.rate == pytest.approx(0.05, rel=drive_settings.RATE_TOLERANCE)
 
 
 def test_values_are_the_same_when_they_are_given_back():
     for one in drive_settings.solutions(BOWL, 0.05, per_metre):
         assert one.value == units.quantity(f"{one.shown} {one.key.unit}", one.key.dimension)
-        assert len(f"{one.shown}".replace(".", "").lstrip("0")) <= drive_settings.DIGITS
+        assert len(f"{one.shown}".replace(".", "").lstrip("0")) <= drive_settings.SETTING_DIGITS
 
 
 def test_the_worst_friction_meets_the_target():
@@ -127,7 +129,7 @@ def test_a_velocity_that_jumps_is_met_on_its_faster_side():
     gentle = ("drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")
     bouncing = bowls.read(None, gentle)  # from rest its velocity jumps onto the regular bounce of a period
     for one in drive_settings.solutions(bouncing, 0.866, per_metre):
-        assert one.rate == pytest.approx(0.866, rel=drive_settings.WITHIN)
+        assert one.rate == pytest.approx(0.866, rel=drive_settings.ACCEPTED_RATE_ERROR)
 
 
 def test_many_parts_decide_only_on_settings_that_few_lead_to():
@@ -146,7 +148,9 @@ def test_many_parts_decide_only_on_settings_that_few_lead_to():
     spent = len(asked)
     asked.clear()
     found = drive_settings.solutions(BOWL, 0.4, many, rough=few)
-    assert [one.rate for one in found] == pytest.approx([0.4] * len(found), rel=drive_settings.WITHIN)
+    assert [one.rate for one in found] == pytest.approx(
+        [0.4] * len(found), rel=drive_settings.ACCEPTED_RATE_ERROR
+    )
     assert {one.key.name for one in found} == {one.key.name for one in plain}
     decided = [bowl for bowl in asked if bowl is not None]
     assert len(decided) <= 2 * len(found) < spent

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from feederscrew.errors import FeederError
-from feederscrew.rates import passing
+from feederscrew.rates import stream
 from feederscrew.resting.counts import count_rows, passed
 
 KNOWN = SimpleNamespace(
@@ -27,11 +27,11 @@ def counted(*rows):
 
 
 def test_parts_are_followed_from_device_to_device():
-    flow = passing.ways(KNOWN, ("A", "B", "C"))
+    flow = stream.station_shares(KNOWN, ("A", "B", "C"))
     np.testing.assert_allclose(flow[0], [[1, 1, 0], [1, 0, 0], [0.875, 0, 0], [0.125, 0, 0]])
-    share = passing.passing(flow, np.array([0.5, 0.2, 0.3]))
+    share = stream.passing_shares(flow, np.array([0.5, 0.2, 0.3]))
     np.testing.assert_allclose(share, [0.5 / 0.7, 0.875, 0.125 / 0.875, 0.0])
-    assert np.isnan(passing.passing(flow, np.array([0.0, 1.0, 0.0]))[1])
+    assert np.isnan(stream.passing_shares(flow, np.array([0.0, 1.0, 0.0]))[1])
 
 
 shares = st.lists(st.floats(0.0, 1.0), min_size=3, max_size=3).map(np.array)
@@ -45,7 +45,7 @@ def test_the_ends_are_those_of_the_corners(came, through, one, other):
     corners = np.array(list(product(*zip(low, high))))
     total = corners @ came
     every = (corners @ (came * through))[total > 0.0] / total[total > 0.0]
-    found = np.array(passing.passing_ends(flow, low, high))[:, 0]
+    found = np.array(stream.passing_ends(flow, low, high))[:, 0]
     if not len(every):
         assert np.isnan(found).all()
     else:
@@ -53,11 +53,15 @@ def test_the_ends_are_those_of_the_corners(came, through, one, other):
 
 
 def test_devices_are_known_by_their_names():
-    assert passing.places(KNOWN, counted("gap_3,1,2", "wiper,3,4", "track,1,0")).tolist() == [3, 1, 0]
+    assert stream.counted_stations(KNOWN, counted("gap_3,1,2", "wiper,3,4", "track,1,0")).tolist() == [
+        3,
+        1,
+        0,
+    ]
     with pytest.raises(FeederError, match=r"c.csv:2: the bowl has no device 'gap' - did you mean gap_"):
-        passing.places(KNOWN, counted("gap,1,2"))
+        stream.counted_stations(KNOWN, counted("gap,1,2"))
     with pytest.raises(FeederError, match=r"c.csv:3: device 'wiper' is that of line 2 - keep one of them"):
-        passing.places(KNOWN, counted("wiper_1,1,2", "wiper,1,2"))
+        stream.counted_stations(KNOWN, counted("wiper_1,1,2", "wiper,1,2"))
 
 
 @pytest.mark.parametrize(

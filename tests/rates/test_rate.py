@@ -12,6 +12,7 @@ from feederscrew.conveying import answer, sensitivity
 from feederscrew.errors import FeederError
 from feederscrew.part.reading.from_file import load
 from feederscrew.rates import well_oriented
+from feederscrew.rates.stream import follow_orientations
 from feederscrew.rates.well_oriented import Range
 from feederscrew.resting.aspects import find
 
@@ -26,7 +27,7 @@ LSHAPE = [(0, 0), (30, 0), (30, 3), (3, 3), (3, 20), (0, 20)]
 def stream(mesh, track=STRAIGHT, chain=()):
     part = shapes.part(mesh)
     found = find(part)
-    return part, found, well_oriented.orientations(part, found, track, chain)
+    return part, found, follow_orientations(part, found, track, chain)
 
 
 def chain(tmp_path, text):
@@ -89,7 +90,7 @@ def test_what_falls_off_at_the_entry_is_in_nobodys_way(width, wanted):
     part = load(PARTS / "lbracket_30x20x15.stl")
     found = find(part)
     target = well_oriented.wanted(part, found, bowl.track, "A")
-    known = well_oriented.orientations(part, found, bowl.track)
+    known = follow_orientations(part, found, bowl.track)
     made = well_oriented.rate(known, well_oriented.velocity(bowl), target, "quasistatic")
     assert made.parts.value * 60 == pytest.approx(wanted, abs=5e-4)
     chance, stays = known.rules["quasistatic"], known.passes[:, 0] == 1.0

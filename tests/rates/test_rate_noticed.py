@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from feederscrew.mechanics.track.frame import seat
-from feederscrew.rates import steadiness, stream, tipping, well_oriented
+from feederscrew.rates import stream, tipping, well_oriented
 from feederscrew.rates.well_oriented import Range
 from feederscrew.tooling.devices.kinds import made
 
@@ -20,7 +20,9 @@ def known():
     """Every orientation of the skew body behind a blade that some of them do not pass."""
     part, aspects = awkward.part()
     bowl = awkward.bowl()
-    return stream.orientations(part, aspects, bowl.track, [made("wiper", "test", limit=14e-3)], bowl=bowl)
+    return stream.follow_orientations(
+        part, aspects, bowl.track, [made("wiper", "test", limit=14e-3)], bowl=bowl
+    )
 
 
 def target(known, row):
@@ -93,9 +95,9 @@ def test_what_tips_lies_on_its_foot_and_what_rolls_on_its_line():
             continue
         place = seat(one.posture, one.heading, one.touching, np.radians(3.0))
         np.testing.assert_array_equal(
-            tipping.seated(replace(one, kind="flat"), np.radians(3.0)).contact, place.contact
+            tipping.seat_in_groove(replace(one, kind="flat"), np.radians(3.0)).contact, place.contact
         )
-        line = tipping.seated(replace(one, kind="rolling"), np.radians(3.0)).contact
+        line = tipping.seat_in_groove(replace(one, kind="rolling"), np.radians(3.0)).contact
         assert (line[:, 0].min(), line[:, 0].max()) == (place.contact[:, 0].min(), place.contact[:, 0].max())
         assert np.abs(line[:, 1]).min() > np.abs(place.contact[:, 1]).max()
 
@@ -113,8 +115,8 @@ def test_a_part_tips_over_the_side_that_the_force_is_farthest_beyond(point, reac
 def test_what_the_first_device_that_returns_it_may_leave_is_not_surely_gone(monkeypatch):
     lying = [SimpleNamespace(returned=back) for back in (False, True, False, False)]
     passes = np.array([[1.0, 1.0, 0.0], [1.0, 0.0, 1.0], [1.0, 0.0, 0.0], [1.0, 1.0, 1.0]])
-    monkeypatch.setattr(steadiness, "surely_gone", lambda device, one: device == "sure")
-    assert steadiness.gone(["unsure", "sure"], lying, passes).tolist() == [True, True, False, True]
+    monkeypatch.setattr(tipping, "surely_gone", lambda device, one: device == "sure")
+    assert tipping.is_surely_gone(["unsure", "sure"], lying, passes).tolist() == [True, True, False, True]
 
 
 def test_no_more_leave_than_fit_on_the_track_behind_what_turns_them_lengthwise(known):

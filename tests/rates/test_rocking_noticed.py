@@ -10,8 +10,8 @@ import shapes
 from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import seat
-from feederscrew.rates import rocking, steadiness, stream, tipping
-from feederscrew.rates.rocking import INSTANTS, Rocker, goes_over
+from feederscrew.rates import stream, tipping
+from feederscrew.rates.tipping import ROCKING_STEPS, Rocker, goes_over
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import made
 
@@ -20,16 +20,18 @@ GRAVITY = 9.81
 
 def sliding(ahead, back, push, instants):
     """Motions of a part at rest, sliding ahead, and sliding back, pushed off at some instants only."""
-    slides, rest = np.zeros(INSTANTS, bool), np.zeros((INSTANTS, 2))
+    slides, rest = np.zeros(ROCKING_STEPS, bool), np.zeros((ROCKING_STEPS, 2))
     slides[list(instants)], rest[list(instants), 0] = True, push
-    braked = [np.column_stack([np.full(INSTANTS, one), np.zeros(INSTANTS)]) for one in (-ahead, back)]
+    braked = [
+        np.column_stack([np.full(ROCKING_STEPS, one), np.zeros(ROCKING_STEPS)]) for one in (-ahead, back)
+    ]
     return [SimpleNamespace(acceleration=one, slides=slides) for one in (rest, *braked)]
 
 
 @pytest.mark.parametrize(("push", "sense", "brake"), [(7.0, 1, 1.0), (-7.0, 2, 0.5)])
 def test_a_part_slides_on_until_the_friction_of_its_direction_has_stopped_it(push, sense, brake):
     """From a push it slides for push over brake instants, each way with a brake of its own."""
-    found = rocking._senses(sliding(1.0, 0.5, push, [5]), 1e-3)
+    found = tipping._senses(sliding(1.0, 0.5, push, [5]), 1e-3)
     lasts = int(abs(push) / brake)
     assert np.flatnonzero(found).tolist() == list(range(5, 5 + lasts))
     assert set(found[5 : 5 + lasts]) == {sense}
@@ -37,7 +39,7 @@ def test_a_part_slides_on_until_the_friction_of_its_direction_has_stopped_it(pus
 
 def test_the_sliding_of_a_settled_period_does_not_begin_at_rest():
     """Pushed late in a period, a part comes sliding into the next one."""
-    found = rocking._senses(sliding(1.0, 0.5, 9.0, [INSTANTS - 4]), 1e-3)
+    found = tipping._senses(sliding(1.0, 0.5, 9.0, [ROCKING_STEPS - 4]), 1e-3)
     assert found[:5].all() and found[-4:].all() and not found[5:-4].any()
 
 
@@ -46,16 +48,16 @@ def test_seen_at_any_instant_a_settled_part_slides_as_the_point_mass_does():
     bowl = awkward.plain_bowl("track.radius=100 m", "track.bank=0 deg", "drive.amplitude=0.3 mm")
     one = next(one for one in awkward.lying("track.radius=100 m", "track.bank=0 deg") if one.kind == "flat")
     place = seat(one.posture, one.heading, one.touching, 0.0)
-    phase = phases(INSTANTS)
-    motions = [balance.motion(place, bowl, phase, np.full(INSTANTS, sense)) for sense in rocking.SENSES]
-    found = rocking._senses(motions, 1.0 / bowl.drive.frequency / INSTANTS)
+    phase = phases(ROCKING_STEPS)
+    motions = [balance.motion(place, bowl, phase, np.full(ROCKING_STEPS, sense)) for sense in tipping.SENSES]
+    found = tipping._senses(motions, 1.0 / bowl.drive.frequency / ROCKING_STEPS)
     assert {0, 1, 2} >= set(found) and (found == 1).any()
     drive, climb = bowl.drive, bowl.track.climb
     fine, speed, settled = 400, 0.0, {}
-    step = 1.0 / drive.frequency / (fine * INSTANTS)
+    step = 1.0 / drive.frequency / (fine * ROCKING_STEPS)
     top = drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2
-    for k in range(6 * fine * INSTANTS):
-        drop = -top * np.sin(phase[0] + 2.0 * np.pi * k / (fine * INSTANTS))
+    for k in range(6 * fine * ROCKING_STEPS):
+        drop = -top * np.sin(phase[0] + 2.0 * np.pi * k / (fine * ROCKING_STEPS))
         along = -drop * np.cos(drive.vibration_angle) - bowl.gravity * np.sin(climb)
         press = bowl.gravity * np.cos(climb) + drop * np.sin(drive.vibration_angle)
         if speed == 0.0:
@@ -64,8 +66,8 @@ def test_seen_at_any_instant_a_settled_part_slides_as_the_point_mass_does():
             after = speed + step * (along - np.sign(speed) * bowl.friction.kinetic * press)
             speed = after if after * speed > 0.0 else 0.0
         if k % fine == 0:
-            settled[k // fine % INSTANTS] = np.sign(speed)
-    senses = np.array([settled[k] for k in range(INSTANTS)])
+            settled[k // fine % ROCKING_STEPS] = np.sign(speed)
+    senses = np.array([settled[k] for k in range(ROCKING_STEPS)])
     told = np.array([0.0, 1.0, -1.0])[found]
     assert (senses == told).mean() > 0.9  # the first and the last instant of a slide are a close call
 
@@ -89,8 +91,8 @@ def test_an_impact_keeps_the_angular_momentum_about_the_side_it_lands_on(share, 
     time = np.sqrt((spread + far**2 + height**2) / (GRAVITY * height))
     rate = share * far / (height * time) / kept
     count, step = 16000, 5e-5
-    monkeypatch.setattr(rocking, "INSTANTS", count)
-    monkeypatch.setattr(rocking, "FOLLOWED", 1)
+    monkeypatch.setattr(tipping, "ROCKING_STEPS", count)
+    monkeypatch.setattr(tipping, "FOLLOWED", 1)
     offset = np.zeros(count)
     offset[0] = rate / step * (spread + near**2 + height**2) / GRAVITY + near
     pushed = Rocker(near, far, height, spread, force=np.full(count, GRAVITY), offset=offset)
@@ -127,8 +129,8 @@ def flat():
 def followed(monkeypatch, one, bowl, limit):
     """What is asked of rocking for a part over a gap, answered by never: (Rocker, start) in their order."""
     asked = []
-    monkeypatch.setattr(steadiness, "goes_over", lambda *args: asked.append(args) or False)
-    steadiness.steady([made("gap", "test", limit=limit)], [one], bowl, 2.5e-4)
+    monkeypatch.setattr(tipping, "goes_over", lambda *args: asked.append(args) or False)
+    tipping.steady([made("gap", "test", limit=limit)], [one], bowl, 2.5e-4)
     return asked
 
 
@@ -149,17 +151,17 @@ def test_it_may_land_at_any_time_of_the_period(monkeypatch, flat):
     """The instants at which it is tried to land are spread evenly over the whole period, at least eight."""
     asked = followed(monkeypatch, flat, awkward.plain_bowl(), flat.gap - 1e-4)
     starts = [start for _, _, *given in asked for start in given]
-    around = np.diff([*sorted(starts), sorted(starts)[0] + INSTANTS])
+    around = np.diff([*sorted(starts), sorted(starts)[0] + ROCKING_STEPS])
     assert len(starts) >= 8 and around.max() == around.min()
 
 
 def test_a_part_rocks_over_the_side_about_which_the_moment_is_greatest(monkeypatch):
     """Not the one that the strongest force lies beyond: 20 at half a millimetre, 5 at three of them."""
     contact = 1e-3 * np.array([[-3.0, -2.0], [5.0, -2.0], [5.0, 4.0], [-3.0, 4.0]])
-    force, offset = np.full(INSTANTS, 9.81), np.zeros((INSTANTS, 2))
+    force, offset = np.full(ROCKING_STEPS, 9.81), np.zeros((ROCKING_STEPS, 2))
     force[:2], offset[0], offset[1] = [20.0, 5.0], [5.5e-3, 0.0], [0.0, -5e-3]
-    monkeypatch.setattr(rocking, "over_period", lambda *_: (force, offset))
-    found = rocking.rocker(SimpleNamespace(contact=contact, height=6e-3), lambda angle: angle, None)
+    monkeypatch.setattr(tipping, "over_period", lambda *_: (force, offset))
+    found = tipping.rocker(SimpleNamespace(contact=contact, height=6e-3), lambda angle: angle, None)
     assert (found.near, found.far) == pytest.approx((2e-3, 4e-3), rel=1e-9)
     assert np.sin(found.spread) == pytest.approx(0.0, abs=1e-9)  # about the direction along the track
     np.testing.assert_allclose(found.offset[:2], [0.0, 5e-3], atol=1e-12)
@@ -190,6 +192,6 @@ def test_what_is_late_for_the_next_stroke_is_followed(monkeypatch):
 def told(part, bowl):
     """Each orientation and what tipping says of it."""
     found = find(part)
-    known = stream.orientations(part, found, bowl.track)
+    known = stream.follow_orientations(part, found, bowl.track)
     rows = tipping.tipping(known.lying, bowl)
     return zip(known.lying, rows.tips, rows.tilt, rows.balance, rows.over)

@@ -8,9 +8,8 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.mechanics.track.frame import seat
-from feederscrew.rates import steadiness, stream
-from feederscrew.rates.rocking import over_period
-from feederscrew.rates.steadiness import steady
+from feederscrew.rates import stream, tipping
+from feederscrew.rates.tipping import over_period, steady
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.orientations import orientations
@@ -91,7 +90,7 @@ def test_what_is_round_is_sure_of_nothing_without_a_bank():
     def said(bank):
         bowl = bowls.read(None, ["track.width=30 mm", f"track.bank={bank} deg"])
         sorter = made("sorter", "test", like=("A", 0.0, 2e-3), sees="height")
-        found = stream.orientations(pin, aspects, bowl.track, [sorter], bowl=bowl)
+        found = stream.follow_orientations(pin, aspects, bowl.track, [sorter], bowl=bowl)
         row = next(k for k, one in enumerate(found.lying) if one.kind == "rolling" and one.length > 0.019)
         return found.sure[row]
 
@@ -108,4 +107,4 @@ def test_what_is_round_is_sure_of_nothing_without_a_bank():
     ],
 )
 def test_a_blade_takes_nothing_from_under_a_part_and_a_gap_what_it_is_wide(upright, kind, limit, takes):
-    assert bool(steadiness._takes(made(kind, "test", limit=limit), upright)) == takes
+    assert bool(tipping._takes(made(kind, "test", limit=limit), upright)) == takes

@@ -12,7 +12,7 @@ from feederscrew import bowl as bowls
 from feederscrew.conveying.answer import throw_number
 from feederscrew.conveying.hop import hop
 from feederscrew.rates import stream, tipping
-from feederscrew.rates.steadiness import steady
+from feederscrew.rates.tipping import steady
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.base import UNSURE
 from feederscrew.tooling.devices.kinds import made
@@ -29,7 +29,7 @@ def thrown(throw, *more):
 
 def lying(bowl, *sizes, chain=()):
     part = shapes.part(shapes.box(*sizes))
-    return stream.orientations(part, find(part), bowl.track, chain, bowl=bowl)
+    return stream.follow_orientations(part, find(part), bowl.track, chain, bowl=bowl)
 
 
 def one_of(bowl, *sizes, length):
@@ -133,7 +133,7 @@ def test_the_wall_turns_what_it_holds_before_its_corner(wide, yaws):
 
 def test_what_is_round_has_no_heading_to_lose():
     part = shapes.part(shapes.cylinder(7, 5, 48))
-    flat = stream.orientations(part, find(part), thrown(1.8).track, bowl=thrown(1.8)).lying[0]
+    flat = stream.follow_orientations(part, find(part), thrown(1.8).track, bowl=thrown(1.8)).lying[0]
     assert flat.kind == "flat" and not flat.may_yaw
 
 

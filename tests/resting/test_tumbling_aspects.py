@@ -6,9 +6,8 @@ import shapes
 import trimesh
 
 from feederscrew.errors import MeshError
-from feederscrew.output import tables
-from feederscrew.output.aspects import tables as aspects_tables
-from feederscrew.output.graph import tables as graph_tables
+from feederscrew.output import aspects as aspects_output
+from feederscrew.output import tables, tipping_graph
 from feederscrew.resting.aspects import find
 from feederscrew.resting.tumbling.by_class import exact, ground, transitions
 from feederscrew.studies.aspects import AspectsStudy
@@ -60,30 +59,32 @@ def test_a_cube_tips_into_its_equals():
 def test_the_graph_is_a_table(rng):
     part, aspects, _, result = everything(shapes.box(10.0, 20.0, 30.0))
     study = AspectsStudy(part, aspects)
-    frame = graph_tables.transitions(study)
+    frame = tipping_graph.transitions(study)
     assert list(frame) == ["from", "to", "barrier_mm", "barrier_uJ", "axis_x", "axis_y", "axis_z"]
     assert list(zip(frame["from"], frame["to"])) == [(a, b) for a in "ABC" for b in "ABC" if a != b]
     assert np.hypot(np.hypot(frame["axis_x"], frame["axis_y"]), frame["axis_z"]) == pytest.approx(1.0)
     assert tables.data_frame(frame).groupby("from")["barrier_mm"].min().to_numpy() == pytest.approx(
         1e3 * result.barriers
     )
-    assert aspects_tables.aspects(study)["tip_angle_deg"][0] == pytest.approx(np.degrees(np.arctan(2.0)))
+    assert aspects_output.aspects(study)["tip_angle_deg"][0] == pytest.approx(np.degrees(np.arctan(2.0)))
 
 
 def test_the_graph_is_drawn():
-    from feederscrew.output.graph import figures as graph_plots
+    from feederscrew.output import tipping_graph
 
     _, aspects, found, result = everything(shapes.box(10.0, 20.0, 30.0))
-    figure = graph_plots.graph("box", aspects.names, transitions(found), result.probabilities["quasistatic"])
+    figure = tipping_graph.graph(
+        "box", aspects.names, transitions(found), result.probabilities["quasistatic"]
+    )
     texts = {text.get_text() for text in figure.axes[0].texts}
     assert {"A", "B", "C", "6.18"} <= texts
 
 
 def test_no_arrow_of_the_graph_ends_under_a_disc():
-    from feederscrew.output.graph import figures as graph_plots
+    from feederscrew.output import tipping_graph
 
     _, aspects, found, _ = everything(shapes.box(10.0, 20.0, 30.0))
-    axes = graph_plots.graph("box", aspects.names, transitions(found), np.array([1.0, 0.0, 0.0])).axes[0]
+    axes = tipping_graph.graph("box", aspects.names, transitions(found), np.array([1.0, 0.0, 0.0])).axes[0]
     discs = {tuple(disc.get_offsets()[0]): np.sqrt(disc.get_sizes()[0]) / 2.0 for disc in axes.collections}
     arrows = [text for text in axes.texts if getattr(text, "arrow_patch", None)]
     assert len(arrows) == 6

@@ -10,8 +10,9 @@ import numpy as np
 import shapely
 from shapely import affinity
 
-from feederscrew.solidbowl import facets, leaning, measuring
-from feederscrew.tooling.devices.pieces import Hole
+from feederscrew.solidbowl import facets, measuring
+from feederscrew.solidbowl.cuts import lean_at_entry
+from feederscrew.tooling.devices.base import Hole
 
 MM = facets.MM
 UNDER = 3e-4  # [m] below the track's surface, where its plate is cut to see its holes
@@ -55,7 +56,7 @@ def ridden(made, bowl, every):
     """
     plan, body = made.plan, facets.unplaced(made)
     track = _track(plan, body, bowl.track)
-    if leaning.at_entry(bowl.devices):  # its bank stands in their slopes
+    if lean_at_entry(bowl.devices):  # its bank stands in their slopes
         track = replace(track, bank=bowl.track.bank)
     if plan.stretch is None:
         return replace(bowl, track=track, devices=()), []
@@ -116,7 +117,7 @@ def _leaning(plan, device):
 def _tilt(plan, body, s):
     """Bank and climb [rad] of the mesh at lengths along the wall, where there is metal."""
     y = np.array([0.25, 0.75]) * plan.width
-    seen = np.array([[measuring.heights(plan, body, one, at) or np.nan for at in y] for one in s])
+    seen = np.array([[measuring.track_heights(plan, body, one, at) or np.nan for at in y] for one in s])
     there = np.abs(seen - plan.way.height(s[:, None], y)).max(axis=1) < 1e-3
     s, seen = s[there], seen[there]
     bank = np.arcsin(np.mean(seen[:, 1] - seen[:, 0]) / (y[1] - y[0]))
@@ -138,7 +139,7 @@ def _lower(plan, flat, body, own):
     """How much lower [m] the track goes on at a step or beside a ledge, and how wide the ledge is."""
     at = next(at for at, drop in plan.way.drops if abs(drop - own.drop) < 1e-9)
     y = 0.5 * (own.aside + plan.width)
-    before, behind = (measuring.heights(plan, body, s, y) for s in (at - 3e-4, at + 3e-4))
+    before, behind = (measuring.track_heights(plan, body, s, y) for s in (at - 3e-4, at + 3e-4))
     drop = float(before - behind + np.tan(plan.way.climb) * 6e-4)
     if own.aside == 0.0:
         return drop, 0.0
@@ -151,7 +152,7 @@ def _track(plan, body, track):
     s = np.linspace(0.6, 0.98, PLACES) * plan.first
     widths = [measuring.track_width(plan, body, one) for one in s]
     heights = np.array(
-        [[measuring.heights(plan, body, one, y * plan.width) for y in (0.2, 0.8)] for one in s]
+        [[measuring.track_heights(plan, body, one, y * plan.width) for y in (0.2, 0.8)] for one in s]
     )
     from_middle = s - s.mean()
     slope = (from_middle * heights[:, 0]).sum() / (from_middle**2).sum()  # least squares

@@ -8,7 +8,7 @@ from manifold3d import Manifold
 from test_solid import TRACK, closed, planned
 
 from feederscrew.solidbowl.closed_body import body
-from feederscrew.solidbowl.plan import Asked
+from feederscrew.solidbowl.plan import SolidOptions
 from feederscrew.tooling import whole_surface
 from feederscrew.tooling.devices.kinds import made
 
@@ -63,4 +63,4 @@ def test_rails_behind_a_narrowed_track_of_the_same_edge(seed):
     rails = made("rails", "b", span=(round(0.1 * width, 4), limit))
     track = replace(TRACK, radius=radius, width=width)
     chain = (made("narrowed_track", "b", limit=limit, text="x"), rails)
-    assert closed(body(planned(chain, track=track, asked=Asked(left=left)))) > 0.0
+    assert closed(body(planned(chain, track=track, asked=SolidOptions(left=left)))) > 0.0

@@ -12,8 +12,7 @@ from feederscrew.designing import calm_drive, exploring, proposals
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.searching import Search
 from feederscrew.resting.aspects import find
-from feederscrew.solidbowl.materials import STEEL
-from feederscrew.solidbowl.plan import CHORD, TrackTooLow
+from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME, TrackTooLow
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import solidbowl
 from feederscrew.studies.rate import shares
@@ -43,7 +42,7 @@ def drawn(tmp_path, track, climb):
     lines = [f"track.radius={1e3 * track.radius} mm", f"track.width={1e3 * track.width} mm"]
     lines += [] if climb is None else [f"track.climb={np.degrees(climb)} deg"]
     settings = bowls.settings(tmp_path / "bowl.yaml", lines)
-    wanted = solidbowl.asked(settings, solid=True, material=STEEL, chord=CHORD)
+    wanted = solidbowl.asked(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
     return machines.bowl(settings, PART, 0.05, known=ASPECTS, solid=wanted, rule="csa")
 
 

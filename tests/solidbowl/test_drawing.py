@@ -10,11 +10,11 @@ from test_stepped import STEEP, STEPPED
 from feederscrew.bowl.settings import effective, record
 from feederscrew.output.solidbowl import drawing_sheet
 from feederscrew.solidbowl.closed_body import body
-from feederscrew.solidbowl.plan import Asked
+from feederscrew.solidbowl.plan import SolidOptions
 
-TALL = Asked(outlet_height=0.15, left=True)
+TALL = SolidOptions(outlet_height=0.15, left=True)
 CASES = {
-    "cylinder": (CHAINS["narrowed and rails"], TRACK, Asked()),
+    "cylinder": (CHAINS["narrowed and rails"], TRACK, SolidOptions()),
     "tall and left": ((), TRACK, TALL),
     "stepped": (CHAINS["gap"], STEEP, STEPPED),
 }

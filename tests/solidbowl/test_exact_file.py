@@ -11,12 +11,12 @@ from feederscrew.errors import FeederError
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.exact import exact_body
 from feederscrew.solidbowl.exact.exact_file import step_file
-from feederscrew.solidbowl.plan import Asked
+from feederscrew.solidbowl.plan import SolidOptions
 
 
 @pytest.mark.needs("OCP")
 def test_what_is_opened_again_is_the_bowl():
-    asked, track = Asked(left=True, outlet_angle=0.5), replace(TRACK, bank=np.radians(6.0))
+    asked, track = SolidOptions(left=True, outlet_angle=0.5), replace(TRACK, bank=np.radians(6.0))
     made = body(planned(CHAINS["narrowed and rails"], track=track, asked=asked, turns=0.6))
     found = step_file(made)
     assert found.data.startswith(b"ISO-10303-21;") and b"'bowl'" in found.data
@@ -43,7 +43,7 @@ def test_what_to_install(monkeypatch):
 )
 def test_a_wall_that_steps_outwards_is_the_bowl_of_the_facets(shape, turns, climb, width):
     track = replace(TRACK, climb=np.radians(climb), width=width)
-    made = body(planned(CHAINS["none"], track=track, asked=Asked(shape=shape), turns=turns))
+    made = body(planned(CHAINS["none"], track=track, asked=SolidOptions(shape=shape), turns=turns))
     found = step_file(made)
     assert found.volume == pytest.approx(made.volume, rel=1.5e-3)
     assert found.volume > made.volume

@@ -9,16 +9,15 @@ from test_solid import CHAINS, GAP, NEAR, RAILS, TRACK, One, closed, made, plann
 from test_stepped import STEPPED
 
 from feederscrew.output.solidbowl import drawing_sheet, unrolled_strip
-from feederscrew.solidbowl import facets, leaning, track
+from feederscrew.solidbowl import cuts, facets, track
 from feederscrew.solidbowl.closed_body import body, pieces
-from feederscrew.solidbowl.exact import exact_body, exact_faces
-from feederscrew.solidbowl.measuring import heights, measures, track_width
-from feederscrew.solidbowl.plan import Asked
-from feederscrew.solidbowl.ways_down import ways_down
+from feederscrew.solidbowl.exact import exact_body
+from feederscrew.solidbowl.measuring import measures, track_heights, track_width, ways_down
+from feederscrew.solidbowl.plan import SolidOptions
 
 STEEP = replace(TRACK, climb=np.radians(6.5))
 TIP = made("tip", "b", limit=6e-3, text="6 mm")
-SHAPES = {"cylinder": (TRACK, Asked()), "stepped": (STEEP, replace(STEPPED, left=True))}
+SHAPES = {"cylinder": (TRACK, SolidOptions()), "stepped": (STEEP, replace(STEPPED, left=True))}
 
 
 def bank(degrees):
@@ -41,7 +40,7 @@ def test_a_bank_further_on_twists_the_track(shape, rng):
         flat = place[0] * np.array([np.cos(place[1]), np.sin(place[1])])
         np.testing.assert_allclose(plan.way.plan(s, y), flat, rtol=0, atol=1e-12)
         formula = np.tan(own.climb) * s + y * np.sin(tilt)
-        assert heights(plan, whole, s, y) == pytest.approx(formula, abs=NEAR)
+        assert track_heights(plan, whole, s, y) == pytest.approx(formula, abs=NEAR)
     for s in (start - 1e-3, *(start + (end - start) * np.array([0.3, 0.7])), end + 2e-3):
         assert track_width(plan, whole, s) == pytest.approx(TRACK.width, abs=NEAR)
     assert measures(solid).outlet_height == pytest.approx(plan.outlet_height, abs=NEAR)
@@ -70,15 +69,15 @@ def test_the_outlet_is_whole_up_to_its_side(degrees, rng):
     assert facets.unplaced(made_of).volume() == pytest.approx(whole.volume(), rel=1e-6)
     for s in rng.uniform(plan.way.end + 1e-3, plan.way.end + plan.outlet - 1e-3, 40):
         y = rng.uniform(16e-3, plan.width - 1e-4)
-        met = heights(plan, facets.unplaced(made_of), s, y)
+        met = track_heights(plan, facets.unplaced(made_of), s, y)
         assert met == pytest.approx(float(plan.way.height(s, y)), abs=NEAR)
 
 
 def test_banks_listed_first_are_those_of_the_whole_track():
     one = One(length=18e-3, height=12e-3, width=14e-3, track=TRACK)
-    assert leaning.banked(TRACK, (bank(3.0), bank(6.0), GAP, bank(9.0)), [one]).bank == np.radians(6.0)
+    assert cuts.banked_height(TRACK, (bank(3.0), bank(6.0), GAP, bank(9.0)), [one]).bank == np.radians(6.0)
     chain = (bank(6.0), GAP, bank(6.0))
-    own = leaning.banked(TRACK, chain, [one])
+    own = cuts.banked_height(TRACK, chain, [one])
     assert planned(chain, track=own).way.leans == ()
     ((start, end, angle),) = planned((bank(3.0), GAP, bank(0.0)), track=replace(own, bank=0.05)).way.leans
     assert angle == 0.0 and end - start == pytest.approx(0.65 * 18e-3)  # half a room, and gentle enough
@@ -116,7 +115,7 @@ def test_a_step_higher_than_the_plate_is_one_exact_body():
     """Two runs of track that do not meet were united before what joins them: one of them was lost."""
     plan = planned((TIP,))
     exact, flat = (track.slab(plan, kit) for kit in (exact_body, facets))
-    assert exact_faces.volume(exact) == pytest.approx(flat.volume(), rel=3e-3)
+    assert exact_body.volume(exact) == pytest.approx(flat.volume(), rel=3e-3)
 
 
 def test_a_yoke_of_banked_rails_lies_below_their_surface():
@@ -126,7 +125,7 @@ def test_a_yoke_of_banked_rails_lies_below_their_surface():
     for s in behind + np.array([1e-3, 3e-3, 5e-3]):
         for y in (5e-4, 2.5e-3, 8e-3, 19e-3):
             formula = np.tan(np.radians(4.0)) * s + y * np.sin(np.radians(15.0))
-            assert heights(plan, whole, s, y) == pytest.approx(formula, abs=NEAR)
+            assert track_heights(plan, whole, s, y) == pytest.approx(formula, abs=NEAR)
     assert len(facets.placed(solid).decompose()) == 1
 
 

@@ -14,15 +14,15 @@ from test_stepped import STEEP, STEPPED
 from feederscrew.errors import FeederError
 from feederscrew.output.solidbowl import drawing_sheet, tables, views
 from feederscrew.part import mass
-from feederscrew.solidbowl import facets, lugs, segments
+from feederscrew.solidbowl import facets, segments
 from feederscrew.solidbowl.closed_body import body, screwed
-from feederscrew.solidbowl.plan import Asked
+from feederscrew.solidbowl.plan import SolidOptions
 
 BED = 0.22, 0.22, 0.25
 LOW = 0.22, 0.22, 0.06
 SHAPES = {
-    "cylinder": ("gap", TRACK, Asked(left=True, outlet_angle=0.4), BED),
-    "low bed": ("gap", TRACK, Asked(), LOW),
+    "cylinder": ("gap", TRACK, SolidOptions(left=True, outlet_angle=0.4), BED),
+    "low bed": ("gap", TRACK, SolidOptions(), LOW),
     "stepped": ("gap", STEEP, STEPPED, BED),
     "conical": ("none", STEEP, replace(STEPPED, shape="conical"), LOW),
 }
@@ -45,9 +45,14 @@ def test_a_screw_goes_through_both_halves_of_its_lug(name):
     for one, along, out in found.lugs:
         side = np.cross(along, out)
         towards = np.array([out, side, -out, -side])
-        head, nut = 0.5 * lugs.LENGTH * along, -0.5 * lugs.LENGTH * along
+        head, nut = 0.5 * segments.SCREW_LENGTH_M * along, -0.5 * segments.SCREW_LENGTH_M * along
         assert facets.first_met(whole, one + 1.5 * head, one + 1.5 * nut) == []  # the hole is free
-        for at, free in ((0.0, lugs.HOLE), (6e-3, lugs.HOLE), (-4e-3, lugs.HOLE), (-7e-3, 5.7e-3)):
+        for at, free in (
+            (0.0, segments.HOLE),
+            (6e-3, segments.HOLE),
+            (-4e-3, segments.HOLE),
+            (-7e-3, 5.7e-3),
+        ):
             around = [
                 facets.first_met(whole, one + at * along, one + at * along + 0.015 * w) for w in towards
             ]
@@ -86,7 +91,7 @@ def test_lugs_stand_outside_the_wall_and_off_the_devices(name):
 
 def test_a_bowl_weighs_what_it_does_with_its_lugs_and_screws():
     solid, found, _ = cut("cylinder")
-    heavy = screwed(replace(solid, segments=found), lugs.WEIGHT)
+    heavy = screwed(replace(solid, segments=found), segments.WEIGHT)
     joined, at = mass.solid(found.joined[0][found.joined[1]]), found.screws
     bare = joined.volume * solid.plan.material.density
     total = bare + 1.5e-3 * len(at)
@@ -161,7 +166,7 @@ def test_a_bowl_that_fits_whole_has_no_lugs_and_a_wall_without_room_is_said(monk
     solid = body(planned())
     found = segments.segments(solid, (1.0, 1.0, 1.0), segments.SCREWS)
     assert len(found.pieces) == 1 and len(found.screws) == 0 and found.joined is None
-    monkeypatch.setattr(lugs, "KEPT", 1.0)
+    monkeypatch.setattr(segments, "LUG_CLEARANCE_M", 1.0)
     with pytest.raises(FeederError) as fault:
         segments.segments(solid, (0.2, 0.2, 0.2), segments.SCREWS)
     assert str(fault.value) == "join: no lug for a screw has room at the seams - take dowels"

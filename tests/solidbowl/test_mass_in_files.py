@@ -7,14 +7,13 @@ import pytest
 from test_solid import CHAINS, Asked, planned
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl import unbalance
+from feederscrew.bowl import schema
 from feederscrew.designing import beside
 from feederscrew.errors import FeederError
-from feederscrew.machine.building import machine_for
+from feederscrew.machine.drive_sizing import machine_for
 from feederscrew.machine.sizing import Size
-from feederscrew.machine.springs import centred_mass, springs
-from feederscrew.machine.unbalanced import rocking
-from feederscrew.output.designs import design_file
+from feederscrew.machine.springs import analyse_springs, centred_mass, rocking
+from feederscrew.output import designs
 from feederscrew.solidbowl.closed_body import body
 
 
@@ -27,15 +26,17 @@ def sized(solid):
 def test_a_solid_s_springs_are_the_same_when_its_bowl_file_is_read_back(hand):
     solid = body(planned(CHAINS["gap"], asked=Asked(left=hand == "left", outlet_angle=0.8)))
     under = machine_for(bowls.read(None, ()), sized(solid), set())
-    assert springs(under).effective_mass < centred_mass(under) * (1.0 - 1e-5)
+    assert analyse_springs(under).effective_mass < centred_mass(under) * (1.0 - 1e-5)
     texts = [f"machine.{word}={text}" for word, text in beside._machine(under)]
     again = bowls.read(None, (*texts, f"track.hand={hand}")).machine
     for name in ("moment", "upright", "products", "turns"):
         np.testing.assert_allclose(getattr(again.unbalance, name), getattr(under.unbalance, name), rtol=1e-5)
-    assert springs(again).effective_mass == pytest.approx(springs(under).effective_mass, rel=1e-5)
+    assert analyse_springs(again).effective_mass == pytest.approx(
+        analyse_springs(under).effective_mass, rel=1e-5
+    )
     assert rocking(again, 0.15, 0.05).greatest == pytest.approx(rocking(under, 0.15, 0.05).greatest, rel=1e-6)
-    lines = dict(design_file._unbalance(under))
-    assert list(lines) == list(unbalance.WORDS)
+    lines = dict(designs._unbalance(under))
+    assert list(lines) == list(schema.UNBALANCE_NAMES)
     assert lines["centre_z"] == f"{1e3 * (solid.centre[2] - solid.plan.underside):.9g} mm"
     assert lines["product_xy"] == f"{under.unbalance.products[2]:.9g} kg m2"
 
@@ -51,10 +52,10 @@ def test_what_a_file_says_of_the_mass_is_kept():
 
 def test_a_balanced_machine_has_nothing_to_write():
     machine = bowls.read(None, ()).machine
-    assert unbalance.told(machine) == {} and list(design_file._unbalance(machine)) == []
-    assert unbalance.known({"bowl_mass": 2.0, **dict.fromkeys(unbalance.WORDS, 0.0)}, "left") == {
-        "bowl_mass": 2.0
-    }
+    assert schema.unbalance_values(machine) == {} and list(designs._unbalance(machine)) == []
+    assert schema.with_unbalance(
+        {"bowl_mass": 2.0, **dict.fromkeys(schema.UNBALANCE_NAMES, 0.0)}, "left"
+    ) == {"bowl_mass": 2.0}
 
 
 @pytest.mark.parametrize(
@@ -83,9 +84,11 @@ def test_a_tensor_is_judged_about_the_centre_of_mass(rng):
         second = np.einsum("k,ki,kj->ij", weights, at, at)
         inertia = np.trace(second) - np.diag(second)
         centre = weights @ at / weights.sum()
-        values = dict(zip(unbalance.WORDS, (*centre, *inertia[:2], second[1, 2], second[0, 2], second[0, 1])))
+        values = dict(
+            zip(schema.UNBALANCE_NAMES, (*centre, *inertia[:2], second[1, 2], second[0, 2], second[0, 1]))
+        )
         values |= {"bowl_mass": weights.sum(), "bowl_inertia": inertia[2]}
-        found = unbalance.known(values, "right")["unbalance"]
+        found = schema.with_unbalance(values, "right")["unbalance"]
         np.testing.assert_allclose(found.moment, weights @ at)
         own = second - weights.sum() * np.outer(centre, centre)
         least = np.linalg.eigvalsh(own)[0]
@@ -96,4 +99,4 @@ def test_a_tensor_is_judged_about_the_centre_of_mass(rng):
         }
         assert least > 0.0
         with pytest.raises(FeederError):
-            unbalance.known(values | off, "right")
+            schema.with_unbalance(values | off, "right")

@@ -13,8 +13,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.solidbowl import cuts
 from feederscrew.solidbowl.closed_body import body
-from feederscrew.solidbowl.materials import material
-from feederscrew.solidbowl.plan import Asked, plan
+from feederscrew.solidbowl.plan import SolidOptions, material, plan
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import course
 
@@ -37,7 +36,7 @@ def ridden(tmp_path_factory):
     size = SimpleNamespace(diameter=0.3, depth=0.045)
     tooled = cuts.stretch(bowl.track, bowl.devices, every)
     planned = plan(
-        size, bowl.track, material("steel", RULES), tooled, Asked(), extents=np.array(BLOCK) * 1e-3
+        size, bowl.track, material("steel", RULES), tooled, SolidOptions(), extents=np.array(BLOCK) * 1e-3
     )
     made = body(planned)
     return bowl, part, every, made, *on_mesh.ridden(made, bowl, every)
@@ -89,7 +88,7 @@ def test_other_parts_end_on_the_mesh_as_on_the_analytic_track(name, tmp_path):
     every = orientations(part, find(part), bowl.track)
     size, extents = SimpleNamespace(diameter=0.3, depth=0.05), np.ptp(np.asarray(part.vertices), axis=0)
     tooled = cuts.stretch(bowl.track, bowl.devices, every)
-    made = body(plan(size, bowl.track, material("steel", RULES), tooled, Asked(), extents=extents))
+    made = body(plan(size, bowl.track, material("steel", RULES), tooled, SolidOptions(), extents=extents))
     found, stations = on_mesh.ridden(made, bowl, every)
     assert np.degrees(found.track.bank) == pytest.approx(bank, abs=0.1)
     rows = tuple(range(min(4, len(every))))
@@ -123,7 +122,7 @@ def test_parts_end_alike_where_the_wall_steps_out_or_leans(name, tmp_path):
     part = shapes.part(shapes.box(*PLATE))
     every = orientations(part, find(part), bowl.track)
     tooled = cuts.stretch(bowl.track, bowl.devices, every) if devices else None
-    asked, size = Asked(shape=shape), SimpleNamespace(diameter=0.3, depth=0.05)
+    asked, size = SolidOptions(shape=shape), SimpleNamespace(diameter=0.3, depth=0.05)
     made = body(
         plan(size, bowl.track, material("steel", RULES), tooled, asked, extents=np.array(PLATE) / 1e3)
     )

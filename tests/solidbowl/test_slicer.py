@@ -10,12 +10,12 @@ from test_stepped import STEEP
 
 from feederscrew.output.solidbowl import printing
 from feederscrew.solidbowl.closed_body import body
-from feederscrew.solidbowl.plan import Asked
+from feederscrew.solidbowl.plan import SolidOptions
 
 SLICER = shutil.which("prusa-slicer")
 
 
-FLAT = Asked(shape="stepped", chord=2e-4, outlet_height=0.03)
+FLAT = SolidOptions(shape="stepped", chord=2e-4, outlet_height=0.03)
 COARSE = ["--layer-height", "1", "--first-layer-height", "1", "--nozzle-diameter", "1.4",
           "--fill-density", "0%", "--bed-shape", "0x0,400x0,400x400,0x400"]  # fmt: skip
 

@@ -13,17 +13,14 @@ from feederscrew.bowl.record import Track
 from feederscrew.bowl.schema import BY_NAME
 from feederscrew.bowl.settings import effective, record
 from feederscrew.errors import FeederError
-from feederscrew.machine.building import machine_for
+from feederscrew.machine.drive_sizing import machine_for
 from feederscrew.machine.sizing import Size
-from feederscrew.machine.springs import centred_mass, springs
-from feederscrew.machine.unbalanced import rocking
+from feederscrew.machine.springs import analyse_springs, centred_mass, rocking
 from feederscrew.output.solidbowl import printing
 from feederscrew.solidbowl import cuts, facets, riding, segments
 from feederscrew.solidbowl.closed_body import body
-from feederscrew.solidbowl.materials import material
-from feederscrew.solidbowl.measuring import heights, measures, track_width
-from feederscrew.solidbowl.plan import Asked, plan
-from feederscrew.solidbowl.ways_down import ways_down
+from feederscrew.solidbowl.measuring import measures, track_heights, track_width, ways_down
+from feederscrew.solidbowl.plan import SolidOptions, material, plan
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.devices.kinds import made as device_of
 
@@ -50,7 +47,7 @@ class One(SimpleNamespace):
 
 
 def planned(devices=(), track=TRACK, asked=None, name="steel", turns=1.5):
-    asked = Asked() if asked is None else asked
+    asked = SolidOptions() if asked is None else asked
     one = One(length=18e-3, height=12e-3, width=14e-3, track=track)
     pitch = 2.0 * np.pi * track.radius * np.tan(track.climb)
     size = Size(2.0 * track.radius, {}, track.width, 0.0, 0.0, track.climb, turns * pitch, turns, pitch)
@@ -96,7 +93,7 @@ def test_height_and_width_of_the_track_are_those_of_the_formula(bank, rng):
     made, whole = solid.plan, facets.unplaced(solid)
     s = rng.uniform(0.02, made.way.end, 200)
     y = rng.uniform(2e-4, TRACK.width - 3e-4, 200)
-    found = np.array([heights(made, whole, *one) for one in zip(s, y)])
+    found = np.array([track_heights(made, whole, *one) for one in zip(s, y)])
     formula = np.tan(made.way.climb) * s + y * np.sin(made.way.bank)
     np.testing.assert_allclose(found, formula, rtol=0, atol=NEAR)
     np.testing.assert_allclose(made.way.height(s, y), formula, rtol=0, atol=1e-12)
@@ -115,15 +112,15 @@ def test_a_separation_leads_the_track_down_from_its_place_on():
     assert plan.first < bend < plan.way.end and climb == np.radians(-5.0)
     for s in np.linspace(0.3 * bend, plan.way.end - 2e-3, 60):
         formula = np.tan(TRACK.climb) * s if s < bend else top - np.tan(np.radians(5.0)) * (s - bend)
-        found = heights(plan, whole, s, 15e-3)
+        found = track_heights(plan, whole, s, 15e-3)
         in_gap = any(a - 1e-3 < s - plan.first < b + 1e-3 for a, b in (cut.span for cut in plan.stretch.cuts))
         assert in_gap or found == pytest.approx(formula, abs=NEAR)
     assert measures(solid).outlet_height == pytest.approx(plan.outlet_height, abs=NEAR)
     assert plan.top > top + 12e-3 and plan.outlet_height < top
-    asked = planned(chain, asked=Asked(outlet_height=0.04))
+    asked = planned(chain, asked=SolidOptions(outlet_height=0.04))
     assert asked.outlet_height == pytest.approx(0.04, abs=1e-9)
     with pytest.raises(FeederError, match=r"^devices: a device leads the track down to .* over the floor"):
-        planned(chain, asked=Asked(outlet_height=0.005))
+        planned(chain, asked=SolidOptions(outlet_height=0.005))
 
 
 def test_what_is_measured_is_what_was_planned():
@@ -137,7 +134,7 @@ def test_what_is_measured_is_what_was_planned():
 
 def test_arcs_keep_within_the_chord():
     for chord in (2e-4, 5e-5, 1e-5):
-        made = planned(asked=Asked(chord=chord))
+        made = planned(asked=SolidOptions(chord=chord))
         assert made.way.radius * (1.0 - np.cos(np.pi / made.segments)) <= chord
 
 
@@ -147,7 +144,7 @@ def test_a_cut_is_as_large_as_its_device_says():
         s = made.first + 0.5 * sum(cut.span)
         for y in np.linspace(3e-4, TRACK.width - 3e-4, 60):
             if min(abs(y - low), abs(y - high)) > NEAR:
-                on_track = heights(made, whole, s, y) > made.way.height(s, y) - 1e-3
+                on_track = track_heights(made, whole, s, y) > made.way.height(s, y) - 1e-3
                 assert on_track == (not low < y < high)
 
 
@@ -162,7 +159,7 @@ def test_the_weight_that_balances_it_brings_its_centre_over_the_axis():
 @pytest.mark.parametrize("left", [False, True])
 def test_the_springs_know_where_its_mass_lies(left, rng):
     """Against moments of points in the body; a left hand rocks as its mirror image does."""
-    solid = body(planned(CHAINS["gap"], asked=Asked(left=left)))
+    solid = body(planned(CHAINS["gap"], asked=SolidOptions(left=left)))
     size = Size(
         0.3, {}, 0.02, 0.0, 0.0, 0.06, 0.05, 1.5, 0.05,
         mass=solid.mass, inertia=solid.inertia, unbalance=solid.unbalance,
@@ -182,7 +179,7 @@ def test_the_springs_know_where_its_mass_lies(left, rng):
     np.testing.assert_allclose([yz, xz, xy], [second[1, 2], second[0, 2], second[0, 1]], rtol=1e-6)
     about = np.trace(second) - np.diag(second)
     np.testing.assert_allclose([*under.unbalance.upright, solid.inertia], about, rtol=1e-9)
-    assert springs(under).effective_mass < centred_mass(under)
+    assert analyse_springs(under).effective_mass < centred_mass(under)
     heavier = machine_for(replace(bowl, machine=replace(bowl.machine, bowl_mass=9.0)), size, {"bowl_mass"})
     np.testing.assert_allclose(heavier.unbalance.moment, 9.0 / solid.mass * (weights @ at), rtol=1e-9)
     as_is, balanced = rocking(under, 0.15, 0.05), rocking(under, 0.15, 0.05, solid.weight)
@@ -199,13 +196,13 @@ def test_the_springs_know_where_its_mass_lies(left, rng):
 
 
 def test_a_left_hand_is_the_mirror_image():
-    right, left = (body(planned(CHAINS["gap"], asked=Asked(left=hand))) for hand in (False, True))
+    right, left = (body(planned(CHAINS["gap"], asked=SolidOptions(left=hand))) for hand in (False, True))
     assert closed(left) == pytest.approx(closed(right), rel=1e-6)  # corners within 2e-3 mm become one
     np.testing.assert_allclose(left.centre * [1, -1, 1], right.centre, rtol=0, atol=1e-8)
 
 
 def test_the_outlet_lies_where_it_is_asked():
-    made = planned(asked=Asked(outlet_height=0.04, outlet_angle=0.7))
+    made = planned(asked=SolidOptions(outlet_height=0.04, outlet_angle=0.7))
     found = body(made)
     assert measures(found).outlet_height == pytest.approx(0.04, abs=NEAR)
     straight = body(replace(made, turned=0.0))
@@ -236,7 +233,7 @@ def test_a_swept_blade_leans_ahead_and_keeps_its_clearance():
 
 @pytest.mark.parametrize("shape", ["cylinder", "stepped"])
 def test_a_nozzle_is_a_hole_through_the_wall(shape):
-    track, asked = replace(TRACK, climb=np.radians(4.5)), Asked(shape=shape, left=True)
+    track, asked = replace(TRACK, climb=np.radians(4.5)), SolidOptions(shape=shape, left=True)
     solid = body(planned(CHAINS["jets"], track=track, asked=asked))
     plan, whole = solid.plan, facets.unplaced(solid)
     assert [bore.height for bore in plan.stretch.bores] == [1e-3, 8e-3]
@@ -279,7 +276,7 @@ def test_a_part_on_the_track_has_its_foot_on_it_and_its_side_on_the_wall(rng):
 def test_a_part_touches_the_wall_where_the_track_is_banked_or_the_wall_leans(bank, shape, rng):
     """It lay 1.9 mm in the wall: its distance is that of the track seen from above."""
     own = replace(TRACK, bank=np.radians(bank), climb=np.radians(4.5))
-    made = planned(track=own, asked=Asked(shape=shape, left=True, outlet_angle=0.3), turns=1.9)
+    made = planned(track=own, asked=SolidOptions(shape=shape, left=True, outlet_angle=0.3), turns=1.9)
     solid, half = body(made), np.array([7e-3, 4e-3, 5e-3])
     whole = facets.unplaced(solid)
     corners = half * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
@@ -325,7 +322,7 @@ def test_gates_are_parts_of_their_own():
     ("bed", "least"), [("220x220x250mm", 4), ("220 mm x 220 mm x 60 mm", 8), ("1x1x1m", 1)]
 )
 def test_segments_fit_the_bed_and_make_up_the_bowl(bed, least):
-    solid = body(planned(CHAINS["gap"], asked=Asked(left=True, outlet_angle=0.4), name="pla"))
+    solid = body(planned(CHAINS["gap"], asked=SolidOptions(left=True, outlet_angle=0.4), name="pla"))
     size, found = segments.bed(bed), segments.segments(solid, segments.bed(bed))
     assert len(found.pieces) >= least
     for one in found.pieces:
@@ -379,56 +376,56 @@ def model_of(data):
     ("track", "asked", "devices", "line"),
     [
         (
-            replace(TRACK, width=0.14), Asked(), (),
+            replace(TRACK, width=0.14), SolidOptions(), (),
             "track.width: 140 mm is too wide for a bowl of 300 mm - give at most 112.5 mm, or a larger "
             "track.radius",
         ),
         (
-            replace(TRACK, climb=0.0), Asked(), (),
+            replace(TRACK, climb=0.0), SolidOptions(), (),
             "track.climb: 0 deg does not lead a track out of the bowl - give a climb, as 3.5 deg, or leave "
             "it out",
         ),
         (
-            TRACK, Asked(bolt_circle=0.25), (),
+            TRACK, SolidOptions(bolt_circle=0.25), (),
             "machine.bolt_circle: 250 mm lies under the track of a bowl this small - give at most 220 mm, or "
             "smaller bolts",
         ),
         (
-            replace(TRACK, width=0.1), Asked(bolt=25e-3), (),
+            replace(TRACK, width=0.1), SolidOptions(bolt=25e-3), (),
             "machine.bolt_circle: 120 mm lies under the track of a bowl this small - give a smaller "
             "machine.bolt_hole, or a larger bowl",
         ),
         (
-            TRACK, Asked(bolts=12, bolt_circle=0.04), (),
+            TRACK, SolidOptions(bolts=12, bolt_circle=0.04), (),
             "machine.bolts: 12 and one in the middle, of 9 mm, leave no metal between them on a circle of "
             "40 mm - take fewer, a smaller machine.bolt_hole, or a larger bowl",
         ),
         (
-            TRACK, Asked(bolts=1, bolt_circle=0.026), (),
+            TRACK, SolidOptions(bolts=1, bolt_circle=0.026), (),
             "machine.bolts: 1 and one in the middle, of 9 mm, leave no metal between them on a circle of "
             "26 mm - take fewer, a smaller machine.bolt_hole, or a larger bowl",
         ),
         (
-            TRACK, Asked(drains=8, drain=12e-3), (),
+            TRACK, SolidOptions(drains=8, drain=12e-3), (),
             "sizing.drain_hole: 12 mm may let parts through that are 12 mm thick - give less than 12 mm",
         ),
         (
-            TRACK, Asked(outlet_height=0.09), CHAINS["gap"],
+            TRACK, SolidOptions(outlet_height=0.09), CHAINS["gap"],
             "sizing.outlet_height: 90 mm puts a turn of the track below the cuts: what falls stays on it - "
             "give at most 59.77 mm",
         ),
         (
-            TRACK, Asked(outlet_height=0.003), CHAINS["gap"],
+            TRACK, SolidOptions(outlet_height=0.003), CHAINS["gap"],
             "sizing.outlet_height: 3 mm leaves 49.05 mm of track, and the devices take 56.8 mm - give at "
             "least 16.66 mm",
         ),
         (
-            TRACK, Asked(outlet_height=0.01), CHAINS["gap"],
+            TRACK, SolidOptions(outlet_height=0.01), CHAINS["gap"],
             "sizing.outlet_height: 10 mm leaves 163.5 mm of track, less than a quarter turn - give at least "
             "16.66 mm",
         ),
         (
-            TRACK, Asked(outlet_height=1e-4), (),
+            TRACK, SolidOptions(outlet_height=1e-4), (),
             "sizing.outlet_height: 0.1 mm leaves 1.635 mm of track, less than a quarter turn - give at "
             "least 16.66 mm",
         ),
@@ -444,12 +441,12 @@ def test_faults(track, asked, devices, line):
     ("shape", "climb", "least"), [("cylinder", 3.5, 16.66e-3), ("stepped", 4.5, 20.45e-3)]
 )
 def test_the_lowest_outlet_that_is_told_has_a_width_to_measure(shape, climb, least):
-    own, asked = replace(TRACK, climb=np.radians(climb)), Asked(shape=shape, outlet_height=least)
+    own, asked = replace(TRACK, climb=np.radians(climb)), SolidOptions(shape=shape, outlet_height=least)
     found = measures(body(planned(track=own, asked=asked)))
     assert found.track_width == pytest.approx(0.02, abs=NEAR)
     assert found.outlet_height == pytest.approx(least, abs=NEAR)
     with pytest.raises(FeederError, match=r"^sizing\.depth: it leaves .* less than a quarter turn - give a"):
-        planned(track=own, asked=Asked(shape=shape), turns=0.2)
+        planned(track=own, asked=SolidOptions(shape=shape), turns=0.2)
 
 
 def test_a_turn_below_a_cut_is_found():

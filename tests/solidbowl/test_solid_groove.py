@@ -11,12 +11,11 @@ from test_solid import GAP, NEAR, TRACK, One, closed, made, planned
 from test_stepped import STEPPED
 
 from feederscrew.output.solidbowl import drawing_sheet
-from feederscrew.solidbowl import facets, grooves_wall, leaning, riding
+from feederscrew.solidbowl import cuts, facets, riding, track
 from feederscrew.solidbowl.closed_body import _wall, body
-from feederscrew.solidbowl.exact import exact_body, exact_faces
-from feederscrew.solidbowl.measuring import heights, measures
-from feederscrew.solidbowl.plan import Asked
-from feederscrew.solidbowl.ways_down import ways_down
+from feederscrew.solidbowl.exact import exact_body
+from feederscrew.solidbowl.measuring import measures, track_heights, ways_down
+from feederscrew.solidbowl.plan import SolidOptions
 
 LEFT = replace(STEPPED, left=True)
 CYLINDER = replace(TRACK, climb=np.radians(4.5))
@@ -27,16 +26,16 @@ def groove(degrees):
 
 
 CASES = {
-    "at the end": ((GAP, groove(30.0)), CYLINDER, Asked(), 30.0),
+    "at the end": ((GAP, groove(30.0)), CYLINDER, SolidOptions(), 30.0),
     "before a bank": ((GAP, groove(40.0), bank(0.0)), STEEP, LEFT, 40.0),
-    "from the entry": ((groove(25.0),), CYLINDER, Asked(), 25.0),
+    "from the entry": ((groove(25.0),), CYLINDER, SolidOptions(), 25.0),
     "from the entry to a bank": ((groove(55.0), bank(5.0), GAP), STEEP, LEFT, 55.0),
 }
 
 
 def grooved(name):
     chain, own, asked, angle = CASES[name]
-    own = leaning.banked(own, chain, [One(length=18e-3, height=12e-3, width=14e-3, track=own)])
+    own = cuts.banked_height(own, chain, [One(length=18e-3, height=12e-3, width=14e-3, track=own)])
     return body(planned(chain, track=own, asked=asked)), np.radians(angle)
 
 
@@ -46,7 +45,7 @@ def test_both_faces_rise_from_the_foot_by_its_angle(name, rng):
     assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
     assert len(facets.placed(solid).decompose()) == 1
     plan, whole = solid.plan, facets.unplaced(solid)
-    ((start, end, lean, opens),) = grooves_wall.spans(plan)
+    ((start, end, lean, opens),) = track.groove_spans(plan)
     assert lean == pytest.approx(0.5 * np.pi - angle) and opens == 18e-3
     twisted = max([start, *(stop for _, stop, tilt in plan.way.leans if tilt == angle)])
     for s in rng.uniform(max(start + opens, twisted) + 1e-3, min(end, plan.way.end + plan.outlet) - 1e-3, 40):
@@ -57,7 +56,7 @@ def test_both_faces_rise_from_the_foot_by_its_angle(name, rng):
             assert facets.below(whole, place + [0.0, 0.0, 8e-3]) == pytest.approx(place[2], abs=NEAR)
         assert facets.below(whole, place + 5e-3 * out, 8e-3) is None  # beyond it there is nothing
         y = rng.uniform(3e-4, 19.6e-3)
-        assert heights(plan, whole, s, y) == pytest.approx(foot[2] + y * np.sin(angle), abs=NEAR)
+        assert track_heights(plan, whole, s, y) == pytest.approx(foot[2] + y * np.sin(angle), abs=NEAR)
     found = measures(solid)
     assert found.outlet_height == pytest.approx(plan.outlet_height, abs=NEAR)
     assert found.diameter == pytest.approx(0.3, abs=3.0 * NEAR)  # of chords
@@ -66,23 +65,23 @@ def test_both_faces_rise_from_the_foot_by_its_angle(name, rng):
 
 def test_it_begins_where_it_is_listed_and_ends_at_a_bank():
     plan = grooved("before a bank")[0].plan
-    ((start, end, _, opens),) = grooves_wall.spans(plan)
+    ((start, end, _, opens),) = track.groove_spans(plan)
     first, last = plan.stretch.labels[1:]
     assert (start, end) == pytest.approx((plan.first + first[0], plan.first + last[0]))
-    lean = grooves_wall.lean_at(grooves_wall.spans(plan)[0], np.array([start, start + 0.5 * opens, end]))
+    lean = track.lean_at(track.groove_spans(plan)[0], np.array([start, start + 0.5 * opens, end]))
     assert np.degrees(lean) == pytest.approx([3.0, 25.0, 50.0])  # it opens over the length of a part
-    assert grooves_wall.lean_at((start, end, 0.8, opens), end + opens) == grooves_wall.LEAST
+    assert track.lean_at((start, end, 0.8, opens), end + opens) == track.MIN_GROOVE_WALL_LEAN_RAD
     early = grooved("from the entry")[0].plan
-    assert early.way.angle(grooves_wall.spans(early)[0][0]) == pytest.approx(-0.85 * 2.0 * np.pi)
+    assert early.way.angle(track.groove_spans(early)[0][0]) == pytest.approx(-0.85 * 2.0 * np.pi)
 
 
 @pytest.mark.needs("OCP")
 def test_the_wall_of_a_cylinder_is_cut_exactly():
     """A corner of the cut on the wall itself was not cut at all."""
     plan, volumes = grooved("from the entry")[0].plan, []
-    for kit, measured in ((facets, lambda one: one.volume()), (exact_body, exact_faces.volume)):
+    for kit, measured in ((facets, lambda one: one.volume()), (exact_body, exact_body.volume)):
         whole = _wall(plan, kit)
-        volumes.append((measured(whole), measured(kit.without(whole, grooves_wall.cuts(plan, kit)))))
+        volumes.append((measured(whole), measured(kit.without(whole, track.groove_wall_cuts(plan, kit)))))
     (bare, cut), exact = volumes
     assert cut < 0.99 * bare and exact == pytest.approx((bare, cut), rel=1e-3)
 
@@ -94,7 +93,7 @@ def test_a_part_lies_in_the_groove_at_both_faces(name, degrees):
     plan, whole, half = solid.plan, facets.unplaced(solid), np.array([7e-3, 4e-3, 3e-3])
     corners = half * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     box = SimpleNamespace(axes=np.eye(3), distance=5e-3, posture=SimpleNamespace(height=half[2]))
-    start, end, _, opens = grooves_wall.spans(plan)[0]
+    start, end, _, opens = track.groove_spans(plan)[0]
     assert angle == np.radians(degrees)
     for s in np.linspace(start + opens + 8e-3, min(end, plan.way.end) - 8e-3, 5):
         off = []
@@ -104,7 +103,7 @@ def test_a_part_lies_in_the_groove_at_both_faces(name, degrees):
             met = facets.first_met(whole, start, start + 0.1 * out)  # nothing above the face
             off += [met[0] - 3e-4] if met else []
         assert min(off) == pytest.approx(3e-4 / np.tan(angle), abs=1.2e-4)
-        assert heights(plan, whole, s, 8e-3) == pytest.approx(float(plan.way.height(s, 8e-3)), abs=NEAR)
+        assert track_heights(plan, whole, s, 8e-3) == pytest.approx(float(plan.way.height(s, 8e-3)), abs=NEAR)
 
 
 def test_the_sheet_has_the_groove():

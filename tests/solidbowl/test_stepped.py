@@ -9,15 +9,14 @@ from test_solid import CHAINS, NEAR, TRACK, closed, planned
 from feederscrew.errors import FeederError
 from feederscrew.solidbowl import facets
 from feederscrew.solidbowl.closed_body import body
-from feederscrew.solidbowl.measuring import heights, measures, track_width
-from feederscrew.solidbowl.plan import Asked
+from feederscrew.solidbowl.measuring import measures, track_heights, track_width, ways_down
+from feederscrew.solidbowl.plan import SolidOptions
 from feederscrew.solidbowl.segments import overhangs
 from feederscrew.solidbowl.track import fillet
-from feederscrew.solidbowl.ways_down import ways_down
 from feederscrew.tooling.devices.kinds import made
 
 STEEP = replace(TRACK, climb=np.radians(4.5))
-STEPPED = Asked(shape="stepped")
+STEPPED = SolidOptions(shape="stepped")
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +39,7 @@ def test_height_width_and_wall_are_those_of_the_formula(stepped, rng):
     """On a helix of one climb whose foot runs on a cone: r = R + flare (s - end), z = s tan(climb)."""
     own, whole = stepped.plan, facets.unplaced(stepped)
     s, y = rng.uniform(0.05, own.first, 80), rng.uniform(3e-4, TRACK.width - 3e-4, 80)
-    found = np.array([heights(own, whole, *one) for one in zip(s, y)])
+    found = np.array([track_heights(own, whole, *one) for one in zip(s, y)])
     np.testing.assert_allclose(found, np.tan(STEEP.climb) * s, rtol=0, atol=NEAR)
     for one in s[:20]:
         assert track_width(own, whole, one) == pytest.approx(TRACK.width, abs=NEAR)
@@ -77,11 +76,11 @@ def test_a_slope_on_which_parts_hold_still_is_refused(stepped):
 def test_a_cone_is_closed_and_its_track_that_of_the_formula(climb, bank, width, rng):
     """At 200 places, with a ray that does not meet the leaning wall over the track for its foot."""
     track = replace(TRACK, climb=np.radians(climb), bank=np.radians(bank), width=width)
-    solid = body(planned(track=track, asked=Asked(shape="conical"), turns=1.8))
+    solid = body(planned(track=track, asked=SolidOptions(shape="conical"), turns=1.8))
     assert closed(solid) > 0.0
     own, whole = solid.plan, facets.unplaced(solid)
     s, y = rng.uniform(0.1, own.way.end - 0.01, 200), rng.uniform(3e-4, width - 3e-4, 200)
-    found = np.array([heights(own, whole, *one) for one in zip(s, y)])
+    found = np.array([track_heights(own, whole, *one) for one in zip(s, y)])
     formula = np.tan(track.climb) * s + y * np.sin(track.bank)
     np.testing.assert_allclose(found, formula, rtol=0, atol=NEAR)
     widths = np.array([track_width(own, whole, one) for one in s])
@@ -92,7 +91,7 @@ def test_a_cone_is_closed_and_its_track_that_of_the_formula(climb, bank, width, 
 def test_nothing_of_the_track_stands_out_of_a_leaning_wall(name):
     """Met from outside, where the fillet is: the wall's outer face, a wall from its inner one."""
     track = replace(TRACK, climb=np.radians(3.0), width=28e-3)
-    solid = body(planned(track=track, asked=Asked(shape="conical"), turns=1.4, name=name))
+    solid = body(planned(track=track, asked=SolidOptions(shape="conical"), turns=1.4, name=name))
     own, whole = solid.plan, facets.unplaced(solid)
     lean = np.tan(0.5 * np.pi - own.stairs.slope)
     for s in np.linspace(0.5, 0.9, 12) * own.way.end:
@@ -113,7 +112,7 @@ def test_nothing_of_the_track_stands_out_of_a_leaning_wall(name):
             "sizing.shape: cylinder",
         ),
         (
-            TRACK, Asked(shape="conical"), CHAINS["gap"],
+            TRACK, SolidOptions(shape="conical"), CHAINS["gap"],
             "sizing.shape: conical leans outwards, and devices are computed by an upright wall - take "
             "stepped",
         ),
@@ -142,7 +141,7 @@ def test_the_wall_goes_down_with_the_track_behind_a_separation():
     for s in np.linspace(bend - 0.05, plan.first + plan.stretch.cuts[0].span[0] - 1e-3, 30):
         after = max(s - bend, 0.0)
         formula = np.tan(np.radians(5.5)) * (s - after) - np.tan(np.radians(4.0)) * after
-        assert heights(plan, whole, s, 5e-3) == pytest.approx(formula, abs=NEAR)
+        assert track_heights(plan, whole, s, 5e-3) == pytest.approx(formula, abs=NEAR)
         place, theta = plan.way.places(s, 5e-3) + [0.0, 0.0, 2e-3], plan.way.angle(s)
         met = facets.first_met(whole, place, place + 0.1 * np.array([np.cos(theta), np.sin(theta), 0.0]))
         assert met[0] == pytest.approx(5e-3, abs=NEAR)
@@ -167,7 +166,7 @@ def test_a_printed_slope_needs_no_support():
     }
     assert hang["pla"]["wall"] < 0.1 * hang["steel"]["wall"]
     for shape, names in (("cylinder", ["track", "outlet"]), ("conical", ["wall", "track", "outlet"])):
-        found = overhangs(body(planned(track=track, asked=Asked(shape=shape, left=True), name="pla")))
+        found = overhangs(body(planned(track=track, asked=SolidOptions(shape=shape, left=True), name="pla")))
         assert list(found) == names
 
 

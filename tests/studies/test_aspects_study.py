@@ -5,8 +5,8 @@ import pytest
 import shapes
 
 from feederscrew.errors import FeederError
+from feederscrew.output import aspects as aspects_output
 from feederscrew.output import offers
-from feederscrew.output.aspects import files, tables
 from feederscrew.part import load
 from feederscrew.studies.aspects import MOST, aspects
 from feederscrew.studies.simulated.drop import drop
@@ -78,7 +78,7 @@ def test_a_surface_may_be_named_or_a_number():
 
 def test_the_files_are_offered_and_made_only_when_asked_for(monkeypatch):
     study = aspects(shapes.part(shapes.box(10.0, 20.0, 30.0)))
-    offered = offers.by_name(files.offers(study, tipping=True))
+    offered = offers.by_name(aspects_output.offers(study, tipping=True))
     assert sorted(offered) == [
         "aspects.csv", "aspects.json", "aspects.png", "graph.csv", "graph.png", "names.yaml",
         "probabilities.png",
@@ -89,7 +89,7 @@ def test_the_files_are_offered_and_made_only_when_asked_for(monkeypatch):
 
 def test_a_card_offers_no_view_and_has_no_graph():
     study = aspects(load(CARD))
-    assert "aspects.png" not in offers.by_name(files.offers(study))
-    assert tables.remarks(study) == ["a part card has no shape to draw: no aspects.png"]
+    assert "aspects.png" not in offers.by_name(aspects_output.offers(study))
+    assert aspects_output.remarks(study) == ["a part card has no shape to draw: no aspects.png"]
     with pytest.raises(FeederError, match="has no shape to tumble"):
         study.transitions

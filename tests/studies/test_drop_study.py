@@ -5,11 +5,11 @@ import pytest
 import shapes
 
 import feederscrew as fs
+from feederscrew.output import calibrate as calibrate_output
+from feederscrew.output import compare as compare_output
+from feederscrew.output import drop as drop_output
 from feederscrew.output import offers
-from feederscrew.output.calibrate import files as calibrate_files
-from feederscrew.output.compare import files as compare_files
-from feederscrew.output.drop import files as drop_files
-from feederscrew.output.plate import files as plate_files
+from feederscrew.output import plate as plate_output
 from feederscrew.studies.aspects import aspects
 from feederscrew.studies.calibrate import calibrate
 from feederscrew.studies.compare import compare
@@ -41,8 +41,8 @@ def test_the_library_returns_what_the_study_counts(box):
 
 def test_traces_are_offered_where_there_are_some(box):
     plain, followed = (drop(box, "drop", drops=20, traced=k) for k in (0, 2))
-    assert sorted(offers.by_name(drop_files.offers(plain))) == ["drop.csv", "drop.json", "drop.png"]
-    assert "drop_traces.csv" in offers.by_name(drop_files.offers(followed))
+    assert sorted(offers.by_name(drop_output.offers(plain))) == ["drop.csv", "drop.json", "drop.png"]
+    assert "drop_traces.csv" in offers.by_name(drop_output.offers(followed))
     assert followed.telling in followed.result.traces
 
 
@@ -58,7 +58,7 @@ def test_a_plate_offers_its_tables_and_counts_what_it_saw(box):
     assert study.names == ("bowl",) and not study.partial
     assert only.transitions == only.occupancy.counts.sum() - np.trace(only.occupancy.counts)
     assert 0 <= only.unsettled <= 6
-    assert [offer.name for offer in plate_files.offers(study)] == [
+    assert [offer.name for offer in plate_output.offers(study)] == [
         "plate.csv", "plate_rates.csv", "plate_time.csv", "plate_drives.csv", "plate.json", "plate.png",
     ]  # fmt: skip
 
@@ -68,10 +68,10 @@ def test_a_comparison_holds_every_pair_and_offers_one_picture(box, counts):
     profiles = [profile.name for profile in study.profiles]
     assert profiles[0] == "tray" and len(profiles) == 1 + len(study.rules)
     assert len(study.comparisons) == len(profiles) * (len(profiles) - 1) // 2
-    assert [offer.name for offer in compare_files.offers(study)] == ["compare.csv", "compare.png"]
+    assert [offer.name for offer in compare_output.offers(study)] == ["compare.csv", "compare.png"]
 
 
 def test_a_calibration_has_a_fit_for_every_column(box, counts):
     study = calibrate(box, counts)
     assert [fit.name for fit in study.fits] == ["tray"]
-    assert [offer.name for offer in calibrate_files.offers(study)] == ["calibrate.csv", "calibrate.json"]
+    assert [offer.name for offer in calibrate_output.offers(study)] == ["calibrate.csv", "calibrate.json"]

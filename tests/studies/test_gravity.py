@@ -20,9 +20,9 @@ from scipy.optimize import brentq
 from feederscrew import api
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
-from feederscrew.tooling import drift
+from feederscrew.tooling import verdicts
 from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.devices.nozzles import thrust
+from feederscrew.tooling.devices.pneumatics import thrust
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.verdicts import verdict
 from feederscrew.units import GRAVITY
@@ -217,7 +217,7 @@ def test_the_force_to_clear_is_that_of_the_bowls_gravity(gravity):
         still, height = replace(one, swing=0.0), 4e-3
         weight = one.posture.mass * gravity
         least = min(one.grip * weight, weight * one.foot_reach / height)
-        assert drift.force_to_clear(still, 1.0, height) == pytest.approx(least, rel=1e-6)
+        assert verdicts.force_to_clear(still, 1.0, height) == pytest.approx(least, rel=1e-6)
 
 
 def test_what_is_only_placed_has_the_standard_gravity():

@@ -53,7 +53,7 @@ def test_a_grid_counts_what_it_lacks_and_holds(grid):
 
 
 def test_a_range_of_the_bowl_becomes_an_axis():
-    (span,) = bowl.ranges(["drive.amplitude=0.1:0.3:3"])
+    (span,) = bowl.key_ranges(["drive.amplitude=0.1:0.3:3"])
     axis = grids.axis(span)
     assert axis.column == "amplitude_mm"
     assert axis.values == pytest.approx([1e-4, 2e-4, 3e-4], rel=1e-14)

@@ -9,8 +9,8 @@ import pytest
 import feederscrew as feeder
 from feederscrew import bowl as bowls
 from feederscrew.designing.record import DesignRequest, DesignStudy
-from feederscrew.output.headings import tables as heading_tables
-from feederscrew.output.rate import tables as rate_tables
+from feederscrew.output import headings as headings_output
+from feederscrew.output import rate as rate_output
 from feederscrew.output.tooling import tables as tooling_tables
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.studies.headings import headings
@@ -41,7 +41,7 @@ def test_rate_and_design_say_so(tmp_path):
     part = chip(tmp_path)
     study = rate(part, BOWL, "A", rule="csa", sigma=1e-4)
     assert any("play and tolerance 0.1 mm" in line for line in study.warnings)
-    assert any("play and tolerance 0.1 mm" in line for line in rate_tables.document(study)["warnings"])
+    assert any("play and tolerance 0.1 mm" in line for line in rate_output.document(study)["warnings"])
     design = DesignStudy(part, DesignRequest(0.5, tolerance=1e-4), None, None, None)
     assert any("tolerance 0.1 mm, together 0.25 mm" in line for line in design.warnings)
 
@@ -52,7 +52,7 @@ def test_a_track_no_wider_than_one_part(tmp_path, width, narrow):
     part = chip(tmp_path)
     for lines in (
         rate(part, bowl, "A", rule="csa").warnings,
-        heading_tables.remarks(headings(part, bowl.track)),
+        headings_output.remarks(headings(part, bowl.track)),
     ):
         assert any("no wider than one part" in line for line in lines) == narrow
 

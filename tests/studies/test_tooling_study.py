@@ -33,7 +33,7 @@ def test_a_heading_is_that_of_an_aspect_which_the_part_has():
         tooling(PART, BOWL, heading=1.0)
     with pytest.raises(ArgumentError, match="heading: is given without an aspect"):
         DesignRequest(0.5, heading=1.0)
-    ways = stream.orientations(PART, find(PART), BOWL.track)
+    ways = stream.follow_orientations(PART, find(PART), BOWL.track)
     shares = np.full(len(ways.lying), 1.0 / len(ways.lying))
     near, off = (DesignRequest(0.5, "A", heading=np.radians(angle)) for angle in (88.0, 45.0))
     (row,) = promising(ways, shares, near)

@@ -49,7 +49,7 @@ def test_rate_says_of_each_setting_what_tune_says(block, arriving, worst):
         speed = back.velocity.low if worst else back.velocity.value
         met = back.parts.value * speed / back.velocity.value
         assert met == pytest.approx(one.solution.rate, rel=1e-9)
-        assert met == pytest.approx(TARGET, rel=drive_settings.WITHIN)
+        assert met == pytest.approx(TARGET, rel=drive_settings.ACCEPTED_RATE_ERROR)
 
 
 def test_each_drive_is_asked_once_what_arrives(block, arriving):

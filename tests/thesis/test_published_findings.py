@@ -56,6 +56,14 @@ EVIDENCE = {
     "wall-tangent": [4.8e-05, 0.00043],
     "track-moments": [0.007, 0.00025, 19.4],
     "wall-pulls": [-1.12, 0.06],
+    "dual-numbers": [10.0, 0.2222, -2.0, -0.2222],  # ad + bc, (bc - ad)/c^2
+    "momentum-cross": [1.982],
+    "equation-4-24": [],
+    "conclusion-1": [47.8],  # half of 0.010 + 0.308 + 0.160 + 0.101 + 0.377
+    "conclusion-2": [0.064],  # half of 0.6 + 4.2 + 2.74 + 3.6 + 1.66 percent
+    "conclusion-4": [0.0032, 0.0027],
+    "conclusion-5": [3.37, 19.4, 53],
+    "conclusion-8": [0.5, 0.283, 0.567],  # 0.5 cos 20 / (1 - 0.5 sin 20), half of it at 60 deg
 }
 NUMBER = re.compile(r"(?<![\w.])[+-]?\d+(?:\.\d+)?(?:e-\d+)?")
 

@@ -17,15 +17,15 @@ from feederscrew.bowl.verified import fingerprint
 from feederscrew.errors import Faults
 from feederscrew.geometry.polygons import turned
 from feederscrew.part import load
-from feederscrew.rates import spacing
+from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.studies import tooling
-from feederscrew.tooling import drift, sensor_views
+from feederscrew.tooling import sensor_views, verdicts
 from feederscrew.tooling.devices.kinds import KINDS, made
-from feederscrew.tooling.devices.nozzles import Nozzles
+from feederscrew.tooling.devices.pneumatics import Nozzles
 from feederscrew.tooling.fates import at_entry
-from feederscrew.tooling.orientations import orientations, speed, travelling
-from feederscrew.tooling.verdicts import Meeting, verdict
+from feederscrew.tooling.orientations import orientations, travel_speed, travelling
+from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 from feederscrew.units import GRAVITY
 
 PARTS = Path(__file__).resolve().parents[2] / "parts"
@@ -39,26 +39,29 @@ TALL = next(one for one in EVERY if one.length > 0.0119 and one.height > 0.0199)
 @pytest.mark.parametrize(("push", "found"), [(0.5, 1.60), (1.0, 3.88), (2.0, 10.1)])
 def test_the_drift_is_that_of_coulomb_friction_over_a_sine(push, found):
     """Solved by hand from v = a pi V / (2 mu g ln(4 V / v)), mu 0.6, V 60 mm/s."""
-    assert 1e3 * drift.speed(push, 0.6, 0.06, GRAVITY) == pytest.approx(found, rel=0.005)
+    assert 1e3 * verdicts.drift_speed(push, 0.6, 0.06, GRAVITY) == pytest.approx(found, rel=0.005)
 
 
 def test_what_friction_cannot_hold_does_not_drift_but_slides():
-    assert drift.speed(0.6 * 9.81, 0.6, 0.06, GRAVITY) == math.inf
-    assert drift.speed(1.0, 0.6, 0.0, GRAVITY) == 0.0 and drift.speed(-1.0, 0.6, 0.06, GRAVITY) == 0.0
+    assert verdicts.drift_speed(0.6 * 9.81, 0.6, 0.06, GRAVITY) == math.inf
+    assert (
+        verdicts.drift_speed(1.0, 0.6, 0.0, GRAVITY) == 0.0
+        and verdicts.drift_speed(-1.0, 0.6, 0.06, GRAVITY) == 0.0
+    )
 
 
 def test_a_jet_over_what_lies_flat_blows_off_what_stands():
     jet = made("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
     assert verdict(jet, FLAT, EVERY).passes == 1.0 and verdict(jet, FLAT, EVERY).sure
-    assert verdict(jet, TALL, EVERY).passes == 0.0 and jet.factor(Meeting(TALL, EVERY)) > 2.0
+    assert verdict(jet, TALL, EVERY).passes == 0.0 and jet.factor(DeviceEncounter(TALL, EVERY)) > 2.0
     high = replace(jet, height=0.015)  # a longer lever tips it sooner
-    assert jet.factor(Meeting(TALL, EVERY)) < high.factor(Meeting(TALL, EVERY))
-    between = replace(jet, pressure=5e4 / jet.factor(Meeting(TALL, EVERY)))
+    assert jet.factor(DeviceEncounter(TALL, EVERY)) < high.factor(DeviceEncounter(TALL, EVERY))
+    between = replace(jet, pressure=5e4 / jet.factor(DeviceEncounter(TALL, EVERY)))
     assert not verdict(between, TALL, EVERY).sure
 
 
 def test_the_jets_that_a_design_tries_surely_blow_off_others_and_surely_leave_what_is_wanted():
-    flat, tall = Meeting(FLAT, EVERY), Meeting(TALL, EVERY)
+    flat, tall = DeviceEncounter(FLAT, EVERY), DeviceEncounter(TALL, EVERY)
     jets = KINDS["jet"].proposals([flat], [tall], EVERY, "here")
     assert jets and all(jet.height > 0.5 * FLAT.height for jet in jets)  # else it blows at what lies flat
     for jet in jets:
@@ -79,22 +82,25 @@ def test_a_design_takes_a_steady_jet_where_air_may_be_used_and_nothing_else():
 
 
 def test_the_force_that_tips_is_weight_times_foot_over_height():
-    force = drift.force_to_clear(replace(TALL, swing=0.0), 1.0, 0.015)
+    force = verdicts.force_to_clear(replace(TALL, swing=0.0), 1.0, 0.015)
     assert force == pytest.approx(TALL.posture.mass * BOWL.gravity * 2.5e-3 / 0.015, rel=1e-6)
 
 
 def test_a_sorter_needs_room_that_a_steeper_way_makes():
     sorter = made("sorter", "here", like=(FLAT.aspect, FLAT.heading, 5e-4))
-    alone = spacing.needed([sorter], EVERY, BOWL)
+    alone = stream.needed_spacing([sorter], EVERY, BOWL)
     widest = max(one.width for one in EVERY)
-    assert alone == pytest.approx(2e-3 + 2 * math.tan(math.radians(11)) * widest + speed(BOWL) * 0.05)
+    assert alone == pytest.approx(2e-3 + 2 * math.tan(math.radians(11)) * widest + travel_speed(BOWL) * 0.05)
     steep = made("separation", "here", angle=math.radians(-6.0))
-    faster = speed(replace(BOWL, track=replace(BOWL.track, climb=math.radians(-6.0))))
-    behind = spacing.needed([steep, sorter], EVERY, BOWL)
+    faster = travel_speed(replace(BOWL, track=replace(BOWL.track, climb=math.radians(-6.0))))
+    behind = stream.needed_spacing([steep, sorter], EVERY, BOWL)
     shortest = min(one.length for one in EVERY)
     needs = max(sorter.gap(one, faster) for one in EVERY)
-    assert behind == pytest.approx((needs + shortest) * speed(BOWL) / faster - shortest) and behind < alone
-    assert spacing.needed([sorter, steep], EVERY, BOWL) == alone  # behind it, it is too late
+    assert (
+        behind == pytest.approx((needs + shortest) * travel_speed(BOWL) / faster - shortest)
+        and behind < alone
+    )
+    assert stream.needed_spacing([sorter, steep], EVERY, BOWL) == alone  # behind it, it is too late
 
 
 def test_a_bank_that_comes_first_begins_at_the_entry_and_holds_what_rolls():
@@ -195,7 +201,7 @@ def test_a_laser_over_the_middle_tells_an_open_end_from_a_closed_one():
     every = travelling(orientations(cap, find(cap), BOWL.track), BOWL)
     ends = [one for one in every if one.height < 0.0101]
     assert len(ends) == 2
-    met = Meeting(ends[0], every)
+    met = DeviceEncounter(ends[0], every)
     assert met.differs(ends[1], "outline") < 1e-6 and met.differs(ends[1], "side") < 1e-6
     assert met.differs(ends[1], "relief") > 4e-3 and met.differs(ends[0], "relief") == 0.0
     sorter = made("sorter", "here", like=(ends[0].aspect, ends[0].heading, 5e-4), sees="relief")
@@ -256,7 +262,7 @@ def test_what_fits_at_no_turn_is_not_turned_any_further(monkeypatch):
                 assert (sensor_views.fitted(seen, bent, play) <= play) == (whole <= play)
                 early += whole > play and len(calls) == 1 + sensor_views.COARSE
     assert early >= 5
-    step = 2.0 * sensor_views.ABOUT / (sensor_views.COARSE - 1)
+    step = 2.0 * sensor_views.MAX_VIEW_TURN_RAD / (sensor_views.COARSE - 1)
     moved = shapely.affinity.rotate(bent, 0.5 * step, (0.0, 0.0), use_radians=True)
     laid = shapely.affinity.translate(moved, -moved.bounds[2], -moved.bounds[1])
     first = shapely.affinity.translate(bent, -bent.bounds[2], -bent.bounds[1])
@@ -267,12 +273,12 @@ def test_what_is_seen_from_the_side_may_come_askew():
     """A block is longer then by l cos 4 deg + w sin 4 deg - l, and what is that much longer may be it."""
     one, turn = FLAT, np.radians(4.0)
     longer = one.length * (np.cos(turn) - 1.0) + one.width * np.sin(turn)
-    assert Meeting(one).askew("side") == pytest.approx(longer, abs=4e-5)
-    assert Meeting(one).askew("outline") == Meeting(one).askew("height") == 0.0
+    assert DeviceEncounter(one).askew("side") == pytest.approx(longer, abs=4e-5)
+    assert DeviceEncounter(one).askew("outline") == DeviceEncounter(one).askew("height") == 0.0
     sorter = made("sorter", "here", like=(one.aspect, one.heading, 2e-3), sees="side")
     assert verdict(sorter, one, EVERY).margin == pytest.approx(2e-3 - longer - 1e-4, abs=5e-5)
     assert verdict(sorter, replace(one, carry=1e-3), EVERY).margin == verdict(sorter, one, EVERY).margin
-    (_, side, _, _) = type(sorter).around(Meeting(one, EVERY), 2.5e-4, "here")
+    (_, side, _, _) = type(sorter).around(DeviceEncounter(one, EVERY), 2.5e-4, "here")
     assert side.like[2] == pytest.approx(2.5e-4 + longer + 1e-4, abs=4e-5)
 
 
@@ -314,4 +320,4 @@ def test_a_pulse_carries_a_part_as_far_as_its_motion_in_small_steps(push, press)
             way += step * speed
         way += speed**2 / (2.0 * friction * gravity)
         left = max(way, 0.0) - (one.track.width - one.distance)
-        assert Meeting(one).blown(force, down, 8e-3) == pytest.approx(left, rel=1e-3)
+        assert DeviceEncounter(one).blown(force, down, 8e-3) == pytest.approx(left, rel=1e-3)

@@ -11,12 +11,11 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
 from feederscrew.geometry.polygons import outline
 from feederscrew.part import load
-from feederscrew.rates.steadiness import gone
+from feederscrew.rates.tipping import is_surely_gone
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.between_edges import _at, _spans, may_rest
 from feederscrew.tooling.devices.base import UNSURE
 from feederscrew.tooling.devices.kinds import made
-from feederscrew.tooling.falling_through import fits_as_it_lies, lets_go, surely_gone
+from feederscrew.tooling.falling import _at, _spans, fits_as_it_lies, lets_go, may_rest, surely_gone
 from feederscrew.tooling.fates import course
 from feederscrew.tooling.isolating.chain import margin_at
 from feederscrew.tooling.orientations import orientations, travelling
@@ -87,8 +86,8 @@ def test_what_is_hollow_may_catch_an_edge():
 def test_a_gap_shorter_than_the_part_may_hold_it(block, kind, limit, goes):
     device = made(kind, "test", limit=limit)
     assert lets_go(device, block) == goes
-    assert gone([device], [block], [[1.0, 0.0]]) == [goes]
-    assert gone([device], [block], [[1.0, 1.0]]) == [True]  # it passes
+    assert is_surely_gone([device], [block], [[1.0, 0.0]]) == [goes]
+    assert is_surely_gone([device], [block], [[1.0, 1.0]]) == [True]  # it passes
 
 
 @pytest.mark.parametrize(
@@ -113,9 +112,11 @@ def test_a_tall_part_does_not_drop_through_a_hole_as_long_as_it_is(block):
 def test_a_blade_with_a_sweep_may_lay_over_what_turns_along_it(block):
     """At mu = 0.6 over the side 6 mm beside the weight, from 10 mm on."""
     low, high = (made("wiper", "test", limit=limit, sweep=0.5) for limit in (9.9e-3, 10.1e-3))
-    assert gone([low], [block], [[1.0, 0.0]]) == [True]
-    assert gone([high], [block], [[1.0, 0.0]]) == [False]
-    assert gone([replace(high, sweep=0.5 * np.pi)], [block], [[1.0, 0.0]]) == [True]  # straight across
+    assert is_surely_gone([low], [block], [[1.0, 0.0]]) == [True]
+    assert is_surely_gone([high], [block], [[1.0, 0.0]]) == [False]
+    assert is_surely_gone([replace(high, sweep=0.5 * np.pi)], [block], [[1.0, 0.0]]) == [
+        True
+    ]  # straight across
 
 
 def test_a_design_does_not_count_on_what_may_catch_the_edge_of_a_canyon():

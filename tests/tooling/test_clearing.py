@@ -16,18 +16,16 @@ from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate, shares
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling import clearing, falling_through, sensor_views
-from feederscrew.tooling import foot as feet
-from feederscrew.tooling.devices import hole_shapes
+from feederscrew.tooling import clearing, falling, footprints, sensor_views
+from feederscrew.tooling.devices import openings
 from feederscrew.tooling.devices.kinds import made
-from feederscrew.tooling.devices.nozzles import Nozzles
-from feederscrew.tooling.falling_through import falls_through
+from feederscrew.tooling.devices.pneumatics import Nozzles
+from feederscrew.tooling.falling import falls_through, may_lay_aside
 from feederscrew.tooling.fates import course
-from feederscrew.tooling.foot import Footprint
-from feederscrew.tooling.holding import may_lay_aside
-from feederscrew.tooling.isolating import chain, round_corners
-from feederscrew.tooling.isolating.design import MARGIN
-from feederscrew.tooling.isolating.proposal import task, told
+from feederscrew.tooling.footprints import Footprint
+from feederscrew.tooling.isolating import chain, hole_search
+from feederscrew.tooling.isolating.design import MARGIN_M
+from feederscrew.tooling.isolating.proposal import design_task, propose
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.verdicts import verdict
 
@@ -108,13 +106,13 @@ def test_a_convex_hole_says_what_any_hole_does():
     for size in rng.uniform(2e-3, 18e-3, 200):
         hole = shapely.MultiPoint(rng.uniform(0.0, 1.0, (6, 2)) * [30e-3, 15e-3]).convex_hull
         shadow = shapely.MultiPoint(rng.uniform(-0.5, 0.5, (8, 2)) * size).convex_hull
-        shadow, sides = shapely.get_coordinates(shadow)[:-1], falling_through._sides(hole)
-        told.append(falling_through._fits(shadow, hole, sides))
-        assert told[-1] == falling_through._fits(shadow, hole, None)
+        shadow, sides = shapely.get_coordinates(shadow)[:-1], falling._sides(hole)
+        told.append(falling._fits(shadow, hole, sides))
+        assert told[-1] == falling._fits(shadow, hole, None)
     assert 50 < sum(told) < 150
     bent = shapely.Polygon([(0, 0), (9, 0), (9, 9), (5, 4), (0, 9)])
     pierced = shapely.box(0, 0, 9, 9).difference(shapely.box(4, 4, 4.00001, 4.00001))
-    assert falling_through._sides(bent) is None and falling_through._sides(pierced) is None
+    assert falling._sides(bent) is None and falling._sides(pierced) is None
 
 
 def test_a_hole_at_the_free_edge_holds_nothing_that_is_narrower_along_the_track():
@@ -125,10 +123,10 @@ def test_a_hole_at_the_free_edge_holds_nothing_that_is_narrower_along_the_track(
 def test_three_points_do_not_carry_a_part_over_a_hole_larger_than_itself():
     points = 1e-3 * np.array([[-7.0, -4.0], [7.0, -4.0], [0.0, 4.0]])
     foot = Footprint(rings=(), edges=np.empty((0, 2, 2)), points=points)
-    hole = hole_shapes.polygon(1e-3 * np.array([[0, 0.3], [60, 0.3], [60, 39], [0, 39]]), 0.15)
-    assert feet.least(feet.standing(foot, 6e-3, 0.15), hole)[0] < 0.0
-    small = hole_shapes.polygon(1e-3 * np.array([[0, 30], [5, 30], [5, 39], [0, 39]]), 0.15)
-    whole = feet.least(feet.standing(foot, 6e-3, 0.15), small)[0]
+    hole = openings.polygon(1e-3 * np.array([[0, 0.3], [60, 0.3], [60, 39], [0, 39]]), 0.15)
+    assert footprints.least(footprints.standing(foot, 6e-3, 0.15), hole)[0] < 0.0
+    small = openings.polygon(1e-3 * np.array([[0, 30], [5, 30], [5, 39], [0, 39]]), 0.15)
+    whole = footprints.least(footprints.standing(foot, 6e-3, 0.15), small)[0]
     assert whole == pytest.approx(shapely.Polygon(points).exterior.distance(shapely.Point(0, 0)), abs=1e-6)
 
 
@@ -188,9 +186,9 @@ def test_play_and_tolerance_are_added_to_every_margin():
     part = shapes.part(shapes.box(22, 13, 6))
     own = {"rule": "csa", "without": "cut_out"}
     loose = tooling(part, BOWL, "A", play=2e-4, tolerance=1e-4, **own)
-    assert loose.margin == pytest.approx(MARGIN + 3e-4)
+    assert loose.margin == pytest.approx(MARGIN_M + 3e-4)
     ends = [end for cut in loose.design.cuts for end in (cut.margin_pass, cut.margin_reject)]
-    assert min(end for end in ends if end == end) >= MARGIN + 3e-4 - 1e-9
+    assert min(end for end in ends if end == end) >= MARGIN_M + 3e-4 - 1e-9
 
 
 def test_a_sorter_of_a_design_has_a_separation_before_it():
@@ -211,14 +209,14 @@ def test_a_cutter_leaves_round_corners_and_a_smaller_hole():
         for size in (0.02, 0.012)
     )
     square = made("cut_out", "here", corners=((0.0, 0.0), (0.013, 0.0), (0.013, 0.0115), (0.0, 0.0115)))
-    given = task(every, np.ones(len(every)) / len(every), along, 2.5e-4, 1.0, ())
-    cut = chain.judged(every, along, square, np.arange(len(every)) == across, square, square)
+    given = design_task(every, np.ones(len(every)) / len(every), along, 2.5e-4, 1.0, ())
+    cut = chain.judge_cut(every, along, square, np.arange(len(every)) == across, square, square)
     assert min(cut.margin_pass, cut.margin_reject) > 2.5e-4
-    found, held = round_corners.with_corners(given, (cut, [across]), 1e-3)
+    found, held = hole_search.round_corners(given, (cut, [across]), 1e-3)
     area = shapely.Polygon(found.device.corners).area
     assert area == pytest.approx(shapely.Polygon(square.corners).area - (2.0 - 0.5 * np.pi) * 1e-6, rel=1e-3)
     assert held == [across] and found.margin_reject <= cut.margin_reject
-    assert round_corners.with_corners(given, (cut, [across]), 6e-3) is None  # no such cutter goes in
+    assert hole_search.round_corners(given, (cut, [across]), 6e-3) is None  # no such cutter goes in
 
 
 def test_a_swept_face_may_lay_what_is_slender_across_the_track_over_to_the_side():
@@ -284,8 +282,8 @@ def test_what_is_not_sure_to_be_returned_counts_against_a_chain():
     doubt = (chance * found.orientations.stays)[tall].sum()
     row = chance[found.row] * found.orientations.leaves[found.row]
     assert found.purity == pytest.approx(row / (leaves + doubt)) and doubt > 0.0
-    made_of_it = task(every, chance, found.row, 2.5e-4, 1.0, (low,))
-    told_of_it = told(made_of_it, (), np.zeros(len(every), bool))
+    made_of_it = design_task(every, chance, found.row, 2.5e-4, 1.0, (low,))
+    told_of_it = propose(made_of_it, (), np.zeros(len(every), bool))
     assert told_of_it.hopeful == pytest.approx(chance[found.row] / chance[~tall].sum())
     assert told_of_it.purity == pytest.approx(
         chance[found.row] / (chance[~tall].sum() + (chance * flow.starts)[tall].sum())

@@ -8,23 +8,22 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.output.tooling import bowl_file, tables
-from feederscrew.rates import well_oriented
-from feederscrew.rates.steadiness import steady
+from feederscrew.rates import stream, well_oriented
+from feederscrew.rates.tipping import steady
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import made as device_of
-from feederscrew.tooling.isolating import apart, hole_search, proposal
-from feederscrew.tooling.isolating.chain import Wishes
+from feederscrew.tooling.isolating import chain, hole_search, proposal
+from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.isolating.design import design, place
 from feederscrew.tooling.isolating.proposal import Goal
-from feederscrew.tooling.mirrored import named
-from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.orientations import name_mirror_images, orientations
 from feederscrew.tooling.verdicts import verdict
 
 MARGIN = 2.5e-4
 ONES = ("sorter",)
-PLAIN = Wishes(without=("cut_out",))
+PLAIN = DesignConstraints(without=("cut_out",))
 SETTINGS = ("track.radius=150 mm", "track.width=200 mm")
 
 
@@ -33,7 +32,7 @@ def bracket():
     part = shapes.part(shapes.prism(shapes.l_profile(30, 20, 2), 15))
     found = find(part)
     track = bowls.read(None, SETTINGS).track
-    every = named(orientations(part, found, track))
+    every = name_mirror_images(orientations(part, found, track))
     return part, found, every, np.array([one.chances["recommended"] for one in every])
 
 
@@ -66,7 +65,7 @@ def test_a_cut_leaves_as_much_of_a_foot_as_keeps_it_from_rocking(heading, is_ste
     )
     found, one = study.design, study.orientations[study.wanted]
     asked = {"margin": study.margin, "search": hole_search.HoleSearch(verdicts=1)}
-    asked["wishes"] = Wishes(without=ONES)
+    asked["constraints"] = DesignConstraints(without=ONES)
     midway = design(study.orientations, study.shares, study.wanted, **asked)
     assert not steady(midway.devices, [one], bowl, study.margin)[0]
     assert found.steady == is_steady == steady(found.devices, [one], bowl, study.margin)[0]
@@ -79,7 +78,7 @@ def test_a_cut_leaves_as_much_of_a_foot_as_keeps_it_from_rocking(heading, is_ste
 def test_every_cut_holds_what_it_says(bracket):
     _, _, every, shares = bracket
     wanted = next(k for k, one in enumerate(every) if one.height > 0.0295)
-    found = design(every, shares, wanted, wishes=PLAIN)
+    found = design(every, shares, wanted, constraints=PLAIN)
     assert found.cuts
     for cut in found.cuts:
         margins = {one.name: verdict(cut.device, one, every).margin for one in every}
@@ -129,12 +128,12 @@ def test_where_no_hole_is_found_that_of_the_mirror_images_is_mirrored(bracket, m
     _, _, every, _ = bracket
     wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
     partner = next(k for k, one in enumerate(every) if one.name == every[wanted].mirror)
-    search, direct = hole_search.HoleSearch(seed=3), hole_search._found
+    search, direct = hole_search.HoleSearch(seed=3), hole_search._search
 
     def found(every, k, *rest):
         return None if k == wanted else direct(every, k, *rest)
 
-    monkeypatch.setattr(hole_search, "_found", found)
+    monkeypatch.setattr(hole_search, "_search", found)
     cut, held = hole_search.cut_out(every, wanted, [partner], MARGIN, search)
     image, _ = hole_search.cut_out(every, partner, [wanted], MARGIN, search)
     assert held == [partner]
@@ -145,12 +144,12 @@ def test_where_no_hole_is_found_that_of_the_mirror_images_is_mirrored(bracket, m
 def test_a_bowl_of_the_design_is_as_pure_and_efficient(bracket, tmp_path):
     part, aspects, every, shares = bracket
     wanted = int(np.argmax([one.canyon for one in every]))
-    found = design(every, shares, wanted, wishes=PLAIN)
+    found = design(every, shares, wanted, constraints=PLAIN)
     lines = "".join(f"  - {cut.device.kind}: {cut.device.text}\n" for cut in found.cuts)
     path = tmp_path / "tooling.yaml"
     path.write_text(f"track: {{radius: 150 mm, width: 200 mm}}\ndevices:\n{lines}")
     bowl = bowls.read(path)
-    known = well_oriented.orientations(part, aspects, bowl.track, bowl.devices)
+    known = stream.follow_orientations(part, aspects, bowl.track, bowl.devices)
     target = every[wanted].aspect, every[wanted].heading
     made = well_oriented.rate(known, well_oriented.Range(0.02, 0.02, 0.02), target, "recommended")
     assert made.purity == pytest.approx(found.purity, rel=1e-9)
@@ -189,8 +188,8 @@ def test_what_no_verdict_is_sure_of_counts_against_the_purity(monkeypatch, brack
         return flow
 
     monkeypatch.setattr(proposal, "course", doubted)
-    given = proposal.task(every, shares, wanted, MARGIN, 1.0, ())
-    found = proposal.told(given, (), np.zeros(len(every), bool))
+    given = proposal.design_task(every, shares, wanted, MARGIN, 1.0, ())
+    found = proposal.propose(given, (), np.zeros(len(every), bool))
     leaves = np.where(given.stays, shares, 0.0)
     others = 0.2 * (shares.sum() - shares[wanted])
     assert found.purity == pytest.approx(leaves[wanted] / (leaves.sum() + others), rel=1e-12)
@@ -205,11 +204,11 @@ def test_rails_end_on_the_track():
     """An L that hangs over a track by more than half has no second rail there."""
     outline = [(0, 0), (26, 0), (26, 7), (9, 7), (9, 18), (0, 18)]
     part, track = shapes.part(shapes.prism(outline, 11)), bowls.read(None, ["track.width=8 mm"]).track
-    every = named(orientations(part, find(part), track))
+    every = name_mirror_images(orientations(part, find(part), track))
     flat = [k for k, one in enumerate(every) if one.aspect in "AB" and not one.falls_off]
     assert flat
     for wanted in flat:
-        cuts = design(every, np.ones(len(every)), wanted, wishes=PLAIN).cuts
+        cuts = design(every, np.ones(len(every)), wanted, constraints=PLAIN).cuts
         assert all(cut.device.span[1] < track.width for cut in cuts if cut.device.kind == "rails")
 
 
@@ -243,7 +242,7 @@ def test_a_purity_that_is_enough_makes_a_shorter_chain(bracket):
     _, _, every, shares = bracket
     wanted = next(k for k, one in enumerate(every) if one.height < 0.016)
     whole, part = (
-        design(every, shares, wanted, goal=Goal(purity=share), wishes=PLAIN) for share in (1.0, 0.3)
+        design(every, shares, wanted, goal=Goal(purity=share), constraints=PLAIN) for share in (1.0, 0.3)
     )
     assert len(part.cuts) <= len(whole.cuts)
     assert part.isolated
@@ -255,10 +254,10 @@ def test_the_design_is_found_behind_the_devices_of_the_bowl(bracket, tmp_path):
     part, _, every, shares = bracket
     wanted = int(np.argmax([one.canyon for one in every]))
     before = (device_of("wiper", "bowl.yaml:2:3", limit=0.019, text="19 mm"),)
-    found = design(every, shares, wanted, wishes=PLAIN, before=before)
+    found = design(every, shares, wanted, constraints=PLAIN, before=before)
     assert not found.cuts and "is returned by the devices" in found.reasons[0]
     low = max((k for k, one in enumerate(every) if one.height < 0.016), key=lambda k: shares[k])
-    own = {"wishes": Wishes(without=(*ONES, "cut_out"))}
+    own = {"constraints": DesignConstraints(without=(*ONES, "cut_out"))}
     alone, behind = (design(every, shares, low, before=some, **own) for some in ((), before))
     assert behind.devices[0] == before[0]
     assert "wiper" in [cut.device.kind for cut in alone.cuts]
@@ -278,7 +277,10 @@ def test_the_design_is_found_behind_the_devices_of_the_bowl(bracket, tmp_path):
 def test_the_search_ends_by_a_count_of_verdicts_and_says_when_by_time(bracket):
     _, _, every, shares = bracket
     wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
-    search, unseen = hole_search.HoleSearch(verdicts=300), {"wishes": Wishes(without=("sorter",), vary=False)}
+    search, unseen = (
+        hole_search.HoleSearch(verdicts=300),
+        {"constraints": DesignConstraints(without=("sorter",), vary=False)},
+    )
     first, second = (design(every, shares, wanted, search=search, **unseen) for _ in range(2))
     assert [cut.device for cut in first.cuts] == [cut.device for cut in second.cuts]
     assert not first.late
@@ -293,7 +295,10 @@ def test_no_hole_is_looked_for_where_something_simpler_isolates(bracket, monkeyp
     monkeypatch.setattr(hole_search, "cut_out", lambda *_: asked.append(1))
     assert design(every, shares, wanted).isolated and not asked
     assert (
-        not design(every, shares, wanted, wishes=Wishes(without=("sorter",), vary=False)).isolated and asked
+        not design(
+            every, shares, wanted, constraints=DesignConstraints(without=("sorter",), vary=False)
+        ).isolated
+        and asked
     )
 
 
@@ -302,13 +307,15 @@ def test_an_inside_that_differs_is_told_from_a_chamfer():
     solid, bore = shapes.box(20, 12, 5), shapes.cylinder(2.5, 8.0, 48)
     bore.apply_translation([5.0, 0.0, 0.0])
     part = shapes.part(solid.difference(bore))
-    every = named(orientations(part, find(part), bowls.read(None, SETTINGS).track))
+    every = name_mirror_images(orientations(part, find(part), bowls.read(None, SETTINGS).track))
     flat = [one for one in every if one.height < 0.006 and one.length > 0.019]
-    apart_by = apart.difference(flat[0], flat[1])
+    apart_by = chain.find_difference(flat[0], flat[1])
     off = 5.0 * 5.0 * np.pi * 2.5**2 / (20 * 12 * 5 - 5.0 * np.pi * 2.5**2)  # [mm] of the centre of mass
     assert apart_by.shape < 2e-4
     assert sorted(abs(1e3 * by) for by in apart_by.shift)[-1] == pytest.approx(2.0 * off, rel=0.02)
     tall = [one for one in every if one.height > 0.019 and one.length > 0.011]
-    told = apart.reason(tall[0], next(one for one in tall if one.aspect != tall[0].aspect), MARGIN)
+    told = chain.inseparable_reason(
+        tall[0], next(one for one in tall if one.aspect != tall[0].aspect), MARGIN
+    )
     assert "have the same outside" in told and "needs a feature on the outside" in told
     assert f"{2.0 * off:.2f} mm in height" in told

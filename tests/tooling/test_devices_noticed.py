@@ -10,13 +10,13 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
-from feederscrew.tooling import strip
+from feederscrew.tooling import track_sections
 from feederscrew.tooling.devices.base import UNSURE
-from feederscrew.tooling.devices.blades import SQUARE
+from feederscrew.tooling.devices.blades import SQUARE_FACE_RAD
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.isolating import chain
 from feederscrew.tooling.orientations import orientations, travelling
-from feederscrew.tooling.verdicts import Meeting, verdict
+from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
 BOWL = bowls.read(None, ["track.radius=100 m", "track.bank=0 deg", "track.width=40 mm"])
 NARROW = replace(BOWL.track, width=20e-3)
@@ -68,11 +68,13 @@ def test_of_a_very_wide_track_five_millimetres_beside_parts_and_cuts_are_drawn()
     track, every = replace(BOWL.track, radius=0.15, width=1.0), awkward.lying()
     widest = max(one.width for one in every)
     drawn = [
-        strip.strip(track, [made("slot", "test", span=(2e-3, reach))], every).width
+        track_sections.build_section(track, [made("slot", "test", span=(2e-3, reach))], every).width
         for reach in (0.5 * widest, 2.0 * widest)
     ]
     assert drawn == pytest.approx([widest + 5e-3, 2.0 * widest + 5e-3])
-    assert strip.strip(NARROW, [made("slot", "test", span=(2e-3, 3e-3))], every).width == 20e-3
+    assert (
+        track_sections.build_section(NARROW, [made("slot", "test", span=(2e-3, 3e-3))], every).width == 20e-3
+    )
 
 
 @pytest.mark.parametrize(
@@ -91,8 +93,8 @@ def test_a_jet_is_felt_as_long_as_it_meets_the_tall_end_of_a_part(pressure, leas
     assert len(lying) == 2 and least < share < most  # the tall end ahead, or behind
     told = {0.2: 36e-3 * (1.0 - share), 0.5: 0.0, 4.5: -UNSURE, 9.0: -36e-3}[least]
     for one in lying:
-        assert jet.most(Meeting(one)) == pytest.approx(share, rel=0.015)  # rays to 11 deg askew
-        assert jet.factor(Meeting(one)) == pytest.approx(2.0 / 9.0 * share, rel=0.015)
+        assert jet.most(DeviceEncounter(one)) == pytest.approx(share, rel=0.015)  # rays to 11 deg askew
+        assert jet.factor(DeviceEncounter(one)) == pytest.approx(2.0 / 9.0 * share, rel=0.015)
         assert verdict(jet, one).margin == pytest.approx(told, rel=0.01, abs=0.0)
 
 
@@ -112,7 +114,7 @@ def test_a_slope_under_a_jet_is_held_by_the_friction_of_what_presses_it_down():
     jet = made("jet", "test", nozzle=0.5e-3, pressure=2e4, height=10e-3)
     taken = np.sin(slope) ** 2 - 0.6 * np.sin(slope) * np.cos(slope)
     force = area * 60e-9 * STEEL * GRAVITY * min(0.6, side)
-    assert jet.factor(Meeting(one)) == pytest.approx(taken * jet.jet.thrust / force, rel=0.03)
+    assert jet.factor(DeviceEncounter(one)) == pytest.approx(taken * jet.jet.thrust / force, rel=0.03)
 
 
 def test_a_gap_is_not_sure_of_what_it_is_as_much_too_long_for_as_the_part_travels_on():
@@ -121,7 +123,7 @@ def test_a_gap_is_not_sure_of_what_it_is_as_much_too_long_for_as_the_part_travel
     for one in awkward.lying():
         if one.falls_off or one.gap <= 0.0:
             continue
-        more = made("gap", "test", limit=one.gap).more(Meeting(one))
+        more = made("gap", "test", limit=one.gap).more(DeviceEncounter(one))
         within, beyond = (made("gap", "test", limit=one.gap + more + step) for step in (-1e-6, 1e-6))
         assert not verdict(within, one).sure and verdict(beyond, one).sure
         assert verdict(beyond, one).margin == pytest.approx(-1e-6, rel=1e-3)
@@ -203,9 +205,13 @@ def test_what_no_width_carries_fails_on_every_ledge_by_as_far_as_its_foot_reache
 def test_a_face_sweeps_off_below_a_right_angle_less_its_angle_of_friction(rod, sweep, own, fate):
     """atan 0.6 = 31 deg of the track, atan 0.5 = 27 deg of the face; one straight across stops all."""
     wiper = made(
-        "wiper", "test", limit=1e-3, sweep=np.radians(sweep) if sweep < 90.0 else SQUARE, friction=own
+        "wiper",
+        "test",
+        limit=1e-3,
+        sweep=np.radians(sweep) if sweep < 90.0 else SQUARE_FACE_RAD,
+        friction=own,
     )
-    assert wiper.fate(Meeting(replace(rod, grip=0.6))) == fate
+    assert wiper.fate(DeviceEncounter(replace(rod, grip=0.6))) == fate
 
 
 def test_below_a_blade_is_what_its_lower_edge_leaves():

@@ -12,10 +12,10 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew.errors import Faults
 from feederscrew.mechanics.wall import lying_in_groove
-from feederscrew.output.rate.tables import remarks
+from feederscrew.output.rate import remarks
 from feederscrew.output.tooling import drawing, profile
 from feederscrew.part import load
-from feederscrew.rates import spacing, stretches
+from feederscrew.rates import stream
 from feederscrew.rates.well_oriented import velocity
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate, shares
@@ -23,9 +23,8 @@ from feederscrew.tooling import solid
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.fates import at_entry, course, leading
 from feederscrew.tooling.orientations import orientations, travelling
-from feederscrew.tooling.strip import strip
-from feederscrew.tooling.tightest import passage
-from feederscrew.tooling.verdicts import Meeting, verdict
+from feederscrew.tooling.track_sections import build_section, worst_passage
+from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
 PARTS = Path(__file__).resolve().parents[2] / "parts"
 BOWL = bowls.read(None, ["track.width=30 mm"])
@@ -82,7 +81,7 @@ def test_what_turns_is_not_sure_and_counts_as_what_it_turns_into(dowel):
     row, lying = (next(k for k, one in enumerate(every) if one.name == name) for name in ("B@86", "A@0"))
     assert not found.decided[row] and found.decided[lying]
     assert found.leaving[row, lying] == 1.0 and found.leaving[row, row] == 0.0
-    seen = passage(groove(30.0), upright[row], upright)
+    seen = worst_passage(groove(30.0), upright[row], upright)
     assert seen.after.name == "A@0" and seen.after.groove == 30.0 * DEG
     assert profile.turned_into(seen) == "turns into A@0, not sure"
 
@@ -90,9 +89,9 @@ def test_what_turns_is_not_sure_and_counts_as_what_it_turns_into(dowel):
 def test_a_place_is_known_though_the_track_leans_otherwise(dowel):
     _, every = dowel
     for k, one in enumerate(every):
-        assert Meeting(groove(20.0).onward(one), every).place == k
+        assert DeviceEncounter(groove(20.0).onward(one), every).place == k
     with pytest.raises(ValueError, match="is not one of the orientations"):
-        _ = Meeting(replace(every[0], heading=1.0), every).place
+        _ = DeviceEncounter(replace(every[0], heading=1.0), every).place
 
 
 def test_both_faces_hold_what_rolls_along_them_only(dowel):
@@ -127,14 +126,14 @@ def test_a_bank_brings_to_the_wall_only_what_does_not_roll_along_it(dowel):
 @pytest.mark.parametrize("angle", [10.0, 30.0, 50.0])
 def test_friction_acts_as_over_the_cosine(angle):
     one = groove(angle).onward(named(known(shapes.part(shapes.box(20, 12, 5))), "A@0"))
-    there = stretches.on_stretch(BOWL, one)
+    there = stream.on_stretch(BOWL, one)
     more = 1.0 / math.cos(angle * DEG)
     mu = BOWL.friction
     assert there.friction.static == pytest.approx(mu.static * more)
     assert there.friction.kinetic == pytest.approx(mu.kinetic * more)
     assert there.friction.backward == pytest.approx([one * more for one in mu.backward])
     assert there.track.bank == 0.0 and there.track.climb == BOWL.track.climb
-    back = stretches.on_stretch(BOWL, made("bank", "b", angle=5.0 * DEG).onward(one))
+    back = stream.on_stretch(BOWL, made("bank", "b", angle=5.0 * DEG).onward(one))
     assert back.friction is BOWL.friction and back.track.bank == 5.0 * DEG
 
 
@@ -142,10 +141,10 @@ def test_a_queue_travels_as_in_the_groove_that_is_listed_first(dowel):
     _, every = dowel
     steep = made("separation", "s", angle=-6.0 * DEG)
     lying = at_entry(every, [groove(40.0), steep])
-    assert stretches.queueing(BOWL, lying).track.climb == BOWL.track.climb
-    there = replace(BOWL, friction=stretches.on_stretch(BOWL, lying[0]).friction)
-    assert velocity(stretches.queueing(BOWL, lying)).value == pytest.approx(velocity(there).value)
-    assert spacing.needed([groove(40.0)], lying, BOWL) == 0.0
+    assert stream.queueing(BOWL, lying).track.climb == BOWL.track.climb
+    there = replace(BOWL, friction=stream.on_stretch(BOWL, lying[0]).friction)
+    assert velocity(stream.queueing(BOWL, lying)).value == pytest.approx(velocity(there).value)
+    assert stream.needed_spacing([groove(40.0)], lying, BOWL) == 0.0
 
 
 def test_a_groove_begins_at_the_entry_and_a_bank_ends_it():
@@ -189,7 +188,7 @@ def test_it_is_read_as_written_and_a_bank_lets_devices_follow(tmp_path):
 def test_its_section_is_closed_and_has_the_other_face(dowel):
     _, every = dowel
     chain = (groove(30.0), made("bank", "b", angle=6.0 * DEG), made("gap", "g", limit=5e-3, text="5 mm"))
-    section = strip(BOWL.track, chain, every)
+    section = build_section(BOWL.track, chain, every)
     (begin, first, lean), (_, end, upright) = section.walls
     assert (begin, end, upright) == (0.0, section.length, 0.0) and lean == pytest.approx(30.0 * DEG)
     vertices, faces = solid.solid(section)
@@ -199,7 +198,7 @@ def test_its_section_is_closed_and_has_the_other_face(dowel):
     way = BOWL.track.radius * np.arctan2(vertices[:, 0], BOWL.track.radius - vertices[:, 1])
     top = vertices[:, 2].max()
     leaning_back = (way < first - 1e-3) & (vertices[:, 2] > 1e-3)
-    assert off[leaning_back].min() < -0.9 * math.sin(30.0 * DEG) * (section.tallest + solid.ABOVE)
+    assert off[leaning_back].min() < -0.9 * math.sin(30.0 * DEG) * (section.tallest + solid.WALL_MARGIN_M)
     assert off[(way > first + 3e-3) & (vertices[:, 2] > 0.9 * top)].min() > -1.01 * solid.WALL
     inner = leaning_back & (np.abs(off + vertices[:, 2] * math.tan(30.0 * DEG)) < 2e-5)
     assert inner.sum() > 10  # the face itself, from the wall's foot on
@@ -207,7 +206,7 @@ def test_its_section_is_closed_and_has_the_other_face(dowel):
 
 def test_its_drawing_has_a_line_and_its_angle(dowel):
     _, every = dowel
-    section = strip(BOWL.track, (groove(30.0),), every)
+    section = build_section(BOWL.track, (groove(30.0),), every)
     layers = {one.name: one for one in drawing.layers(section)}
     assert len(layers["SLOPE"].rings) == 1
     assert any("groove {angle: 30 deg}" in text for text, _ in layers["TEXT"].texts)

@@ -11,11 +11,10 @@ from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.falling import hangs_free
 from feederscrew.tooling.fates import course
-from feederscrew.tooling.hanging import Hanging, neck
-from feederscrew.tooling.holding import hangs_free
-from feederscrew.tooling.orientations import orientations
-from feederscrew.tooling.tightest import until_returned
+from feederscrew.tooling.orientations import Hanging, neck, orientations
+from feederscrew.tooling.track_sections import until_returned
 from feederscrew.tooling.verdicts import verdict
 
 HEAD, SHANK, UNDER = 5e-3, 2e-3, 4e-3  # [m] radii, height of the head

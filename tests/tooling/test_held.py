@@ -12,8 +12,8 @@ from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import made
-from feederscrew.tooling.isolating import held
-from feederscrew.tooling.isolating.chain import Wishes
+from feederscrew.tooling.isolating import tracks
+from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.orientations import orientations, travelling
 
 DOWEL = load(Path(__file__).resolve().parents[2] / "parts" / "dowel_6x20.stl")
@@ -23,10 +23,10 @@ EVERY = travelling(orientations(DOWEL, find(DOWEL), BOWL.track), BOWL)
 ALONG, ACROSS, UPRIGHT = (next(one for one in EVERY if one.name == name) for name in ("A@0", "A@90", "B@86"))
 
 
-def angles(one, friction, before=(), wishes=None):
+def angles(one, friction, before=(), constraints=None):
     return [
         (device.kind, pytest.approx(math.degrees(device.angle)))
-        for device in held.stretches(one, friction, before, wishes or Wishes())
+        for device in tracks.holding_stretches(one, friction, before, constraints or DesignConstraints())
     ]
 
 
@@ -34,7 +34,7 @@ def test_the_bank_holds_by_the_friction_of_the_wall_with_a_degree_to_spare():
     assert angles(ALONG, 0.5) == [("bank", 7.0)]  # atan(tan 3 deg / 0.5) = 5.98 deg
     assert angles(ALONG, 0.9) == [("bank", 6.0)]
     assert angles(ACROSS, 0.3) == [("bank", 11.0)]  # 9.9 deg
-    bank = held.stretches(ACROSS, 0.3, (), Wishes())[0]
+    bank = tracks.holding_stretches(ACROSS, 0.3, (), DesignConstraints())[0]
     assert ACROSS.may_roll_back and not bank.onward(replace(ACROSS, wall_grip=0.3)).may_roll_back
 
 
@@ -42,14 +42,14 @@ def test_a_groove_stands_in_where_the_bank_would_be_steep_for_what_lies_along():
     assert angles(ALONG, 0.1) == [("groove", 30.0), ("bank", 6.0)]
     assert angles(ALONG, 0.0) == [("groove", 30.0), ("bank", 6.0)]
     assert angles(ACROSS, 0.1) == []
-    assert angles(ALONG, 0.1, wishes=Wishes(without=("groove",))) == []
+    assert angles(ALONG, 0.1, constraints=DesignConstraints(without=("groove",))) == []
 
 
 def test_nothing_is_added_where_the_track_leans_or_nothing_rolls():
     assert angles(UPRIGHT, 0.5) == []
     assert angles(replace(ALONG, track=replace(ALONG.track, bank=0.01)), 0.5) == []
     assert angles(ALONG, 0.5, before=(made("bank", "b", angle=0.1),)) == []
-    assert angles(ALONG, 0.5, wishes=Wishes(without=("bank",))) == []
+    assert angles(ALONG, 0.5, constraints=DesignConstraints(without=("bank",))) == []
 
 
 def test_the_design_of_a_dowel_begins_with_its_bank():

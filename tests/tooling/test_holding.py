@@ -9,7 +9,7 @@ import shapes
 from feederscrew.bowl.record import Track
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
-from feederscrew.tooling import holding
+from feederscrew.tooling import falling
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.orientations import orientations
 from feederscrew.tooling.verdicts import UNSURE, verdict
@@ -32,7 +32,7 @@ def pin():
 @pytest.mark.parametrize(("low", "lays"), [(7.4e-3, False), (7.6e-3, True)])
 def test_a_blade_lays_a_pin_over_from_a_height_on(pin, low, lays):
     """z = mu L + b (1 - mu^2) / mu = 0.5 6 mm + 3 mm 0.75 / 0.5 = 7.5 mm."""
-    assert holding.may_lay_over(pin, low) == lays
+    assert falling.may_lay_over(pin, low) == lays
     margin = verdict(made("wiper", "here", limit=low), pin).margin
     assert margin == pytest.approx(-UNSURE if lays else low - 20e-3)
     free = made("wiper", "here", limit=7.6e-3)
@@ -41,9 +41,9 @@ def test_a_blade_lays_a_pin_over_from_a_height_on(pin, low, lays):
 
 def test_a_climb_helps_the_blade_and_a_rough_track_sticks(pin):
     steep = replace(pin, track=replace(TRACK, climb=np.radians(5.0)))
-    assert holding.may_lay_over(steep, 7.4e-3)
-    assert not holding.may_lay_over(replace(pin, grip=1.2), 7.1e-3)  # z < mu L: its own friction holds it
-    assert holding.may_lay_over(replace(pin, grip=1.2), 7.3e-3)
+    assert falling.may_lay_over(steep, 7.4e-3)
+    assert not falling.may_lay_over(replace(pin, grip=1.2), 7.1e-3)  # z < mu L: its own friction holds it
+    assert falling.may_lay_over(replace(pin, grip=1.2), 7.3e-3)
 
 
 def test_an_opening_above_the_part_lays_it_over_as_a_blade_does(pin):
@@ -60,14 +60,14 @@ def test_a_hexagon_wedges_where_friction_exceeds_the_slope_of_its_sides(grip, we
     bar = lying(shapes.prism(6.0 * np.column_stack([np.cos(turn), np.sin(turn)]), 30), 6.0 * np.sqrt(3.0))
     along = replace(bar, grip=grip, heading=bar.heading)
     middle = bar.distance
-    assert holding.may_wedge(along, (middle - 4e-3, middle + 4e-3)) == wedges
-    assert not holding.may_wedge(along, (middle - 2.5e-3, middle + 2.5e-3))  # it lies on its flat
+    assert falling.may_wedge(along, (middle - 4e-3, middle + 4e-3)) == wedges
+    assert not falling.may_wedge(along, (middle - 2.5e-3, middle + 2.5e-3))  # it lies on its flat
 
 
 def test_a_part_that_leans_on_the_wall_dips_by_its_angle():
     """At climbs = 0.3 mm: 0.3 (2 13 - 6.5) / 4 = 1.4625 mm."""
     block = replace(lying(shapes.box(22, 13, 6), 13), climbs=3e-4)
-    assert holding.leans(block, 4e-3) == pytest.approx(1.4625e-3)
+    assert falling.wall_holds(block, 4e-3) == pytest.approx(1.4625e-3)
     near = verdict(made("canyon", "here", limit=block.canyon + 1.2e-3), block).margin
     beyond = verdict(made("canyon", "here", limit=block.canyon + 2.0e-3), block).margin
     assert near == -UNSURE and beyond == pytest.approx(0.3 * 19.5e-3 / (block.canyon + 2e-3) * 1e-3 - 2e-3)
@@ -78,7 +78,7 @@ def test_a_part_leans_on_the_wall_as_high_as_it_is_there():
     rib = shapes.box(22, 3, 10)
     rib.apply_translation([0.0, 5.0, 2.0])  # both begin at the same level
     one = replace(lying(shapes.box(22, 13, 6).union(rib), 10), climbs=3e-4)
-    dips = {holding.leans(replace(one, heading=one.heading + turn), 4e-3) for turn in (0.0, np.pi)}
+    dips = {falling.wall_holds(replace(one, heading=one.heading + turn), 4e-3) for turn in (0.0, np.pi)}
     mass = one.posture.height
     low, high = (3e-4 * (2.0 * height - mass) / 4e-3 for height in (6e-3, 10e-3))
     assert sorted(dips) == pytest.approx([low, high], rel=1e-9)
@@ -88,7 +88,7 @@ def test_the_margin_of_what_returns_is_that_of_the_first_device_that_does():
     part = shapes.part(shapes.box(20, 12, 5))
     kinds = (("wiper", 8e-3), ("gap", 10.5e-3), ("wiper", 4e-3))
     chain = [made(kind, "here", limit=limit) for kind, limit in kinds]
-    known = stream.orientations(part, find(part), TRACK, chain)
+    known = stream.follow_orientations(part, find(part), TRACK, chain)
     along = next(k for k, one in enumerate(known.lying) if one.height < 6e-3 and one.length > 0.015)
     assert known.margins[along, 1:] == pytest.approx([3e-3, -0.5e-3, -1e-3], rel=1e-2)
     assert known.margin[along] == pytest.approx(-0.5e-3, rel=1e-2)
@@ -105,12 +105,12 @@ def test_a_round_part_rides_over_a_hole_that_it_sinks_into_by_less_than_it_climb
         replace(one, climbs=3e-4) for one in orientations(rod, find(rod), TRACK) if one.kind == "rolling"
     ]
     along = next(one for one in every if one.length > 0.019)
-    assert holding.rides(along, 2.59e-3, np.inf) and not holding.rides(along, 2.64e-3, np.inf)
+    assert falling.rides_over(along, 2.59e-3, np.inf) and not falling.rides_over(along, 2.64e-3, np.inf)
     short = 2.0 * np.sqrt(3.0**2 - 2.2**2)  # 4.079
-    assert holding.rides(along, 1e-3 * (short - 0.03), 15e-3)
-    assert not holding.rides(along, 1e-3 * (short + 0.03), 15e-3)
-    assert not any(holding.rides(one, 1e-3, np.inf) for one in every if one.length < 0.019)
-    assert holding.widest([(0.0, 0.0), (4e-3, 1e-3), (0.0, 3e-3)]) == pytest.approx(3e-3)
+    assert falling.rides_over(along, 1e-3 * (short - 0.03), 15e-3)
+    assert not falling.rides_over(along, 1e-3 * (short + 0.03), 15e-3)
+    assert not any(falling.rides_over(one, 1e-3, np.inf) for one in every if one.length < 0.019)
+    assert falling.greatest_width([(0.0, 0.0), (4e-3, 1e-3), (0.0, 3e-3)]) == pytest.approx(3e-3)
 
 
 @pytest.mark.parametrize(("over", "lays"), [(-0.03e-3, False), (0.03e-3, True)])
@@ -120,12 +120,12 @@ def test_a_climb_takes_its_part_of_what_the_track_pushes(pin, over, lays):
     push = (0.5 * np.cos(climb) - np.sin(climb)) / 0.75
     height = 3e-3 + (3e-3 * np.cos(climb) - 10e-3 * np.sin(climb)) / push
     steep = replace(pin, track=replace(TRACK, climb=climb))
-    assert holding.may_lay_over(steep, height + over) == lays
+    assert falling.may_lay_over(steep, height + over) == lays
 
 
 @pytest.mark.parametrize("sweep", [0.3, 0.7])
 def test_a_swept_blade_lays_a_pin_aside_from_a_height_on(pin, sweep):
     """Over a side 3 mm from the weight: mu z cos(a) = 3 mm, a the lesser of both its angles to the push."""
     height = 3e-3 / (0.5 * max(np.cos(sweep), np.sin(sweep)))
-    assert not holding.may_lay_aside(pin, 0.99 * height, sweep)
-    assert holding.may_lay_aside(pin, 1.01 * height, sweep)
+    assert not falling.may_lay_aside(pin, 0.99 * height, sweep)
+    assert falling.may_lay_aside(pin, 1.01 * height, sweep)

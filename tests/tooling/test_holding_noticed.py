@@ -9,11 +9,10 @@ import shapes
 
 from feederscrew.bowl.record import Track
 from feederscrew.resting.aspects import find
-from feederscrew.tooling import holding, turning
+from feederscrew.tooling import falling, verdicts
 from feederscrew.tooling.devices.base import UNSURE
 from feederscrew.tooling.devices.kinds import made
-from feederscrew.tooling.hanging import head_first
-from feederscrew.tooling.orientations import orientations, placed
+from feederscrew.tooling.orientations import head_first, orientations, place
 from feederscrew.tooling.verdicts import verdict
 
 LEVEL = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
@@ -29,7 +28,7 @@ def test_weight_meets_a_banked_track_nearer_to_the_wall_and_tips_over_what_is_be
         down = np.array([np.sin(np.radians(bank)), np.cos(np.radians(bank))])  # towards the wall, down
         across = -one.posture.height / down[1] * down[0]
         rear = rear_border(one.foot.corners, across)
-        assert holding._behind(leant) == pytest.approx(max(-rear, 0.0), abs=1e-9)
+        assert falling._behind(leant) == pytest.approx(max(-rear, 0.0), abs=1e-9)
 
 
 def rear_border(corners, across):
@@ -86,14 +85,14 @@ def test_a_head_that_comes_first_wedges_where_the_sides_are_steeper_than_frictio
 def test_beyond_a_ledge_a_margin_is_the_least_of_what_it_lacks_and_what_turns_it():
     """Widths from where a part just fails to stand to where nothing is left of the ledge."""
     seen = set()
-    every = placed(awkward.lying())
+    every = place(awkward.lying())
     for one in every:
         if one.falls_off or not np.isfinite(one.balcony):
             continue
         for share in (0.05, 0.3, 0.6, 0.9):
             limit = share * one.balcony
             lacks = one.balcony - limit
-            _, certain = turning.beyond_ledge(one, every, limit)
+            _, certain = verdicts.beyond_ledge(one, every, limit)
             found = verdict(made("tip", "test", limit=limit), one, every).margin
             assert found <= min(lacks, certain) + 1e-12
             assert min(abs(found - lacks), abs(found - certain)) < 1e-12
@@ -108,7 +107,7 @@ def test_the_rear_that_follows_a_part_down_a_step_lifts_it_by_what_its_momentum_
     that lands; what is left of the energy lifts the centre of mass.
     """
     uneven = []
-    for one in placed(awkward.lying()):
+    for one in place(awkward.lying()):
         foot = one.foot.corners[:, 0]
         if one.kind != "flat" or len(foot) < 3:
             continue
@@ -125,7 +124,7 @@ def test_the_rear_that_follows_a_part_down_a_step_lifts_it_by_what_its_momentum_
         moment = (behind[:, 0] * velocity[:, 1] - behind[:, 1] * velocity[:, 0]).sum()
         kept = max(moment, 0.0) / (behind**2).sum()  # none where it goes back
         left = kept**2 * (behind**2).sum() / (ahead**2).sum()
-        assert turning._rear(one, height) == pytest.approx(left * max(fall, 0.0), rel=1e-6)
+        assert verdicts._rear(one, height) == pytest.approx(left * max(fall, 0.0), rel=1e-6)
     assert max(uneven) > 0.5
 
 
@@ -135,9 +134,9 @@ def test_what_leans_over_a_ledge_goes_on_by_what_its_momentum_keeps():
     Points of the part keep the moment of their momentum about the corner; what is left of the energy lifts
     the centre of mass towards its barrier over the second track.
     """
-    shares, every = [], placed(awkward.lying())
+    shares, every = [], place(awkward.lying())
     for one in every:
-        turn = turning.rolled(one, every)
+        turn = verdicts.roll_over(one, every)
         for width in (0.3 * one.distance, 0.7 * one.distance):
             over, height, drop = one.distance - width, one.posture.height, 2e-3
             reach = one.foot.corners[:, 1].max() + over if len(one.foot.corners) else 0.0
@@ -152,7 +151,7 @@ def test_what_leans_over_a_ledge_goes_on_by_what_its_momentum_keeps():
             velocity = np.column_stack([-edge[:, 1], edge[:, 0]])
             moment = (corner[:, 0] * velocity[:, 1] - corner[:, 1] * velocity[:, 0]).sum()
             left = max(moment, 0.0) ** 2 / (corner**2).sum() / (edge**2).sum() * fell
-            missed, to_fall = turning._leaning(one, turn, width, drop)
+            missed, to_fall = verdicts._leaning(one, turn, width, drop)
             assert missed == pytest.approx(turn.lift - (drop - fell) - left, rel=1e-6, abs=1e-9)
             assert to_fall == pytest.approx(drop - fell, rel=1e-9, abs=1e-12)
             shares.append(left / drop)
@@ -175,7 +174,7 @@ def test_a_blade_meets_the_foremost_place_of_what_is_higher_than_it():
             ]
             reach = max(place[0] for place in kept)
             level = min(place[1] for place in kept if place[0] >= reach - 1e-7)
-            assert holding._met(one, low) == pytest.approx((reach, level), abs=1e-9)
+            assert falling._first_contact(one, low) == pytest.approx((reach, level), abs=1e-9)
             seen.add(level > low + 1e-6)
             seen.add(bool(reach < ahead.max() - 1e-6))
     assert seen == {True, False}
@@ -192,12 +191,12 @@ def above(corners, low):
 
 def test_the_rear_side_is_a_barrier_of_its_own_and_a_face_holds_what_its_momentum_does_not_lift():
     """Corners of a skew body seen across the track: its barriers by trying every angle."""
-    every = placed(awkward.lying())
+    every = place(awkward.lying())
     uneven = []
     for one in every:
         if one.falls_off or one.kind != "flat":
             continue
-        turn = turning.pitched(one, every)
+        turn = verdicts.pitch_over(one, every)
         points = one.posture.solid.vertices - one.posture.solid.centre_of_mass
         seen = points @ np.array([one.axes[0], -one.axes[2]]).T  # ahead and down
         assert turn.lift == pytest.approx(lifted(seen, 1.0), abs=2e-8)
@@ -219,11 +218,11 @@ def lifted(seen, side):
 
 def test_a_face_holds_a_fall_of_which_housners_impact_leaves_less_than_its_edge_lifts():
     """A skew body is set down on a face from another one: what the drop may be."""
-    every = placed(awkward.lying())
+    every = place(awkward.lying())
     judged = 0
     for one in every:
         solid = one.posture.solid
-        hull = turning.convex_hull(solid.vertices, solid.centre_of_mass, solid.source)
+        hull = verdicts.convex_hull(solid.vertices, solid.centre_of_mass, solid.source)
         x, y, z = one.axes
         below = hull.vertices @ np.array([x, -z]).T
         height = max(v[1] for v in below)
@@ -231,7 +230,7 @@ def test_a_face_holds_a_fall_of_which_housners_impact_leaves_less_than_its_edge_
         arm = awkward.square_of_gyration(one)
         still = arm + height**2
         kept = still + min(foot) * max(foot)
-        limit = turning._holds(hull, one, (x, y, -z))
+        limit = verdicts._holds(hull, one, (x, y, -z))
         if kept <= 0.0:
             assert limit == np.inf
             continue

@@ -10,7 +10,7 @@ from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
 from feederscrew.part import load
 from feederscrew.studies import tooling, trial
-from feederscrew.tooling.hanging import neck
+from feederscrew.tooling.orientations import neck
 from feederscrew.tooling.verdicts import verdict
 from feederscrew.trial import course
 

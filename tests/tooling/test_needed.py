@@ -12,8 +12,8 @@ from feederscrew.output.tooling import tables
 from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import made
-from feederscrew.tooling.isolating import chain, needed
-from feederscrew.tooling.isolating.proposal import task, told
+from feederscrew.tooling.isolating import chain, proposal
+from feederscrew.tooling.isolating.proposal import design_task, propose
 from feederscrew.tooling.orientations import orientations, travelling
 
 BOWL = bowls.read(None, [])
@@ -58,35 +58,35 @@ def block():
 def cut(every, wanted, kind, **values):
     device = made(kind, "design", **values)
     must = np.array([chain.margin_at(device, one, every) <= -MARGIN for one in every])
-    return chain.judged(every, wanted, device, must, device, device), must
+    return chain.judge_cut(every, wanted, device, must, device, device), must
 
 
 def test_a_device_that_changes_no_number_is_left_out_and_what_drops_parts_stays(block):
     every, shares = block
     wanted = next(k for k, one in enumerate(every) if one.name == "A@0")  # 20 mm along the track
-    given = task(every, shares, wanted, MARGIN, 1.0, ())
+    given = design_task(every, shares, wanted, MARGIN, 1.0, ())
     first, gone = cut(every, wanted, "narrowed_track", limit=every[wanted].balcony + 1e-3)
     again, also = cut(every, wanted, "narrowed_track", limit=every[wanted].balcony + 2e-3)
     other, more = cut(every, wanted, "sorter", like=("A", 0.0, 2e-3), sees="height")
     assert gone.any() and not (also & ~gone).any()
-    both = needed.told_needed(given, (first, again), gone | also | ~given.stays)
+    both = proposal.propose_needed(given, (first, again), gone | also | ~given.stays)
     assert [one.device.limit for one in both.cuts] == [first.device.limit]
-    alone = told(given, (first,), gone | ~given.stays)
+    alone = propose(given, (first,), gone | ~given.stays)
     assert (both.isolated, both.efficiency, both.purity) == (alone.isolated, alone.efficiency, alone.purity)
     assert (more & ~gone).any()
-    kept = needed.told_needed(given, (first, other), gone | more | ~given.stays)
+    kept = proposal.propose_needed(given, (first, other), gone | more | ~given.stays)
     assert [one.device.kind for one in kept.cuts if not one.device.leans] == ["narrowed_track", "sorter"]
 
 
 def test_one_that_alone_returns_a_share_by_the_margin_stays(block):
     every, shares = block
     wanted = next(k for k, one in enumerate(every) if one.name == "A@0")
-    given = task(every, shares, wanted, MARGIN, 1.0, ())
+    given = design_task(every, shares, wanted, MARGIN, 1.0, ())
     first, gone = cut(every, wanted, "narrowed_track", limit=every[wanted].balcony + 1e-3)
     met = np.array([one.name in first.returns for one in every])
     rare = replace(given, coming=np.where(met, 1e-6, given.coming), shares=np.where(met, 1e-6, shares))
-    assert needed.told_needed(given, (first,), gone | ~given.stays).cuts
-    assert not needed.told_needed(rare, (first,), gone | ~given.stays).cuts
+    assert proposal.propose_needed(given, (first,), gone | ~given.stays).cuts
+    assert not proposal.propose_needed(rare, (first,), gone | ~given.stays).cuts
 
 
 @pytest.mark.parametrize("name", PARTS)
@@ -96,10 +96,10 @@ def test_no_device_of_these_parts_is_idle(name):
     found, every = study.design, study.orientations
     own = [one for one in found.cuts if not one.device.serves]
     assert own and all(one.device.serves for one in found.cuts if one not in own)
-    given = task(every, study.shares, found.wanted, study.margin, 1.0, ())
-    whole = told(given, own, np.zeros(len(every), bool))
+    given = design_task(every, study.shares, found.wanted, study.margin, 1.0, ())
+    whole = propose(given, own, np.zeros(len(every), bool))
     for one in own:
-        rest = told(given, [other for other in own if other is not one], np.zeros(len(every), bool))
+        rest = propose(given, [other for other in own if other is not one], np.zeros(len(every), bool))
         assert abs(rest.purity - whole.purity) + abs(rest.efficiency - whole.efficiency) > 1e-3
     rows = tables.document(study)["chain"]
     assert all(bool(row["returns"] or row.get("stops")) != bool(row["serves"]) for row in rows)

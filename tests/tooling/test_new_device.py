@@ -9,7 +9,7 @@ import trimesh
 from click.testing import CliRunner
 
 from feederscrew.bowl import read
-from feederscrew.bowl.json_schema import schema
+from feederscrew.bowl.documentation import json_schema
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.tooling import devices
@@ -29,7 +29,7 @@ from feederscrew.tooling.devices.base import Device
 
 class Ravine(Device):
     kind = "ravine"
-    form = forms.LENGTH | {"title": "its width"}
+    form = forms.LENGTH_FORM | {"title": "its width"}
     example = "8 mm"
     meaning = "strip along the wall"
     picture = "above"
@@ -87,7 +87,7 @@ def test_a_device_added_in_one_file_is_known_everywhere(ravine):
     assert mesh.is_watertight
     over = mesh.triangles_center[np.abs(mesh.triangles_center[:, 2]) < 1e-6]
     assert len(over) and files["tooling.png"].stat().st_size > 1000
-    made = schema()["properties"]["devices"]["items"]["properties"]["ravine"]
+    made = json_schema()["properties"]["devices"]["items"]["properties"]["ravine"]
     assert (made["title"], made["pattern"]) == ("its width", pattern("length"))
     tried = json.loads(ran("trial", part, "--parts", "8", "--rule", "csa", "--format", "json"))[
         "orientations"

@@ -12,10 +12,8 @@ import trimesh
 from feederscrew.bowl.record import Track
 from feederscrew.geometry.polygons import turned
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.hanging import neck
-from feederscrew.tooling.mirrored import named
-from feederscrew.tooling.orientations import orientations
-from feederscrew.tooling.touching import silhouette
+from feederscrew.tooling.footprints import silhouette
+from feederscrew.tooling.orientations import name_mirror_images, neck, orientations
 
 STRAIGHT = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
 CURVED = replace(STRAIGHT, radius=0.15)
@@ -109,7 +107,7 @@ def test_limits_do_not_hang_on_the_tessellation(rng):
 
 
 def test_mirror_images_stay_apart_and_name_each_other():
-    found = named(lying(shapes.prism(shapes.l_profile(), 15), CURVED))
+    found = name_mirror_images(lying(shapes.prism(shapes.l_profile(), 15), CURVED))
     names = {one.name: one.mirror for one in found}
     paired = {name: mirror for name, mirror in names.items() if mirror}
     assert paired

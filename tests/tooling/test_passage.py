@@ -7,9 +7,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from feederscrew.geometry.polygons import convex
-from feederscrew.tooling import foot as feet
-from feederscrew.tooling.devices import hole_shapes
-from feederscrew.tooling.foot import Footprint
+from feederscrew.tooling import footprints
+from feederscrew.tooling.devices import openings
+from feederscrew.tooling.footprints import Footprint
 
 STRAIGHT, CURVED = 100.0, 0.15  # [m]
 
@@ -62,7 +62,9 @@ def test_margins_against_a_scan(radius, pieces, near, rng):
         foot, corners = random_foot(rng), random_hole(rng)
         ring = foot.rings[0]
         distance = 5e-4 - ring[:, 1].min()
-        least, shift = feet.least(feet.standing(foot, distance, radius), hole_shapes.polygon(corners, radius))
+        least, shift = footprints.least(
+            footprints.standing(foot, distance, radius), openings.polygon(corners, radius)
+        )
         span = (np.ptp(corners[:, 0]) + 0.03) / radius
         about = np.array([-20.0, -5.0, -1.0, 0.0, 1.0, 5.0, 20.0]) * near / radius  # chords shift the events
         there = [margin_at(ring, corners, distance, radius, shift + e, pieces) for e in about]
@@ -76,14 +78,14 @@ def test_margins_against_a_scan(radius, pieces, near, rng):
 def test_a_margin_between_two_values_is_told_to_the_last_digit(rng):
     """Beyond them it is only told on which side: a search for holes asks no more."""
     for _ in range(100):
-        ring, hole = random_foot(rng).rings[0], hole_shapes.polygon(random_hole(rng), CURVED)
-        foot = feet.standing(footprint(ring), 5e-4 - ring[:, 1].min(), CURVED)
-        least, way = feet.least(foot, hole)[0], feet.unheld(foot, hole)
+        ring, hole = random_foot(rng).rings[0], openings.polygon(random_hole(rng), CURVED)
+        foot = footprints.standing(footprint(ring), 5e-4 - ring[:, 1].min(), CURVED)
+        least, way = footprints.least(foot, hole)[0], footprints.unheld(foot, hole)
         low, high = least + np.sort(rng.uniform(-1e-3, 1e-3, 2))
-        told = feet.least(foot, hole, low=low, high=high)[0]
+        told = footprints.least(foot, hole, low=low, high=high)[0]
         assert told == least if low <= least <= high else (told < low if least < low else told > high)
         enough = way * rng.uniform(0.5, 1.5)
-        told = feet.unheld(foot, hole, enough=enough)
+        told = footprints.unheld(foot, hole, enough=enough)
         assert told == way if way <= enough else told >= enough
 
 
@@ -91,33 +93,33 @@ def test_a_margin_between_two_values_is_told_to_the_last_digit(rng):
 @pytest.mark.parametrize(("length", "width"), [(0.02, 0.012), (0.012, 0.02), (0.008, 0.008)])
 def test_a_rectangle_passes_a_gap_of_half_its_length(radius, length, width):
     distance = 0.5 * width + length**2 / (8.0 * radius)
-    foot = feet.standing(footprint(rectangle(length, width)), distance, radius)
-    assert feet.longest_gap(foot, radius) == pytest.approx(0.5 * length, rel=1e-6)
+    foot = footprints.standing(footprint(rectangle(length, width)), distance, radius)
+    assert footprints.longest_gap(foot, radius) == pytest.approx(0.5 * length, rel=1e-6)
 
 
 def test_balcony_and_canyon_of_a_rectangle_and_a_triangle():
-    foot = feet.standing(footprint(rectangle(0.02, 0.012)), 0.006, 1e4)
-    assert feet.balcony(foot, 1e4) == pytest.approx(0.006, rel=1e-6)
-    assert feet.canyon(foot, 1e4) == pytest.approx(0.006, rel=1e-6)
+    foot = footprints.standing(footprint(rectangle(0.02, 0.012)), 0.006, 1e4)
+    assert footprints.balcony(foot, 1e4) == pytest.approx(0.006, rel=1e-6)
+    assert footprints.canyon(foot, 1e4) == pytest.approx(0.006, rel=1e-6)
     side = 0.018
     deep = side * np.sqrt(3.0) / 6.0
     triangle = footprint([[-side / 2, -deep], [side / 2, -deep], [0.0, 2.0 * deep]])
-    assert feet.balcony(feet.standing(triangle, deep, 1e4), 1e4) == pytest.approx(deep, rel=1e-6)
+    assert footprints.balcony(footprints.standing(triangle, deep, 1e4), 1e4) == pytest.approx(deep, rel=1e-6)
 
 
 def test_two_legs_bear_a_gap_of_one_leg():
     legs = footprint(rectangle(0.003, 0.008, -0.0085), rectangle(0.003, 0.008, 0.0085))
-    foot = feet.standing(legs, 0.004, 1e4)
-    assert feet.longest_gap(foot, 1e4) == pytest.approx(0.003, rel=1e-4)
-    assert feet.least(foot, hole_shapes.gap(0.0031, 1e4, 0.02))[0] == pytest.approx(-0.007, rel=1e-3)
+    foot = footprints.standing(legs, 0.004, 1e4)
+    assert footprints.longest_gap(foot, 1e4) == pytest.approx(0.003, rel=1e-4)
+    assert footprints.least(foot, openings.gap(0.0031, 1e4, 0.02))[0] == pytest.approx(-0.007, rel=1e-3)
 
 
 def test_a_canyon_as_a_long_polygon():
-    foot = feet.standing(footprint(rectangle(0.02, 0.012)), 0.0063, CURVED)
+    foot = footprints.standing(footprint(rectangle(0.02, 0.012)), 0.0063, CURVED)
     for width in (0.004, 0.006, 0.007):
-        hole = hole_shapes.polygon(np.array([[0.0, 0.0], [0.2, 0.0], [0.2, width], [0.0, width]]), CURVED)
-        ring = feet.over_ring(foot, CURVED - width, 1.0)
-        assert feet.least(foot, hole)[0] <= ring + 1e-12
+        hole = openings.polygon(np.array([[0.0, 0.0], [0.2, 0.0], [0.2, width], [0.0, width]]), CURVED)
+        ring = footprints.over_ring(foot, CURVED - width, 1.0)
+        assert footprints.least(foot, hole)[0] <= ring + 1e-12
         assert ring == pytest.approx(0.0063 - width, abs=2e-6)
 
 
@@ -172,6 +174,6 @@ def test_a_hole_that_is_even_fore_and_aft_parts_no_mirror_images(seed):
 
 
 def _least(ring, corners, distance, radius):
-    return feet.least(feet.standing(footprint(ring), distance, radius), hole_shapes.polygon(corners, radius))[
-        0
-    ]
+    return footprints.least(
+        footprints.standing(footprint(ring), distance, radius), openings.polygon(corners, radius)
+    )[0]

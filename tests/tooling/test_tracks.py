@@ -13,12 +13,12 @@ from feederscrew.output.tooling import bowl_file
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling import drift
+from feederscrew.tooling import verdicts
 from feederscrew.tooling.devices.kinds import made
-from feederscrew.tooling.isolating import held, tracks, varied
-from feederscrew.tooling.isolating.chain import Wishes
+from feederscrew.tooling.isolating import design, tracks
+from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.orientations import orientations, travelling
-from feederscrew.tooling.verdicts import Meeting
+from feederscrew.tooling.verdicts import DeviceEncounter
 
 BOWL = bowls.read(None, [])
 BLOCK = shapes.part(shapes.box(20, 12, 5))
@@ -73,13 +73,17 @@ def test_a_track_gives_more_that_isolates_or_is_purer_or_brings_more():
 
 def test_other_tracks_are_tried_for_what_rolls_or_is_not_isolated(block):
     every, _ = block
-    free = Wishes()
+    free = DesignConstraints()
     loose = SimpleNamespace(isolated=False, cuts=())
-    assert [one[0].text for one in held.others(every[0], loose, free)] == ["6 deg", "10 deg", "15 deg"]
-    assert held.others(every[0], SimpleNamespace(isolated=True, cuts=()), free) == []
-    assert held.others(every[0], loose, Wishes(without=("bank",))) == []
+    assert [one[0].text for one in tracks.other_stretches(every[0], loose, free)] == [
+        "6 deg",
+        "10 deg",
+        "15 deg",
+    ]
+    assert tracks.other_stretches(every[0], SimpleNamespace(isolated=True, cuts=()), free) == []
+    assert tracks.other_stretches(every[0], loose, DesignConstraints(without=("bank",))) == []
     steep = replace(every[0], track=replace(every[0].track, bank=0.01))
-    assert held.others(steep, loose, free) == []
+    assert tracks.other_stretches(steep, loose, free) == []
 
 
 def test_what_falls_off_has_a_track_as_wide_as_it_is(tmp_path):
@@ -111,9 +115,12 @@ def test_a_narrower_track_lets_a_pulse_blow_off_what_is_heavy(block):
     ways = [tracks._blown(sorter, one, heavy) for one in heavy[1:]]
     assert width == pytest.approx(math.floor(1e3 * min(ways)) * 1e-3) and heavy[0].width < width < 25e-3
     there = [replace(one, track=replace(one.track, width=width)) for one in heavy]
-    blown = [Meeting(one, there).blown(*sorter.jet.push(one, tuple(there)), sorter.time) for one in there[1:]]
+    blown = [
+        DeviceEncounter(one, there).blown(*sorter.jet.push(one, tuple(there)), sorter.time)
+        for one in there[1:]
+    ]
     assert min(blown) > 0.0
-    wide = [Meeting(one, heavy).blown(*sorter.jet.push(one, heavy), sorter.time) for one in heavy[1:]]
+    wide = [DeviceEncounter(one, heavy).blown(*sorter.jet.push(one, heavy), sorter.time) for one in heavy[1:]]
     assert min(wide) < 0.0
 
 
@@ -122,7 +129,7 @@ def test_a_jet_meets_the_end_of_a_part_that_is_higher_than_its_middle():
     every, _ = coming(shapes.part(shapes.prism(steps, 8.0)))
     one = max((k for k in every if k.height < 9.5e-3 and k.length > 15e-3), key=lambda k: k.height)
     jet = made("jet", "j", nozzle=2e-3, pressure=5e4, height=7e-3)
-    met = Meeting(one, every)
+    met = DeviceEncounter(one, every)
     assert jet.jet.push(one, every)[0] == 0.0 and jet.most(met) > 2.0 * jet.factor(met) > 0.0
     pressures = [replace(jet, pressure=float(pressure)) for pressure in np.geomspace(1e2, 1e5, 60)]
     some = next(one for one in pressures if 0.6 < one.most(met) < 1.8)
@@ -132,10 +139,14 @@ def test_a_jet_meets_the_end_of_a_part_that_is_higher_than_its_middle():
 
 def test_other_sweeps_are_those_at_which_a_face_clears_itself(block):
     every, _ = block
-    sweeps = [round(math.degrees(one.sweep)) for one in varied.varied(every, 0, 2.5e-4, Wishes())]
+    sweeps = [
+        round(math.degrees(one.sweep)) for one in design.varied_devices(every, 0, 2.5e-4, DesignConstraints())
+    ]
     assert sweeps == [20, 45, 55]  # friction 0.6: below 59 deg
     rough = [replace(one, grip=0.9) for one in every]
-    assert [round(math.degrees(one.sweep)) for one in varied.varied(rough, 0, 2.5e-4, Wishes())] == [
+    assert [
+        round(math.degrees(one.sweep)) for one in design.varied_devices(rough, 0, 2.5e-4, DesignConstraints())
+    ] == [
         20,
         45,
     ]
@@ -143,6 +154,6 @@ def test_other_sweeps_are_those_at_which_a_face_clears_itself(block):
 
 def test_the_force_that_shifts_does_not_hang_on_the_height(block):
     one = block[0][0]
-    low, high = (drift.force_to_clear(one, 0.02, height) for height in (0.0, 1.0))
-    assert low == drift._force_to_shift(one, 0.02)
+    low, high = (verdicts.force_to_clear(one, 0.02, height) for height in (0.0, 1.0))
+    assert low == verdicts._force_to_shift(one, 0.02)
     assert high == pytest.approx(one.posture.mass * one.gravity * one.foot_reach)

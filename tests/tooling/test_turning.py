@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
-from feederscrew.tooling import turning
+from feederscrew.tooling import verdicts
 from feederscrew.tooling.devices.kinds import KINDS, made
 from feederscrew.tooling.fates import course
-from feederscrew.tooling.isolating.chain import Wishes
+from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.isolating.design import design
 from feederscrew.tooling.isolating.proposal import Goal
 from feederscrew.tooling.orientations import orientations
@@ -22,7 +22,7 @@ from feederscrew.tooling.orientations import orientations
 TRACK = bowls.read(None, ("track.radius=100 m", "track.width=200 mm", "track.bank=0 deg")).track
 A, B, C = 20e-3, 12e-3, 5e-3  # the sides of the block
 LYING = {"length": A, "width": B, "height": C}
-PLAIN = Wishes(without=("cut_out",))
+PLAIN = DesignConstraints(without=("cut_out",))
 
 
 def block(a=20, b=12, c=5):
@@ -44,13 +44,13 @@ def lying():
 
 def test_a_block_pitches_over_its_leading_edge(lying):
     one = lying[pick(lying, A, C)]
-    turn = turning.pitched(one, lying)
+    turn = verdicts.pitch_over(one, lying)
     edge = math.hypot(A / 2, C / 2)
     assert turn.angle == pytest.approx(math.atan2(A, C))
     assert turn.lift == pytest.approx(edge - C / 2)
     assert turn.sure == pytest.approx(A * (A / 2) / edge)  # the slope of its foot over the step is that angle
     assert turn.onto == pick(lying, C, A) and turn.beyond == pick(lying, A, C)
-    ledge = turning.rolled(one, lying)
+    ledge = verdicts.roll_over(one, lying)
     assert ledge.lift == pytest.approx(math.hypot(B / 2, C / 2) - C / 2)
     assert ledge.onto == pick(lying, A, B)
 
@@ -60,29 +60,29 @@ def test_a_face_holds_what_lands_on_it_as_long_as_its_momentum_allows(lying):
     arm, corner = (B**2 + C**2) / 12.0, (B**2 + C**2) / 4.0
     kept = ((arm + (B**2 - C**2) / 4.0) / (arm + corner)) ** 2  # of a block that rocks over its short side
     rise = math.sqrt(corner) - B / 2
-    assert turning.pitched(low, lying).holds == pytest.approx(rise / kept + B / 2 - C / 2)
-    assert turning.pitched(tall, lying).holds == math.inf  # a long side takes all of it: nothing turns on
+    assert verdicts.pitch_over(low, lying).holds == pytest.approx(rise / kept + B / 2 - C / 2)
+    assert verdicts.pitch_over(tall, lying).holds == math.inf  # a long side takes all of it: nothing turns on
     for height in (4.5e-3, 12e-3):
-        turned, margin = turning.over_step(low, lying, height)
+        turned, margin = verdicts.over_step(low, lying, height)
         assert margin < 0.0  # between the barrier and what is sure, and then beyond what the short side holds
         assert {place for place, _ in turned} == {pick(lying, C, B), pick(lying, B, C)}
-    (one,), margin = turning.over_step(tall, lying, 8e-3)
+    (one,), margin = verdicts.over_step(tall, lying, 8e-3)
     foot_on_edge = C * (C / 2) / math.sqrt(corner)
     assert one == (pick(lying, B, C), 1.0) and margin == pytest.approx(8e-3 - foot_on_edge, rel=1e-4)
 
 
 def test_a_ledge_turns_only_what_its_drop_takes_past_the_barrier(lying):
-    assert turning.below_ledge(lying) == pytest.approx(A / 2)
+    assert verdicts.below_ledge(lying) == pytest.approx(A / 2)
     tall = lying[pick(lying, A, B)]  # standing on its long narrow side
-    (one,), margin = turning.beyond_ledge(tall, lying, 2e-3)
+    (one,), margin = verdicts.beyond_ledge(tall, lying, 2e-3)
     assert one == (pick(lying, A, C), 1.0) and margin > 0.0
     flat = lying[pick(lying, A, C)]  # the second track is too high for it
-    assert turning.beyond_ledge(flat, lying, 5e-3)[1] < 0.0
+    assert verdicts.beyond_ledge(flat, lying, 5e-3)[1] < 0.0
     across = lying[pick(lying, B, C)]  # leans at 50 degrees, and its barrier is at 76
     over, reach, height = A / 2 - 7e-3, A - 7e-3, C / 2
     tilt = math.asin(A / 2 / reach)
     fell = height * (1.0 - math.cos(tilt)) + over * math.sin(tilt)
-    turned, margin = turning.beyond_ledge(across, lying, 7e-3)
+    turned, margin = verdicts.beyond_ledge(across, lying, 7e-3)
     assert not turned
     left = A / 2 - fell  # to fall, which may pitch it
     assert margin == pytest.approx(math.hypot(B / 2, C / 2) - C / 2 - left, rel=1e-4)
@@ -93,16 +93,16 @@ def test_what_falls_over_an_edge_comes_to_lie_on_the_face_that_was_ahead_or_inwa
     part = shapes.part(shapes.prism(shapes.l_profile(17.0, 11.0, 3.0), 26.0))
     every = orientations(part, find(part), TRACK)
     for one in every:
-        for turn, side in ((turning.pitched(one, every), 0), (turning.rolled(one, every), 1)):
+        for turn, side in ((verdicts.pitch_over(one, every), 0), (verdicts.roll_over(one, every), 1)):
             assert every[turn.onto].axes[2] @ one.axes[side] < -0.4, (one.name, side)
 
 
 def test_what_falls_on_a_face_with_sides_askew_is_sure_where_its_whole_fall_is_less(lying, monkeypatch):
     """The centre of mass falls by the step and by what the part is lower afterwards."""
     one = lying[pick(lying, C, B)]
-    landed = lying[turning.pitched(one, lying).onto]
-    monkeypatch.setattr(turning, "_skew_lift", lambda seen: 15e-3 if seen is landed else 1.0)
-    _, margin = turning.over_step(one, lying, 9e-3)
+    landed = lying[verdicts.pitch_over(one, lying).onto]
+    monkeypatch.setattr(verdicts, "_skew_lift", lambda seen: 15e-3 if seen is landed else 1.0)
+    _, margin = verdicts.over_step(one, lying, 9e-3)
     fall = 9e-3 + one.posture.height - landed.posture.height
     assert fall == pytest.approx(9e-3 + 0.5 * (B - C))
     assert margin == pytest.approx(15e-3 - fall)
@@ -113,9 +113,9 @@ def test_what_falls_on_a_face_with_sides_askew_is_sure_where_its_whole_fall_is_l
 def test_a_block_that_pitches_twice_lies_as_before(sides, size):
     every = block(*(size * side for side in sides))
     for k, one in enumerate(every):
-        onto = turning.pitched(one, every).onto
+        onto = verdicts.pitch_over(one, every).onto
         assert onto != k
-        assert turning.pitched(every[onto], every).onto == k
+        assert verdicts.pitch_over(every[onto], every).onto == k
         assert every[onto].length == pytest.approx(one.height, rel=1e-6)
 
 
@@ -128,8 +128,8 @@ def test_a_step_is_a_matrix_of_shares_that_grows_with_its_height(lying):
     assert (np.diff(stay, axis=0) <= 1e-12).all()
     tall = pick(lying, C, A)
     assert not stay[-1][tall]
-    turn = turning.pitched(lying[tall], lying)
-    ((onto, share),), margin = turning.over_step(lying[tall], lying, 0.5 * (turn.lift + turn.sure))
+    turn = verdicts.pitch_over(lying[tall], lying)
+    ((onto, share),), margin = verdicts.over_step(lying[tall], lying, 0.5 * (turn.lift + turn.sure))
     assert onto == turn.onto and share == pytest.approx(0.5)
     assert margin == pytest.approx(-0.5 * (turn.sure - turn.lift))
     assert not found.decided[tall]
@@ -163,13 +163,13 @@ def test_turning_brings_more_where_returning_wastes():
     shares = np.array([one.chances["recommended"] for one in lying])
     wanted = pick(lying, A, B)
     plain, turned = (
-        design(lying, shares, wanted, wishes=replace(PLAIN, turn=turn)) for turn in (False, True)
+        design(lying, shares, wanted, constraints=replace(PLAIN, turn=turn)) for turn in (False, True)
     )
     assert turned.isolated
     assert turned.efficiency > 1.5 * plain.efficiency
     assert any(KINDS[cut.device.kind].turns for cut in turned.cuts)
     flow = course(turned.devices, lying)
     assert turned.efficiency == pytest.approx((shares * flow.leaving[:, wanted]).sum())
-    short = design(lying, shares, wanted, goal=Goal(efficiency=0.99), wishes=PLAIN)
+    short = design(lying, shares, wanted, goal=Goal(efficiency=0.99), constraints=PLAIN)
     assert "the efficiency asked for is missed by" in short.reasons[-1]
     assert "`turn` allows" in short.reasons[-1]

@@ -13,11 +13,11 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.resting.aspects import find
-from feederscrew.tooling import foot as feet
-from feederscrew.tooling.devices import hole_shapes
+from feederscrew.tooling import footprints
+from feederscrew.tooling.devices import openings
 from feederscrew.tooling.devices.base import share
 from feederscrew.tooling.devices.kinds import KINDS, made
-from feederscrew.tooling.orientations import orientations, placed
+from feederscrew.tooling.orientations import orientations, place
 from feederscrew.tooling.verdicts import verdict
 
 TRACK = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
@@ -170,8 +170,8 @@ def test_what_travels_is_carried_over_what_it_is_unsupported_for(block, device):
     over = verdict(device("gap: 11 mm"), one)  # sooner over it than it has tipped
     assert over.passes == 0.0 and -1e-8 < over.margin < 0.0
     assert verdict(device("gap: 14 mm"), one).margin == pytest.approx(-2e-3, rel=1e-3)
-    hole = hole_shapes.gap(14e-3, TRACK.radius, 0.02)
-    assert feet.unheld(one.standing, hole) == pytest.approx(4e-3, rel=1e-3)
+    hole = openings.gap(14e-3, TRACK.radius, 0.02)
+    assert footprints.unheld(one.standing, hole) == pytest.approx(4e-3, rel=1e-3)
     cut = device("cut_out: [[0 mm, 0 mm], [14 mm, 0 mm], [14 mm, 15 mm], [0 mm, 15 mm]]")
     assert verdict(cut, one).margin == pytest.approx(-2e-3, rel=2e-2)
 
@@ -201,7 +201,7 @@ def beyond(one, low, high):
 def test_beside_a_round_edge_a_skew_foot_is_carried_by_what_a_circle_leaves_of_it():
     """Banked by 3 deg its weight lies nearer to the wall than its foot's own middle."""
     judged = 0
-    for one in placed(awkward.lying()):
+    for one in place(awkward.lying()):
         if one.kind != "flat" or one.falls_off or not one.foot.rings or len(one.foot.edges):
             continue
         assert beyond(one, 0.0, 0.99 * one.balcony) < 0.0 < beyond(one, 0.0, 1.01 * one.balcony)

@@ -12,8 +12,8 @@ from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import made
-from feederscrew.tooling.hanging import Hanging
-from feederscrew.tooling.verdicts import Meeting
+from feederscrew.tooling.orientations import Hanging
+from feederscrew.tooling.verdicts import DeviceEncounter
 from feederscrew.trial import course, queue
 
 HEADED = shapes.part(
@@ -25,7 +25,7 @@ T_NUT = shapes.part(shapes.t_nut())
 def tried(part, bowl, devices, which, parts=4):
     """The orientations of a part through devices, and what became of parts of some of them."""
     aspects = find(part)
-    known = stream.orientations(part, aspects, bowl.track, devices, bowl=bowl)
+    known = stream.follow_orientations(part, aspects, bowl.track, devices, bowl=bowl)
     rows = [k for k, one in enumerate(known.lying) if which(one)]
     seen = course.course(
         part, bowl, known.lying, course.Sending(rows, parts), devices,
@@ -82,7 +82,7 @@ def test_a_t_nut_hangs_by_its_shoulders_in_rails_and_stops_in_a_slot():
     assert known.leaving[rows[0], known.states.index(down)] == 1.0
     assert down.height == pytest.approx(3e-3, abs=1e-9) and down.neck.shank == pytest.approx(5e-3, abs=1e-9)
     slot = made("slot", "s", span=(2.2e-3, 8.6e-3))
-    meeting = Meeting(known.lying[rows[0]], known.lying)
+    meeting = DeviceEncounter(known.lying[rows[0]], known.lying)
     assert slot.judged(meeting).passes == 0.0 and slot.fate(meeting) == "stopped"
     _, _, _, seen = tried(T_NUT, bowl, (slot,), stem_down, 2)
     assert set(seen.fates) == {course.STOPPED}

@@ -21,7 +21,7 @@ STOP = made("height_bar", "", limit=4e-3)  # everything stands before it
 
 def queued(*devices):
     """Eight blocks that touch, lying along the wall: the row backs up."""
-    known = stream.orientations(BLOCK, find(BLOCK), BOWL.track, devices, bowl=BOWL)
+    known = stream.follow_orientations(BLOCK, find(BLOCK), BOWL.track, devices, bowl=BOWL)
     flat = np.array([one.height < 6e-3 and one.length > 0.019 for one in known.lying])
     return queue.queue_of(
         BLOCK, replace(BOWL, devices=devices), find(BLOCK), known.lying, known.states, flat / flat.sum(),
@@ -43,7 +43,7 @@ def test_nothing_leaves_at_a_break_behind_which_parts_go_on():
 
 
 def test_the_break_that_is_proposed_carries_what_is_wanted_and_no_more_than_it_has_to():
-    lying = stream.orientations(BLOCK, find(BLOCK), BOWL.track, bowl=BOWL).lying
+    lying = stream.follow_orientations(BLOCK, find(BLOCK), BOWL.track, bowl=BOWL).lying
     one = next(k for k in lying if k.height < 6e-3 and k.length > 0.019)
     (kind,) = [kind for kind in KINDS.values() if kind.relieves]
     device = kind.relieving([one], 2.5e-4, "design")

@@ -12,7 +12,7 @@ from feederscrew.conveying.radius import at_radius
 from feederscrew.dropping.kernel import body
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.pieces import Sensor
+from feederscrew.tooling.devices.base import Sensor
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import course, queue, runs, sensed_rides, shape, starts, stations, whereabouts
 

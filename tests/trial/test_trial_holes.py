@@ -9,7 +9,7 @@ from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.solidbowl import cuts
-from feederscrew.tooling.devices.hole_shapes import beyond_borders
+from feederscrew.tooling.devices.openings import beyond_borders
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.verdicts import verdict
 from feederscrew.trial import course, stations

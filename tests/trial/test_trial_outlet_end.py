@@ -54,7 +54,7 @@ def test_every_cube_of_a_queue_on_a_bare_track_leaves():
     part = shapes.part(trimesh.Trimesh(CORNERS, FACES, process=False))
     aspects = find(part)
     bowl = bowls.read(None, ["track.width=20 mm", "track.bank=3 deg", "track.climb=3.5 deg"])
-    known = stream.orientations(part, aspects, bowl.track, bowl=bowl)
+    known = stream.follow_orientations(part, aspects, bowl.track, bowl=bowl)
     states = known.lying, known.states
     seen = queue_of(part, bowl, aspects, *states, np.ones(1), QueuePlan(12, 2.0), RunSettings(1))
     assert seen.returned == 0 and seen.jams == 0

@@ -57,7 +57,7 @@ def test_a_part_that_strikes_another_shares_its_momentum(restitution):
     first, second = on.arrays.states[:, body.VX]
     assert first + second == pytest.approx(0.3, rel=1e-6)
     assert second - first == pytest.approx(0.3 * restitution, abs=1e-3)
-    assert (on.extents(1)[0] - on.extents(0)[1] > 1e-2) == (restitution > 0.0)
+    assert (on.reaches([1])[1][0] - on.reaches([0])[0][1] > 1e-2) == (restitution > 0.0)
 
 
 def test_parts_in_each_other_are_pushed_apart():
@@ -90,7 +90,7 @@ def test_falling_over_each_other_wins_no_energy():
         energies.append(moving + states[:, body.Z].sum())
         on.ride(turn)
     assert np.diff(energies).max() < 2e-4  # of m g L
-    assert (np.array([on.extents(n)[2] for n in range(3)]) * LENGTH > -2e-4).all()
+    assert (np.array([on.reaches([n])[n][2] for n in range(3)]) * LENGTH > -2e-4).all()
 
 
 @pytest.mark.parametrize(
@@ -133,7 +133,7 @@ def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is
     """In a row they are even from 0 to twice the mean; parts that are poured or come touching have none."""
     shares = np.array([one is FLAT for one in EVERY], float)
     made = queue.PartsQueue(PART, STILL, ASPECTS, (EVERY, shares), EVERY, queue.QueuePlan(300, 1.0, gaps), 3)
-    ends = np.array([made.crowd.extents(n)[:2] for n in range(300)])
+    ends = np.array([made.crowd.reaches([n])[n][:2] for n in range(300)])
     free = (ends[:-1, 0] - ends[1:, 1]) * LENGTH / FLAT.length
     assert not made.waiting and ends[0, 1] <= 1e-9 and made.most == 300
     if gaps:
@@ -148,7 +148,7 @@ def test_parts_wait_where_the_track_before_the_first_device_is_full():
     shares = np.array([one is FLAT for one in EVERY], float)
     made = queue.PartsQueue(PART, tight, ASPECTS, (EVERY, shares), EVERY, queue.QueuePlan(40, 1.0), 3)
     lying = np.flatnonzero(made.crowd.on)
-    rears = [made.crowd.extents(n)[0] * LENGTH for n in lying]
+    rears = [made.crowd.reaches([n])[n][0] * LENGTH for n in lying]
     room = 0.5 * 2.0 * np.pi * 0.08 - 2.0 * max(one.length for one in EVERY)
     assert len(lying) + len(made.waiting) == 40 and made.waiting
     assert -room <= min(rears) < -room + 1.4 * FLAT.length + 1e-9
@@ -267,4 +267,4 @@ def test_parts_reach_as_far_together_as_alone_all_round_the_bowl():
         off = 50.0 - 1e-3 - 12e-3  # [m] from the bowl's axis to the block's inner side
         half = 50.0 * np.arctan2(10e-3, off)
         assert np.array(reach[n]) * LENGTH == pytest.approx([place - half, place + half, 0.0], abs=1e-7)
-        assert on.extents(n) == reach[n]
+        assert on.reaches([n])[n] == reach[n]

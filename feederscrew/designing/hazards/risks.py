@@ -13,7 +13,7 @@ from feederscrew.designing.hazards import nesting, tangling, wedging
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import turned
 from feederscrew.part.record import Part
-from feederscrew.tooling.isolating.shop_values import millimetres
+from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.units import counted
 
@@ -161,7 +161,7 @@ def _nesting(part: Part, bowl: Bowl) -> Iterator[Risk]:
     if found is not None:
         held, side = math.degrees(math.atan(bowl.friction.static)), math.degrees(found.side)
         text = (
-            f"parts may nest: one goes {millimetres(found.depth)} of {millimetres(found.height)} into the "
+            f"parts may nest: one goes {in_mm(found.depth)} of {in_mm(found.height)} into the "
             f"next; its sides are {side:.3g} deg off that way, and friction holds it up to {held:.3g} deg"
         )
         yield Risk(NESTS, text, Pair(np.eye(3), np.eye(3), found.place))
@@ -175,8 +175,8 @@ def _tangling(part: Part, bowl: Bowl, seed: int) -> Iterator[Risk]:
     pair = Pair(np.eye(3), found.turn, found.place)
     if np.isfinite(found.opening):
         text = (
-            f"parts may hook into each other: {pulls}; {millimetres(found.section)} of them come through a "
-            f"mouth of {millimetres(found.opening)}"
+            f"parts may hook into each other: {pulls}; {in_mm(found.section)} of them come through a "
+            f"mouth of {in_mm(found.opening)}"
         )
         yield Risk(HOOKS, text, pair)
     else:
@@ -191,8 +191,8 @@ def _wedging(every: Sequence[Orientation], bowl: Bowl) -> Iterator[Risk]:
         if between is None or not between[0] < width < between[1]:
             continue
         text = (
-            f"{one.name} may wedge across a chute as wide as the track, {millimetres(width)}: friction holds "
-            f"it between walls {millimetres(between[0])} to {millimetres(between[1])} apart"
+            f"{one.name} may wedge across a chute as wide as the track, {in_mm(width)}: friction holds "
+            f"it between walls {in_mm(between[0])} to {in_mm(between[1])} apart"
         )
         c, s = math.cos(wedging.strut(one, width)), math.sin(wedging.strut(one, width))
         x, y, z = one.axes

@@ -9,7 +9,6 @@ Source: Coulomb's cones as a linear programme; docs/mechanics.md.
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 
 from feederscrew.mechanics.track.frame import frame, loads
 
@@ -38,6 +37,8 @@ def exists(seat, bowl, phase=0.5 * np.pi) -> bool:
     """
     if len(seat.contact) == 0:
         return False
+    from scipy.optimize import linprog  # a fifth of a second to load: only where a balance is in doubt
+
     axes = frame(bowl, seat.walls)
     load = loads(seat, bowl, axes, phase) / (seat.mass * bowl.gravity)
     rays = _rays(seat, bowl, axes)

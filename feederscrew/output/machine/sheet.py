@@ -6,9 +6,9 @@ import numpy as np
 
 from feederscrew import units
 from feederscrew.conveying.hop import hop
-from feederscrew.machine import feasibility
+from feederscrew.machine import drive_sizing
 from feederscrew.machine.springs import MAINS, mean_pull
-from feederscrew.output.motion_words import regime_words
+from feederscrew.output.words import regime_words
 from feederscrew.part.density import DEFAULT_MATERIAL
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
@@ -67,7 +67,7 @@ def _lines(pairs):
 
 def _drive_first(study):
     """What one set of leaf springs cannot make, and both drives, before anything else."""
-    if feasibility.is_two_axis(study.bowl.drive):
+    if drive_sizing.is_two_axis(study.bowl.drive):
         yield "drive", two_axis(study.bowl.drive)
     if study.mismatch is not None:
         yield "drive asked for", study.mismatch.wanted.text
@@ -76,16 +76,16 @@ def _drive_first(study):
 
 def two_axis(drive):
     """Return what a drive out of phase is and needs, as text; '' of a leaf-spring drive."""
-    if not feasibility.is_two_axis(drive):
+    if not drive_sizing.is_two_axis(drive):
         return ""
-    return f"{feasibility.TWO_AXIS}, phase {drive.phase / DEG:.4g} deg: {feasibility.TWO_MAGNETS}"
+    return f"{drive_sizing.TWO_AXIS}, phase {drive.phase / DEG:.4g} deg: {drive_sizing.TWO_MAGNETS}"
 
 
 def angles(study, *, phase=True):
     """Return the angle of the motion at the springs and at the track, as text for titles and drawings."""
     made = study.bowl.machine.spring_angle / DEG, study.bowl.drive.vibration_angle / DEG
     said = f"{made[0]:.3g}° at the springs, {made[1]:.3g}° to the track"
-    led = phase and feasibility.is_two_axis(study.bowl.drive)
+    led = phase and drive_sizing.is_two_axis(study.bowl.drive)
     return f"{said}, phase {study.bowl.drive.phase / DEG:.4g}°" if led else said
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from feederscrew import units
 from feederscrew.conveying.hop import hop
-from feederscrew.machine import feasibility
+from feederscrew.machine import drive_sizing
 from feederscrew.machine.springs import mean_pull
 from feederscrew.output import tables
 from feederscrew.output.machine import sheet as sheets
@@ -54,7 +54,7 @@ def document(study):
 def _drive(study):
     """What kind of drive it is; where the springs do not make it, both."""
     drive, other = study.bowl.drive, study.mismatch
-    kind = feasibility.TWO_AXIS if feasibility.is_two_axis(drive) else feasibility.LEAF_SPRING
+    kind = drive_sizing.TWO_AXIS if drive_sizing.is_two_axis(drive) else drive_sizing.LEAF_SPRING
     return {
         "drive_kind": kind,
         "phase_deg": drive.phase / DEG,

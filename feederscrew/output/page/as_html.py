@@ -56,6 +56,7 @@ def html(page):
     every = [block for section in page.sections for block in section.blocks]
     views = any(isinstance(block, kinds.Views) for block in every)
     sortable = any(isinstance(block, kinds.Matrix) and block.sortable for block in every)
+    knobs = any(isinstance(block, kinds.Knobs) for block in every)
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
@@ -67,6 +68,7 @@ def html(page):
             *(_section(section) for section in page.sections),
             *(_scripts() if views else ()),
             *((f"<script>\n{_asset('sorting.js')}</script>",) if sortable else ()),
+            *((f"<script>\n{_asset('knobs.js')}</script>",) if knobs else ()),
             "</body>\n</html>\n",
         ]
     )
@@ -158,6 +160,8 @@ def _block(block):
             return f"<pre>{escape(text)}</pre>"
         case kinds.Table(frame):
             return _table(frame)
+        case kinds.Knobs():
+            return _knobs(block)
         case kinds.CsvSheet(file, text, shown):
             return _sheet(file, text) if shown else _saved(file, text)
         case kinds.Picture():
@@ -274,6 +278,40 @@ def _views(views):
         f'<div id="{views.name}" hidden class="{kind}">\n<p class="quiet">{hint}</p>\n'
         f'<div class="{"views played" if views.plays else "views"}">\n{figures}\n</div>\n</div>\n'
         f'<script type="application/json" class="scene" data-views="{views.name}">{scene}</script>'
+    )
+
+
+FOLLOWING = (  # what the script shows: its name, what a reader calls it
+    ("velocity", "velocity"), ("regime", "the part"), ("throw", "throw number"),
+    ("stroke", "stroke, end to end"), ("rate", "rate"),
+)  # fmt: skip
+
+
+def _knobs(block):
+    sliders = "\n".join(
+        f'<label><span>{escape(one.label)}</span><input type="range" name="{one.name}" min="{one.low:g}" '
+        f'max="{one.high:g}" step="any" value="{one.own:.10g}" data-own="{one.own:.10g}" '
+        f'data-unit="{escape(one.unit)}"><output></output></label>'
+        for one in block.knobs
+    )
+    tiles = "\n".join(
+        f'<div class="tile"><span>{label}</span><strong data-shows="{name}"></strong></div>'
+        for name, label in FOLLOWING
+        if name != "rate" or block.values["rate"]
+    )
+    keys = "\n".join(
+        f'<span><i style="background:{colour}"></i>{escape(words)}</span>'
+        for _, colour, words in block.values["regimes"]
+    )
+    values = json.dumps(block.values, separators=(",", ":")).replace("<", "\\u003c")
+    return (
+        f'<div class="knobs" hidden>\n<div class="tiles">\n{tiles}\n</div>\n<div class="turned">\n'
+        f'<div class="sliders">\n{sliders}\n<button type="button">as in the bowl file</button>\n</div>\n'
+        f'<figure><canvas width="720" height="440" role="img" aria-label="Regimes over vibration angle and '
+        f'amplitude, with the operating point"></canvas>\n<figcaption>vibration angle 2 to 60 deg across, '
+        f"amplitude 0 to {block.values['top']:.3g} mm up; a click sets both\n"
+        f'<div class="keys">\n{keys}\n</div></figcaption></figure>\n</div>\n'
+        f'<script type="application/json" class="knob-values">{values}</script>\n</div>'
     )
 
 

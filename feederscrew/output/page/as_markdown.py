@@ -44,7 +44,7 @@ def _block(block, beside):
             return f"[{file}]({beside}{file})"
         case kinds.Picture(file=file, alt=alt):
             return f"![{alt}]({beside}{file})"
-        case kinds.Views():
+        case kinds.Views() | kinds.Knobs():
             return ""
         case kinds.Heading(text, anchor):
             return (f'<a id="{anchor}"></a>\n\n' if anchor else "") + f"### {text}"

@@ -80,6 +80,26 @@ class Views:
 
 
 @dataclass(frozen=True)
+class Knob:
+    """A slider: its name in the script, label, unit, ends and the bowl's own value, in that unit."""
+
+    name: str
+    label: str
+    unit: str
+    low: float
+    high: float
+    own: float
+
+
+@dataclass(frozen=True, eq=False)
+class Knobs:
+    """Sliders that turn the drive of a bowl, what follows from them at once, and a map with the point."""
+
+    knobs: tuple[Knob, ...]
+    values: dict  # JSON for the script: ``bowl``, ``rate``, ``regimes`` of (name, colour, words), ``top``
+
+
+@dataclass(frozen=True)
 class Heading:
     """The title of a part of a section; ``anchor`` is where links lead."""
 

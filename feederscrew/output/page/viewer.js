@@ -5,6 +5,7 @@
 (() => {
   const TURN = 0.5; // degrees a pixel dragged
   const STEP = 10; // degrees an arrow key
+  const SPIN = 0.8; // degrees a time
   const CREASE = 24; // degrees: facets that meet under less are one curved side
   const TICK = 16; // milliseconds between two pictures of a trial
   const LONGEST = 10; // seconds a trial plays; a longer one plays faster
@@ -144,6 +145,7 @@
       last = [event.clientX, event.clientY];
     });
     for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => (last = null));
+    canvas.addEventListener("spin", () => turn(view, SPIN, 0)); // of a page around this one
     canvas.addEventListener("dblclick", () => { start(view, data); view.draw(); });
     canvas.addEventListener("keydown", (event) => {
       if (!keys[event.key]) return;

@@ -5,11 +5,10 @@ from importlib import metadata
 from pathlib import Path
 
 from feederscrew import __version__
-from feederscrew.output import tables
+from feederscrew.output import slide, tables
 from feederscrew.output.folder import LIBRARIES
 from feederscrew.output.page.blocks import Chapter, Code, Notes, Table, Text
 from feederscrew.output.report.resting import numbers
-from feederscrew.output.slide import tables as slide_tables
 
 LIMITS = (
     "How often a part lands on an aspect: the rules compute from the part's shape and mass alone; only "
@@ -40,7 +39,7 @@ def limits(case):
 def repeat(case):
     """The inputs: command, files, bowl values, versions, and the table of aspects to the last digit."""
     hashes = tables.frame({"input": list(case.inputs), "sha256": list(case.inputs.values())})
-    bowl = slide_tables.settings(case.settings).only(("key", "value", "from", "meaning"))
+    bowl = slide.settings(case.settings).only(("key", "value", "from", "meaning"))
     origins = [Path(origin).name for origin in bowl["from"]]  # the inputs have their folders
     bowl = tables.frame({name: origins if name == "from" else bowl[name] for name in bowl})
     return Chapter(

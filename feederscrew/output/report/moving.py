@@ -5,23 +5,18 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.errors import FeederError
+from feederscrew.output import convey as convey_output
+from feederscrew.output import floor as floor_output
+from feederscrew.output import headings as headings_output
 from feederscrew.output import proof, tables
-from feederscrew.output.convey import figures as convey_plots
-from feederscrew.output.convey import files as convey_files
-from feederscrew.output.convey import tables as convey_tables
-from feederscrew.output.floor import files as floor_files
-from feederscrew.output.floor import tables as floor_tables
-from feederscrew.output.headings import files as heading_files
-from feederscrew.output.headings import tables as heading_tables
+from feederscrew.output import rate as rate_output
+from feederscrew.output import slide as slide_output
+from feederscrew.output import track as track_output
 from feederscrew.output.page.blocks import Chapter, Notes, Picture, Table, Text, Tile
 from feederscrew.output.page.numbers import NOTHING, SHORT, number, percent
-from feederscrew.output.rate import tables as rate_tables
+from feederscrew.output.report.knobs import knobs
 from feederscrew.output.report.on_the_track import on_track
-from feederscrew.output.slide import files as slide_files
-from feederscrew.output.slide import tables as slide_tables
-from feederscrew.output.track import files as track_files
-from feederscrew.output.track import map_tables
-from feederscrew.output.track import tables as track_tables
 from feederscrew.units import MM
 
 HEADINGS = {  # columns of the table, and their names here
@@ -46,66 +41,66 @@ WORDS = {  # of a regime, for a tile
 def slide(case):
     """When a part slips, over its heading and the drive."""
     study = case.slide
-    pictures = _taken(slide_files.offers(study), "slide_regimes", "slide_contours")
-    return Chapter((*_notes(slide_tables.remarks(study)), Table(slide_tables.summary(study.maps)), *pictures))
+    pictures = _taken(slide_output.offers(study), "slide_regimes", "slide_contours")
+    return Chapter((*_notes(slide_output.remarks(study)), Table(slide_output.summary(study.maps)), *pictures))
 
 
 def convey(case):
     """Operating point and velocity."""
     study = case.convey
-    document = convey_tables.document(study)
-    blocks = [Table(convey_tables.summary(document))]
+    document = convey_output.document(study)
+    blocks = [Table(convey_output.summary(document))]
     if study.answer.status != "no steady state":
-        (cycle,) = _taken(convey_files.offers(study, bowls.texts(case.settings)), "convey")
-        title = convey_plots.cycle_title(study.trace(), study.answer)
+        (cycle,) = _taken(convey_output.offers(study, bowls.texts(case.settings)), "convey")
+        title = convey_output.cycle_title(study.trace(), study.answer)
         blocks.append(replace(cycle, alt=f"Plate and part: {title}"))
-    blocks.append(_velocity_map(case))
+    blocks += [*_knobs(case), _velocity_map(case)]
     return Chapter(
         tuple(blocks),
         tiles=(_velocity_tile(document),),
-        warnings=(*bowls.remarks(case.settings), *convey_tables.remarks(document), *study.warnings),
+        warnings=(*bowls.remarks(case.settings), *convey_output.remarks(document), *study.warnings),
     )
 
 
 def floor(case):
     """Forces and regimes on the bowl's floor."""
     found, settings = case.floor, bowls.texts(case.settings)
-    document = floor_tables.document(found, settings)
-    result = floor_tables.map_remarks(found)
-    offered = floor_files.offers(found, settings)
+    document = floor_output.document(found, settings)
+    result = floor_output.map_remarks(found)
+    offered = floor_output.offers(found, settings)
     pictures = _taken(offered, "floor_plan", "floor_frequency_amplitude", "floor_beta_friction")
     lead = Text(
         f"Aspect {found.posture.name}, heading {np.degrees(found.heading):.4g} deg, at the upper reversal of "
         "the drive; the maps show the same instant for other drives and other friction."
     )
-    lines = _notes(result + floor_tables.remarks(found))
-    return Chapter((lead, *lines, Table(floor_tables.summary(document)), *pictures))
+    lines = _notes(result + floor_output.remarks(found))
+    return Chapter((lead, *lines, Table(floor_output.summary(document)), *pictures))
 
 
 def headings(case):
     """How the part lies along the wall."""
     study = case.headings
-    result = heading_tables.frame(study)
+    result = headings_output.frame(study)
     frame = tables.frame({shown: result[name] for name, shown in HEADINGS.items()})
     lead = Text(
         "The directions in which the part is stable when pushed against the wall, the share of all "
         "directions of laying down that ends in each, and the room it takes."
     )
-    own = heading_files.offers(study.only(case.aspect), bowls.texts(case.settings))
+    own = headings_output.offers(study.only(case.aspect), bowls.texts(case.settings))
     pictures = _taken(own, "headings")
-    return Chapter((lead, Table(frame), *pictures), warnings=tuple(heading_tables.remarks(study)))
+    return Chapter((lead, Table(frame), *pictures), warnings=tuple(headings_output.remarks(study)))
 
 
 def track(case):
     """Reactions on the track, against the wall."""
     found = case.track
     settings, grid = bowls.texts(case.settings), found.over(case.settings)
-    document = track_tables.document(found, settings)
-    offered = track_files.offers(found, settings, grid)
+    document = track_output.document(found, settings)
+    offered = track_output.offers(found, settings, grid)
     pictures = _taken(offered, "track_part", "track_map", "track_cycle")
-    lines = _notes(track_tables.remarks(found) + map_tables.remarks(grid))
+    lines = _notes(track_output.remarks(found) + track_output.map_remarks(grid))
     return Chapter(
-        (Text(on_track(case, WORDS)), *lines, Table(track_tables.summary(document)), *pictures),
+        (Text(on_track(case, WORDS)), *lines, Table(track_output.summary(document)), *pictures),
         tiles=_heading_tiles(found),
     )
 
@@ -115,16 +110,16 @@ def rate(case):
     found = case.rate
     tried = bowls.verified(case.path)
     own = case.part, case.bowl, found.rate.orientations.lying[found.rate.row].name
-    document = proof.beside(rate_tables.document(found), tried, *own)
+    document = proof.beside(rate_output.document(found), tried, *own)
     lead = Text(
         "The chain from velocity to rate. The range in brackets is over all starts, friction a fifth off, "
         "restitution where the part hops, and the interval of the shares. The second table has what the "
         "track and each device do with each orientation."
     )
     return Chapter(
-        (lead, Table(rate_tables.summary(document)), Table(_passing(found, document["orientations"]))),
+        (lead, Table(rate_output.summary(document)), Table(_passing(found, document["orientations"]))),
         tiles=(_rate_tile(document),),
-        warnings=(*rate_tables.remarks(found), *found.warnings, *proof.warnings(tried, *own)),
+        warnings=(*rate_output.remarks(found), *found.warnings, *proof.warnings(tried, *own)),
     )
 
 
@@ -139,7 +134,16 @@ def _velocity_map(case):
     study = case.velocity_map
     if not np.isfinite(study.grid.values["velocity"]).any():
         return Text("No drive of 5 to 60 deg and up to 2.5 times this stroke has a steady velocity here.")
-    return _taken(convey_files.map_offers(study), "convey_map")[0]
+    return _taken(convey_output.map_offers(study), "convey_map")[0]
+
+
+def _knobs(case):
+    """The knobs; without a rate where there is none."""
+    try:
+        rate = case.rate.rate
+    except FeederError:  # the chapter on the rate says why
+        rate = None
+    return knobs(case, rate)
 
 
 def _velocity_tile(document):

@@ -1,13 +1,12 @@
 """The part, and how it comes to rest."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from feederscrew import units
-from feederscrew.output import style, tables
-from feederscrew.output.aspects import files as aspects_files
-from feederscrew.output.aspects import tables as aspects_tables
-from feederscrew.output.graph import figures
-from feederscrew.output.inertia import tables as inertia_tables
+from feederscrew.output import aspects as aspects_output
+from feederscrew.output import inertia, style, tables, tipping_graph
 from feederscrew.output.offers import by_name
 from feederscrew.output.page.blocks import (
     Chapter,
@@ -22,9 +21,11 @@ from feederscrew.output.page.blocks import (
 )
 from feederscrew.output.page.numbers import percent
 from feederscrew.output.report.scene import scene
+from feederscrew.part.record import Part
+from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.units import MM
 
-MOST_VIEWS = aspects_tables.MOST
+MOST_VIEWS = aspects_output.MOST_DRAWN_ASPECTS
 CARD = "A part card is published data without a shape: there is nothing to draw or to turn."
 SHOWN = (
     "density_g_cm3", "mass_g", "volume_mm3", "bounding_box_x_mm", "bounding_box_y_mm", "bounding_box_z_mm",
@@ -37,7 +38,7 @@ UJ = units.factor("uJ", "energy")
 def the_part(case):
     """Mass properties and warnings."""
     part = case.part
-    result = inertia_tables.rows(case.inertia)
+    result = inertia.rows(case.inertia)
     rows = [row for row in result.rows() if row["quantity"] in SHOWN]
     names = [" ".join(tables.heading(row["quantity"])).strip() for row in rows]
     facts = tables.frame({"quantity": names, "value": [row["value"] for row in rows]})
@@ -50,14 +51,15 @@ def aspects(case):
     """Views, tables and chart of the aspects: one table of shapes and heights, one of probabilities."""
     part, study = case.part, case.resting
     found = study.aspects
-    table, said = aspects_tables.aspects(study), aspects_tables.remarks(study)
-    offered = by_name(aspects_files.offers(study))
-    rows = range(min(len(found.names), MOST_VIEWS))
-    views = (Text(CARD, quiet=True),) if part.vertices is None else (*_views(case, rows, offered),)
+    table, said = aspects_output.aspects(study), aspects_output.remarks(study)
+    offered = by_name(aspects_output.offers(study))
+    views = tuple(aspect_views(part, study))
+    if part.vertices is not None:
+        views = (*views[:1], _picture(offered["aspects.png"], printed=True), *views[1:])
     chart = _picture(offered["probabilities.png"])
     lines = (Notes(tuple(said)),) if said and part.vertices is not None else ()
     straight = () if np.isfinite(table["rolling_circle_mm"]).any() else ("rolling_circle_mm",)
-    shown = table.without((*aspects_tables.NORMALS, *straight))
+    shown = table.without((*aspects_output.NORMALS, *straight))
     chances = [name for name in shown if name.startswith("p_")]
     shapes = Table(shown.without(chances))
     return Chapter(
@@ -70,9 +72,9 @@ def aspects(case):
 def tips(case):
     """The tipping graph, from exact tumbling."""
     ways, found = case.resting.transitions, case.resting.aspects
-    shown = np.flatnonzero(found.stable)[: figures.MOST]
+    shown = np.flatnonzero(found.stable)[: tipping_graph.MOST_GRAPH_ASPECTS]
     shares = np.where(found.stable, found.probabilities["quasistatic"], np.nan)
-    drawn = figures.of_part(case.resting, ways, shares)
+    drawn = tipping_graph.of_part(case.resting, ways, shares)
     table = tables.frame(
         {
             "aspect": [found.names[row] for row in shown],
@@ -96,15 +98,17 @@ def tips(case):
 
 def numbers(case):
     """The table of aspects cell by cell, as ``aspects.csv`` has it."""
-    return CsvSheet("aspects.csv", tables.text(aspects_tables.aspects(case.resting), "csv"))
+    return CsvSheet("aspects.csv", tables.text(aspects_output.aspects(case.resting), "csv"))
 
 
-def _views(case, rows, offered):
-    """Turnable views, the picture that replaces them on paper, and what is simplified."""
-    drawn = scene(case.part, case.resting.aspects, rows)
-    captions = tuple(_caption(case.resting.aspects, row) for row in rows)
-    yield Views(drawn, captions)
-    yield _picture(offered["aspects.png"], printed=True)
+def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
+    """Yield the views of a part on each aspect, to be turned, and what is simplified of its surface."""
+    if part.vertices is None:
+        yield Text(CARD, quiet=True)
+        return
+    rows = range(min(len(study.aspects.names), MOST_VIEWS))
+    drawn = scene(part, study.aspects, rows)
+    yield Views(drawn, tuple(_caption(study.aspects, row) for row in rows))
     if drawn["facets"] < drawn["all"]:
         yield Text(
             f"The views show a coarser surface of {drawn['facets']} facets; "

@@ -3,9 +3,8 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from feederscrew.output.solid import meshes
-from feederscrew.output.solid.meshes import short
-from feederscrew.output.solid.stance import outermost, stance
+from feederscrew.output import shading
+from feederscrew.output.shading import outermost, short, stance
 from feederscrew.output.tooling import relief
 from feederscrew.units import MM
 
@@ -33,7 +32,7 @@ def scene(part, found, rows):
     near = outermost(points / radius)
     stances = [stance(near, found.normals[row], found.heights[row] / MM / radius) for row in rows]
     back = stances[0].floor_axes @ stances[0].camera.back
-    return meshes.viewed(part, back) | {
+    return shading.viewed(part, back) | {
         "poses": [_pose(found, row, standing) for row, standing in zip(rows, stances)],
     }
 
@@ -56,8 +55,8 @@ def over_cuts(part, met, every):
         As ``scene``, with ``tracks``: the sections in mm, ahead, inwards and up from the foot of the centre
         of mass; and ``reach``, how far the view goes, in radii of the part.
     """
-    tracks = [meshes.track(*relief.track_below(one, every)) for one in met]
-    return meshes.viewed(part, relief.VIEW) | {
+    tracks = [shading.track(*relief.track_below(one, every)) for one in met]
+    return shading.viewed(part, relief.VIEW) | {
         "reach": REACH,
         "tracks": tracks,
         "poses": [_over_cut(one, place) for place, one in enumerate(met)],

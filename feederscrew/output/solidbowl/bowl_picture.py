@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from feederscrew.output import shading as shading_output
 from feederscrew.output import style
-from feederscrew.output.solid import shading
-from feederscrew.output.solid.render import SINGLE, Rays
+from feederscrew.output.shading import SINGLE, Rays
 from feederscrew.output.solidbowl import views
 from feederscrew.solidbowl import riding
 
@@ -48,21 +48,21 @@ def _image(solid, part, columns, rows):
     whole = Rays(corners, np.concatenate([solid.faces, faces + len(solid.vertices)]), centre)
     across, up = _frame(looked.project(whole.points), columns, rows)
     image = np.full((rows, columns, 3), 255, dtype=np.uint8)  # numbers of eight bytes: 100 MB more
-    each = shading.SAMPLES
+    each = shading_output.SAMPLES
     for first in range(0, rows, BAND):
         place = slice(max(0, each * first - 2), each * (first + BAND) + 2)
         drawn = _drawn(whole, len(solid.faces), looked, across, up[place])
         kept = drawn[each * first - place.start :][: each * min(BAND, rows - first)]
-        image[first : first + BAND] = np.rint(255.0 * shading.averaged(kept, each))
+        image[first : first + BAND] = np.rint(255.0 * shading_output.averaged(kept, each))
     return image
 
 
 def _frame(seen, columns, rows):
     """Positions of the samples across and up the picture."""
     low, high = seen.min(axis=0), seen.max(axis=0)
-    pixel = MARGIN * max((high - low)[0] / columns, (high - low)[1] / rows) / shading.SAMPLES
+    pixel = MARGIN * max((high - low)[0] / columns, (high - low)[1] / rows) / shading_output.SAMPLES
     middle = 0.5 * (low + high)
-    counts = columns * shading.SAMPLES, rows * shading.SAMPLES
+    counts = columns * shading_output.SAMPLES, rows * shading_output.SAMPLES
     across, up = (pixel * (np.arange(n) + 0.5 - 0.5 * n) for n in counts)
     return middle[0] + across, (middle[1] + up)[::-1]
 
@@ -71,7 +71,7 @@ def _drawn(whole, bowl, looked, across, up):
     """The samples of some rows; the first ``bowl`` facets are the bowl's, the others those of parts."""
     depths, normals, met = looked.meet(whole, across, up)
     image = np.ones((*depths.shape, 3), dtype=SINGLE)
-    for drawn, colour in (((met >= 0) & (met < bowl), shading.STEEL), (met >= bowl, PART)):
-        image[drawn] = shading.lit(normals[drawn], looked, colour)
-    image[shading.edges(depths, normals, looked, up[0] - up[1])] = shading.EDGE
+    for drawn, colour in (((met >= 0) & (met < bowl), shading_output.STEEL), (met >= bowl, PART)):
+        image[drawn] = shading_output.lit(normals[drawn], looked, colour)
+    image[shading_output.edges(depths, normals, looked, up[0] - up[1])] = shading_output.EDGE
     return image

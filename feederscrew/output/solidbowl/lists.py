@@ -5,7 +5,7 @@ import numpy as np
 from feederscrew.output.machine import sheet as sheets
 from feederscrew.output.solidbowl.unrolled_strip import numbered
 from feederscrew.output.tooling.drawing import EDGES
-from feederscrew.solidbowl import lugs
+from feederscrew.solidbowl import segments
 from feederscrew.units import MM, PER_MINUTE, factor
 
 LITRE = factor("l", "volume")
@@ -54,7 +54,8 @@ def parts(paper, study, at):
         text = f"dowels {size}, between {len(cut.pieces)} segments"
         rows.append([str(len(rows)), str(cut.dowels), text])
     if cut is not None and len(cut.screws):
-        text = f"screws ISO 4762 {lugs.NAME} with nuts ISO 4032, in lugs of the segments; floor: dowels"
+        screw = f"screws ISO 4762 {segments.SCREW_NAME} with nuts ISO 4032"
+        text = f"{screw}, in lugs of the segments; floor: dowels"
         rows.append([str(len(rows)), str(len(cut.screws)), text])
     rows.append([str(len(rows)), str(plan.bolts + 1), f"bolts for holes of {plan.bolt / MM:.4g} mm"])
     rows.append([str(len(rows)), f"{under.leaves:.0f}", f"leaves {leaf} mm"])

@@ -1,6 +1,6 @@
 """The bowl as a solid as a document."""
 
-from feederscrew.solidbowl import lugs
+from feederscrew.solidbowl import segments
 from feederscrew.solidbowl.segments import overhangs
 from feederscrew.units import DEG, MM
 
@@ -79,7 +79,7 @@ def _segments(cut):
         "dowel_mm": cut.dowel / MM,
         "dowel_length_mm": cut.dowel_length / MM,
         "screws": len(cut.screws),
-        "screw": lugs.NAME if len(cut.screws) else None,
+        "screw": segments.SCREW_NAME if len(cut.screws) else None,
         "seam_ends": cut.ends[1],
         "seam_ends_without_screw": cut.ends[0],
         "seams_deg": cut.turned / DEG,

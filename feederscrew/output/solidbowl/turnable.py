@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from feederscrew.output import marking
+from feederscrew.output import marking, shading
 from feederscrew.output.page.blocks import Notes, Views
-from feederscrew.output.solid import meshes
 from feederscrew.output.solidbowl.bowl_picture import HIGH, SIDE, parts
 from feederscrew.units import MM
 
@@ -58,18 +57,18 @@ def scene(solid, part):
     """
     middle = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
     points, faces = parts(solid, part)
-    points, faces = meshes.reduced((points - middle) / MM, faces, MOST)
+    points, faces = shading.reduced_mesh((points - middle) / MM, faces, MOST)
     bowl = solid.vertices - middle
     return {
-        **meshes.track(points * MM, faces),
-        "radius": meshes.short(np.sqrt((bowl**2).sum(axis=1).max()) / MM),
+        **shading.track(points * MM, faces),
+        "radius": shading.short(np.sqrt((bowl**2).sum(axis=1).max()) / MM),
         "facets": len(faces),
         "all": len(faces),
-        "azimuth": meshes.short(np.degrees(solid.plan.turned) + SIDE),
-        "elevation": meshes.short(HIGH),
+        "azimuth": shading.short(np.degrees(solid.plan.turned) + SIDE),
+        "elevation": shading.short(HIGH),
         "unmarked": True,
         "colour": "parts",
         "reach": CLOSE,
-        "tracks": [meshes.track(bowl, solid.faces)],
+        "tracks": [shading.track(bowl, solid.faces)],
         "poses": [{"name": "bowl", "quaternion": UPRIGHT, "height": 0.0, "contact": [], "track": 0}],
     }

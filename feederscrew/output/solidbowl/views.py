@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.output.solid.render import Camera, Rays
+from feederscrew.output.shading import Camera, Rays
 
 SHARP = np.cos(np.radians(20.0))  # of the normals on both sides of an edge that is drawn
 STEP = 0.006  # of the solid's size: places along an edge at which it is looked at

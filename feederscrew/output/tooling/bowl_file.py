@@ -1,7 +1,7 @@
 """A bowl file with the devices of a design, which every command reads back."""
 
-from feederscrew.bowl.devices import SECTION, check_written, value_text
-from feederscrew.tooling.isolating.shop_values import millimetres
+from feederscrew.bowl.devices import DEVICES_SECTION, check_written, value_text
+from feederscrew.tooling.isolating.chain import in_mm
 
 TRACK, WIDTH = "track", "track.width"
 
@@ -22,7 +22,7 @@ def bowl_file(study, settings):
     """
     check_written(study.design.devices, "tooling.yaml")
     width = study.design.width
-    given = [s for s in settings if s.given and s.key.field != SECTION]
+    given = [s for s in settings if s.given and s.key.field != DEVICES_SECTION]
     given = [s for s in given if width is None or s.key.name != WIDTH]
     lines = [*_head(study), *(f"{s.key.word}: {s.text}" for s in given if not s.key.section)]
     for section in dict.fromkeys(s.key.section for s in given if s.key.section):
@@ -31,14 +31,14 @@ def bowl_file(study, settings):
         lines += [_wide(width)] if width is not None and section == TRACK else []
     if width is not None and not any(s.key.section == TRACK for s in given):
         lines += [f"{TRACK}:", _wide(width)]
-    lines += [f"{SECTION}:  # along the track, in the order parts meet them"]
+    lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
     lines += [f"  - {device.kind}: {value_text(device)}" for device in study.design.before]
     lines += [f"  - {cut.device.kind}: {value_text(cut.device)}{_mark(cut)}" for cut in study.design.cuts]
     return "\n".join(lines) + "\n"
 
 
 def _wide(width):
-    return f"  width: {millimetres(width)}  # as the design asks for"
+    return f"  width: {in_mm(width)}  # as the design asks for"
 
 
 def _mark(cut):

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import dxf as files
 from feederscrew.dxf import Layer
 from feederscrew.output import marking
-from feederscrew.tooling.orientations import ROUNDED
+from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
 from feederscrew.units import MM
 
 APART = 20e-3  # [m] between the views
@@ -41,7 +41,7 @@ PENS = {  # of the SVG: stroke, fill, dashes
     "GHOST": ("#7a8793", "none", "1.5 1"),
 }
 WALL = 2e-3  # [m] thickness the wall is drawn with
-EDGES = f"edges broken at most {ROUNDED / MM:.3g} mm"  # as they are tried
+EDGES = f"edges broken at most {CUT_BORDER_RADIUS_M / MM:.3g} mm"  # as they are tried
 SHOP = f"values +-0.1 mm; {EDGES}; lands 1 mm and the sheet's thickness at least"
 
 

@@ -9,7 +9,7 @@ from shapely import affinity
 
 from feederscrew.output import style
 from feederscrew.output.tooling import ink, leaving, profile, tables
-from feederscrew.tooling import tightest
+from feederscrew.tooling import track_sections
 from feederscrew.tooling.isolating.proposal import (
     LEAST_SHARE,  # orientations that come less often have no row
 )
@@ -69,7 +69,7 @@ def chain(devices, every, shares, wanted=None):
     for place, k in enumerate(rows):
         panel, line = divmod(place, high)
         left, top = panel * wide, HEAD + line * ROW
-        found = tightest.until_returned(shown, every[k], every)
+        found = track_sections.until_returned(shown, every[k], every)
         if panel == 0:
             ink.rule(page, top)
         _told(page, (left + 16, top), every[k], shares[k], found, k == wanted)
@@ -179,7 +179,7 @@ def _above(axes, one, hole, found, colour):
     ink.fill(axes, curved if hole is None else curved.difference(ink.mm(hole)), TRACK, "#b8c2cb", 1)
     outline = np.add(one.outline, [0.0, one.distance]) / MM
     axes.add_patch(Polygon(outline, fc=PART, ec="#4d5b68", lw=0.9, alpha=0.45, zorder=3))
-    touching = ink.mm(tightest.foot(one))
+    touching = ink.mm(track_sections.foot_area(one))
     if hole is not None:
         ink.fill(axes, ink.mm(hole).intersection(curved), "none", style.INK, 6, width=0.8)
     left_over = touching if hole is None else touching.difference(ink.mm(hole))
@@ -232,7 +232,7 @@ def _told(page, at, one, share, found, is_wanted):
     """What becomes of an orientation, at the left of its row."""
     left, top = at
     if all(passage.verdict.passes > 0.0 for passage in found):
-        word = tightest.fate(one, found)
+        word = track_sections.passage_fate(one, found)
         colour = PASSES if word.startswith("leaves") else FALLS
     else:
         word, colour = f"{found[-1].fate} by {found[-1].device.name}", FALLS

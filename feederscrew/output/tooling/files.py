@@ -5,7 +5,7 @@ import numpy as np
 from feederscrew.output import marking
 from feederscrew.output import offers as offer
 from feederscrew.output.tooling import bowl_file, tables
-from feederscrew.tooling.strip import strip
+from feederscrew.tooling.track_sections import build_section
 
 
 def offers(study, settings, step=False, mark=""):
@@ -134,7 +134,7 @@ def _quoted(study, mark):
 
 
 def _strip(study):
-    return strip(study.bowl.track, _devices(study), study.orientations)
+    return build_section(study.bowl.track, _devices(study), study.orientations)
 
 
 def _devices(study):

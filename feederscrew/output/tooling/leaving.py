@@ -5,7 +5,7 @@ from matplotlib.lines import Line2D
 
 from feederscrew.output import style
 from feederscrew.output.tooling import ink, profile
-from feederscrew.tooling.hanging import Hanging
+from feederscrew.tooling.orientations import Hanging
 from feederscrew.units import MM
 
 SHEET, DEEP = "#c3ccd4", 2.0  # [mm] of a rail as drawn

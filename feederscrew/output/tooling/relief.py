@@ -5,15 +5,14 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew.geometry.polygons import turned
-from feederscrew.output import style
-from feederscrew.output.solid import pair
-from feederscrew.output.solid.render import Camera
+from feederscrew.output import shading, style
+from feederscrew.output.shading import Camera
 from feederscrew.output.tooling import ink
-from feederscrew.tooling import solid, tightest
+from feederscrew.tooling import solid, track_sections
 from feederscrew.tooling.isolating.proposal import (
     LEAST_SHARE,  # what comes less often is not the nearest that falls
 )
-from feederscrew.tooling.strip import strip
+from feederscrew.tooling.track_sections import build_section
 
 WIDE, HIGH, HEAD = 620, 520, 96  # pixels of one view and of the lines over it
 PASSES, FALLS = "#0072b2", "#d55e00"
@@ -85,7 +84,7 @@ def _over_a_cut(met):
 
 def _leaves(devices, every, wanted):
     """The passage of the wanted orientation with the least margin, with lines of text."""
-    met = _drawable(tightest.until_returned(devices, every[wanted], every))
+    met = _drawable(track_sections.until_returned(devices, every[wanted], every))
     if not met:
         return None
     least = min(met, key=lambda one: one.verdict.margin)
@@ -100,7 +99,7 @@ def _falls(devices, every, shares, wanted):
     found = []
     for k, one in enumerate(every):
         if k != wanted and shares[k] >= LEAST_SHARE and not one.returned:
-            met = tightest.until_returned(devices, one, every)
+            met = track_sections.until_returned(devices, one, every)
             found += [last for last in met[-1:] if last.verdict.passes <= 0.0 and _drawable([last])]
     if not found:
         return None
@@ -157,7 +156,7 @@ def on_section(points, angle, radius):
 
 def station_of(met, every):
     """Return a track section with nothing but the device of a passage, and the part before it."""
-    return strip(met.orientation.track, [met.device], every, lead=1.0)
+    return build_section(met.orientation.track, [met.device], every, lead=1.0)
 
 
 def _image(met, every):
@@ -169,7 +168,9 @@ def _image(met, every):
     track, sides = solid.solid(section)
     half = ROOM * np.ptp(corners, axis=0).max()
     camera = clearest([(track, sides)], [(corners, faces)], [centre], [angle], half)[0]
-    image, frame, size = pair.picture((track, sides), (corners, faces), centre, camera, half, WIDE, HIGH)
+    image, frame, size = shading.pair_picture(
+        (track, sides), (corners, faces), centre, camera, half, WIDE, HIGH
+    )
     return image, frame, (camera, size), centre
 
 
@@ -194,7 +195,7 @@ def clearest(tracks, parts, centres, angles, half):
     for turn in TURNS:
         views = [camera_at(angle, turn) for angle in angles]
         moments = zip(tracks, parts, centres, views)
-        share = np.mean([pair.shown_share(*moment, half) for moment in moments])
+        share = np.mean([shading.shown_share(*moment, half) for moment in moments])
         if share > most:
             best, most = views, share
         if share >= ENOUGH:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew.output import columns, tables
-from feederscrew.tooling import tightest as passages_of
+from feederscrew.tooling import track_sections
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE
 from feederscrew.units import DEG, MM
 
@@ -247,7 +247,7 @@ def _outcome(one, met):
     if met and met[-1].verdict.passes <= 0.0:
         doubt = "" if met[-1].verdict.sure else ", not sure"
         return f"{met[-1].fate} by the {met[-1].device.name}{doubt}"
-    return passages_of.fate(one, met)
+    return track_sections.passage_fate(one, met)
 
 
 def _row(one, share):

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from feederscrew.output.solid import meshes
-from feederscrew.output.solid.meshes import encoded, short
+from feederscrew.output import shading
+from feederscrew.output.shading import encoded, short
 from feederscrew.output.tooling import relief
 from feederscrew.output.trial.section import section
 from feederscrew.output.trial.shown import shown
@@ -35,12 +35,12 @@ def scene(part, *tried):
         What each pose is, and what becomes of it.
     """
     rides, run, found = shown(*tried), tried[0], tried[0].course
-    seen = meshes.viewed(part, relief.VIEW)
+    seen = shading.viewed(part, relief.VIEW)
     cut = section(found.stations[rides[0].place], run.bowl.track, ABOVE * seen["radius"] * MM)
     paths = [_path(ride.path, found.principal) for ride in rides]
     return seen | {
         "reach": REACH,
-        "tracks": [meshes.track(*cut)],
+        "tracks": [shading.track(*cut)],
         "paths": [encoded(path, "<f4") for path in paths],
         "poses": [_pose(ride, path, k) for k, (ride, path) in enumerate(zip(rides, paths))],
     }, [(ride.orientation, ride.title(found).partition(" ")[2]) for ride in rides]

@@ -7,7 +7,7 @@ import shapely
 
 from feederscrew.output.trial.figures import solids, unrolled
 from feederscrew.tooling import solid
-from feederscrew.tooling.strip import bent
+from feederscrew.tooling.track_sections import bend_ring
 from feederscrew.trial.kernel import crowd_records
 
 WALL = 3e-3  # [m] thickness of the wall that is drawn
@@ -66,5 +66,5 @@ def _stretch(station, track, height, low, high, lean):
     """The wall between two places, upright or leaning back as the other face of a groove."""
     if lean:
         return solid.leaning_wall(track.radius, low, high, lean, height)
-    ring = bent(np.array([[low, -WALL], [high, -WALL], [high, 0.0], [low, 0.0]]), track.radius)
+    ring = bend_ring(np.array([[low, -WALL], [high, -WALL], [high, 0.0], [low, 0.0]]), track.radius)
     return solid.prism(shapely.Polygon(ring), -station.plates[0, crowd_records.DEPTH], height)

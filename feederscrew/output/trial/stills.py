@@ -3,8 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
-from feederscrew.output import style
-from feederscrew.output.solid import pair
+from feederscrew.output import shading, style
 from feederscrew.output.tooling.relief import clearest
 from feederscrew.output.trial.section import section
 from feederscrew.output.trial.shown import shown
@@ -51,7 +50,7 @@ def stills(part, run):
             box = (left / width, (top - HEAD - HEIGHT) / height, WIDTH / width, HEIGHT / height)
             axes = figure.add_axes(box, xticks=[], yticks=[])
             axes.spines[:].set_color(style.FAINT)
-            image, _, _ = pair.picture(track, body, place, view, VIEW * radius, WIDTH, HEIGHT)
+            image, _, _ = shading.pair_picture(track, body, place, view, VIEW * radius, WIDTH, HEIGHT)
             axes.imshow(image, interpolation="nearest")
             caption = f"{time:.2f} s, {place[2] / MM:.1f} mm high"
             page.text(left + 4, top - HEAD - HEIGHT - 16, caption, fontsize=7, color=style.INK)

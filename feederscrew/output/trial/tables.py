@@ -4,7 +4,7 @@ import numpy as np
 
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import columns, tables
-from feederscrew.output.convey.tables import rebound
+from feederscrew.output.convey import rebound
 from feederscrew.studies.trial import ENGINE
 from feederscrew.trial import course
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE

@@ -10,13 +10,13 @@ import numpy as np
 
 from feederscrew.errors import FeederError
 from feederscrew.solidbowl.closed_body import pieces
-from feederscrew.solidbowl.exact import exact_body, exact_faces
+from feederscrew.solidbowl.exact import exact_body
 from feederscrew.units import MM
 
-WHEN = re.compile(rb"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'")  # in the file's head: the same bytes twice
-NAME = "write.step.product.name"
-PLACES = 24  # along the track at which the height of the opened file is measured
-SAME = 3e-3  # of the volume of the facets, which lie within the chord of the arcs
+STEP_TIMESTAMP = re.compile(rb"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'")  # in the file's head: the same bytes twice
+STEP_NAME_SETTING = "write.step.product.name"
+STEP_HEIGHT_SAMPLES = 24  # along the track at which the height of the opened file is measured
+STEP_VOLUME_TOLERANCE = 3e-3  # of the volume of the facets, which lie within the chord of the arcs
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ def step_file(made):
         If OpenCASCADE is not installed, or what it makes is not the bowl of the facets.
     """
     exact_body.check()
-    *others, last = exact_body.NEAR
+    *others, last = exact_body.FUZZY_TOLERANCES_MM
     for near in others:
         with contextlib.suppress(FeederError), exact_body.meeting(near):
             return _tried(made)
@@ -61,12 +61,12 @@ def _tried(made):
     bodies = [whole, *(one for _, one in gates)]
     data = _written([exact_body.placed_as(one, mirrored=plan.left, turned=plan.turned) for one in bodies])
     found = _opened(data)
-    sizes = [exact_faces.volume(one) * MM**3 for one in found]
-    if len(found) != len(bodies) or not all(exact_faces.valid(one) for one in found):
+    sizes = [exact_body.volume(one) * MM**3 for one in found]
+    if len(found) != len(bodies) or not all(exact_body.valid(one) for one in found):
         raise _refused(f"finds {len(found)} bodies, or one that is not closed")
-    if abs(sizes[0] / made.volume - 1.0) > SAME:
+    if abs(sizes[0] / made.volume - 1.0) > STEP_VOLUME_TOLERANCE:
         raise _refused(f"makes a bowl of {sizes[0] / MM**3:.6g} mm3, not {made.volume / MM**3:.6g}")
-    return StepFile(data, sizes[0], exact_faces.kinds(found[0]), _off(plan, found[0]))
+    return StepFile(data, sizes[0], exact_body.kinds(found[0]), _off(plan, found[0]))
 
 
 def _refused(what):
@@ -80,13 +80,13 @@ def _written(bodies):
 
     _quiet()
     writer = STEPControl_Writer()
-    (getattr(Interface_Static, "SetCVal_s", None) or Interface_Static.SetCVal)(NAME, "bowl")
+    (getattr(Interface_Static, "SetCVal_s", None) or Interface_Static.SetCVal)(STEP_NAME_SETTING, "bowl")
     if any(writer.Transfer(one, STEPControl_AsIs) != IFSelect_RetDone for one in bodies):
         raise _refused("cannot write it")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "bowl.step"
         writer.Write(str(path))
-        text = WHEN.sub(b"'1970-01-01T00:00:00'", path.read_bytes())
+        text = STEP_TIMESTAMP.sub(b"'1970-01-01T00:00:00'", path.read_bytes())
     return re.sub(rb"'bowl \d+'", b"'bowl'", text)  # it counts the files that it wrote
 
 
@@ -100,7 +100,7 @@ def _opened(data):
         reader = STEPControl_Reader()
         reader.ReadFile(str(path))
         reader.TransferRoots()
-        return exact_faces.parts(reader.OneShape(), TopAbs_SOLID)
+        return exact_body.parts(reader.OneShape(), TopAbs_SOLID)
 
 
 def _off(plan, body):
@@ -109,10 +109,10 @@ def _off(plan, body):
     body = exact_body.placed_as(body, mirrored=plan.left, turned=0.0)
     last = plan.first if plan.stretch is not None else plan.way.end
     found = []
-    for k in range(PLACES):
-        s, y = last * (k + 1.0) / (PLACES + 2.0), plan.width * (0.1 + 0.8 * (k * 0.618 % 1.0))
+    for k in range(STEP_HEIGHT_SAMPLES):
+        s, y = last * (k + 1.0) / (STEP_HEIGHT_SAMPLES + 2.0), plan.width * (0.1 + 0.8 * (k * 0.618 % 1.0))
         place = plan.way.places(s, y)
-        met = exact_faces.below(body, (place + [0.0, 0.0, 0.5 * plan.headroom]) / MM)
+        met = exact_body.below(body, (place + [0.0, 0.0, 0.5 * plan.headroom]) / MM)
         found.append(np.inf if met is None else abs(met * MM - place[2]))
     return float(max(found))
 

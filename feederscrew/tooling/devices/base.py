@@ -1,4 +1,9 @@
-"""What every device along the track offers to those who read, judge, draw, make and try it."""
+"""What every device along the track offers to those who read, judge, draw, make and try it.
+
+Coordinates of a device: x along the wall from where the device begins, y from the wall inwards, z over the
+track. A device hands over one `Standing`: holes, blades, slopes, jets and a sensor, of no kind by name;
+`trial.staging` makes of it what the kernel takes.
+"""
 
 import math
 import re
@@ -10,17 +15,100 @@ import numpy as np
 from feederscrew import units
 from feederscrew import value_forms as forms
 from feederscrew.errors import ConfigError
-from feederscrew.tooling.devices import named
-from feederscrew.tooling.devices.pieces import Hole, Standing, across
+from feederscrew.tooling.devices import orientation_names, values
 
-CLOSE = 1e-9  # [m] a part this much over a limit still passes
+BLADE = 1.5e-3  # [m] thickness of a blade
+GATE_FRAME_M = 5e-3  # [m] of a gate above its opening
+GRIP = 0.6  # [1] friction of a dry steel track
+
+
+@dataclass(frozen=True, eq=False)
+class Hole:
+    """A hole through the track."""
+
+    outline: np.ndarray  # (K, 2) [m] x, y; open into the wall where y <= 0, at the free edge where y >= width
+
+
+@dataclass(frozen=True, eq=False)
+class Blade:
+    """An upright plate on or over the track, at any angle to it."""
+
+    solid: object  # shapely: of its face [m], along the face from its foot, height over the track
+    foot: tuple[float, float] = (0.0, 0.0)  # [m] x, y where the face begins
+    heading: float = 0.5 * np.pi  # [rad] from the track's direction; less than a right angle is swept back
+    thickness: float = BLADE  # [m] behind the face
+    friction: float | None = None  # [1] static and kinetic, both ways; None is the track's
+
+
+@dataclass(frozen=True, eq=False)
+class Slope:
+    """Another lean of the track, from a place on: to the end of what is tried, or to the next slope."""
+
+    begin: float  # [m] x
+    climb: float | None = None  # [rad] rise along the track; None is the bowl's own
+    bank: float | None = None  # [rad] tilt towards the wall
+    wall: float | None = None  # [rad] by which the wall leans back from upright; None is as before
+
+
+@dataclass(frozen=True, eq=False)
+class Jet:
+    """A round jet of air that pushes what of a part is in it."""
+
+    at: tuple[float, float, float]  # [m] x, y, z of its mouth
+    towards: tuple[float, float, float]  # [1] along the wall, inwards, up
+    radius: float  # [m]
+    spread: float  # [1] growth of the radius along its way
+    thrust: float  # [N] on what takes all of it
+    reach: float  # [m] from the mouth
+    seconds: float = np.inf  # [s] of a pulse that a sensor sets off; infinite of a steady one
+
+
+@dataclass(frozen=True, eq=False)
+class Sensor:
+    """What looks at each part as its centre of mass comes to a place, and sets off the pulsed jets."""
+
+    at: float  # [m] x
+    sees: str  # 'outline' from above, 'side' from the bowl's axis, 'height' or 'relief'
+    wanted: tuple  # of Orientation: what is like any of them passes
+    play: float  # [m] what is seen to differ by less passes
+    resolution: float  # [m] to which it sees
+
+
+@dataclass(frozen=True, eq=False)
+class Standing:
+    """All that stands along the track at one device."""
+
+    length: float = 0.0  # [m] of the device along the wall
+    holes: tuple[Hole, ...] = ()
+    blades: tuple[Blade, ...] = ()
+    slopes: tuple[Slope, ...] = ()
+    jets: tuple[Jet, ...] = ()
+    sensor: Sensor | None = None
+    drop: float = 0.0  # [m] by which the track that goes on lies lower
+    aside: float = 0.0  # [m] from the wall, where that begins
+    hangs: bool = False  # whether parts leave hanging, their centres of mass below the track
+    slot: tuple[
+        float, ...
+    ] = ()  # [m] from the wall: between which rails what hangs goes on behind the device
+    settles: float = 0.0  # of the part's size: how far behind the device parts go on until they are looked at
+
+
+def across(gate, width, orientations, place):
+    """Return a Blade square across a track of some width [m], with an opening, at a place [m] along it."""
+    import shapely
+
+    tall = 2.0 * max(max(orientation.height for orientation in orientations), gate.bounds[3]) + GATE_FRAME_M
+    return Blade(shapely.box(0.0, 0.0, width, tall).difference(gate), foot=(place, 0.0))
+
+
+LIMIT_TOLERANCE_M = 1e-9  # [m] a part this much over a limit still passes
 UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
 MM = units.factor("mm", "length")
 WRITTEN_STEP_M = 1e-7  # [m] to which a length is written
 RETURNED, STOPPED, CARRIED = "returned", "stopped", "carried"  # what becomes of a part at a device
-LONG = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
-MARKS = re.compile(r"[][{}:]")  # of a bowl file, which a value in words has none of
-ROOM = 1.3  # a device has so many lengths of the longest part to itself
+ENDLESS_HOLE_LENGTHS = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
+YAML_MARKS = re.compile(r"[][{}:]")  # of a bowl file, which a value in words has none of
+ROOM_PER_DEVICE = 1.3  # a device has so many lengths of the longest part to itself
 
 
 @dataclass(frozen=True)
@@ -64,7 +152,7 @@ class Device:
 
     kind: ClassVar[str] = "track"  # what it is called in a bowl file
     trade: ClassVar[str] = ""  # what the trade calls it; '': its kind, with blanks
-    form: ClassVar[dict[str, Any]] = forms.LENGTH  # of its value in a bowl file
+    form: ClassVar[dict[str, Any]] = forms.LENGTH_FORM  # of its value in a bowl file
     example: ClassVar[str] = ""  # as written after 'kind:'
     meaning: ClassVar[str] = ""
     hanging: ClassVar[bool] = True  # whether it means anything to parts that hang between rails
@@ -151,35 +239,35 @@ class Device:
         gate, lower = kind.opening is not Device.opening, kind.lower is not Device.lower
         return self.cuts or self.overhead or self.hangs or self.turns or gate or lower
 
-    def opening(self, every, width):
+    def opening(self, orientations, width):
         """Return the opening of a gate, in distances from the wall and heights [m]: shapely, or None.
 
         Parameters
         ----------
-        every : sequence of Orientation
+        orientations : sequence of Orientation
             Of the part, which an opening may name.
         width : float [m]
             Of the track.
         """
         return None
 
-    def onward(self, one):
+    def onward(self, orientation):
         """Return an orientation that it lets pass as it goes on behind it."""
-        return one
+        return orientation
 
-    def hop_blur(self, one):
+    def hop_blur(self, orientation):
         """Return what the hop of an orientation takes of its margin [m].
 
         Over an edge across the track its flight. Beside an edge along it, and where the margin is a height,
         how high it hops: a part off the track by so much is as far off its place.
         """
-        return one.flight if type(self).hole_on is not Device.hole_on else one.hop
+        return orientation.flight if type(self).hole_on is not Device.hole_on else orientation.hop
 
-    def gap(self, one, speed):
+    def gap(self, orientation, speed):
         """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
         return 0.0
 
-    def lower(self, every):
+    def lower(self, orientations):
         """Return the track that goes on lower, (drop, from where off the wall) [m], or None."""
         return None
 
@@ -187,45 +275,48 @@ class Device:
         """Return the edge over which parts turn, unrolled, two corners (2, 2) [m], or None."""
         return None
 
-    def fate(self, met):
+    def fate(self, encounter):
         """Return what becomes of an orientation that it does not let pass: RETURNED, or STOPPED before it.
 
         Parameters
         ----------
-        met : Meeting
+        encounter : Meeting
         """
-        cut, span = self.outline_on(met.one.track, LONG * met.size), self.span_on(met.one.track)
-        if span is not None and span[0] > 0.0 and met.held_by_shoulders(span) >= 0.0:
+        cut, span = (
+            self.outline_on(encounter.one.track, ENDLESS_HOLE_LENGTHS * encounter.size),
+            self.span_on(encounter.one.track),
+        )
+        if span is not None and span[0] > 0.0 and encounter.held_by_shoulders(span) >= 0.0:
             return STOPPED  # it hangs in the slot up to its end
-        return RETURNED if cut is None or met.falls_through(cut) else STOPPED
+        return RETURNED if cut is None or encounter.falls_through(cut) else STOPPED
 
-    def judged(self, met):
+    def judged(self, encounter):
         """Return what it does with an orientation, by what statics knows of it, a Verdict.
 
         Parameters
         ----------
-        met : Meeting
+        encounter : Meeting
         """
-        return met.passing()
+        return encounter.passing()
 
-    def standing(self, track, every):
+    def standing(self, track, orientations):
         """Return all that stands along the track at it, a Standing: for the trial, drawings and solids.
 
         Parameters
         ----------
         track : Track
-        every : sequence of Orientation
+        orientations : sequence of Orientation
             Of the part: the longest sets how long one is that goes on along the track.
         """
-        room, width = room_of(every), track.extent
-        gate = self.opening(every, width)
+        room, width = room_of(orientations), track.extent
+        gate = self.opening(orientations, width)
         if gate is not None:
-            return Standing(0.5 * room, blades=(across(gate, width, every, 0.5 * room),))
+            return Standing(0.5 * room, blades=(across(gate, width, orientations, 0.5 * room),))
         cut = self.outline_on(track, room)
         return Standing(room) if cut is None else Standing(float(cut[:, 0].max()), holes=(Hole(cut),))
 
     @classmethod
-    def needed(cls, one):
+    def needed(cls, orientation):
         """Return the value [m] of a device of this kind that an orientation just passes."""
         raise NotImplementedError(f"{cls.kind} is not one number")
 
@@ -255,7 +346,7 @@ class Device:
         """Return whether it does anything at all on a track."""
         return True
 
-    def more(self, met):
+    def more(self, encounter):
         """Return by how much more [m] an orientation that travels passes it than one that is placed."""
         return 0.0
 
@@ -291,7 +382,7 @@ class Device:
     @property
     def short(self):
         """Its value as a bowl file has it, headings in whole degrees."""
-        return named.whole_degrees(self.text)
+        return orientation_names.whole_degrees(self.text)
 
     @property
     def value_words(self):
@@ -301,7 +392,7 @@ class Device:
         if self.like:
             aspect, heading, play = self.like
             return f"outline of {keeps(((aspect, heading),))}, with {length_words(play)} of play"
-        return span_words(self.span) if self.span else MARKS.sub("", self.short)
+        return span_words(self.span) if self.span else YAML_MARKS.sub("", self.short)
 
     def beside(self, width):
         """Return the ConfigError of a hole that lies beside a track of some width [m]."""
@@ -358,9 +449,9 @@ def mapping_text(entries):
     return f"{{{', '.join(f'{key}: {text}' for key, text in entries if text)}}}"
 
 
-def room_of(every):
+def room_of(orientations):
     """Return the length of track [m] that one has to itself, by the longest orientation."""
-    return ROOM * max(one.length for one in every)
+    return ROOM_PER_DEVICE * max(orientation.length for orientation in orientations)
 
 
 def share(margin, sigma):
@@ -370,10 +461,10 @@ def share(margin, sigma):
     """
     if sigma > 0.0:
         return 0.5 * math.erfc(-margin / (sigma * math.sqrt(2.0)))
-    return float(margin >= -CLOSE)
+    return float(margin >= -LIMIT_TOLERANCE_M)
 
 
-def carried(margin, way, carry):
+def carried(margin, travel, carry):
     """Return the margin [m] of an orientation that travels, from that of one that is placed.
 
     Source: own; docs/tooling.md, "1. The method": a part that travels needs time to tip.
@@ -381,9 +472,35 @@ def carried(margin, way, carry):
     Parameters
     ----------
     margin : float [m]
-    way : float [m]
+    travel : float [m]
         Over which it is not supported.
     carry : float [m]
         What it travels on before it has tipped is taken from that; within it the verdict has no margin.
     """
-    return margin if margin >= 0.0 else min(max(margin, carry - way), -UNSURE)
+    return margin if margin >= 0.0 else min(max(margin, carry - travel), -UNSURE)
+
+
+class Yield(Device):
+    """A share that passes, by aspect."""
+
+    kind = "yield"
+    trade = "measured yield"
+    form = forms.by_name(forms.quantity("number", "0", "1"))
+    example = "{A: 0.9}"
+    meaning = "share that passes, by aspect, as measured; aspects not named pass"
+    placed = False
+
+    @classmethod
+    def read(cls, entry):
+        return values.shares(entry)
+
+    def value_text(self):
+        return mapping_text((units.quoted(name), f"{share:.9g}") for name, share in self.shares)
+
+    @property
+    def value_words(self):
+        return "passes " + ", ".join(f"{100.0 * share:.4g} % of {name}" for name, share in self.shares)
+
+    def judged(self, encounter):
+        shares = {name.casefold(): share for name, share in self.shares}
+        return Verdict(shares.get(encounter.one.aspect.casefold(), 1.0), math.nan)

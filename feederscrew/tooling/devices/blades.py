@@ -1,4 +1,4 @@
-"""Blades over the track: wiper, height bar and hold-down."""
+"""Blades over the track: wiper, height bar and hold-down; and the gate with an opening, profile."""
 
 import itertools
 import math
@@ -9,11 +9,14 @@ import numpy as np
 
 from feederscrew import value_forms as forms
 from feederscrew.errors import ConfigError
-from feederscrew.tooling.devices import values
+from feederscrew.tooling.devices import orientation_names, values
 from feederscrew.tooling.devices.base import (
+    GATE_FRAME_M,
     RETURNED,
     STOPPED,
+    Blade,
     Device,
+    Standing,
     angle_text,
     corners_text,
     degrees_words,
@@ -22,15 +25,16 @@ from feederscrew.tooling.devices.base import (
     mapping_text,
     room_of,
 )
-from feederscrew.tooling.devices.pieces import FRAME, Blade, Standing
 
-SQUARE = 0.5 * math.pi  # [rad] of the face to the direction of travel: straight across the track
-PROPOSED = math.radians(30.0)  # [rad] sweep of a blade that a design tries: 20 to 35 deg clear fastest
-FAR = 10.0  # [m] beyond any track
+SQUARE_FACE_RAD = 0.5 * math.pi  # [rad] of the face to the direction of travel: straight across the track
+PROPOSED_SWEEP_RAD = math.radians(
+    30.0
+)  # [rad] sweep of a blade that a design tries: 20 to 35 deg clear fastest
+BEYOND_TRACK_M = 10.0  # [m] beyond any track
 SWEPT = forms.mapping(
     ("sweep", "friction", "contour"),
-    clearance=forms.LENGTH,
-    sweep=forms.ANGLE,
+    clearance=forms.LENGTH_FORM,
+    sweep=forms.ANGLE_FORM,
     friction=forms.quantity("number", "0", "5"),
     contour=forms.POLYGON | {"minItems": 1},
 )
@@ -47,7 +51,7 @@ class _Overhead(Device):
     def read(cls, entry):
         return values.length(entry)
 
-    def opening(self, every, width):
+    def opening(self, orientations, width):
         import shapely
 
         return shapely.box(0.0, 0.0, width, self.limit)
@@ -57,26 +61,26 @@ class _Overhead(Device):
         return f"{length_words(self.limit)} over the track"
 
     @classmethod
-    def needed(cls, one):
-        return one.height
+    def needed(cls, orientation):
+        return orientation.height
 
-    def fate(self, met):
+    def fate(self, encounter):
         return STOPPED
 
-    def judged(self, met):
-        return met.verdict(met.unless_laid_over(self.limit - met.one.height, self.limit))
+    def judged(self, encounter):
+        return encounter.verdict(encounter.unless_laid_over(self.limit - encounter.one.height, self.limit))
 
 
 @dataclass(frozen=True)
 class Wiper(_Overhead):
     """A blade over the track, which clears itself where its face sweeps parts off the free edge."""
 
-    sweep: float = SQUARE  # [rad] of the face to the direction of travel
+    sweep: float = SQUARE_FACE_RAD  # [rad] of the face to the direction of travel
     friction: float | None = None  # [1] of the face; None: that of the track
     contour: tuple[tuple[float, float], ...] = ()  # [m] distance from the wall and clearance there
 
     kind = "wiper"
-    form = forms.either(forms.LENGTH, SWEPT)
+    form = forms.either(forms.LENGTH_FORM, SWEPT)
     example = "6 mm"
     meaning = (
         "blade at a clearance over the track that holds up orientations that stand higher; straight across "
@@ -99,7 +103,7 @@ class Wiper(_Overhead):
 
     @classmethod
     def proposal(cls, where, limit):
-        return cls(where, limit=limit, sweep=PROPOSED)
+        return cls(where, limit=limit, sweep=PROPOSED_SWEEP_RAD)
 
     def value_text(self):
         if not (self.face or self.contour or self.friction is not None):
@@ -122,39 +126,44 @@ class Wiper(_Overhead):
     @property
     def face(self):
         """Its sweep [rad] and friction [1], None: that of the track; None of one straight across."""
-        return (self.sweep, self.friction) if self.sweep < SQUARE else None
+        return (self.sweep, self.friction) if self.sweep < SQUARE_FACE_RAD else None
 
     def clear_of(self, grip):
         """Return whether its face sweeps parts off a track of some friction."""
         friction = grip if self.friction is None else self.friction
-        return self.face is not None and self.sweep < SQUARE - math.atan(friction)
+        return self.face is not None and self.sweep < SQUARE_FACE_RAD - math.atan(friction)
 
-    def fate(self, met):
-        clears = self.clear_of(met.grip) and not met.hanging  # rails hold what hangs
-        return RETURNED if clears else super().fate(met)
+    def fate(self, encounter):
+        clears = self.clear_of(encounter.grip) and not encounter.hanging  # rails hold what hangs
+        return RETURNED if clears else super().fate(encounter)
 
-    def opening(self, every, width):
+    def opening(self, orientations, width):
         if not self.contour:
-            return super().opening(every, width)
+            return super().opening(orientations, width)
         import shapely
 
         return shapely.Polygon([(0.0, 0.0), *self._edge(width), (width, 0.0)])
 
-    def judged(self, met):
+    def judged(self, encounter):
         if not self.contour:
             sweep = self.sweep if self.face else 0.0
-            return met.verdict(met.unless_laid_over(self.limit - met.one.height, self.limit, sweep))
-        return met.verdict(met.through(self.opening(met.every, FAR)))
+            return encounter.verdict(
+                encounter.unless_laid_over(self.limit - encounter.one.height, self.limit, sweep)
+            )
+        return encounter.verdict(encounter.through(self.opening(encounter.every, BEYOND_TRACK_M)))
 
-    def standing(self, track, every):
+    def standing(self, track, orientations):
         """Return its blade, which goes on over the free edge."""
         import shapely
 
-        room, lean = room_of(every), math.sin(self.sweep)
+        room, lean = room_of(orientations), math.sin(self.sweep)
         edge = np.array(self._edge(track.extent))
-        tall = 2.0 * max(max(one.height for one in every), edge[:, 1].max()) + FRAME
+        tall = (
+            2.0 * max(max(orientation.height for orientation in orientations), edge[:, 1].max())
+            + GATE_FRAME_M
+        )
         ring = [*((y / lean, z) for y, z in edge), (edge[-1, 0] / lean, tall), (0.0, tall)]
-        long = track.extent / math.tan(self.sweep) if self.sweep < SQUARE else 0.0
+        long = track.extent / math.tan(self.sweep) if self.sweep < SQUARE_FACE_RAD else 0.0
         blade = Blade(shapely.Polygon(ring), (0.5 * room, 0.0), self.sweep, friction=self.friction)
         return Standing(0.5 * room + long, blades=(blade,))
 
@@ -197,3 +206,58 @@ class HoldDown(_Overhead):
     trade = "hold-down"
     example = "6 mm"
     meaning = "bar above the queue that keeps parts down; orientations that do not fit below stop before it"
+
+
+MAX_OPENING_HEIGHT_M = 1.0  # [m] no opening is higher
+
+
+class Profile(Device):
+    """A gate across the track with an opening."""
+
+    kind = "profile"
+    trade = "profile gate"
+    form = forms.either(forms.POLYGON, forms.mapping(of=forms.NAMED, play=forms.LENGTH_FORM))
+    example = "{of: A@90, play: 0.2 mm}"
+    meaning = (
+        "gate with an opening: a polygon of distances from the wall and heights, or an orientation's own "
+        "outline with play; what does not fit stops before it: for parts that come one by one"
+    )
+    feature = "outline seen along the track"
+    picture = "ahead"
+
+    @classmethod
+    def read(cls, entry):
+        return values.opening(entry)
+
+    def value_text(self):
+        if not self.like:
+            return corners_text(self.corners)
+        aspect, heading, play = self.like
+        return mapping_text((("of", orientation_names.written(aspect, heading)), ("play", length_text(play))))
+
+    @property
+    def across(self):
+        return 0.0
+
+    def opening(self, orientations, width):
+        import shapely
+
+        free = self.free(orientations)
+        return free.intersection(shapely.box(0.0, 0.0, width, MAX_OPENING_HEIGHT_M)) if self.like else free
+
+    def free(self, orientations):
+        """Return the opening however wide the track is, in distances from the wall and heights [m]."""
+        import shapely
+
+        if not self.like:
+            return shapely.Polygon(self.corners)
+        aspect, heading, play = self.like
+        return orientations[
+            orientation_names.place_of(orientations, aspect, heading, self.where, "profile names")
+        ].seen.buffer(play)
+
+    def fate(self, encounter):
+        return STOPPED
+
+    def judged(self, encounter):
+        return encounter.verdict(encounter.through(self.free(encounter.every)))

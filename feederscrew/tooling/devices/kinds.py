@@ -15,12 +15,12 @@ def found():
     classes = []
     for info in pkgutil.iter_modules(devices.__path__):
         module = importlib.import_module(f"{devices.__name__}.{info.name}")
-        for one in vars(module).values():
-            own = isinstance(one, type) and one.__module__ == module.__name__
-            if own and issubclass(one, Device) and one is not Device and "kind" in vars(one):
-                classes.append(one)
-    for one in sorted(classes, key=lambda one: (not one.placed, one.hangs)):
-        KINDS.setdefault(one.kind, one)
+        for value in vars(module).values():
+            own = isinstance(value, type) and value.__module__ == module.__name__
+            if own and issubclass(value, Device) and value is not Device and "kind" in vars(value):
+                classes.append(value)
+    for value in sorted(classes, key=lambda value: (not value.placed, value.hangs)):
+        KINDS.setdefault(value.kind, value)
     return KINDS
 
 
@@ -34,7 +34,7 @@ def names(**traits):
     return tuple(
         name
         for name, kind in KINDS.items()
-        if all(getattr(kind, one) == value for one, value in traits.items())
+        if all(getattr(kind, trait) == value for trait, value in traits.items())
     )
 
 

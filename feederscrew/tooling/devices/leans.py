@@ -1,4 +1,4 @@
-"""Stretches of the track that lean otherwise: bank, and separation on a steeper way."""
+"""Stretches of the track that lean otherwise: bank, separation on a steeper way, and the V of a groove."""
 
 import math
 from dataclasses import dataclass, replace
@@ -7,15 +7,22 @@ import numpy as np
 
 from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import Device, angle_text, degrees_words, mapping_text, room_of
-from feederscrew.tooling.devices.pieces import Slope, Standing
+from feederscrew.tooling.devices.base import (
+    Device,
+    Slope,
+    Standing,
+    angle_text,
+    degrees_words,
+    mapping_text,
+    room_of,
+)
 
-STEEPEST = math.radians(45.0)  # [rad]
+MAX_BANK_RAD = math.radians(45.0)  # [rad]
 # [deg] of a bank that holds what rolls: the least, the greatest, and beyond the angle that just holds
 LEAST, MOST, MORE = 6.0, 15.0, 1.0
-BANKS = (6.0, 10.0, 15.0)  # [deg] that a design tries
+PROPOSED_BANKS_DEG = (6.0, 10.0, 15.0)  # [deg] that a design tries
 PARTING = -6.0  # [deg] climb of a stretch that separates parts
-LINE = 2e-4  # [m] of a line in a drawing
+DRAWN_LINE_M = 2e-4  # [m] of a line in a drawing
 
 
 @dataclass(frozen=True)
@@ -25,12 +32,12 @@ class Lean(Device):
     angle: float = 0.0  # [rad]
 
     @classmethod
-    def holding(cls, one, wall_friction, where):
+    def holding(cls, orientation, wall_friction, where):
         """Return what holds an orientation that rolls on the level, devices in order; none where it does not.
 
         Parameters
         ----------
-        one : Orientation
+        orientation : Orientation
         wall_friction : float [1]
         where : str
             What asks for it.
@@ -38,7 +45,7 @@ class Lean(Device):
         return ()
 
     @classmethod
-    def leanings(cls, one, where):
+    def leanings(cls, orientation, where):
         """Return other ways to lean the track for an orientation, a list of tuples of Device."""
         return []
 
@@ -49,7 +56,9 @@ class Lean(Device):
 
     def edge(self, start, length, width):
         """Return where it begins, unrolled: a line across the track."""
-        return np.array([[start, 0.0], [start + LINE, 0.0], [start + LINE, width], [start, width]])
+        return np.array(
+            [[start, 0.0], [start + DRAWN_LINE_M, 0.0], [start + DRAWN_LINE_M, width], [start, width]]
+        )
 
     def told(self):
         return {"angle_deg": math.degrees(self.angle)}
@@ -60,13 +69,78 @@ class Lean(Device):
 
 
 @dataclass(frozen=True)
+class Groove(Lean):
+    """A V from here on, until a bank: the track leans towards its wall, and the wall back by as much."""
+
+    kind = "groove"
+    trade = "V groove"
+    serves = "lets lie along it what is round"
+    form = forms.mapping(angle=forms.ANGLE_FORM)
+    example = "{angle: 30 deg}"
+    meaning = (
+        "the track is a V from here on, until a bank: it and its wall rise by so much to either side; round "
+        "parts lie along it and roll no more, on a friction that acts as mu / cos(angle)"
+    )
+    hanging = False
+    leans = True
+    grooved = True
+    layer = "SLOPE"
+
+    @classmethod
+    def read(cls, entry):
+        arguments = values.mapping(entry, ("angle",), "write {angle: 30 deg}")
+        return {"angle": values.within(arguments, "angle", "angle", FLATTEST, STEEPEST_FACE_RAD)}
+
+    def value_text(self):
+        return mapping_text((("angle", angle_text(self.angle)),))
+
+    @property
+    def value_words(self):
+        return f"both faces rise at {degrees_words(self.angle)}"
+
+    @classmethod
+    def of(cls, degrees, where):
+        """Return a groove of so many degrees, and the low bank that ends it."""
+        groove = cls(where, angle=math.radians(degrees))
+        return groove.rewritten(), Bank.of(LEAST, where)
+
+    @classmethod
+    def holding(cls, orientation, wall_friction, where):
+        return cls.of(HOLDS, where) if orientation.rolls_along else ()
+
+    @classmethod
+    def leanings(cls, orientation, where):
+        return (
+            [cls.of(angle, where) for angle in ANGLES]
+            if orientation.kind == "rolling" and orientation.rolls_along
+            else []
+        )
+
+    def onward(self, orientation):
+        """Return an orientation as it goes on: both faces hold what lies along them."""
+        track, rolls = (
+            replace(orientation.track, bank=self.angle),
+            orientation.may_roll_back and not orientation.rolls_along,
+        )
+        return replace(orientation, track=track, groove=self.angle, may_roll_back=rolls)
+
+    def judged(self, encounter):
+        """Return what it does: it passes what lies in it as it came, and turns the rest."""
+        return encounter.laid_in_groove(self.angle)
+
+    def standing(self, track, orientations):
+        slope = Slope(0.0, bank=self.angle, wall=0.5 * math.pi - self.angle)
+        return Standing(GROOVE_ROOMS * room_of(orientations), slopes=(slope,))
+
+
+@dataclass(frozen=True)
 class Bank(Lean):
     """Another bank from here on."""
 
     kind = "bank"
     trade = "banked track"
     serves = "holds what rolls at the wall"
-    form = forms.ANGLE
+    form = forms.ANGLE_FORM
     example = "6 deg"
     meaning = (
         "the track is banked towards the wall by so much from here on; listed first, from the track's entry: "
@@ -78,7 +152,7 @@ class Bank(Lean):
 
     @classmethod
     def read(cls, entry):
-        return {"angle": values.within({entry.key: entry}, entry.key, "angle", 0.0, STEEPEST)}
+        return {"angle": values.within({entry.key: entry}, entry.key, "angle", 0.0, MAX_BANK_RAD)}
 
     @classmethod
     def of(cls, degrees, where):
@@ -93,24 +167,26 @@ class Bank(Lean):
         return f"{degrees_words(self.angle)} towards the wall"
 
     @classmethod
-    def holding(cls, one, wall_friction, where):
+    def holding(cls, orientation, wall_friction, where):
         """Return the bank at which the wall's friction holds an orientation, if that is none too steep."""
-        steep = math.degrees(math.atan2(math.tan(max(one.track.climb, 0.0)), max(wall_friction, 0.0)))
+        steep = math.degrees(math.atan2(math.tan(max(orientation.track.climb, 0.0)), max(wall_friction, 0.0)))
         bank = max(LEAST, math.ceil(steep + MORE))
         return (cls.of(bank, where),) if wall_friction > 0.0 and bank <= MOST else ()
 
     @classmethod
-    def leanings(cls, one, where):
-        return [(cls.of(bank, where),) for bank in BANKS]
+    def leanings(cls, orientation, where):
+        return [(cls.of(bank, where),) for bank in PROPOSED_BANKS_DEG]
 
-    def onward(self, one):
+    def onward(self, orientation):
         """Return an orientation as it goes on: its weight meets the track nearer to the wall."""
-        track = replace(one.track, bank=self.angle)
-        held = math.tan(track.climb) <= one.wall_grip * math.tan(self.angle)
-        return replace(one, track=track, groove=0.0, may_roll_back=one.may_roll_back and not held)
+        track = replace(orientation.track, bank=self.angle)
+        held = math.tan(track.climb) <= orientation.wall_grip * math.tan(self.angle)
+        return replace(
+            orientation, track=track, groove=0.0, may_roll_back=orientation.may_roll_back and not held
+        )
 
-    def standing(self, track, every):
-        return Standing(0.5 * room_of(every), slopes=(Slope(0.0, bank=self.angle, wall=0.0),))
+    def standing(self, track, orientations):
+        return Standing(0.5 * room_of(orientations), slopes=(Slope(0.0, bank=self.angle, wall=0.0),))
 
 
 @dataclass(frozen=True)
@@ -119,7 +195,7 @@ class Separation(Lean):
 
     kind = "separation"
     trade = "spacing section"
-    form = forms.mapping(climb=forms.ANGLE)
+    form = forms.mapping(climb=forms.ANGLE_FORM)
     example = "{climb: -4 deg}"
     meaning = (
         "the track climbs by so much from here on, below 0 it goes down: parts travel faster and come apart, "
@@ -130,8 +206,8 @@ class Separation(Lean):
 
     @classmethod
     def read(cls, entry):
-        given = values.mapping(entry, ("climb",), "write {climb: -4 deg}")
-        return {"angle": values.within(given, "climb", "angle", -STEEPEST, STEEPEST)}
+        arguments = values.mapping(entry, ("climb",), "write {climb: -4 deg}")
+        return {"angle": values.within(arguments, "climb", "angle", -MAX_BANK_RAD, MAX_BANK_RAD)}
 
     @classmethod
     def parting(cls, where):
@@ -149,9 +225,16 @@ class Separation(Lean):
         """What it is for: on the way down parts come apart, on the way up rails begin."""
         return "makes the gaps a vision reject needs" if self.angle < 0.0 else "climbs again, as rails need"
 
-    def onward(self, one):
+    def onward(self, orientation):
         """Return an orientation as it goes on, on the steeper track."""
-        return replace(one, track=replace(one.track, climb=self.angle))
+        return replace(orientation, track=replace(orientation.track, climb=self.angle))
 
-    def standing(self, track, every):
-        return Standing(room_of(every), slopes=(Slope(0.0, climb=self.angle),))
+    def standing(self, track, orientations):
+        return Standing(room_of(orientations), slopes=(Slope(0.0, climb=self.angle),))
+
+
+FLATTEST, STEEPEST_FACE_RAD = math.radians(10.0), math.radians(60.0)  # [rad]
+HOLDS = 30.0  # [deg] of a groove's faces
+# [deg] that a design tries beside that: the steepest first, in which what turns has farther to fall
+ANGLES = (55.0, 45.0, 30.0, 15.0)
+GROOVE_ROOMS = 3.0  # rooms of a part in which what comes across turns along it

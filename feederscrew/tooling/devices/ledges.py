@@ -1,13 +1,137 @@
-"""Devices that take the track away along its way: narrowed track, canyon, slot; and the pressure break."""
+"""Edges along the track: step and tip turn parts over; narrowed track, canyon, slot; rails to hang on."""
 
 import math
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 from feederscrew import value_forms as forms
+from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import RETURNED, UNSURE, Device, carried, length_text, mapping_text
+from feederscrew.tooling.devices.base import (
+    MM,
+    RETURNED,
+    UNSURE,
+    Device,
+    Hole,
+    Standing,
+    carried,
+    length_text,
+    mapping_text,
+    room_of,
+    span_words,
+)
+
+LOWER = 0.5  # of the part's greatest length: how far below a ledge the second track lies
+LOWER_TRACK_LENGTHS = 10.0  # of the part's size: how far the lower track goes on
+SETTLES = 2.0  # of the part's size: how far behind a turning device parts end
+DRAWN_EDGE_M = 2e-4  # [m] the width with which an edge over which parts turn is drawn
+
+
+class _Turner(Device):
+    hanging: ClassVar[bool] = False
+    turns: ClassVar[bool] = True
+    picture: ClassVar[str] = "turned"
+    inwards: ClassVar[bool] = False  # whether parts turn across the track
+
+    @classmethod
+    def read(cls, entry):
+        return values.length(entry)
+
+    def standing(self, track, orientations):
+        drop, aside = self.lower(orientations)
+        width, far = (
+            track.extent,
+            LOWER_TRACK_LENGTHS
+            * max(
+                np.hypot(orientation.length, max(orientation.width, orientation.height))
+                for orientation in orientations
+            ),
+        )
+        cut = Hole(np.array([[0.0, aside], [far, aside], [far, width], [0.0, width]]))
+        return Standing(holes=(cut,), drop=drop, aside=aside, settles=SETTLES)
+
+
+class Step(_Turner):
+    """A drop of the track."""
+
+    kind = "step"
+    example = "5 mm"
+    meaning = (
+        "drop of the track by that height: orientations of a lower barrier pitch over their leading edge; "
+        "quasi-static, until a trial confirms it"
+    )
+    layer = "STEP"
+
+    def lower(self, orientations):
+        return self.limit, 0.0
+
+    def edge(self, start, length, width):
+        middle = start + 0.5 * length
+        return np.array(
+            [[middle, 0.0], [middle + DRAWN_EDGE_M, 0.0], [middle + DRAWN_EDGE_M, width], [middle, width]]
+        )
+
+    def judged(self, encounter):
+        turned, margin = encounter.pitched_over(self.limit)
+        return encounter.turning(turned, margin)
+
+    @classmethod
+    def changes(cls, often):
+        """Return the values [m] at which it changes what it does with some orientations, a Meeting each."""
+        turns = [encounter.pitched() for encounter in often]
+        return sorted({x for turn in turns for x in (turn.lift, turn.sure, turn.holds) if np.isfinite(x)})
+
+
+class Tip(_Turner):
+    """A ledge above a second track."""
+
+    kind = "tip"
+    trade = "tipping ledge"
+    example = "6 mm"
+    meaning = (
+        "ledge of that width above a second track, half the part's greatest length lower: orientations whose "
+        "weight lies beyond it turn over it if that drop takes them past their barrier; quasi-static, until "
+        "a trial confirms it"
+    )
+    layer = "LEDGE"
+    inwards = True
+
+    def span_on(self, track):
+        return (self.limit, track.extent) if self.limit < track.extent else None
+
+    def lower(self, orientations):
+        return below_ledge(orientations), self.limit
+
+    def edge(self, start, length, width):
+        low, high = self.limit, self.limit + DRAWN_EDGE_M
+        return np.array([[start, low], [start + length, low], [start + length, high], [start, high]])
+
+    def judged(self, encounter):
+        needed = encounter.one.balcony
+        margin = self.limit - needed if np.isfinite(needed) else -encounter.one.standing.reach
+        beyond = 1.0 - encounter.share(margin)
+        turned: tuple[tuple[int, float], ...] = ()
+        if beyond > 0.0:
+            turned, certain = encounter.rolled_over(self.limit)
+            turned = tuple((place, beyond * part) for place, part in turned)
+            margin = margin if margin >= 0.0 else min(-margin, certain)
+        return encounter.turning(turned, margin)
+
+    @classmethod
+    def changes(cls, often):
+        """Return the values [m] at which it changes what it does with some orientations, a Meeting each."""
+        return sorted({encounter.one.balcony for encounter in often if np.isfinite(encounter.one.balcony)})
+
+
+def below_ledge(orientations):
+    """Return how far below a ledge the second track lies [m]: half the part's greatest length.
+
+    Source: own; docs/tooling.md, "4. Turning parts over".
+    """
+    return LOWER * max(max(orientation.length, orientation.height) for orientation in orientations)
+
 
 SHOP_STEP_M = 5e-5  # [m] of which a value that is proposed is a whole multiple
 DISTANCE = "distance from the wall to the centre of mass"
@@ -39,19 +163,21 @@ class NarrowedTrack(_OneNumber):
     def acts(self, track):
         return self.limit < track.width
 
-    def fate(self, met):
+    def fate(self, encounter):
         return RETURNED
 
     def span_on(self, track):
         return (self.limit, track.extent) if self.limit < track.extent else None
 
     @classmethod
-    def needed(cls, one):
-        return one.balcony
+    def needed(cls, orientation):
+        return orientation.balcony
 
-    def judged(self, met):
-        needed = met.one.balcony
-        return met.verdict(self.limit - needed if math.isfinite(needed) else -met.one.standing.reach)
+    def judged(self, encounter):
+        needed = encounter.one.balcony
+        return encounter.verdict(
+            self.limit - needed if math.isfinite(needed) else -encounter.one.standing.reach
+        )
 
 
 class PressureBreak(_OneNumber):
@@ -73,12 +199,12 @@ class PressureBreak(_OneNumber):
     def span_on(self, track):
         return (self.limit, track.extent) if self.limit < track.extent else None
 
-    def fate(self, met):
+    def fate(self, encounter):
         return RETURNED
 
     @classmethod
-    def needed(cls, one):
-        return one.balcony
+    def needed(cls, orientation):
+        return orientation.balcony
 
     @classmethod
     def relieving(cls, wanted, margin, where):
@@ -97,14 +223,16 @@ class PressureBreak(_OneNumber):
         PressureBreak or None
             None where one of them would not reach over the ledge.
         """
-        least = max(one.balcony + margin + cls(where).hop_blur(one) for one in wanted)
+        least = max(orientation.balcony + margin + cls(where).hop_blur(orientation) for orientation in wanted)
         limit = math.ceil(least / SHOP_STEP_M - 1e-6) * SHOP_STEP_M
-        reach = min(one.width for one in wanted)
+        reach = min(orientation.width for orientation in wanted)
         return cls(where).valued(limit) if limit + margin <= reach else None
 
-    def judged(self, met):
-        needed = met.one.balcony
-        return met.verdict(self.limit - needed if math.isfinite(needed) else -met.one.standing.reach)
+    def judged(self, encounter):
+        needed = encounter.one.balcony
+        return encounter.verdict(
+            self.limit - needed if math.isfinite(needed) else -encounter.one.standing.reach
+        )
 
 
 class Canyon(_OneNumber):
@@ -126,22 +254,22 @@ class Canyon(_OneNumber):
         return 0.0, self.limit
 
     @classmethod
-    def needed(cls, one):
-        return one.canyon
+    def needed(cls, orientation):
+        return orientation.canyon
 
-    def more(self, met):
-        return met.leans(self.limit)
+    def more(self, encounter):
+        return encounter.leans(self.limit)
 
-    def judged(self, met):
-        margin = met.one.canyon - self.limit
-        return met.verdict(carried(margin, -margin, self.more(met) if margin < 0.0 else 0.0))
+    def judged(self, encounter):
+        margin = encounter.one.canyon - self.limit
+        return encounter.verdict(carried(margin, -margin, self.more(encounter) if margin < 0.0 else 0.0))
 
 
 class Slot(Device):
     """A long hole along the track."""
 
     kind = "slot"
-    form = forms.mapping(from_=forms.LENGTH, to=forms.LENGTH)
+    form = forms.mapping(from_=forms.LENGTH_FORM, to=forms.LENGTH_FORM)
     example = "{from: 2 mm, to: 5 mm}"
     meaning = "long hole along the track between two distances from the wall"
     picture = "above"
@@ -160,10 +288,10 @@ class Slot(Device):
     def span_on(self, track):
         return self.span
 
-    def judged(self, met):
-        margin = met.over_span(self.span)
+    def judged(self, encounter):
+        margin = encounter.over_span(self.span)
         first, last = self.span
-        return met.verdict(max(margin, -UNSURE) if met.rides(last - first, np.inf) else margin)
+        return encounter.verdict(max(margin, -UNSURE) if encounter.rides(last - first, np.inf) else margin)
 
 
 def span_text(span):
@@ -174,5 +302,147 @@ def span_text(span):
 def between(device, width):
     """Return the faults [ConfigError] of a hole between two distances off the wall of a track."""
     first, last = device.span
-    found = [device.whole(width)] if first <= 0.0 and last >= width else []
-    return found + ([device.beside(width)] if first >= width else [])
+    pieces = [device.whole(width)] if first <= 0.0 and last >= width else []
+    return pieces + ([device.beside(width)] if first >= width else [])
+
+
+MAX_LEAD_IN_M = 1.0  # [m] of a lead-in
+RAIL_SPAN_FORMS = {"from_": forms.LENGTH_FORM, "to": forms.LENGTH_FORM}
+LEAD_IN_FORMS = {"length": forms.LENGTH_FORM, "taper": forms.LENGTH_FORM}
+
+
+@dataclass(frozen=True)
+class Rails(Device):
+    """A slot between two rails in which headed parts hang, with a wider stretch before it."""
+
+    # [m] of the lead-in: from and to by their distances from the wall, its length, and that of its taper
+    lead: tuple[float, ...] = ()
+
+    kind = "rails"
+    form = forms.mapping(
+        ("lead_in",), **RAIL_SPAN_FORMS, lead_in=forms.mapping(**RAIL_SPAN_FORMS, **LEAD_IN_FORMS)
+    )
+    example = "{from: 4.5 mm, to: 8.5 mm}"
+    meaning = (
+        "slot between two rails, by their distances from the wall: headed parts whose centre of mass lies "
+        "over it hang in it by the head from there on; what falls through is returned; with `lead_in: {from: "
+        "3 mm, to: 9 mm, length: 30 mm, taper: 20 mm}` it begins so wide, for parts that lie askew"
+    )
+    hangs = True
+    picture = "above"
+
+    @classmethod
+    def read(cls, entry):
+        span, arguments = values.span_and(entry, ("lead_in",))
+        if "lead_in" not in arguments:
+            return span
+        lead = arguments["lead_in"]
+        wide, more = values.span_and(lead, needed=("length", "taper"))
+        ends = (values.within(more, name, "length", 0.0, MAX_LEAD_IN_M) for name in ("length", "taper"))
+        own, slot = wide["span"], span["span"]
+        if own[0] > slot[0] + 1e-9 or own[1] < slot[1] - 1e-9:
+            what = "lead_in is narrower than the slot"
+            raise ConfigError(lead.value.where, what, "let it reach as far to both sides, or leave it out")
+        return span | {"lead": (*own, *ends)}
+
+    def misfits(self, width):
+        return between(self, width) + (between(self.entry, width) if self.lead else [])
+
+    def span_on(self, track):
+        return self.span
+
+    @property
+    def entry(self):
+        """The rails as parts meet them first: as wide as the lead-in, without one."""
+        return replace(self, span=self.lead[:2], lead=()) if self.lead else self
+
+    def goes_on(self, width):
+        return sum(self.lead[2:])
+
+    def outline_on(self, track, length):
+        """Return the slot, unrolled from where its lead-in begins, (K, 2) [m]."""
+        if not self.lead:
+            return super().outline_on(track, length)
+        (low, high), (near, far, straight, taper) = self.span, self.lead
+        end = max(length, straight + taper + 0.5 * length)
+        ring = [
+            (0.0, near), (straight, near), (straight + taper, low), (end, low),
+            (end, high), (straight + taper, high), (straight, far), (0.0, far),
+        ]  # fmt: skip
+        if near == low:
+            del ring[1:3]
+        if far == high:
+            del ring[-3:-1]
+        return np.array(ring)
+
+    def with_span(self, span, lead=None):
+        """Return the rails with another slot [m] and, where given, another lead-in, written anew."""
+        lead = self.lead if lead is None else lead
+        if lead:
+            lead = (min(lead[0], span[0]), max(lead[1], span[1]), *lead[2:])
+        return replace(self, span=tuple(span), lead=tuple(lead)).rewritten()
+
+    def value_text(self):
+        return written(self.span, self.lead)
+
+    def hop_blur(self, orientation):
+        """Return nothing: its margins are widths of head, shank and slot, which a hop does not change."""
+        return 0.0
+
+    def standing(self, track, orientations):
+        """Return its slot, which goes on behind it: those that hang do not come back onto the track."""
+        room, size = (
+            room_of(orientations),
+            max(
+                np.hypot(orientation.length, max(orientation.width, orientation.height))
+                for orientation in orientations
+            ),
+        )
+        length = room + self.goes_on(track.extent)
+        holes = (Hole(self.outline_on(track, length + 2.0 * size)),)
+        return Standing(length, holes=holes, hangs=True, slot=self.span)
+
+    def judged(self, encounter):
+        if encounter.hanging:
+            return encounter.verdict(encounter.one.over(self.span))
+        first = self.entry.span
+        over = encounter.over_slot(first)
+        stem = encounter.held_by_shoulders(self.span) if over < -UNSURE else -np.inf
+        if stem >= 0.0:
+            return encounter.verdict(stem, hangs=True)
+        held = (
+            encounter.held_by_head(self.span[1] - self.span[0], first[1] - first[0])
+            if over < 0.0
+            else -np.inf
+        )
+        free = encounter.goes_down(first[0]) and encounter.hangs_free(self.span)
+        if held > 0.0 and (encounter.wedges(first) or not free):
+            return encounter.verdict(0.0, hangs=True)
+        margin = min(held, -over) if held > 0.0 else over
+        return encounter.verdict(margin, hangs=margin >= 0.0 and over < 0.0)
+
+    @property
+    def short(self):
+        if not self.lead:
+            return self.text
+        near, far = (end / MM for end in self.lead[:2])
+        return f"{written(self.span)}, lead-in {near:.6g} to {far:.6g} mm"
+
+    @property
+    def value_words(self):
+        lead = f", lead-in {span_words(self.lead[:2])}" if self.lead else ""
+        return f"slot {span_words(self.span)}{lead}"
+
+    def told(self):
+        if not self.lead:
+            return super().told()
+        names = ("from_mm", "to_mm", "length_mm", "taper_mm")
+        return super().told() | {"lead_in": {name: size / MM for name, size in zip(names, self.lead)}}
+
+
+def written(span, lead=()):
+    """Return a slot [m] and its lead-in as a bowl file has them."""
+    names = ("from", "to", "length", "taper")
+    lengths = ", ".join(f"{name}: {size / MM:.9g} mm" for name, size in zip(names, lead))
+    more = f", lead_in: {{{lengths}}}" if lead else ""
+    return f"{{from: {span[0] / MM:.9g} mm, to: {span[1] / MM:.9g} mm{more}}}"

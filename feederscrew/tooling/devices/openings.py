@@ -1,12 +1,166 @@
-"""Devices with an edge across the track: gap and cut-out."""
+"""Holes in the track about the bowl's axis, and the devices with an edge across it: gap and cut-out."""
+
+import math
+from typing import NamedTuple
 
 import numpy as np
 
+from feederscrew import check
 from feederscrew import value_forms as forms
-from feederscrew.tooling.devices import hole_shapes, values
+from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import UNSURE, Device, carried, corners_text
 
-DRAWN = forms.mapping(dxf=forms.TEXT, layer={"type": ["string", "number"]})
+SAGITTA = 4e-6  # of the radius: by which a hole's bulging edge may be seen too flat ...
+FLATTEST = 2e-6  # [m] ... and at most; a short base of the support makes up to ten times that of the margin
+WALL_OVERCUT_M = 1e-3  # [m] a hole that reaches the wall is cut on into it
+GAP_EDGE_POINTS = 33  # points along the edge of a gap that is parallel to a radial one
+
+
+class HoleEdges(NamedTuple):
+    """What is cut out of the track, about the bowl's axis."""
+
+    edges: np.ndarray  # (M, 7) as `crossing` has them
+    nodes: np.ndarray  # (P, 3) [rad, m] points of its border that what is left may end in; 1: corner
+
+
+def polygon(corners, radius):
+    """Return a hole about the bowl's axis from its unrolled polygon.
+
+    Parameters
+    ----------
+    corners : (K, 2) float [m]
+        Length along the wall and distance from the wall; straight edges when unrolled.
+    radius : float [m]
+        Of the wall.
+
+    Returns
+    -------
+    HoleEdges
+    """
+    corners = through_the_wall(_turned_left(check.shaped("corners", corners, (-1, 2)).tolist()))
+    sides = _sides(corners)
+    rows = [_edge(s0 / radius, radius - y0, s1 / radius, radius - y1) for (s0, y0), (s1, y1) in sides]
+    nodes = [(s / radius, radius - y, 1.0) for s, y in _reflex(corners)]
+    nodes += [node for start, end in sides for node in _bulging(start, end, radius)]
+    return HoleEdges(edges=np.array(rows), nodes=np.array(nodes).reshape(-1, 3))
+
+
+def gap(length, radius, width):
+    """Return a gap across the track: the edge left is radial, the edge met is parallel to it.
+
+    Parameters
+    ----------
+    length : float [m]
+    radius : float [m]
+        Of the wall.
+    width : float [m]
+        How far it reaches from the wall.
+
+    Returns
+    -------
+    HoleEdges
+    """
+    low, high = max(radius - width, 1e-3 * radius, 1.000001 * length), radius + WALL_OVERCUT_M
+    rows = [[0.0, 0.0, 0.0, 0.0, low, high, 0.0], [0.0, 0.0, 0.0, length, low, high, 0.0]]
+    inner = [1.0, 0.0, np.arcsin(length / low), 0.0, low, low, 1.0]
+    return HoleEdges(edges=np.array([*rows, inner]), nodes=np.empty((0, 3)))
+
+
+def gap_outline(length, radius, width):
+    """Return a gap unrolled from its start, (K, 2) [m], by the edges of its hole.
+
+    Parameters
+    ----------
+    length, radius, width : float [m]
+        As for ``gap``.
+    """
+    across = np.linspace(width, 0.0, GAP_EDGE_POINTS)
+    left, trailing = gap(length, radius, width).edges[:2]
+    sides = [
+        radius * (edge[1] + np.arcsin(np.minimum(edge[3] / (radius - across), 1.0)))
+        for edge in (left, trailing)
+    ]
+    return np.vstack([[[sides[0][0], width], [sides[0][-1], 0.0]], np.column_stack([sides[1], across])[::-1]])
+
+
+def _edge(theta0, r0, theta1, r1):
+    """One straight edge of the unrolled polygon as `crossing` has it; from a later to an earlier angle the
+    hole, on its left, lies nearer to the wall, and the track left beyond it bulges."""
+    if r0 == r1:
+        return [1.0, min(theta0, theta1), max(theta0, theta1), 0.0, r0, r0, float(theta1 < theta0)]
+    kappa = (theta1 - theta0) / (r1 - r0)
+    return [0.0, theta0 - kappa * r0, kappa, 0.0, min(r0, r1), max(r0, r1), float(theta1 < theta0)]
+
+
+def _turned_left(corners):
+    """The corners counter-clockwise, length along to the right and distance from the wall upwards."""
+    twice = sum(s0 * y1 - y0 * s1 for (s0, y0), (s1, y1) in _sides(corners))
+    return corners if twice > 0.0 else corners[::-1]
+
+
+def _sides(corners):
+    """Start and end of each side of a ring of corners."""
+    return list(zip(corners, (*corners[1:], corners[0])))
+
+
+def through_the_wall(corners):
+    """Return the corners [m] of a hole, in pairs, with every edge along the wall moved behind it."""
+    return _moved_out(corners, math.inf, WALL_OVERCUT_M)
+
+
+def beyond_borders(corners, width, far):
+    """Return the corners [m] of a hole, in pairs, with edges along the wall and the free edge moved out.
+
+    Edges that only end there stay as they are: what lies beside them in a corner carries parts.
+
+    Parameters
+    ----------
+    corners : sequence of (float [m], float [m])
+        Along the wall, and from it.
+    width : float [m]
+        From which on an edge is along the free edge.
+    far : float [m]
+        By which those are moved.
+    """
+    out = _moved_out(corners, width, far)
+    sides = zip((out[-1], *out[:-1]), out, (*out[1:], out[0]))
+    return [here for before, here, after in sides if not before[0] == here[0] == after[0]]
+
+
+def _moved_out(corners, width, far):
+    """As ``beyond_borders``, with the corners between what is moved and straight sides to it."""
+    out = []
+    for (s0, y0), (s1, y1) in _sides(corners):
+        out.append((s0, y0))
+        if y0 <= 0.0 and y1 <= 0.0:
+            out += [(s0, min(y0, y1) - far), (s1, min(y0, y1) - far)]
+        elif y0 >= width and y1 >= width:
+            out += [(s0, max(y0, y1) + far), (s1, max(y0, y1) + far)]
+    return out
+
+
+def _reflex(corners):
+    """The corners of the hole that point into it: there the track left has a corner."""
+    sides = _sides(corners)
+    for ((s0, y0), (s1, y1)), (_, (s2, y2)) in zip((sides[-1], *sides), sides):
+        if (s1 - s0) * (y2 - y1) - (y1 - y0) * (s2 - s1) < 0.0:
+            yield s1, y1
+
+
+def _bulging(start, end, radius):
+    """Points along an edge beyond which the track left bulges, as nodes."""
+    (s0, y0), (s1, y1) = start, end
+    if s1 >= s0:
+        return
+    flat = min(SAGITTA * radius, FLATTEST)
+    r = max(radius - max(y0, y1), 1e-3 * radius)
+    pieces = math.ceil(abs(s1 - s0) * r / radius / math.sqrt(8.0 * r * flat))
+    for k in range(1, pieces):
+        share = k / pieces
+        yield (s0 + share * (s1 - s0)) / radius, radius - (y0 + share * (y1 - y0)), 0.0
+
+
+DRAWN = forms.mapping(dxf=forms.TEXT_FORM, layer={"type": ["string", "number"]})
 
 
 class Gap(Device):
@@ -27,25 +181,27 @@ class Gap(Device):
         return values.length(entry)
 
     def hole_on(self, track):
-        return hole_shapes.gap(self.limit, track.radius, track.extent)
+        return gap(self.limit, track.radius, track.extent)
 
     def outline_on(self, track, length):
-        return hole_shapes.gap_outline(self.limit, track.radius, track.extent)
+        return gap_outline(self.limit, track.radius, track.extent)
 
     @property
     def across(self):
         return 0.0
 
     @classmethod
-    def needed(cls, one):
-        return one.gap
+    def needed(cls, orientation):
+        return orientation.gap
 
-    def more(self, met):
-        return met.one.carry_ahead
+    def more(self, encounter):
+        return encounter.one.carry_ahead
 
-    def judged(self, met):
-        one = met.one
-        return met.verdict(carried(one.gap - self.limit, self.limit - one.gap, one.carry_ahead))
+    def judged(self, encounter):
+        orientation = encounter.one
+        return encounter.verdict(
+            carried(orientation.gap - self.limit, self.limit - orientation.gap, orientation.carry_ahead)
+        )
 
 
 class CutOut(Device):
@@ -75,7 +231,7 @@ class CutOut(Device):
         return [self.beside(width)] if max(across) <= 0.0 or min(across) >= width else []
 
     def hole_on(self, track):
-        return hole_shapes.polygon(np.array(self.corners), track.radius)
+        return polygon(np.array(self.corners), track.radius)
 
     def outline_on(self, track, length):
         return np.array(self.corners)
@@ -83,11 +239,13 @@ class CutOut(Device):
     def goes_on(self, width):
         return max(x for x, _ in self.corners)
 
-    def judged(self, met):
-        one, hole = met.one, self.hole_on(met.one.track)
-        margin, shift = met.over_hole(hole)
-        if margin < 0.0 < one.carry:
-            margin = carried(margin, met.unheld(hole), one.carry)
+    def judged(self, encounter):
+        orientation, hole = encounter.one, self.hole_on(encounter.one.track)
+        margin, shift = encounter.over_hole(hole)
+        if margin < 0.0 < orientation.carry:
+            margin = carried(margin, encounter.unheld(hole), orientation.carry)
             length = float(np.ptp(np.array(self.corners)[:, 0]))
-            margin = max(margin, -UNSURE) if met.rides(met.widest(self.corners), length) else margin
-        return met.verdict(margin, shift)
+            margin = (
+                max(margin, -UNSURE) if encounter.rides(encounter.widest(self.corners), length) else margin
+            )
+        return encounter.verdict(margin, shift)

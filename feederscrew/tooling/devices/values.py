@@ -6,9 +6,9 @@ from pathlib import Path
 from feederscrew import units
 from feederscrew.errors import ConfigError
 
-CORNER = "write [9 mm, 8 mm]"
+CORNER_ADVICE = "write [9 mm, 8 mm]"
 POLYGON = "write a list of three or more corners, as [[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 8 mm]]"
-FARTHEST = 1000.0  # [m] no bowl reaches so far
+MAX_LENGTH_M = 1000.0  # [m] no bowl reaches so far
 NOZZLE = {  # dimension and limits, in SI units, of what is said of a jet
     "nozzle": ("length", 1e-4, 2e-2),
     "pressure": ("pressure", 1e3, 1e6),
@@ -32,15 +32,21 @@ def blade(entry):
     if entry.value.kind != "mapping":
         return length(entry)
     names = ("clearance", "sweep", "friction", "contour")
-    given = mapping(entry, names, "write {clearance: 6 mm, sweep: 30 deg}", ("sweep", "friction", "contour"))
-    found = {"limit": within(given, "clearance", "length", 1e-9, FARTHEST)} if "clearance" in given else {}
-    if "sweep" in given:
-        found["sweep"] = within(given, "sweep", "angle", math.radians(1.0), math.radians(90.0))
-    if "friction" in given:
-        found["friction"] = within(given, "friction", "number", 0.0, 5.0)
-    if "contour" in given:
-        found["contour"] = tuple(_corners(given["contour"].value, "contour"))
-    return found
+    arguments = mapping(
+        entry, names, "write {clearance: 6 mm, sweep: 30 deg}", ("sweep", "friction", "contour")
+    )
+    numbers = (
+        {"limit": within(arguments, "clearance", "length", 1e-9, MAX_LENGTH_M)}
+        if "clearance" in arguments
+        else {}
+    )
+    if "sweep" in arguments:
+        numbers["sweep"] = within(arguments, "sweep", "angle", math.radians(1.0), math.radians(90.0))
+    if "friction" in arguments:
+        numbers["friction"] = within(arguments, "friction", "number", 0.0, 5.0)
+    if "contour" in arguments:
+        numbers["contour"] = tuple(_corners(arguments["contour"].value, "contour"))
+    return numbers
 
 
 def sensor(entry, views):
@@ -49,37 +55,37 @@ def sensor(entry, views):
     What is named may be a list: the first is ``like``, the others ``also``.
     """
     names, more = ("of", "play", "sees", "resolution", "jet"), ("sees", "resolution", "jet")
-    given = mapping(entry, names, "write {of: A@90, play: 0.5 mm, sees: outline}", more)
-    found = _any_of(given)
-    if "sees" in given:
-        node = given["sees"].value
-        found["sees"] = node.text.strip()
-        if found["sees"] not in views:
+    arguments = mapping(entry, names, "write {of: A@90, play: 0.5 mm, sees: outline}", more)
+    any_of = _any_of(arguments)
+    if "sees" in arguments:
+        node = arguments["sees"].value
+        any_of["sees"] = node.text.strip()
+        if any_of["sees"] not in views:
             raise ConfigError(
                 node.where, f"sees is {units.shown(node.text)}", f"known are {', '.join(views)}"
             )
-    if "resolution" in given:
-        found["resolution"] = within(given, "resolution", "length", 0.0, FARTHEST)
-    if "jet" in given:
-        found |= nozzle(given["jet"], ("time", "nozzles"))
-    return found
+    if "resolution" in arguments:
+        any_of["resolution"] = within(arguments, "resolution", "length", 0.0, MAX_LENGTH_M)
+    if "jet" in arguments:
+        any_of |= nozzle(arguments["jet"], ("time", "nozzles"))
+    return any_of
 
 
 def nozzle(entry, more=(), needed=()):
     """Read {nozzle: 2 mm, pressure: 3 bar, height: 4 mm}, and the time of a pulse where there is one."""
     names = ("nozzle", "pressure", "height", *more)
     optional = [name for name in names if name not in needed]
-    given = mapping(entry, names, "write {nozzle: 2 mm, pressure: 3 bar}", optional)
-    return {name: within(given, name, *NOZZLE[name]) for name in names if name in given}
+    arguments = mapping(entry, names, "write {nozzle: 2 mm, pressure: 3 bar}", optional)
+    return {name: within(arguments, name, *NOZZLE[name]) for name in names if name in arguments}
 
 
-def within(given, name, dimension, low, high):
+def within(entry, name, dimension, low, high):
     """Read one value of a mapping, from ``low`` to ``high`` in SI units."""
-    node = given[name].value
+    node = entry[name].value
     value = _quantity(node, name, dimension)
     if low <= value <= high:
         return value
-    unit, size = next(iter(units.UNITS[dimension].items()))
+    unit, size = next(iter(units.UNITS_BY_DIMENSION[dimension].items()))
     what = f"{name} is {units.one_line(node.text)}"
     raise ConfigError(node.where, what, f"give {low / size:.4g} to {high / size:.4g} {unit}".rstrip())
 
@@ -92,12 +98,14 @@ def span(entry):
 def span_and(entry, more=(), needed=()):
     """Read {from: 2 mm, to: 5 mm} with more entries beside it: {'span': (m, m)}, and all by key."""
     names = ("from", "to", *needed, *more)
-    given = mapping(entry, names, "write {from: 2 mm, to: 5 mm}", more)
-    first, last = (_quantity(given[name].value, f"{entry.key} {name}", "length") for name in ("from", "to"))
+    arguments = mapping(entry, names, "write {from: 2 mm, to: 5 mm}", more)
+    first, last = (
+        _quantity(arguments[name].value, f"{entry.key} {name}", "length") for name in ("from", "to")
+    )
     if not 0.0 <= first < last:
-        what = f"{entry.key} runs from {given['from'].value.text} to {given['to'].value.text}"
+        what = f"{entry.key} runs from {arguments['from'].value.text} to {arguments['to'].value.text}"
         raise ConfigError(entry.value.where, what, "give from 0 mm or more to something larger")
-    return {"span": (first, last)}, given
+    return {"span": (first, last)}, arguments
 
 
 def shares(entry):
@@ -106,7 +114,7 @@ def shares(entry):
         raise ConfigError(
             entry.where, "yield names no aspect", "write below it one line an aspect, as 'A: 0.9'"
         )
-    return {"shares": tuple((one.key, _share(one)) for one in entry.value.entries)}
+    return {"shares": tuple((orientation.key, _share(orientation)) for orientation in entry.value.entries)}
 
 
 def polygon(entry):
@@ -123,24 +131,24 @@ def opening(entry):
     """Read a polygon of the opening, or {of: A@90, play: 0.2 mm}, as {'corners': ...} or {'like': ...}."""
     if entry.value.kind != "mapping":
         return polygon(entry)
-    given = mapping(entry, ("of", "play"), "write {of: A@90, play: 0.2 mm}")
-    return {"like": _like(given)}
+    arguments = mapping(entry, ("of", "play"), "write {of: A@90, play: 0.2 mm}")
+    return {"like": _like(arguments)}
 
 
-def _like(given):
+def _like(entry):
     """Aspect, heading [rad] and play [m] of an orientation that is named."""
-    return (*_orientation(given["of"].value), _play(given))
+    return (*_orientation(entry["of"].value), _play(entry))
 
 
-def _any_of(given):
+def _any_of(entry):
     """The first orientation of those named with its play, as 'like', and the others as 'also'."""
-    node = given["of"].value
+    node = entry["of"].value
     if node.kind != "list":
-        return {"like": _like(given)}
+        return {"like": _like(entry)}
     if not node.items:
         raise ConfigError(node.where, "of names no orientation", "write aspect@heading, as A@90")
-    first, *others = (_orientation(item) for item in node.items)
-    return {"like": (*first, _play(given)), "also": tuple(others)}
+    first, *rest = (_orientation(item) for item in node.items)
+    return {"like": (*first, _play(entry)), "also": tuple(rest)}
 
 
 def _orientation(node):
@@ -152,10 +160,10 @@ def _orientation(node):
     return name.strip(), _parsed(f"{turn.strip().removesuffix('deg')} deg", node.where, "heading", "angle")
 
 
-def _play(given):
-    play = _quantity(given["play"].value, "play", "length")
+def _play(entry):
+    play = _quantity(entry["play"].value, "play", "length")
     if play < 0.0:
-        raise ConfigError(given["play"].value.where, "play is negative", "give 0 mm or more")
+        raise ConfigError(entry["play"].value.where, "play is negative", "give 0 mm or more")
     return play
 
 
@@ -179,8 +187,10 @@ def simple(corners, where, kind):
     if len(corners) < 3:
         raise ConfigError(where, f"{kind} has {len(corners)} corners", POLYGON)
     size = max(max(abs(x), abs(y)) for x, y in corners)
-    if size > FARTHEST:
-        raise ConfigError(where, f"{kind} reaches {size:.3g} m", f"keep its corners within {FARTHEST:g} m")
+    if size > MAX_LENGTH_M:
+        raise ConfigError(
+            where, f"{kind} reaches {size:.3g} m", f"keep its corners within {MAX_LENGTH_M:g} m"
+        )
     if crossed(corners):
         raise ConfigError(where, f"{kind} crosses itself", "list the corners in order around it")
     following = (*corners[1:], corners[0])
@@ -195,51 +205,61 @@ def written(node):
     if node.kind == "list":
         return f"[{', '.join(written(item) for item in node.items)}]"
     if node.kind == "mapping":
-        return f"{{{', '.join(f'{units.quoted(one.key)}: {written(one.value)}' for one in node.entries)}}}"
+        return (
+            f"{{{', '.join(f'{units.quoted(entry.key)}: {written(entry.value)}' for entry in node.entries)}}}"
+        )
     return units.quoted(" ".join(node.text.split()))
 
 
 def mapping(entry, names, mend, optional=()):
     """Return the entries of a mapping by key; a ConfigError for keys unknown or missing."""
-    found = {one.key: one for one in entry.value.entries} if entry.value.kind == "mapping" else {}
-    for one in found.values():
-        if one.key not in names:
+    entries = (
+        {orientation.key: orientation for orientation in entry.value.entries}
+        if entry.value.kind == "mapping"
+        else {}
+    )
+    for orientation in entries.values():
+        if orientation.key not in names:
             raise ConfigError(
-                one.where, f"unknown key {units.shown(one.key)}", f"known are {', '.join(names)}"
+                orientation.where,
+                f"unknown key {units.shown(orientation.key)}",
+                f"known are {', '.join(names)}",
             )
-    missing = [name for name in names if name not in found and name not in optional]
+    missing = [name for name in names if name not in entries and name not in optional]
     if missing:
         raise ConfigError(entry.where, f"{entry.key} has no {missing[0]}", mend)
-    return found
+    return entries
 
 
 def _corners(node, kind):
     if node.kind != "list":
         raise ConfigError(node.where, f"{kind} is not a list of corners", POLYGON)
-    found = []
+    corners = []
     for item in node.items:
         if item.kind != "list" or len(item.items) != 2:
-            raise ConfigError(item.where, f"is no corner of {kind}", CORNER)
-        found.append(tuple(_quantity(one, f"corner of {kind}", "length") for one in item.items))
-    return found
+            raise ConfigError(item.where, f"is no corner of {kind}", CORNER_ADVICE)
+        corners.append(
+            tuple(_quantity(orientation, f"corner of {kind}", "length") for orientation in item.items)
+        )
+    return corners
 
 
 def _drawn(entry):
     """The one closed polyline of a layer of a DXF file, and what was taken for granted of its unit."""
-    given = mapping(entry, ("dxf", "layer"), "write {dxf: tooling.dxf, layer: CUT}")
-    node, layer = given["dxf"].value, given["layer"].value.text
+    arguments = mapping(entry, ("dxf", "layer"), "write {dxf: tooling.dxf, layer: CUT}")
+    node, layer = arguments["dxf"].value, arguments["layer"].value.text
     path = Path(node.text)
     if not path.is_absolute():
         path = Path(node.where.rsplit(":", 2)[0]).parent / path
     from feederscrew import dxf
 
     read = dxf.outlines(path, layer, node.where)
-    found = read.rings
-    if len(found) != 1:
-        what = f"layer {units.shown(layer)} of {path.name} holds {len(found)} closed polylines"
-        raise ConfigError(given["layer"].value.where, what, "give each cut_out a layer of its own")
+    rings = read.rings
+    if len(rings) != 1:
+        what = f"layer {units.shown(layer)} of {path.name} holds {len(rings)} closed polylines"
+        raise ConfigError(arguments["layer"].value.where, what, "give each cut_out a layer of its own")
     what = f"{node.where}: {units.printable(path.name)} names no unit ($INSUNITS), read in mm"
-    return found[0], "" if read.has_unit else f"{what} - save it in millimetres"
+    return rings[0], "" if read.has_unit else f"{what} - save it in millimetres"
 
 
 def _share(entry):

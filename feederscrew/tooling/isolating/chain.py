@@ -1,18 +1,41 @@
-"""The fewest devices of one number that let one orientation pass and return the others."""
+"""The fewest devices of one number that let one orientation pass and return the others, in lengths of a shop;
+and why two orientations cannot be separated, and what change of the part would help.
+"""
 
 import itertools
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 
+from feederscrew.mechanics.wall import sameness
 from feederscrew.tooling.devices.base import STOPPED, UNSURE, Device
 from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.falling_through import surely_gone
-from feederscrew.tooling.isolating.shop_values import FINE, STEP, fine, snapped
-from feederscrew.tooling.verdicts import Meeting, verdict
+from feederscrew.tooling.falling import surely_gone
+from feederscrew.tooling.verdicts import DeviceEncounter, opening_margin, verdict
 
-WHERE = "design"
-HALVINGS = 10  # of the way from the value nearest to the wanted orientation to the middle
+SHOP_STEP_M = 5e-5  # [m] of values that a shop makes
+SHOP_ROUNDING_M = 1e-7  # [m] to which a value is rounded
+
+
+def snap_to_shop_step(value, step, up):
+    """Return the nearest multiple of a step [m] that is not below a value, or not above it."""
+    count = value / step
+    return float((np.ceil(count - 1e-6) if up else np.floor(count + 1e-6)) * step)
+
+
+def in_mm(value):
+    """Return a length [m] as a bowl file has it: '9.25 mm'."""
+    return f"{1e3 * round_finely(value):.9g} mm"
+
+
+def round_finely(value):
+    """Return a length [m] rounded to what a bowl file says of it."""
+    return float(np.round(value / SHOP_ROUNDING_M)) * SHOP_ROUNDING_M
+
+
+DESIGN_KEY = "design"
+CUT_BISECTIONS = 10  # of the way from the value nearest to the wanted orientation to the middle
 
 
 @dataclass(frozen=True)
@@ -30,12 +53,12 @@ class Cut:
 
 
 @dataclass(frozen=True)
-class Wishes:
+class DesignConstraints:
     """What a design may use, and how finely it is made."""
 
     outcome: str = "any"  # how parts leave: 'lying', 'hanging' or 'any'
     without: tuple[str, ...] = ()  # kinds of devices that are not used
-    step: float = STEP  # [m] a shop makes: values are whole multiples
+    step: float = SHOP_STEP_M  # [m] a shop makes: values are whole multiples
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
     cutter: float = 0.0  # [m] radius that corners of holes are rounded to
     separation: Device | None = None  # that comes before a device that needs gaps
@@ -51,7 +74,7 @@ class Wishes:
     @property
     def sensed(self):
         """Whether a sensor may be used."""
-        return any(self.allows(kind.kind) for kind in around())
+        return any(self.allows(kind.kind) for kind in values_around())
 
     @property
     def clearing(self):
@@ -59,18 +82,20 @@ class Wishes:
         return any(self.allows(kind.kind) for kind in numbered() if kind.overhead)
 
 
-def candidates(every, wanted, margin, wishes=None, *, clearing=True, air=False, sensed=False, same=()):
+def candidates(
+    orientations, wanted, margin, constraints=None, *, clearing=True, air=False, sensed=False, same=()
+):
     """Return every device of one number that the wanted orientation passes by a margin.
 
     Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
-    every : sequence of Orientation
+    orientations : sequence of Orientation
     wanted : int
         Its place among them.
     margin : float [m]
-    wishes : Wishes, optional
+    constraints : DesignConstraints, optional
     same : sequence of int
         Those that count as the wanted one: a device of one number lets all of them pass.
     clearing, air, sensed : bool
@@ -83,46 +108,60 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, air=False, 
         The device at which it returns the most, with the margin of each orientation at it; NaN of one that
         would come to stand there. What drops parts comes first, then what clears itself.
     """
-    found, wishes = {}, wishes or Wishes()
+    margins, constraints = {}, constraints or DesignConstraints()
     for kind in numbered():
-        values, lower = limits(kind, every), kind.bound == "lower"
-        first = pivot(kind, every, wanted, same)
-        if not wishes.allows(kind.kind) or not np.isfinite(values[first]) or (kind.overhead and not clearing):
+        values, lower = limits(kind, orientations), kind.bound == "lower"
+        first = pivot(kind, orientations, wanted, same)
+        if (
+            not constraints.allows(kind.kind)
+            or not np.isfinite(values[first])
+            or (kind.overhead and not clearing)
+        ):
             continue
-        play = margin + kind(WHERE).hop_blur(every[first])
+        play = margin + kind(DESIGN_KEY).hop_blur(orientations[first])
         if lower and values[first] <= 2.0 * play:
             continue
-        limit = snapped(values[first] + (-play if lower else play), wishes.step, up=not lower)
-        device = kind.proposal(WHERE, limit)
-        if limit > 0.0 and device.acts(every[wanted].track):
-            found[device] = np.array([margin_at(device, one, every) for one in every])
+        limit = snap_to_shop_step(values[first] + (-play if lower else play), constraints.step, up=not lower)
+        device = kind.proposal(DESIGN_KEY, limit)
+        if limit > 0.0 and device.acts(orientations[wanted].track):
+            margins[device] = np.array(
+                [margin_at(device, orientation, orientations) for orientation in orientations]
+            )
 
     for kind in blowing() if air else ():
         rows = sorted({wanted, *same})
-        meetings = [Meeting(one, every) for one in every]
-        others = [met for k, met in enumerate(meetings) if k not in rows]
-        for device in kind.proposals([meetings[k] for k in rows], others, every, WHERE):
-            found[device] = np.array([margin_at(device, one, every) for one in every])
+        encounters = [DeviceEncounter(orientation, orientations) for orientation in orientations]
+        others = [encounter for k, encounter in enumerate(encounters) if k not in rows]
+        for device in kind.proposals([encounters[k] for k in rows], others, orientations, DESIGN_KEY):
+            margins[device] = np.array(
+                [margin_at(device, orientation, orientations) for orientation in orientations]
+            )
 
     def unlike(view):
-        others = [every[k] for k in same if k != wanted]
-        return [one for one in others if Meeting(one).differs(every[wanted], view) > margin]
+        equals = [orientations[k] for k in same if k != wanted]
+        return [
+            equal for equal in equals if DeviceEncounter(equal).differs(orientations[wanted], view) > margin
+        ]
 
-    for kind in around() if sensed else ():
-        if wishes.allows(kind.kind):
-            for device in kind.around(Meeting(every[wanted], every), margin, WHERE, unlike):
-                found[device] = np.array([margin_at(device, one, every) for one in every])
-    return found
+    for kind in values_around() if sensed else ():
+        if constraints.allows(kind.kind):
+            for device in kind.around(
+                DeviceEncounter(orientations[wanted], orientations), margin, DESIGN_KEY, unlike
+            ):
+                margins[device] = np.array(
+                    [margin_at(device, orientation, orientations) for orientation in orientations]
+                )
+    return margins
 
 
-def pivot(kind, every, wanted, same=()):
+def pivot(kind, orientations, wanted, same=()):
     """Return which of those that count as the wanted one a device of one number lets pass last."""
-    values = limits(kind, every)
+    values = limits(kind, orientations)
     rows = sorted({wanted, *same}, key=lambda k: k != wanted)
     return (max if kind.bound == "upper" else min)(rows, key=lambda k: values[k])
 
 
-def around():
+def values_around():
     """Return the kinds that a design tries with the wanted orientation's own outline."""
     return [kind for kind in KINDS.values() if kind.proposed and kind.senses]
 
@@ -132,17 +171,17 @@ def blowing():
     return [kind for kind in KINDS.values() if kind.proposed and not (kind.senses or kind.bound)]
 
 
-def margin_at(device, one, every):
+def margin_at(device, orientation, orientations):
     """Return the margin [m] of an orientation at a device; NaN of one that comes to stand there.
 
     None, a hair below 0, of one that travels and may be held there, though it is not supported.
     """
-    margin = verdict(device, one, every).margin
+    margin = verdict(device, orientation, orientations).margin
     if not margin < 0.0:
         return margin
-    if device.fate(Meeting(one, every)) == STOPPED:
+    if device.fate(DeviceEncounter(orientation, orientations)) == STOPPED:
         return np.nan
-    return margin if one.grip <= 0.0 or surely_gone(device, one) else max(margin, -UNSURE)
+    return margin if orientation.grip <= 0.0 or surely_gone(device, orientation) else max(margin, -UNSURE)
 
 
 def numbered():
@@ -151,21 +190,21 @@ def numbered():
     return sorted(kinds, key=lambda kind: kind.rank)
 
 
-def limits(kind, every):
+def limits(kind, orientations):
     """Return the value [m] of a device of one number that each orientation just passes, (M,)."""
-    return np.array([kind.needed(one) for one in every])
+    return np.array([kind.needed(orientation) for orientation in orientations])
 
 
-def fewest(found, others, margin, enough=0.0):
+def fewest(margins, competitors, margin, enough=0.0):
     """Return the fewest devices that return the most of some orientations.
 
     Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
-    found : dict of Device to (M,) float [m]
+    margins : dict of Device to (M,) float [m]
         From ``candidates``.
-    others : (M,) float [1]
+    competitors : (M,) float [1]
         How much each of the orientations to be returned weighs; 0 for those that need not be.
     margin : float [m]
     enough : float [1]
@@ -176,37 +215,37 @@ def fewest(found, others, margin, enough=0.0):
     tuple of Device
         In the order of ``candidates``.
     """
-    best, weight, total = (), 0.0, float(others.sum())
-    devices = [device for device, some in found.items() if others[some <= -margin].any()]
+    best, weight, total = (), 0.0, float(competitors.sum())
+    devices = [device for device, some in margins.items() if competitors[some <= -margin].any()]
     for count in range(1, len(devices) + 1):
         if total - weight <= enough:
             break
         for chosen in itertools.combinations(devices, count):
-            returned = np.any([found[device] <= -margin for device in chosen], axis=0)
-            held = float(others[returned].sum())
-            if held > weight + 1e-12 and not jams(found, chosen, others, margin):
+            returned = np.any([margins[device] <= -margin for device in chosen], axis=0)
+            held = float(competitors[returned].sum())
+            if held > weight + 1e-12 and not jams(margins, chosen, competitors, margin):
                 best, weight = chosen, held
     return best
 
 
-def jams(found, chosen, others, margin):
+def jams(margins, chosen, competitors, margin):
     """Return whether an orientation that weighs comes to stand at a device, not returned before it."""
-    gone = np.asarray(others) <= 0.0
+    gone = np.asarray(competitors) <= 0.0
     for device in chosen:
-        if np.any(np.isnan(found[device]) & ~gone):
+        if np.any(np.isnan(margins[device]) & ~gone):
             return True
-        gone = gone | (found[device] <= -margin)
+        gone = gone | (margins[device] <= -margin)
     return False
 
 
-def placed(every, wanted, devices, must, least=np.inf, step=FINE, same=()):
+def place_devices(orientations, wanted, devices, must, least=np.inf, step=SHOP_ROUNDING_M, same=()):
     """Return the cuts of a chain, each value in the middle of what it may be.
 
     Source: own; docs/tooling.md, "5. Where it ends".
 
     Parameters
     ----------
-    every : sequence of Orientation
+    orientations : sequence of Orientation
     wanted : int
     devices : sequence of Device
     must : sequence of (M,) bool
@@ -222,83 +261,216 @@ def placed(every, wanted, devices, must, least=np.inf, step=FINE, same=()):
     -------
     tuple of Cut
     """
-    rows = [pivot(type(device), every, wanted, same) if device.bound else wanted for device in devices]
-    given = zip(rows, devices, must)
-    return tuple(_cut(every, row, device, some, least, step) for row, device, some in given)
+    rows = [pivot(type(device), orientations, wanted, same) if device.bound else wanted for device in devices]
+    task = zip(rows, devices, must)
+    return tuple(_cut(orientations, row, device, some, least, step) for row, device, some in task)
 
 
-def shared_out(found, devices, margin):
+def shared_out(margins, devices, margin):
     """Return for each device (M,) which orientations it has to return: those that none before it does."""
-    left, out = np.ones(len(next(iter(found.values()))), dtype=bool), []
+    left, out = np.ones(len(next(iter(margins.values()))), dtype=bool), []
     for device in devices:
-        out.append(left & (found[device] <= -margin))
+        out.append(left & (margins[device] <= -margin))
         left &= ~out[-1]
     return out
 
 
-def _cut(every, wanted, device, must, least, step):
+def _cut(orientations, wanted, device, must, least, step):
     if device.senses:
-        return _sensor(every, wanted, device, must, step)
+        return _sensor(orientations, wanted, device, must, step)
     if not device.bound:
-        return judged(every, wanted, device, must, device, device)
-    values, upper = limits(type(device), every), device.bound == "upper"
-    values = values + np.where(np.arange(len(every)) == wanted, 0.0, _more(device, every))
+        return judge_cut(orientations, wanted, device, must, device, device)
+    values, upper = limits(type(device), orientations), device.bound == "upper"
+    values = values + np.where(np.arange(len(orientations)) == wanted, 0.0, _more(device, orientations))
     nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]
     middle = float(0.5 * (values[wanted] + nearest))
 
     def at(value):
-        value = fine(snapped(value, step, up=not upper)) if step > FINE else fine(value)
+        value = (
+            round_finely(snap_to_shop_step(value, step, up=not upper))
+            if step > SHOP_ROUNDING_M
+            else round_finely(value)
+        )
         return device.valued(value)
 
-    chosen = _surest(every, must, at, middle if np.isfinite(nearest) else device.limit, device.limit)
+    chosen = _surest(orientations, must, at, middle if np.isfinite(nearest) else device.limit, device.limit)
     if device.carries and least < np.inf:
         eased = max(chosen.limit, nearest - least) if upper else min(chosen.limit, nearest + least)
-        chosen = _surest(every, must, at, float(eased), chosen.limit, least - 2.0 * FINE)
+        chosen = _surest(orientations, must, at, float(eased), chosen.limit, least - 2.0 * SHOP_ROUNDING_M)
     ends = [device.valued(float(end)) for end in (nearest, values[wanted])]
-    return judged(every, wanted, chosen, must, *ends)
+    return judge_cut(orientations, wanted, chosen, must, *ends)
 
 
-def _sensor(every, wanted, device, must, step):
+def _sensor(orientations, wanted, device, must, step):
     least = device.like[2]
-    outside = [device.differs(Meeting(one, every)) for one, some in zip(every, must) if some]
+    outside = [
+        device.differs(DeviceEncounter(orientation, orientations))
+        for orientation, some in zip(orientations, must)
+        if some
+    ]
     widest = min(outside, default=2.0 * least)
 
     def at(play):
-        play = fine(max(snapped(play, step, up=False), least))
+        play = round_finely(max(snap_to_shop_step(play, step, up=False), least))
         return device.with_play(play)
 
-    own = device.differs(Meeting(every[wanted], every))
-    chosen = _surest(every, must, at, 0.5 * (own + widest), least)
-    return judged(every, wanted, chosen, must, at(widest), at(least))
+    own = device.differs(DeviceEncounter(orientations[wanted], orientations))
+    chosen = _surest(orientations, must, at, 0.5 * (own + widest), least)
+    return judge_cut(orientations, wanted, chosen, must, at(widest), at(least))
 
 
-def _more(device, every):
+def _more(device, orientations):
     """By how much more [m] than placed each orientation passes a device as it travels, (M,)."""
-    return np.array([device.more(Meeting(one)) for one in every])
+    return np.array([device.more(DeviceEncounter(orientation)) for orientation in orientations])
 
 
-def _surest(every, must, at, middle, near, by=UNSURE):
+def _surest(orientations, must, at, middle, near, by=UNSURE):
     """The device of a value midway, or as near to that as it still returns what it has to, by a margin."""
 
     def returns(device):
-        return all(margin_at(device, one, every) < -by for one, some in zip(every, must) if some)
+        return all(
+            margin_at(device, orientation, orientations) < -by
+            for orientation, some in zip(orientations, must)
+            if some
+        )
 
     if returns(at(middle)):
         return at(middle)
-    for _ in range(HALVINGS):
+    for _ in range(CUT_BISECTIONS):
         half = 0.5 * (near + middle)
         near, middle = (half, middle) if returns(at(half)) else (near, half)
     return at(near)
 
 
-def judged(every, wanted, device, must, smallest, largest):
+def judge_cut(orientations, wanted, device, must, smallest, largest):
     """Return a device as a Cut, with its true margins and what it returns."""
-    margins = np.array([verdict(device, one, every).margin for one in every])
+    margins = np.array([verdict(device, orientation, orientations).margin for orientation in orientations])
     return Cut(
         device=device,
         margin_pass=float(margins[wanted]),
         margin_reject=float(-margins[must].max()) if must.any() else np.nan,
         smallest=smallest,
         largest=largest,
-        returns=tuple(one.name for one, margin in zip(every, margins) if margin < 0.0),
+        returns=tuple(orientation.name for orientation, margin in zip(orientations, margins) if margin < 0.0),
     )
+
+
+HULL_FIT_ROUNDS = 4  # of the fit of one hull over the other
+SIDE_NAMES = (("ahead", "behind"), ("on the inner side", "at the wall"), ("on top", "at the bottom"))
+
+
+@dataclass(frozen=True)
+class Difference:
+    """How two orientations differ as they lie on the track."""
+
+    shape: float  # [m] greatest distance between their hulls, laid over each other as well as can be
+    side: str  # where that is
+    shift: tuple[float, float, float]  # [m] of the centre of mass within the hull: ahead, inwards, up
+
+
+def inseparable_reason(wanted, other, margin):
+    """Return in one sentence why a chain leaves another orientation, and the smallest change that helps.
+
+    Parameters
+    ----------
+    wanted, other : Orientation
+    margin : float [m]
+        Asked for on either side.
+
+    Returns
+    -------
+    str
+    """
+    names = f"{wanted.name} and {other.name}"
+    if wanted.mirror == other.name:
+        return (
+            f"{names} are mirror images fore and aft: no device of one number parts "
+            f"them and no hole was found; a feature on one side only would, of {2e3 * margin:.2g} mm or more"
+        )
+    difference, need = find_difference(wanted, other), smallest_change(wanted, other, margin)
+    if difference.shape < min(margin, 0.5 * max(map(abs, difference.shift))):
+        same = f"have the same outside to {1e3 * max(difference.shape, 1e-5):.2f} mm"
+        return f"{names} {same}, {_inside(difference)}; {need}"
+    if difference.shape < 4.0 * margin:
+        return (
+            f"{names} differ by {1e3 * difference.shape:.2g} mm at most, {difference.side}, as by a chamfer "
+            f"or a rounding; {need}"
+        )
+    if carries_more(other, wanted, margin):
+        return (
+            f"whatever carries {wanted.name} carries {other.name}, which stands on a larger foot and is no "
+            f"higher or wider: only turning it over helps; {need}"
+        )
+    return (
+        f"{names} differ by {1e3 * difference.shape:.2g} mm {difference.side}, which no device of one "
+        f"number, gate or hole that was tried can use; {need}"
+    )
+
+
+def _inside(gap):
+    """What differs of two orientations with the same outside."""
+    ahead, inwards, up = (1e3 * abs(by) for by in gap.shift)
+    return (
+        f"only the inside differs, as by a bore off the middle or a closed end: the centre of mass lies "
+        f"elsewhere by {ahead:.2f} mm along the track, {inwards:.2f} mm across it and {up:.2f} mm in height; "
+        "needs a feature on the outside"
+    )
+
+
+def smallest_change(wanted, other, margin):
+    """Return in words the least [m] that has to be added to what some device measures of a part."""
+    feature, step = _nearest(wanted, other)
+    if step >= 2.0 * margin:
+        return f"{feature} differs by {1e3 * step:.2g} mm, but no chain that was tried can use it"
+    return f"{1e3 * (2.0 * margin - step):.2g} mm more in {feature} would part them"
+
+
+def carries_more(orientation, other, margin):
+    """Return whether one orientation stands on all that another stands on, and is no higher or wider."""
+    lower = orientation.height <= other.height + margin and orientation.width <= other.width + 2.0 * margin
+    return lower and stands_on_all(orientation, other, margin)
+
+
+def stands_on_all(orientation, other, margin):
+    """Return whether one orientation stands on all that another stands on: no hole lets it fall alone."""
+    foot, within = (shapely.MultiPoint(k.foot.corners).convex_hull for k in (orientation, other))
+    near = abs(orientation.distance - other.distance) < 2.0 * margin
+    return bool(near and foot.buffer(margin).covers(within))
+
+
+def find_difference(wanted, other):
+    """Return how two orientations differ as they lie on the track: a Difference.
+
+    Parameters
+    ----------
+    wanted, other : Orientation
+    """
+    (first, _), (second, _) = (
+        sameness.looks(orientation.posture, [orientation.heading]) for orientation in (wanted, other)
+    )
+    sizes = [np.ptp(orientation.posture.corners, axis=0).max() for orientation in (wanted, other)]
+    away, there = first[0, 0] * sizes[0] - second[0, 0] * sizes[1], sameness.directions()
+    shift = np.zeros(3)
+    for _ in range(HULL_FIT_ROUNDS):  # least squares: the directions are spread evenly
+        left = away - (there * shift).sum(axis=1)
+        shift = shift + 3.0 * (there * left[:, None]).mean(axis=0)
+    left = np.abs(away - (there * shift).sum(axis=1))
+    where = there[int(np.argmax(np.round(left, 9)))]
+    axis = int(np.argmax(np.abs(where)))
+    x, y, z = map(float, shift)
+    return Difference(float(left.max()), SIDE_NAMES[axis][int(where[axis] < 0.0)], (x, y, z))
+
+
+def _nearest(wanted, other):
+    """What some device measures in which two orientations are farthest apart, and by how much [m]."""
+    differences = [
+        (-opening_margin(wanted.seen, other), kind.kind, kind.feature)
+        for kind in KINDS.values()
+        if hasattr(kind, "free")
+    ]
+    for kind in numbered():
+        first, second = limits(kind, (wanted, other))
+        step = second - first if kind.bound == "upper" else first - second
+        differences.append((float(step) if np.isfinite(step) else -np.inf, kind.kind, kind.feature))
+    step, _, feature = max(differences)
+    return feature, max(step, 0.0)

@@ -1,27 +1,31 @@
-"""Holes of three to six corners that part orientations which devices of one number cannot."""
+"""Holes of three to six corners that separate orientations which devices of one number cannot.
+
+Their corners are round, as a cutter or a laser leaves them.
+"""
 
 import math
 import time
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import shapely
 
-from feederscrew.tooling import foot as feet
-from feederscrew.tooling.devices import hole_shapes
+from feederscrew.tooling import footprints
+from feederscrew.tooling.devices import openings
 from feederscrew.tooling.devices.base import carried
 from feederscrew.tooling.devices.openings import CutOut
 from feederscrew.tooling.devices.values import crossed
-from feederscrew.tooling.isolating.chain import WHERE, judged
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, judge_cut
 from feederscrew.tooling.verdicts import verdict
 
 STARTS = 220  # random holes tried
-CLIMBS = 6  # the best of them are improved
-STEPS = 100  # changes tried of each
-ROOM = 1.3  # holes reach so far beyond the foot
-STEP = 5e-5  # [m] to which a corner is rounded
-HALVINGS = 24
-ROUNDING = 1e-12  # [m] of a score
-VERDICTS = 30000  # in the search for the holes of one orientation
+IMPROVED_HOLES = 6  # the best of them are improved
+CHANGES_PER_CORNER = 100  # changes tried of each
+HOLE_REACH_FACTOR = 1.3  # holes reach so far beyond the foot
+CORNER_STEP_M = 5e-5  # [m] to which a corner is rounded
+CORNER_BISECTIONS = 24
+SCORE_TOLERANCE_M = 1e-12  # [m] of a score
+MAX_HOLE_VERDICTS = 30000  # in the search for the holes of one orientation
 
 
 @dataclass
@@ -29,7 +33,7 @@ class HoleSearch:
     """How long and from where holes are looked for: by a count of verdicts, the same on every machine."""
 
     seed: int = 1
-    verdicts: int = VERDICTS  # for one orientation; then the best so far is taken
+    verdicts: int = MAX_HOLE_VERDICTS  # for one orientation; then the best so far is taken
     until: float = math.inf  # [s] of time.monotonic(): the last resort
     late: bool = False  # whether that was reached
     spent: int = 0  # verdicts so far
@@ -47,16 +51,16 @@ class HoleSearch:
         return self.late
 
 
-def cut_out(every, wanted, others, margin, search):
+def cut_out(orientations, wanted, competitors, margin, search):
     """Return the hole that the wanted orientation passes and that returns the most others.
 
     Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
-    every : sequence of Orientation
+    orientations : sequence of Orientation
     wanted : int
-    others : sequence of int
+    competitors : sequence of int
         Those to be returned.
     margin : float [m]
         To either side.
@@ -67,42 +71,42 @@ def cut_out(every, wanted, others, margin, search):
     (Cut, sequence of int) or None
         The hole and those of the others that it returns by the margin.
     """
-    best = _found(every, wanted, others, margin, search)
-    if best is None and any(every[k].name == every[wanted].mirror for k in others):
-        best = _mirrored(every, wanted, others, margin, search)
+    best = _search(orientations, wanted, competitors, margin, search)
+    if best is None and any(orientations[k].name == orientations[wanted].mirror for k in competitors):
+        best = _mirrored(orientations, wanted, competitors, margin, search)
     if best is None:
         return None
     corners, margins = best
-    held = [k for k, found in zip(others, margins) if found <= -margin]
-    return _as_cut(every, wanted, held, corners), held
+    held = [k for k, competitor_margin in zip(competitors, margins) if competitor_margin <= -margin]
+    return _as_cut(orientations, wanted, held, corners), held
 
 
-def _found(every, wanted, others, margin, search):
+def _search(orientations, wanted, competitors, margin, search):
     """The best hole, as (corners, margins of the others), or None; a whole search is made once."""
-    asked = (wanted, *others, margin, *(every[k].carry for k in others))
-    best, spent = search.known.get(asked, (None, math.inf))
+    key = (wanted, *competitors, margin, *(orientations[k].carry for k in competitors))
+    best, spent = search.known.get(key, (None, math.inf))
     if search.spent + spent < search.verdicts:
         search.spent += spent
         return best
     before = search.spent
-    best = _Judge(every, wanted, others, margin, search).searched(
-        np.random.default_rng((search.seed, wanted, *others))
+    best = _Judge(orientations, wanted, competitors, margin, search).searched(
+        np.random.default_rng((search.seed, wanted, *competitors))
     )
     if not search.over():
-        search.known[asked] = best, search.spent - before
+        search.known[key] = best, search.spent - before
     return best
 
 
-def _mirrored(every, wanted, others, margin, search):
+def _mirrored(orientations, wanted, competitors, margin, search):
     """The same of the mirror images, fore and aft: a hole that parts those, mirrored, parts these."""
-    places = {one.name: k for k, one in enumerate(every)}
-    image = [places.get(one.mirror, k) for k, one in enumerate(every)]
-    best = _found(every, image[wanted], sorted(image[k] for k in others), margin, search)
+    places = {orientation.name: k for k, orientation in enumerate(orientations)}
+    image = [places.get(orientation.mirror, k) for k, orientation in enumerate(orientations)]
+    best = _search(orientations, image[wanted], sorted(image[k] for k in competitors), margin, search)
     if best is None:
         return None
     corners = best[0] * [-1.0, 1.0]
     corners[:, 0] -= corners[:, 0].min()
-    judge = _Judge(every, wanted, others, margin, search)
+    judge = _Judge(orientations, wanted, competitors, margin, search)
     score, margins = judge.score(corners)
     return (corners, margins) if judge.is_enough(score) else None
 
@@ -110,18 +114,24 @@ def _mirrored(every, wanted, others, margin, search):
 class _Judge:
     """Scores of holes: whole margins gained, others returned first."""
 
-    def __init__(self, every, wanted, others, margin, search):
+    def __init__(self, orientations, wanted, competitors, margin, search):
         self.search = search
-        self.wanted, self.others = every[wanted].standing, [every[k] for k in others]
-        self.radius, self.margin = every[wanted].track.radius, margin
-        self.length = ROOM * max(one.length for one in (every[wanted], *(every[k] for k in others)))
-        self.width = max(one.width for one in (every[wanted], *(every[k] for k in others)))
+        self.wanted, self.others = orientations[wanted].standing, [orientations[k] for k in competitors]
+        self.radius, self.margin = orientations[wanted].track.radius, margin
+        self.length = HOLE_REACH_FACTOR * max(
+            orientation.length
+            for orientation in (orientations[wanted], *(orientations[k] for k in competitors))
+        )
+        self.width = max(
+            orientation.width
+            for orientation in (orientations[wanted], *(orientations[k] for k in competitors))
+        )
         self.scratch = {}
-        self.order = list(range(len(others)))  # those that spoiled a hole last come first
+        self.order = list(range(len(competitors)))  # those that spoiled a hole last come first
 
     def score(self, corners, beaten=-math.inf):
         """(score, margins of the others); (-infinity, None) where it does not pass or is not better."""
-        hole = hole_shapes.polygon(corners, self.radius)
+        hole = openings.polygon(corners, self.radius)
         self.search.spent += 1
         passing = self._least(-1, self.wanted, hole, -self.margin, 2.0 * self.margin)[0]
         if passing < -self.margin:
@@ -142,11 +152,11 @@ class _Judge:
 
         More than that of any margin makes no difference: of those not known yet it is the best they can add.
         """
-        returned = sum(found <= -self.margin for found in margins)
+        returned = sum(margin <= -self.margin for margin in margins)
         ready = passing >= self.margin
-        total = sum(min(-found, 2.0 * self.margin) for found in margins)
+        total = sum(min(-margin, 2.0 * self.margin) for margin in margins)
         gain = min(passing, 2.0 * self.margin) * max(len(margins), 1) + total
-        nearest = min(passing - self.margin, max(-found for found in margins) - self.margin)
+        nearest = min(passing - self.margin, max(-margin for margin in margins) - self.margin)
         return (returned if ready else 0) * 1e3 * self.margin + 3.0 * min(nearest, 0.0) + gain
 
     def _spoilt(self, passing, margins, k, beaten):
@@ -154,21 +164,21 @@ class _Judge:
         if beaten == -math.inf:
             return math.inf
         nearly = [*margins[:k], math.nextafter(-self.margin, 0.0), *margins[k + 1 :]]  # not quite returned
-        return -self.margin + max(self._worth(passing, nearly) - beaten, 0.0) + ROUNDING
+        return -self.margin + max(self._worth(passing, nearly) - beaten, 0.0) + SCORE_TOLERANCE_M
 
     def searched(self, rng):
         """The best hole found, as (corners, margins), if it passes the wanted one and returns any other."""
-        found: list[tuple] = []  # (score, margins, corners), the best first
+        holes: list[tuple] = []  # (score, margins, corners), the best first
         for _ in range(STARTS):
             if self.search.over():
                 break
             corners = self._random(rng)
             if corners is not None:
-                beaten = found[-1][0] if len(found) == CLIMBS else -math.inf
-                found.append((*self.score(corners, beaten), corners))
-                found = sorted(found, key=lambda one: -one[0])[:CLIMBS]
-        climbed = [self._climbed(one, rng) for one in found]
-        best = max(climbed, key=lambda one: one[0], default=None)
+                beaten = holes[-1][0] if len(holes) == IMPROVED_HOLES else -math.inf
+                holes.append((*self.score(corners, beaten), corners))
+                holes = sorted(holes, key=lambda orientation: -orientation[0])[:IMPROVED_HOLES]
+        climbed = [self._climbed(hole, rng) for hole in holes]
+        best = max(climbed, key=lambda orientation: orientation[0], default=None)
         return (best[2], best[1]) if best is not None and self.is_enough(best[0]) else None
 
     def is_enough(self, score):
@@ -179,7 +189,7 @@ class _Judge:
         """One hole improved by moving a corner, or all of it, at random."""
         score, margins, corners = start
         size = 0.15 * self.width
-        for _ in range(STEPS):
+        for _ in range(CHANGES_PER_CORNER):
             if self.search.over() or margins is None:
                 break
             moved = corners.copy()
@@ -190,9 +200,9 @@ class _Judge:
             moved = self._tidy(moved)
             if moved is None:
                 continue
-            better, found = self.score(moved, score)
+            better, climbed = self.score(moved, score)
             if better > score:
-                score, margins, corners = better, found, moved
+                score, margins, corners = better, climbed, moved
             else:
                 size = max(0.93 * size, 2.0 * self.margin)
         return score, margins, corners
@@ -210,8 +220,8 @@ class _Judge:
         corners = corners.copy()
         corners[:, 1] = np.clip(corners[:, 1], 0.0, min(1.2 * self.width, 0.9 * self.radius))
         corners[:, 0] -= corners[:, 0].min()
-        corners = np.round(corners / STEP) * STEP
-        pairs = [tuple(one) for one in corners.tolist()]
+        corners = np.round(corners / CORNER_STEP_M) * CORNER_STEP_M
+        pairs = [tuple(orientation) for orientation in corners.tolist()]
         sides = zip(pairs, (*pairs[1:], pairs[0]))
         area = 0.5 * abs(sum(x0 * y1 - y0 * x1 for (x0, y0), (x1, y1) in sides))
         if area < (4.0 * self.margin) ** 2 or crossed(pairs):
@@ -220,23 +230,27 @@ class _Judge:
 
     def _falling(self, k, hole, high):
         """Least margin of one that travels; what fails by too little anyway is left as it is placed."""
-        one, enough = self.others[k], 2.0 * self.margin
-        margin, work = self._least(k, one.standing, hole, -enough, high)
-        if margin > -self.margin or not one.carry > 0.0:
+        orientation, enough = self.others[k], 2.0 * self.margin
+        margin, work = self._least(k, orientation.standing, hole, -enough, high)
+        if margin > -self.margin or not orientation.carry > 0.0:
             return margin
-        return carried(margin, feet.unheld(one.standing, hole, work, one.carry + enough), one.carry)
+        return carried(
+            margin,
+            footprints.unheld(orientation.standing, hole, work, orientation.carry + enough),
+            orientation.carry,
+        )
 
     def _least(self, k, foot, hole, low, high):
         """Least margin as far as it lies between two values, and the arrays kept for holes of that size."""
         key = k, len(hole.edges), 64 * (1 + len(hole.nodes) // 64)
         if key not in self.scratch:
             room = hole._replace(nodes=np.empty((key[2], 3)))
-            self.scratch[key] = feet.scratch(foot, room)
-        return feet.least(foot, hole, self.scratch[key], low, high)[0], self.scratch[key]
+            self.scratch[key] = footprints.scratch(foot, room)
+        return footprints.least(foot, hole, self.scratch[key], low, high)[0], self.scratch[key]
 
 
-def _as_cut(every, wanted, held, corners):
-    must = np.isin(np.arange(len(every)), held)
+def _as_cut(orientations, wanted, held, corners):
+    must = np.isin(np.arange(len(orientations)), held)
     middle = corners.mean(axis=0)
 
     def scaled(share):
@@ -245,26 +259,28 @@ def _as_cut(every, wanted, held, corners):
         return shape
 
     def passes(share):
-        return _margin(every[wanted], scaled(share)) >= 0.0
+        return _margin(orientations[wanted], scaled(share)) >= 0.0
 
     def returns(share):
         device = device_of(scaled(share))
-        return all(verdict(device, every[k], every).margin < 0.0 for k in held)
+        return all(verdict(device, orientations[k], orientations).margin < 0.0 for k in held)
 
     least = _border(returns, 1.0, 0.0)
     most = _border(passes, 1.0, 2.0)
-    return judged(every, wanted, device_of(corners), must, device_of(scaled(least)), device_of(scaled(most)))
+    return judge_cut(
+        orientations, wanted, device_of(corners), must, device_of(scaled(least)), device_of(scaled(most))
+    )
 
 
-def _margin(one, corners):
-    return feet.least(one.standing, hole_shapes.polygon(corners, one.track.radius))[0]
+def _margin(orientation, corners):
+    return footprints.least(orientation.standing, openings.polygon(corners, orientation.track.radius))[0]
 
 
 def _border(holds, inside, outside):
     """The last share for which something holds, from where it does towards where it may not."""
     if holds(outside) if outside > 0.0 else False:
         return outside
-    for _ in range(HALVINGS):
+    for _ in range(CORNER_BISECTIONS):
         middle = 0.5 * (inside + outside)
         if middle > 0.0 and holds(middle):
             inside = middle
@@ -276,4 +292,32 @@ def _border(holds, inside, outside):
 def device_of(corners):
     """Return the hole of some corners (K, 2) [m]."""
     shape = tuple((float(x), float(y)) for x, y in corners)
-    return CutOut(WHERE, corners=shape).rewritten()
+    return CutOut(DESIGN_KEY, corners=shape).rewritten()
+
+
+ARC = 6  # chords of a quarter of a round corner
+BEYOND_HOLE_M = 1.0  # [m] beyond any hole
+
+
+def round_corners(task, hole, radius):
+    """Return a hole with corners of a radius [m], as a cutter leaves them, or None where it then does not do.
+
+    Source: own; docs/tooling.md, "1. The method".
+
+    Parameters
+    ----------
+    task : DesignTask
+    hole : (Cut, sequence of int)
+        From ``cut_out``.
+    radius : float [m]
+    """
+    cut, held = hole
+    open_ = [(x, y if y > 0.0 else -BEYOND_HOLE_M) for x, y in cut.device.corners]  # it goes on into the wall
+    round_ = shapely.Polygon(open_).buffer(-radius).buffer(radius, quad_segs=ARC)
+    round_ = round_.intersection(shapely.box(-BEYOND_HOLE_M, 0.0, BEYOND_HOLE_M, BEYOND_HOLE_M))
+    if round_.geom_type != "Polygon" or round_.is_empty:
+        return None
+    corners = np.round(shapely.get_coordinates(round_.exterior)[:-1] / SHOP_ROUNDING_M) * SHOP_ROUNDING_M
+    must, ends = np.isin(np.arange(len(task.every)), held), (cut.smallest, cut.largest)
+    rounded = judge_cut(task.every, task.wanted, device_of(corners), must, *ends)
+    return (rounded, held) if min(rounded.margin_pass, rounded.margin_reject) >= task.margin else None

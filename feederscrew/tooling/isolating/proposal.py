@@ -6,13 +6,13 @@ import numpy as np
 
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.fates import course
-from feederscrew.tooling.isolating import apart
-from feederscrew.tooling.isolating.chain import Cut, Wishes
+from feederscrew.tooling.isolating import chain
+from feederscrew.tooling.isolating.chain import Cut, DesignConstraints, margin_at
 
 LEAST_SHARE = 5e-3  # [1] orientations that come less often need not be returned
 ISOLATED_PURITY = 0.98  # [1] of what leaves, from which an orientation is said to be isolated
-SLIGHT = 1e-9  # [1] of an orientation: less comes of rounding
-NEVER = 1e-4  # [1] those that come less often change no number: no device is added for them
+MIN_ORIENTATION_SHARE = 1e-9  # [1] of an orientation: less comes of rounding
+NEGLIGIBLE_SHARE = 1e-4  # [1] those that come less often change no number: no device is added for them
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,19 +80,19 @@ class DesignTask:
     before: tuple[Device, ...]  # of the bowl
     coming: np.ndarray  # (M,) [1] share that comes to the design lying so
     turners: tuple[Cut, ...] = ()  # turning devices of the design, before all that return
-    wishes: Wishes = field(default_factory=Wishes)  # what it may use
+    constraints: DesignConstraints = field(default_factory=DesignConstraints)  # what it may use
 
     @property
     def stays(self):
         """(M,) bool, whether the bare track carries it."""
-        return np.array([not one.returned for one in self.every])
+        return np.array([not orientation.returned for orientation in self.every])
 
     @property
     def same(self):
         """(M,) bool, which count as the wanted one: itself, and what lies on an aspect that may be up too."""
-        up = {name.casefold() for name in self.wishes.up}
-        alike = np.array([one.aspect.casefold() in up for one in self.every])
-        return alike | (np.arange(len(self.every)) == self.wanted)
+        up = {name.casefold() for name in self.constraints.up}
+        equal = np.array([orientation.aspect.casefold() in up for orientation in self.every])
+        return equal | (np.arange(len(self.every)) == self.wanted)
 
     @property
     def often(self):
@@ -109,28 +109,28 @@ class DesignTask:
         return float(self.coming[same].sum() * (1.0 / self.purity - 1.0))
 
 
-def task(every, shares, wanted, margin, purity, before, turners=(), wishes=None):
+def design_task(orientations, shares, wanted, margin, purity, before, turners=(), constraints=None):
     """Return what a design has to do behind the devices of the bowl and its own turning devices."""
-    every = tuple(every)
-    flow = course((*before, *(cut.device for cut in turners)), every)
-    coming = (shares[:, None] * flow.leaving).sum(axis=0)[: len(every)]
-    own = tuple(turners), wishes or Wishes()
-    return DesignTask(every, shares, wanted, margin, purity, tuple(before), coming, *own)
+    orientations = tuple(orientations)
+    flow = course((*before, *(cut.device for cut in turners)), orientations)
+    coming = (shares[:, None] * flow.leaving).sum(axis=0)[: len(orientations)]
+    own = tuple(turners), constraints or DesignConstraints()
+    return DesignTask(orientations, shares, wanted, margin, purity, tuple(before), coming, *own)
 
 
-def weights(given):
+def weights(task):
     """Return how much it matters to return each orientation, (M,) [1]: those that come often enough first."""
-    weight = np.where(given.often, 1.0 + given.coming, 1e-3 * given.coming)
-    weight = np.where(given.coming < NEVER, 0.0, weight)
-    return np.where(given.stays, weight, 0.0)
+    weight = np.where(task.often, 1.0 + task.coming, 1e-3 * task.coming)
+    weight = np.where(task.coming < NEGLIGIBLE_SHARE, 0.0, weight)
+    return np.where(task.stays, weight, 0.0)
 
 
-def told(given, cuts, returned, same=None, late=False):
+def propose(task, cuts, returned, same=None, late=False):
     """Return the record of a chain, by what all of its devices do with every orientation.
 
     Parameters
     ----------
-    given : DesignTask
+    task : DesignTask
     cuts : sequence of Cut
         Without turning devices.
     returned : (M,) bool
@@ -144,64 +144,70 @@ def told(given, cuts, returned, same=None, late=False):
     -------
     Design
     """
-    every, shares, wanted = given.every, given.shares, given.wanted
-    same = given.same if same is None else same
-    cuts = (*given.turners, *_separated(given, cuts))
-    flow = course((*given.before, *(cut.device for cut in cuts)), every)
-    states = sorted({flow.leaves_as(k) for k in np.flatnonzero(given.same)})
+    orientations, shares, wanted = task.every, task.shares, task.wanted
+    same = task.same if same is None else same
+    cuts = (*task.turners, *_separated(task, cuts))
+    flow = course((*task.before, *(cut.device for cut in cuts)), orientations)
+    states = sorted({flow.leaves_as(k) for k in np.flatnonzero(task.same)})
     out = (shares[:, None] * flow.leaving).sum(axis=0)
-    unsure = np.where(given.same | (flow.doubtful < SLIGHT), 0.0, shares * flow.doubtful)
+    unsure = np.where(task.same | (flow.doubtful < MIN_ORIENTATION_SHARE), 0.0, shares * flow.doubtful)
     doubt = float(unsure.sum())  # may leave as well: no trial has said
     total, leaving = shares.sum(), out.sum()
-    cuts = _with_stops(given, flow, cuts)
+    cuts = _with_stops(task, flow, cuts)
     hopeful = float(out[states].sum() / leaving) if leaving > 0.0 else None
-    least = min(given.purity, ISOLATED_PURITY)
-    impure = (
-        [f"only {100.0 * hopeful:.3g} % of what leaves is so"]
-        if hopeful is not None and hopeful < least
-        else []
-    )
+    least = min(task.purity, ISOLATED_PURITY)
+    impure = []
+    if hopeful is not None and hopeful < least:
+        impure = [f"only {100.0 * hopeful:.3g} % of what leaves is so"]
     stands = any(cut.stops for cut in cuts)
-    left = [k for k in np.flatnonzero(~returned & ~same) if given.often[k]]
-    rest = given.coming[left].sum()
+    left = [k for k in np.flatnonzero(~returned & ~same) if task.often[k]]
+    rest = task.coming[left].sum()
     margins = [end for cut in cuts for end in (cut.margin_pass, cut.margin_reject) if np.isfinite(end)]
     return Design(
         wanted=wanted,
-        isolated=not (stands or impure) and (not left or bool(rest <= given.allowed_beside(same))),
-        before=given.before,
+        isolated=not (stands or impure) and (not left or bool(rest <= task.allowed_beside(same))),
+        before=task.before,
         cuts=cuts,
         margin=float(min(margins, default=np.nan)),
         efficiency=float(out[states].sum() / total) if total > 0.0 else 0.0,
         purity=float(out[states].sum() / (leaving + doubt)) if leaving > 0.0 else np.nan,
         hopeful=hopeful,
         least_purity=least,
-        surely=_surely(given, flow, states),
-        left_over=tuple(one.name for k, one in enumerate(flow.states) if out[k] > 0.0 and k not in states),
+        surely=_surely(task, flow, states),
+        left_over=tuple(
+            state.name for k, state in enumerate(flow.states) if out[k] > 0.0 and k not in states
+        ),
         reasons=(
             *(f"{' '.join(cut.stops)} come to stand at the {cut.device.name}" for cut in cuts if cut.stops),
-            *(apart.reason(every[wanted], every[k], given.margin) for k in left),
+            *(chain.inseparable_reason(orientations[wanted], orientations[k], task.margin) for k in left),
             *impure,
-            *_against(np.array([one.name for one in every])[(unsure > 0.0) & given.often]),
+            *_against(
+                np.array([orientation.name for orientation in orientations])[(unsure > 0.0) & task.often]
+            ),
         ),
         late=late,
     )
 
 
-def _surely(given, flow, states):
+def _surely(task, flow, states):
     """Share of the parts offered [1] that leaves as wanted and lies still on its way: the least of it.
 
     What is on a round side with nothing that holds it at the wall may roll, what the drive tips may rock, and
     what it throws may come down otherwise.
     """
-    total = given.shares.sum()
+    total = task.shares.sum()
     loose = [
-        one.returned
-        or one.may_roll_back
-        or one.may_tip
-        or (one.kind == "rolling" and not one.groove and (one.track.bank <= 0.0 or one.along_a_bank))
-        for one in given.every
+        orientation.returned
+        or orientation.may_roll_back
+        or orientation.may_tip
+        or (
+            orientation.kind == "rolling"
+            and not orientation.groove
+            and (orientation.track.bank <= 0.0 or orientation.along_a_bank)
+        )
+        for orientation in task.every
     ]
-    share = np.where(loose, 0.0, given.shares) * flow.leaving[:, states].sum(axis=1)
+    share = np.where(loose, 0.0, task.shares) * flow.leaving[:, states].sum(axis=1)
     return float(share.sum() / total) if total > 0.0 else 0.0
 
 
@@ -214,20 +220,22 @@ def _against(names):
     )
 
 
-def _separated(given, cuts):
+def _separated(task, cuts):
     """Cuts with a stretch that separates parts before the first of them that needs gaps.
 
     Before rails the track climbs as it did: where it falls, a head that comes first has no time to turn down.
     """
-    steeper, one = given.wishes.separation, given.every[given.wanted]
-    first = next((k for k, cut in enumerate(cuts) if cut.device.gap(one, one.speed) > 0.0), None)
-    if steeper is None or first is None or any(device.leans for device in given.before):
+    steeper, orientation = task.constraints.separation, task.every[task.wanted]
+    first = next(
+        (k for k, cut in enumerate(cuts) if cut.device.gap(orientation, orientation.speed) > 0.0), None
+    )
+    if steeper is None or first is None or any(device.leans for device in task.before):
         return tuple(cuts)
-    climb = one.track.climb
+    climb = orientation.track.climb
     slower = replace(steeper, angle=climb).rewritten()
     last = next((k for k, cut in enumerate(cuts) if cut.device.hangs), len(cuts))
-    back = (plain_cut(slower),) if last < len(cuts) else ()
-    return (*cuts[:first], plain_cut(steeper), *cuts[first:last], *back, *cuts[last:])
+    returning = (plain_cut(slower),) if last < len(cuts) else ()
+    return (*cuts[:first], plain_cut(steeper), *cuts[first:last], *returning, *cuts[last:])
 
 
 def plain_cut(device):
@@ -235,26 +243,85 @@ def plain_cut(device):
     return Cut(device, np.nan, np.nan, device, device, ())
 
 
-def _with_stops(given, flow, cuts):
+def _with_stops(task, flow, cuts):
     """Cuts with the names of those that come to stand at each."""
-    first, names = 1 + len(given.before), [one.name for one in given.every]
-    stands = flow.stops * (given.shares > 0.0)[:, None]
+    first, names = 1 + len(task.before), [orientation.name for orientation in task.every]
+    stands = flow.stops * (task.shares > 0.0)[:, None]
     return tuple(
         replace(cut, stops=tuple(name for name, share in zip(names, stands[:, first + k]) if share > 0.0))
         for k, cut in enumerate(cuts)
     )
 
 
-def without(given, why):
+def without_device(task, why):
     """Return the record of an orientation that nothing isolates, and why."""
     return Design(
-        wanted=given.wanted,
+        wanted=task.wanted,
         isolated=False,
-        before=given.before,
+        before=task.before,
         cuts=(),
         margin=np.nan,
         efficiency=0.0,
         purity=np.nan,
         left_over=(),
-        reasons=(f"{given.every[given.wanted].name} {why}",),
+        reasons=(f"{task.every[task.wanted].name} {why}",),
+    )
+
+
+PRINTED_SHARE_STEP = 1e-4  # [1] shares that differ by less are printed alike
+
+
+def propose_needed(task, cuts, returned, same=None, late=False):
+    """Return the record of a chain as ``told`` does, without the devices that change nothing of it.
+
+    Source: own; docs/tooling.md, "What a design takes".
+
+    Parameters
+    ----------
+    task : DesignTask
+    cuts : sequence of Cut
+    returned : (M,) bool
+        Which are returned by the margin: by the track and the devices of the bowl too.
+    same : (M,) bool, optional
+        Which leave like the wanted one, hanging.
+    late : bool
+
+    Returns
+    -------
+    Design
+        Of as many of the cuts as it takes to keep what is isolated, efficiency and purity.
+
+    Notes
+    -----
+    The last ones are left out first: what drops parts stands before what has to clear itself or to see. Rails
+    are what parts leave in, and stay.
+    """
+    cuts, proposal = list(cuts), propose(task, cuts, returned, same, late)
+    gone = returned & ~np.any([_returns(task, cut) for cut in cuts], axis=0) if cuts else returned
+    for cut in [cut for cut in reversed(cuts) if not cut.device.hangs]:
+        rest = [other for other in cuts if other is not cut]
+        by_rest = np.any([gone, *(_returns(task, other) for other in rest)], axis=0)
+        other = propose(task, rest, by_rest, same, late)
+        if _same_numbers(other, proposal):
+            cuts, proposal = rest, other
+    return proposal
+
+
+def _returns(task, cut):
+    """(M,) bool, which orientations a cut returns by the margin that is asked for."""
+    margins = [margin_at(cut.device, orientation, task.every) for orientation in task.every]
+    return np.array([margin <= -task.margin for margin in margins], dtype=bool)
+
+
+def _same_numbers(orientation, other):
+    """Whether a design says the same of what leaves as another, and no more stands in it."""
+    first, second = (
+        np.nan_to_num([k.efficiency, k.purity, -1.0 if k.hopeful is None else k.hopeful], nan=-1.0)
+        for k in (orientation, other)
+    )
+    stands = [{name for cut in design.cuts for name in cut.stops} for design in (orientation, other)]
+    return (
+        orientation.isolated >= other.isolated
+        and bool((np.abs(first - second) < PRINTED_SHARE_STEP).all())
+        and stands[0] <= stands[1]
     )

@@ -14,7 +14,7 @@ ARC, ALPHA, KAPPA, GAMMA, LOW, HIGH, BULGE = range(7)  # columns of a hole's edg
 # the angles where it begins and ends and LOW, HIGH its radius; BULGE: track is left on the side of the axis
 SIDE, EDGE, T0, T1, PHI0, PHI1 = range(6)  # columns of a stretch
 CUTS = 10  # at most that many ends of stretches on a side
-SHORT = 1e-13  # [1] of a side
+SHORT_SIDE = 1e-13  # [1] of a side
 TINY = 1e-300
 
 
@@ -119,7 +119,7 @@ def _on_slant(side, edge, k, j, out, count, cuts):
     sort(cuts, number)
     for i in range(number - 1):
         t0, t1 = cuts[i], cuts[i + 1]
-        if t1 - t0 < SHORT or count >= len(out):
+        if t1 - t0 < SHORT_SIDE or count >= len(out):
             continue
         middle = 0.5 * (t0 + t1)
         radius = math.hypot(side[0] + middle * side[2], side[1] + middle * side[3])
@@ -183,10 +183,10 @@ def place(side, edge, row, phi):
         low, high = (t, high) if (value > 0.0) == (below > 0.0) else (low, t)
         slope = _slope(side, edge, t)
         step = -value / slope if slope != 0.0 else 0.0
-        if abs(step) < SHORT and slope != 0.0:
+        if abs(step) < SHORT_SIDE and slope != 0.0:
             return min(max(t + step, low), high)
         t = t + step if low < t + step < high and slope != 0.0 else 0.5 * (low + high)
-        if high - low < SHORT:
+        if high - low < SHORT_SIDE:
             return t
     return t
 

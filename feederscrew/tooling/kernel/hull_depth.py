@@ -4,8 +4,8 @@ import math
 
 from feederscrew.geometry.compiled import compiled
 
-NEAR = 1e-12  # [m] points nearer to each other are one
-LEVEL = 1e-12  # [m] of a point from the line of two others: nearer it lies on it
+POINT_TOLERANCE_M = 1e-12  # [m] points nearer to each other are one
+LINE_TOLERANCE_M = 1e-12  # [m] of a point from the line of two others: nearer it lies on it
 
 
 @compiled
@@ -22,14 +22,14 @@ def _lowest(points, count):
 @compiled
 def _next(points, count, ax, ay):
     """The corner of the hull that follows counter-clockwise, of several in line the farthest; -1 for none."""
-    best, bx, by, reach = -1, 0.0, 0.0, NEAR * NEAR
+    best, bx, by, reach = -1, 0.0, 0.0, POINT_TOLERANCE_M * POINT_TOLERANCE_M
     for k in range(count):
         px, py = points[k, 0] - ax, points[k, 1] - ay
         long2 = px * px + py * py
-        if long2 <= NEAR * NEAR:
+        if long2 <= POINT_TOLERANCE_M * POINT_TOLERANCE_M:
             continue
         turn = bx * py - by * px
-        level = LEVEL * math.sqrt(max(long2, reach))
+        level = LINE_TOLERANCE_M * math.sqrt(max(long2, reach))
         in_line = abs(turn) <= level and bx * px + by * py > 0.0
         if best < 0 or (turn < 0.0 and not in_line) or (in_line and long2 > reach):
             best, bx, by, reach = k, px, py, long2
@@ -138,9 +138,9 @@ def _between(points, count, foot, k, last, moving):
             return -1.0
         bx, by = points[there, 0], points[there, 1]
         found = (ax * (by - ay) - ay * (bx - ax)) / math.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
-        if not moving or (abs(found - aside) > LEVEL and abs(found - behind) > LEVEL):
+        if not moving or (abs(found - aside) > LINE_TOLERANCE_M and abs(found - behind) > LINE_TOLERANCE_M):
             line = min(line, found)
         ax, ay = bx, by
-        if line < 0.0 or (abs(ax - ex) < NEAR and abs(ay - ey) < NEAR):
+        if line < 0.0 or (abs(ax - ex) < POINT_TOLERANCE_M and abs(ay - ey) < POINT_TOLERANCE_M):
             break
     return line

@@ -6,7 +6,7 @@ from feederscrew.geometry.compiled import apart, compiled
 from feederscrew.tooling.kernel.crossing import ALPHA, ARC, GAMMA, HIGH, KAPPA, LOW
 from feederscrew.tooling.kernel.hull_depth import inset_beside
 
-ROUNDING = 1e-12  # [m] of a margin: what is sure by more cannot come out lower
+MARGIN_ROUNDING_M = 1e-12  # [m] of a margin: what is sure by more cannot come out lower
 
 
 @apart
@@ -21,10 +21,10 @@ def carried(foot, hole, scratch, i, margin):
     for k in foot.hull:
         whole = whole and scratch.keep[k] == 1
     found = kept_inset(foot, scratch, foot.hull)
-    if found > margin + ROUNDING or (whole and found >= max(margin, 0.0)):
+    if found > margin + MARGIN_ROUNDING_M or (whole and found >= max(margin, 0.0)):
         return True
-    keep_corners(foot, hole, scratch, i, foot.every)
-    return kept_inset(foot, scratch, foot.every) > margin + ROUNDING
+    keep_corners(foot, hole, scratch, i, foot.all_corners)
+    return kept_inset(foot, scratch, foot.all_corners) > margin + MARGIN_ROUNDING_M
 
 
 @apart

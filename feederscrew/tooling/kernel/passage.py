@@ -23,13 +23,13 @@ from feederscrew.tooling.kernel.crossing import (
 from feederscrew.tooling.kernel.hull_depth import inset_beside
 from feederscrew.tooling.kernel.kept import carried, keep_corners, kept_inset
 
-CLOSE = 1e-9  # [m] a lower margin is looked for if it may be lower by more
+MARGIN_STEP_M = 1e-9  # [m] a lower margin is looked for if it may be lower by more
 INSTANT = 1e-12  # [rad] a shorter piece is one of rounding
-SAMPLES = 4  # parts of a piece that may hold the least margin
-STEEP = 2.0  # of a point's mean speed in a piece: no faster does a margin fall beside a sample
-SECTIONS = 40
-ASIDE = 1e-3  # of a sample's distance: there the margin is seen to rise or to fall
-GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+SAMPLES_PER_PIECE = 4  # parts of a piece that may hold the least margin
+MAX_MARGIN_SLOPE = 2.0  # of a point's mean speed in a piece: no faster does a margin fall beside a sample
+GOLDEN_SECTIONS = 40
+SLOPE_STEP = 1e-3  # of a sample's distance: there the margin is seen to rise or to fall
+GOLDEN_RATIO = 0.5 * (math.sqrt(5.0) - 1.0)
 
 
 class Foot(NamedTuple):
@@ -43,7 +43,7 @@ class Foot(NamedTuple):
     hull: np.ndarray  # (H,) int, corners of the convex hull, counter-clockwise seen from above
     insets: np.ndarray  # (H,) [m] from the foot of the centre of mass to the line of the side behind each
     reach: float  # [m] from there to the farthest corner
-    every: np.ndarray  # (V,) int, all corners
+    all_corners: np.ndarray  # (V,) int, all corners
     sector: np.ndarray  # (4,) [rad, m] theta and r between which its areas lie for certain
 
 
@@ -53,13 +53,13 @@ class VerdictArrays(NamedTuple):
     rows: np.ndarray  # (N, 6) stretches
     events: np.ndarray  # (2 N,) [rad]
     bounds: np.ndarray  # (2 N,) [m] the margin between two events is not less
-    ways: np.ndarray  # (2 N,) [m] how far any of its points moves between two events
+    movements: np.ndarray  # (2 N,) [m] how far any of its points moves between two events
     cuts: np.ndarray  # (10,)
     keep: np.ndarray  # (V,) int, corners with track below
     held: np.ndarray  # (P,) int, corners of the hole with the foot above
     active: np.ndarray  # (N,) int, stretches crossed now
     points: np.ndarray  # (V + N + P + M, 2)
-    others: np.ndarray  # (V + N + P + M, 2)
+    moved_points: np.ndarray  # (V + N + P + M, 2)
 
 
 @entry
@@ -82,7 +82,7 @@ def least(foot, hole, scratch, low, high, out):
     """
     for k in range(len(foot.corners)):
         scratch.keep[k] = 1
-    out[0], out[1] = min(kept_inset(foot, scratch, foot.every), high + 2.0 * CLOSE), 0.0
+    out[0], out[1] = min(kept_inset(foot, scratch, foot.all_corners), high + 2.0 * MARGIN_STEP_M), 0.0
     pieces = _events(foot, hole, scratch) - 1
     first = 0 if low == -math.inf else pieces // 2  # midway the hole is below the foot
     for step in range(pieces):
@@ -93,7 +93,7 @@ def least(foot, hole, scratch, low, high, out):
     for i in range(pieces):
         if out[0] < low:
             return
-        if scratch.bounds[i] < out[0] - CLOSE:
+        if scratch.bounds[i] < out[0] - MARGIN_STEP_M:
             _within(foot, hole, scratch, i, out)
 
 
@@ -106,9 +106,9 @@ def _bound(foot, hole, scratch, i, out):
     if carried(foot, hole, scratch, i, out[0]):
         return math.inf
     active = status(foot, hole, scratch, i)
-    before, after, way = _ends(foot, hole, scratch, low, high, active, out)
-    scratch.ways[i] = way
-    return 0.5 * (before + after - way)
+    before, after, movement = _ends(foot, hole, scratch, low, high, active, out)
+    scratch.movements[i] = movement
+    return 0.5 * (before + after - movement)
 
 
 @compiled
@@ -147,18 +147,18 @@ def _ends(foot, hole, scratch, low, high, active, out):
     """Margins at both ends of a piece, written to ``out``, and how far any point moves between them."""
     first = _gather(foot, hole, scratch, low, active, True, scratch.points)
     before = inset_beside(scratch.points, first, foot, scratch.keep)
-    second = _gather(foot, hole, scratch, high, active, True, scratch.others)
-    after = inset_beside(scratch.others, second, foot, scratch.keep)
+    second = _gather(foot, hole, scratch, high, active, True, scratch.moved_points)
+    after = inset_beside(scratch.moved_points, second, foot, scratch.keep)
     _lower(out, before, low)
     _lower(out, after, high)
-    way = 0.0
+    movement = 0.0
     for k in range(active):
-        dx = scratch.points[k, 0] - scratch.others[k, 0]
-        way = max(way, math.hypot(dx, scratch.points[k, 1] - scratch.others[k, 1]))
+        dx = scratch.points[k, 0] - scratch.moved_points[k, 0]
+        movement = max(movement, math.hypot(dx, scratch.points[k, 1] - scratch.moved_points[k, 1]))
     for k in range(len(hole.nodes)):
         if hole.nodes[k, 2] == 0.0 or scratch.held[k]:
-            way = max(way, hole.nodes[k, 1] * (high - low))
-    return before, after, way
+            movement = max(movement, hole.nodes[k, 1] * (high - low))
+    return before, after, movement
 
 
 @compiled
@@ -173,21 +173,21 @@ def _within(foot, hole, scratch, i, out):
 
     Of the hull's sides only those that move count: the others are known at the ends.
     """
-    keep_corners(foot, hole, scratch, i, foot.every)
+    keep_corners(foot, hole, scratch, i, foot.all_corners)
     active = status(foot, hole, scratch, i)
-    start, step = scratch.events[i], (scratch.events[i + 1] - scratch.events[i]) / SAMPLES
+    start, step = scratch.events[i], (scratch.events[i + 1] - scratch.events[i]) / SAMPLES_PER_PIECE
     lowest, at = math.inf, 0
-    for k in range(SAMPLES + 1):
+    for k in range(SAMPLES_PER_PIECE + 1):
         margin = _margin(foot, hole, scratch, start + k * step, active)
         if margin < lowest:
             lowest, at = margin, k
     _lower(out, lowest, start + at * step)
-    if lowest - STEEP * scratch.ways[i] / SAMPLES > out[0]:
+    if lowest - MAX_MARGIN_SLOPE * scratch.movements[i] / SAMPLES_PER_PIECE > out[0]:
         return
     for beside in (at - 1, at + 1):  # an end may be the lowest sample, and the margin still fall from there
-        if 0 <= beside <= SAMPLES:
-            way = (beside - at) * step
-            if _margin(foot, hole, scratch, start + at * step + ASIDE * way, active) < lowest:
+        if 0 <= beside <= SAMPLES_PER_PIECE:
+            movement = (beside - at) * step
+            if _margin(foot, hole, scratch, start + at * step + SLOPE_STEP * movement, active) < lowest:
                 _section(foot, hole, scratch, i, start + at * step, start + beside * step, active, out)
 
 
@@ -195,20 +195,20 @@ def _within(foot, hole, scratch, i, out):
 def _section(foot, hole, scratch, i, start, end, active, out):
     """Tell ``out`` of the least margin between two shifts of piece ``i``, by the golden section."""
     low, high = start, end
-    steepest = STEEP * scratch.ways[i] / (scratch.events[i + 1] - scratch.events[i])
-    first, second = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    steepest = MAX_MARGIN_SLOPE * scratch.movements[i] / (scratch.events[i + 1] - scratch.events[i])
+    first, second = high - GOLDEN_RATIO * (high - low), low + GOLDEN_RATIO * (high - low)
     here = _margin(foot, hole, scratch, first, active)
     there = _margin(foot, hole, scratch, second, active)
-    for _ in range(SECTIONS):
+    for _ in range(GOLDEN_SECTIONS):
         if here < there:
             high, second, there = second, first, here
-            first = high - GOLDEN * (high - low)
+            first = high - GOLDEN_RATIO * (high - low)
             here = _margin(foot, hole, scratch, first, active)
         else:
             low, first, here = first, second, there
-            second = low + GOLDEN * (high - low)
+            second = low + GOLDEN_RATIO * (high - low)
             there = _margin(foot, hole, scratch, second, active)
-        if abs(high - low) * foot.centre < CLOSE:
+        if abs(high - low) * foot.centre < MARGIN_STEP_M:
             break
         if min(here, there) - steepest * abs(high - low) > out[0]:
             return

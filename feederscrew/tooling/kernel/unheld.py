@@ -5,7 +5,7 @@ from feederscrew.tooling.kernel import passage
 from feederscrew.tooling.kernel.hull_depth import inset_beside
 from feederscrew.tooling.kernel.kept import carried
 
-SAMPLES = 8  # parts of a piece between two events
+UNHELD_SAMPLES = 8  # parts of a piece between two events
 
 
 @entry
@@ -26,16 +26,16 @@ def longest(foot, hole, scratch, enough):
     """
     best = turn = 0.0
     for i in range(passage._events(foot, hole, scratch) - 1):
-        step = (scratch.events[i + 1] - scratch.events[i]) / SAMPLES
-        if step * SAMPLES <= passage.INSTANT:
+        step = (scratch.events[i + 1] - scratch.events[i]) / UNHELD_SAMPLES
+        if step * UNHELD_SAMPLES <= passage.INSTANT:
             continue
         if carried(foot, hole, scratch, i, 0.0):
             turn = 0.0
             continue
         active = passage.status(foot, hole, scratch, i)
-        before = _margin(foot, hole, scratch, scratch.events[i], active)
-        for k in range(1, SAMPLES + 1):
-            after = _margin(foot, hole, scratch, scratch.events[i] + k * step, active)
+        before = _unheld_margin(foot, hole, scratch, scratch.events[i], active)
+        for k in range(1, UNHELD_SAMPLES + 1):
+            after = _unheld_margin(foot, hole, scratch, scratch.events[i] + k * step, active)
             if before < 0.0 and after < 0.0:
                 turn += step
             elif before < 0.0:
@@ -50,6 +50,6 @@ def longest(foot, hole, scratch, enough):
 
 
 @compiled
-def _margin(foot, hole, scratch, phi, active):
+def _unheld_margin(foot, hole, scratch, phi, active):
     count = passage._gather(foot, hole, scratch, phi, active, True, scratch.points)
     return inset_beside(scratch.points, count, foot, scratch.keep)

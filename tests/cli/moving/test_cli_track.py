@@ -193,10 +193,10 @@ def test_the_cycle_has_the_names_of_the_instant(run):
 
 def test_values_in_the_picture_do_not_cover_one_another(tmp_path):
     from feederscrew import bowl, part
-    from feederscrew.output.track import figures as track_plots
+    from feederscrew.output import track as track_output
     from feederscrew.studies.track import track
 
-    figure = track_plots.part(track(part.load(BRACKET), bowl.default()), "bracket")
+    figure = track_output.part(track(part.load(BRACKET), bowl.default()), "bracket")
     figure.canvas.draw()
     for axes in figure.axes:
         boxes = [text.get_window_extent() for text in axes.texts if text.get_text()]

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from feederscrew.bowl import documentation, json_schema
+from feederscrew.bowl import documentation
 
 
 def test_init_writes_a_commented_file_that_is_valid(run):
     result = run("config", "init", "bowl.yaml")
     assert (result.exit_code, result.stdout) == (0, "")
     assert result.stderr == "Wrote bowl.yaml\nWrote feeder.schema.json, which editors read\n"
-    assert Path("feeder.schema.json").read_text() == json_schema.text()
+    assert Path("feeder.schema.json").read_text() == documentation.schema_text()
     assert Path("bowl.yaml").read_text() == documentation.template()
     assert run("config", "show", "--config", "bowl.yaml").exit_code == 0
 
@@ -107,7 +107,7 @@ def test_without_a_command_of_its_own_it_shows_its_help(run):
 
 def test_schema_prints_what_init_leaves_beside_the_file(run):
     printed = run("config", "schema")
-    assert (printed.exit_code, printed.stdout) == (0, json_schema.text())
+    assert (printed.exit_code, printed.stdout) == (0, documentation.schema_text())
     Path("feeder.schema.json").write_text('{"title": "feeder bowl file", "old": true}')
     assert run("config", "init", "bowl.yaml").exit_code == 0
     assert Path("feeder.schema.json").read_text() == printed.stdout

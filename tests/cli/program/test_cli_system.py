@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 import pytest
 
-from feederscrew.batch import store
+from feederscrew.batch import run as batches
 from feederscrew.output import offers
 from feederscrew_cli.main import feeder
 
@@ -78,8 +78,8 @@ def test_a_full_disk_in_a_batch_is_one_line_and_keeps_what_is_finished(run, monk
             raise OSError(errno.ENOSPC, "No space left on device", str(path))
         return write(path, *arguments, **keywords)
 
-    seen, write, told = [], Path.write_bytes, store._told
-    monkeypatch.setattr(store, "_told", lambda outcome: seen.append(outcome.name) or told(outcome))
+    seen, write, told = [], Path.write_bytes, batches._told
+    monkeypatch.setattr(batches, "_told", lambda outcome: seen.append(outcome.name) or told(outcome))
     monkeypatch.setattr(Path, "write_bytes", full)
     done = run("batch", "a.stl", "b.stl", "-o", "out", *QUICK)
     monkeypatch.setattr(Path, "write_bytes", write)
@@ -89,7 +89,7 @@ def test_a_full_disk_in_a_batch_is_one_line_and_keeps_what_is_finished(run, monk
         "make room there, then start this batch again with --resume: what is finished is kept"
     )
     assert (tmp_path / "out/parts/a/run.json").exists()
-    assert not list((tmp_path / "out").glob(f"{store.STALE}*"))
+    assert not list((tmp_path / "out").glob(f"{batches.STALE}*"))
     assert run("batch", "a.stl", "b.stl", "-o", "out", *QUICK, "--resume").exit_code == 0
 
 

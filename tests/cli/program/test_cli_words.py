@@ -98,8 +98,8 @@ def test_drops_without_a_compiler():
 
 
 def test_a_part_that_does_not_move_on_the_plate_sticks():
-    from feederscrew.output.floor.map_figures import HATCHES
-    from feederscrew.output.slide.figures import REGIMES
+    from feederscrew.output.floor import HATCHES
+    from feederscrew.output.slide import REGIMES
 
     assert (REGIMES["stick"][1], HATCHES["stick"][2]) == ("sticks", "sticks")
 

@@ -15,7 +15,16 @@ from feederscrew_cli.main import COMMANDS
 
 pytestmark = pytest.mark.long  # all of them, so that one process has them and makes the wheel once
 ROOT = Path(__file__).parents[3]
-SOURCES = ("pyproject.toml", "README.md", "LICENSE", "MANIFEST.in", "build_backend", "feederscrew", "cli")
+SOURCES = (
+    "pyproject.toml",
+    "setup.py",
+    "README.md",
+    "LICENSE",
+    "MANIFEST.in",
+    "build_backend",
+    "feederscrew",
+    "cli",
+)
 CACHES = shutil.ignore_patterns("__pycache__", "*.nbi", "*.nbc")
 PART = "lbracket_30x20x15.stl"
 COUNTS = "aspect,counted\nA,40\nB,30\nC,20\nD,10\nE,10\n"
@@ -106,6 +115,7 @@ def test_every_command_runs_there(place):
     [program] = (place / "venv").glob("*/feeder*")
     assert "feeder" in ran(program, "--version", cwd=place, env=environment())
     python = program.with_name(Path(sys.executable).name)
+    assert "feeder, version" in ran(python, "-m", "feederscrew", "--version", cwd=place, env=environment())
     assert CALLS.keys() == COMMANDS.keys()
     done = json.loads(ran(python, "-c", RUN, json.dumps(CALLS), cwd=place, env=environment()))
     assert "drive.amplitude" in done.pop("tune")[1]

@@ -117,7 +117,7 @@ def test_a_part_card_has_no_picture_and_says_so(run, tmp_path):
 
 
 def test_more_rows_than_a_sheet_shows_are_said(run, monkeypatch, tmp_path):
-    monkeypatch.setattr("feederscrew.output.aspects.tables.MOST", 2)
+    monkeypatch.setattr("feederscrew.output.aspects.MOST_DRAWN_ASPECTS", 2)
     done = run("aspects", PARTS / "lbracket_30x20x15.stl", "-o", "res")
     assert "aspects.png shows the first 2 of 5 rows" in done.stderr.splitlines()
 

@@ -7,8 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from feederscrew.output import style
-from feederscrew.output.compare import figures
+from feederscrew.output import compare, style
 from feederscrew.resting.rules import registry
 from feederscrew.thesis.tables import table
 
@@ -139,7 +138,7 @@ def test_the_chart_draws_the_profiles():
     measured = {"mine": np.array([0.5, 0.3, 0.2])}
     rules = {"PMI": np.array([0.4, 0.4, 0.2]), "CSA": np.array([0.6, 0.2, 0.2])}
     pairs = {("mine", "PMI"): 0.0816, ("mine", "CSA"): 0.0816, ("PMI", "CSA"): 0.163}
-    figure = figures.comparison("bracket", "ABC", measured, rules, pairs)
+    figure = compare.comparison("bracket", "ABC", measured, rules, pairs)
     pmi, csa, matrix = figure.axes
     assert [axes.get_title(loc="left") for axes in (pmi, csa)] == ["bracket: PMI", "CSA"]
     assert [bar.get_height() for bar in pmi.containers[1]] == pytest.approx([40.0, 40.0, 20.0])
@@ -150,10 +149,10 @@ def test_the_chart_draws_the_profiles():
 
 
 def test_a_profile_has_one_colour_everywhere():
-    assert figures.look("PMI") == figures.look("PMI", 5) == style.method("pmi")
-    assert figures.look("MDBT_80", 0) == figures.look("MDBT_80", 3)
-    colours = [figures.look(f"MDBT_{amplitude}")[1] for amplitude in (78, 80, 82)]
+    assert compare.look("PMI") == compare.look("PMI", 5) == style.method("pmi")
+    assert compare.look("MDBT_80", 0) == compare.look("MDBT_80", 3)
+    colours = [compare.look(f"MDBT_{amplitude}")[1] for amplitude in (78, 80, 82)]
     assert len(set(colours)) == 3
-    assert figures.look("my_test", 1)[0] == "my test"
-    rules = {figures.look(name)[1] for name in registry.RULE_OF}
-    assert figures.look("recommended", 9) == ("recommended", style.ANSWER) and style.ANSWER not in rules
+    assert compare.look("my_test", 1)[0] == "my test"
+    rules = {compare.look(name)[1] for name in registry.RULE_OF}
+    assert compare.look("recommended", 9) == ("recommended", style.ANSWER) and style.ANSWER not in rules

@@ -15,7 +15,7 @@ import pytest
 import shapes
 
 from feederscrew.dropping import ensemble
-from feederscrew.output.drop import tables
+from feederscrew.output import drop
 from feederscrew_cli import interrupt, progress
 
 UNDRAWN = True  # others look at pictures
@@ -293,7 +293,7 @@ def test_a_partial_test_is_labelled():
     tally = SimpleNamespace(unsettled=0, widest=0.03)
     result = SimpleNamespace(drops=SimpleNamespace(partial=True), tally=tally, aim=0.01, single=None)
     stopped = SimpleNamespace(drops=250, result=result)
-    assert tables.remarks(stopped) == ["partial: stopped after 250 drops"]
+    assert drop.remarks(stopped) == ["partial: stopped after 250 drops"]
 
 
 def test_progress_grows_with_what_is_needed(capsys, monkeypatch):

@@ -10,7 +10,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.output.plate import tables
+from feederscrew.output import plate as plate_output
 from feederscrew.output.tables import data_frame
 from feederscrew.studies.simulated.plate import plate as plate_study
 
@@ -72,7 +72,11 @@ def test_a_table_of_two_plates_fits_a_page(run, stl):
 
 def test_what_is_empty_is_left_out_first():
     empty, seen = ({"p_limit": np.array([value])} for value in (np.nan, 0.5))
-    assert tables.spare(empty)[0] == tables.spare(seen)[-1] == ("p_limit", "p_limit_low", "p_limit_high")
+    assert (
+        plate_output.spare(empty)[0]
+        == plate_output.spare(seen)[-1]
+        == ("p_limit", "p_limit_low", "p_limit_high")
+    )
 
 
 def test_the_files_and_the_trend(run, stl, tmp_path):
@@ -186,11 +190,11 @@ def test_a_plate_that_was_stopped_is_marked_everywhere():
     study = plate_study(part, [bowl, bowl], "place", names=["one", "two"], drops=10, seconds=0.2)
     whole, cut = study.plates
     stopped = replace(study, plates=(whole, replace(cut, partial=True)))
-    for table in (tables.plates, tables.rates, tables.course):
+    for table in (plate_output.plates, plate_output.rates, plate_output.course):
         marks = data_frame(table(stopped)).groupby("bowl")["partial"].agg(["min", "max"])
         assert marks.to_numpy().tolist() == [[False, False], [True, True]]
         assert "partial" not in table(study)
-    assert tables.drives(stopped)["partial"].tolist() == [False, True]
-    assert tables.document(stopped)["partial"]
+    assert plate_output.drives(stopped)["partial"].tolist() == [False, True]
+    assert plate_output.document(stopped)["partial"]
     line = f"partial: stopped after 10 parts on the plate of two at {1e3 * bowl.drive.amplitude:.4g} mm"
-    assert tables.remarks(stopped)[-1] == line
+    assert plate_output.remarks(stopped)[-1] == line

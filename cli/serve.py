@@ -1,0 +1,76 @@
+"""``feeder serve``."""
+
+import sys
+import tempfile
+import webbrowser
+from pathlib import Path
+
+import click
+
+from feederscrew.errors import FeederError, MissingPackage
+from feederscrew_cli import grouped, options
+from feederscrew_cli.interrupt import ended_within, held_back
+
+PROGRAM = (sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()")
+MISSING = "pip install 'feederscrew[serve]'"
+END_WITHIN_S = 40.0  # after Ctrl-C or SIGTERM, a running design with it
+IDLE_S = 60.0  # after which a connection that sends nothing is closed
+
+
+@grouped.command(short_help="The main job in a browser, on this machine alone.")
+@click.option(
+    "--port",
+    type=options.Whole(0, 65535),
+    default=0,
+    metavar="N",
+    help="Port on 127.0.0.1.  [default: any that is free]",
+)
+@click.option("--browser", is_flag=True, help="Open the page in the browser of this machine.")
+@options.QUIET
+def serve(port: int, browser: bool, quiet: bool) -> None:
+    """Example: feeder serve
+
+    Show the main job as a page on 127.0.0.1: drop a part file, see its resting aspects turn, choose material,
+    rate and machine, start a design, stop it, read its page and download its folder.
+
+    It prints the address with a token of this run; without the token nobody else on the machine is answered.
+    Nothing leaves the machine. One design runs at a time. What is uploaded and computed lies in a temporary
+    folder, which is removed at the end: download what you keep. Ctrl-C ends it. It needs the extra serve.
+    """
+    with held_back():
+        try:
+            from werkzeug.serving import WSGIRequestHandler, make_server
+        except ImportError:
+            raise MissingPackage("serve", "needs werkzeug, which is not installed", MISSING) from None
+        from feederscrew.serving.job import DesignJob
+        from feederscrew.serving.site import HOST, Site
+
+    class Handler(WSGIRequestHandler):
+        """Answers without a line in the terminal: the first address has the token in it."""
+
+        timeout = IDLE_S
+
+        def log(self, type: str, message: str, *args: object) -> None:
+            """Say nothing."""
+
+    with (
+        ended_within(END_WITHIN_S),
+        tempfile.TemporaryDirectory(prefix="feeder.", ignore_cleanup_errors=True) as folder,
+    ):
+        site = Site(Path(folder), PROGRAM, DesignJob)
+        try:
+            server = make_server(HOST, port, site, threaded=True, request_handler=Handler)
+        except (OSError, SystemExit):
+            raise FeederError(f"port {port}", "is taken", "give another to --port, or none") from None
+        site.port = server.server_port
+        try:
+            click.echo(site.address)
+            if not quiet:
+                click.echo("Open this address in a browser on this machine; Ctrl-C ends it.", err=True)
+            if browser:
+                webbrowser.open(site.address)
+            server.serve_forever(poll_interval=0.2)
+            raise KeyboardInterrupt  # werkzeug has taken it
+        finally:
+            site.close()
+            server.server_close()

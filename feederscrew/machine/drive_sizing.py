@@ -1,0 +1,535 @@
+"""The drive and the leaves of a bowl that bring a rate from the full bowl to the empty one.
+
+A drive unit where the user has none: masses from sheet, springs; and whether the machine makes the drive that
+was tried.
+"""
+
+from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
+from typing import Any
+
+import numpy as np
+
+from feederscrew.bowl import schema
+from feederscrew.bowl.record import BALANCED, Bowl, Drive, Machine, Sizing, Unbalance, shares, vibration_angle
+from feederscrew.bowl.schema import BY_NAME
+from feederscrew.bowl.settings import Setting, default
+from feederscrew.conveying import answer
+from feederscrew.machine import sizing, springs
+from feederscrew.machine.sizing import Size
+from feederscrew.machine.springs import analyse_springs, gain, leaf_stress, tuned_leaf_sets, upright_pull
+from feederscrew.machine.stroke import stroke
+from feederscrew.units import factor
+
+RADIUS_STEP_M = 1e-4  # of a springs' circle that is chosen
+
+
+def machine_for(bowl: Bowl, size: Size, given: Any, *, exact: bool = False) -> Machine:
+    """Return the machine under a bowl, what the user gave of it kept.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its machine, its rules, and the vibration angle wanted at the track.
+    size : Size
+    given : set of str
+        Fields of the machine that the user gave.
+    exact : bool
+        The vibration angle is given, and the machine shall make it: the springs move outwards, and then stand
+        steeper, as far as ``sizing`` allows. Without it the springs keep their circle and the angle of the
+        track follows from them.
+
+    Returns
+    -------
+    Machine
+    """
+    rules, radius = bowl.sizing, 0.5 * size.diameter
+    mass, inertia = _bowl_mass(radius, size, rules)
+    guess = {
+        "bowl_mass": mass,
+        "bowl_inertia": inertia,
+        "base_mass": rules.base_mass * mass,
+        "base_inertia": rules.base_mass * inertia,
+        "spring_radius": rules.spring_radius * radius,
+    }
+    made = replace(bowl.machine, **{name: value for name, value in guess.items() if name not in given})
+    if not set(schema.UNBALANCE_NAMES) & set(given):
+        made = replace(made, unbalance=_unbalance(size, made))
+    upright = bowl.drive.vibration_angle + size.climb
+    if exact:
+        return _exact(made, upright, radius, rules, given)
+    if "spring_angle" in given:
+        return made
+    return replace(made, spring_angle=_spring_angle(upright, radius, made, rules))
+
+
+def machine_on(bowl: Bowl, given: Collection[str], *, exact: bool = False) -> Machine:
+    """Return the machine under a bowl of which only the track is known.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its depth is that of ``sizing``, over the bowl's diameter.
+    given : collection of str
+        Names of the keys that the user gave, 'machine.bowl_mass'.
+    exact : bool
+        As for ``machine_for``.
+
+    Returns
+    -------
+    Machine
+    """
+    track, depth = bowl.track, 2.0 * bowl.sizing.depth * bowl.track.radius
+    pitch = 2.0 * np.pi * track.radius * np.tan(track.climb)
+    size = Size(
+        diameter=2.0 * track.radius,
+        least={},
+        track_width=track.width,
+        clearance=0.0,
+        bend=0.0,
+        climb=track.climb,
+        depth=depth,
+        turns=depth / pitch if pitch > 0.0 else np.nan,
+        pitch=pitch,
+    )
+    words = {name.partition(".")[2] for name in given if name.startswith("machine.")}
+    return machine_for(bowl, size, words, exact=exact)
+
+
+def _bowl_mass(radius: float, size: Size, rules: Sizing) -> Any:
+    """Mass and inertia [kg], [kg m2]: of the solid, or of floor, wall and track of sheet with tooling."""
+    if size.mass is not None:
+        return size.mass, size.inertia
+    weight = rules.sheet * rules.sheet_density  # [kg/m2]
+    floor = weight * np.pi * radius**2
+    wall = weight * 2.0 * np.pi * radius * size.depth
+    inside = max(radius - size.track_width, 0.0)
+    track = weight * np.pi * (radius**2 - inside**2) * (size.turns if np.isfinite(size.turns) else 1.0)
+    inertia = 0.5 * floor * radius**2 + wall * radius**2 + 0.5 * track * (radius**2 + inside**2)
+    extra = 1.0 + rules.tooling_mass
+    return float(extra * (floor + wall + track)), float(extra * inertia)
+
+
+def _unbalance(size: Size, made: Machine) -> Unbalance:
+    """How the mass of the solid lies, in the measure of a mass and an inertia that the user gave."""
+    if size.mass is None or size.inertia is None:
+        return BALANCED
+    heavy, own = made.bowl_mass / size.mass, size.unbalance
+    x, y, z = own.moment
+    inert = made.bowl_inertia / size.inertia
+    xx, yy = own.upright
+    yz, xz, xy = own.products
+    return replace(
+        own,
+        moment=(heavy * x, heavy * y, heavy * z),
+        upright=(inert * xx, inert * yy),
+        products=(inert * yz, inert * xz, inert * xy),
+    )
+
+
+def _spring_angle(wanted: float, radius: float, machine: Machine, rules: Sizing) -> float:
+    """Angle of the springs, in whole degrees, that moves the bowl at its track in a wanted direction."""
+    angle = needed_angle(machine, radius, wanted)
+    whole = np.radians(np.round(np.degrees(angle)))
+    return float(np.clip(whole, rules.least_spring_angle, rules.greatest_spring_angle))
+
+
+def needed_angle(machine: Machine, radius: float, wanted: float) -> float:
+    """Return the angle [rad] of springs on their circle that moves the bowl in a wanted direction.
+
+    Source: ``bowl.record.direction``, solved for the springs; docs/bowl.md, "How it is computed".
+
+    Parameters
+    ----------
+    machine : Machine
+        Its spring angle is not used.
+    radius : float [m]
+        Where the bowl shall move so.
+    wanted : float [rad]
+        From the horizontal.
+    """
+    rise, turn = shares(machine)
+    return float(np.arctan(np.tan(wanted) * radius / machine.spring_radius * turn / rise))
+
+
+def _exact(machine: Machine, wanted: float, radius: float, rules: Sizing, given: Any) -> Machine:
+    """The machine whose springs move the bowl at its track in a wanted direction, as nearly as they can."""
+    usual = machine.spring_radius
+    farthest = max(min(rules.greatest_spring_radius * radius, radius - 0.5 * machine.leaf_width), usual)
+    if "spring_angle" in given:
+        if "spring_radius" in given:
+            return machine
+        return replace(machine, spring_radius=_circle(machine, wanted, radius, (usual, farthest)))
+    if "spring_radius" in given:
+        tenth = np.radians(np.round(np.degrees(needed_angle(machine, radius, wanted)), 1))
+        angle = float(np.clip(tenth, rules.least_spring_angle, rules.steepest_spring_angle))
+        return replace(machine, spring_angle=angle)
+    angle = _spring_angle(wanted, radius, machine, rules)
+    there = _circle(replace(machine, spring_angle=angle), wanted, radius, (machine.leaf_width, radius))
+    if there > farthest:
+        outside = replace(machine, spring_radius=farthest)
+        whole = np.radians(np.ceil(np.degrees(needed_angle(outside, radius, wanted))))
+        angle = float(np.clip(whole, rules.least_spring_angle, rules.steepest_spring_angle))
+        there = _circle(replace(machine, spring_angle=angle), wanted, radius, (usual, farthest))
+    return replace(machine, spring_angle=angle, spring_radius=there)
+
+
+def _circle(machine: Machine, wanted: float, radius: float, ends: tuple[float, float]) -> float:
+    """Radius of springs of their angle that move the bowl in a wanted direction, within two ends [m]."""
+    rise, turn = shares(machine)
+    there = radius * np.tan(wanted) / np.tan(machine.spring_angle) * turn / rise
+    return float(np.clip(np.round(there / RADIUS_STEP_M) * RADIUS_STEP_M, *ends))
+
+
+SAME_ANGLE = np.radians(0.5)  # angles at the track that are nearer than this count as one
+SAME_PHASE = np.radians(0.05)
+LEAF_SPRING, TWO_AXIS = "leaf-spring drive", "two-axis drive"
+TWO_MAGNETS = "needs two magnets and a two-channel controller: one set of leaf springs cannot make it"
+MM_S = factor("mm/s", "velocity")
+
+
+@dataclass(frozen=True)
+class DriveFigures:
+    """A drive in the numbers that decide how parts travel."""
+
+    spring_angle: float  # [rad] of the motion at the springs' circle, from the horizontal
+    track_angle: float  # [rad] from the track to the motion there
+    phase: float  # [rad] by which the motion along the normal leads the one along the track
+    throw_number: float  # [1]
+    velocity: float  # [m/s] of a part; NaN where there is no steady one
+
+    @property
+    def text(self) -> str:
+        """The same in words."""
+        travels = "no steady speed" if np.isnan(self.velocity) else f"{self.velocity / MM_S:.3g} mm/s"
+        phase = f", phase {np.degrees(self.phase):.4g} deg" if abs(self.phase) > SAME_PHASE else ""
+        return (
+            f"{np.degrees(self.spring_angle):.3g} deg at the springs, {np.degrees(self.track_angle):.3g} deg "
+            f"to the track{phase}, throw number {self.throw_number:.3g}, {travels}"
+        )
+
+
+@dataclass(frozen=True)
+class DriveMismatch:
+    """A drive that was asked for, and the one that the machine makes at the same stroke."""
+
+    wanted: DriveFigures
+    machine: DriveFigures
+    two_axis: bool  # the drive asked for is out of phase
+    other_angle: bool  # the springs do not make its angle
+    second_harmonic: bool = False  # it has one, and springs are tuned to one frequency
+
+    @property
+    def text(self) -> str:
+        """What is wrong, and both drives, in one sentence."""
+        reasons = []
+        if self.two_axis:
+            reasons.append(f"out of phase by {np.degrees(self.wanted.phase):.4g} deg, {TWO_MAGNETS}")
+        if self.other_angle:
+            asked, made = np.degrees(self.wanted.track_angle), np.degrees(self.machine.track_angle)
+            what = f"{asked:.4g} deg as given, and the springs make it {made:.4g} deg at the track"
+            reasons.append(f"is {what}" if not reasons else f"its angle is {what}")
+        if self.second_harmonic:
+            reasons.append("springs that are tuned to one frequency do not make its second harmonic")
+        return f"{'; '.join(reasons)}: asked for {self.wanted.text}; the springs make {self.machine.text}"
+
+
+def is_two_axis(drive: Drive) -> bool:
+    """Return whether a drive is out of phase, which one set of leaf springs cannot make."""
+    return bool(abs(drive.phase) > SAME_PHASE)
+
+
+def can_make(bowl: Bowl) -> DriveMismatch | None:
+    """Return what keeps the machine of a bowl from making the drive of that bowl; None where it makes it.
+
+    Source: a rigid bowl on inclined leaves moves in one direction, that of its springs; docs/bowl.md,
+    "How it is computed".
+
+    Parameters
+    ----------
+    bowl : Bowl
+        With its machine.
+
+    Returns
+    -------
+    DriveMismatch or None
+        The machine's drive has the amplitude of the bowl's, as a sticker on the rim shows it.
+    """
+    drive, track, machine = bowl.drive, bowl.track, bowl.machine
+    by_springs = float(vibration_angle(machine, track.radius, track.climb))
+    two_axis = is_two_axis(drive)
+    other_angle = abs(by_springs - drive.vibration_angle) > SAME_ANGLE
+    second = bool(drive.second_harmonic)
+    if not (two_axis or other_angle or second):
+        return None
+    plain = replace(drive, vibration_angle=by_springs, phase=0.0, second_harmonic=0.0)
+    makes = replace(bowl, drive=plain)
+    needed = needed_angle(machine, track.radius, drive.vibration_angle + track.climb)
+    return DriveMismatch(
+        _figures(bowl, needed), _figures(makes, machine.spring_angle), two_axis, bool(other_angle), second
+    )
+
+
+def _figures(bowl: Bowl, spring_angle: float) -> DriveFigures:
+    how = answer.answer(bowl)
+    drive = bowl.drive
+    return DriveFigures(spring_angle, drive.vibration_angle, drive.phase, how.throw_number, how.velocity)
+
+
+FULL_WAVE = 2.0
+MPA = 1e6  # [Pa]
+# amplitude of the pull of all magnets: B^2 / (4 mu_0) at 1 T on six poles of 40 x 40 mm (assumption)
+GREATEST_PULL_N = 1900.0
+FLOW_TOLERANCE_SHARE = 1e-9  # [1] flows closer than this are equal
+MAX_DRIVE_ITERATIONS = 4  # of strokes and leaves that follow from each other
+ALONE, CONTROLLED = "strokes", "controlled"  # fields of an Emptying
+STROKE_CONTROL_LABELS = {ALONE: "amplitude left alone", CONTROLLED: "amplitude controlled"}
+
+
+@dataclass(frozen=True, eq=False)
+class DriveSearch:
+    """A bowl whose drive is sought."""
+
+    bowl: Bowl  # with its track
+    size: sizing.Size  # of it
+    settings: tuple[Setting, ...]  # that say what the user gave
+    target: float  # [1/s] counted parts
+    bulk: float  # [kg/m3] of the parts' hulls
+
+    @property
+    def fill(self) -> sizing.Fill:
+        """A full bowl."""
+        return sizing.full_bowl(
+            self.size.room or self.bowl.track.radius, self.size.depth, self.bulk, self.bowl.sizing
+        )
+
+
+def user_keys(settings: Iterable[Setting], section: str = "") -> set[str]:
+    """Return the words of the keys of a section that the user gave, a set."""
+    return {s.key.word for s in settings if s.given and s.key.section == section}
+
+
+def bring_target(sought: DriveSearch, flow: Callable[[Bowl | None], sizing.Flow]) -> tuple[Bowl, sizing.Flow]:
+    """Find the bowl whose drive brings the target, without the parts that this drive turns over.
+
+    Parameters
+    ----------
+    sought : Sought
+    flow : callable
+        From a bowl, or from None for no drive at all, to the Flow along its track.
+
+    Returns
+    -------
+    Bowl, Flow
+
+    Raises
+    ------
+    ArgumentError
+        If no stroke that drives are built for brings so many.
+    """
+    now, tried = flow(None), set()
+    while True:
+        driven = _driven(sought, now)
+        own = flow(driven)
+        enough = own.parts >= now.parts * (1.0 - FLOW_TOLERANCE_SHARE)
+        if enough and (own.parts <= now.parts * (1.0 + FLOW_TOLERANCE_SHARE) or now.parts in tried):
+            return driven, own
+        tried.add(now.parts)
+        now = own  # there are only so many orientations to turn over
+
+
+def with_own_drive(sought: DriveSearch) -> Bowl:
+    """Return the bowl with the drive of its file as it stands, and the machine that is sized for it.
+
+    Parameters
+    ----------
+    sought : Sought
+
+    Returns
+    -------
+    Bowl
+        What the user gave of the machine is kept, as for ``brought``.
+    """
+    plain, settings = sought.bowl, sought.settings
+    under = machine_for(plain, sought.size, user_keys(settings, "machine"), exact=True)
+    made = replace(plain, machine=replace(under, supply=plain.drive.frequency))
+    return _with_stroke(made, plain.drive.amplitude, settings)
+
+
+def _driven(sought: DriveSearch, flow: sizing.Flow) -> Bowl:
+    """The bowl with machine, frequency and the smallest stroke that reaches the target."""
+    plain, settings = sought.bowl, sought.settings
+    angle_given = "vibration_angle" in user_keys(settings, "drive")
+    angle = plain.drive.vibration_angle if angle_given else default(BY_NAME["drive.vibration_angle"]).value
+    wanted = replace(plain, drive=replace(plain.drive, vibration_angle=angle))
+    under = machine_for(wanted, sought.size, user_keys(settings, "machine"), exact=angle_given)
+    if not angle_given:
+        angle = float(vibration_angle(under, plain.track.radius, plain.track.climb))
+    fastest = []
+    for frequency in _frequencies(plain, settings):
+        drive = replace(plain.drive, vibration_angle=angle, frequency=frequency)
+        made = replace(plain, drive=drive, machine=replace(under, supply=frequency))
+        found, best = sizing.amplitude_for(made, sought.target / flow.parts)
+        if found is not None:
+            empty = _with_stroke(made, found[0], settings)
+            held = (
+                _smallest_stroke(empty, sought, sought.target / flow.parts, way)
+                for way in STROKE_CONTROL_LABELS
+            )
+            return next((one for one in held if one is not None), empty)
+        fastest.append(best)
+    raise sizing.unreachable_rate(sought.target, flow.parts, max(fastest))
+
+
+def _smallest_stroke(empty: Bowl, sought: DriveSearch, velocity: float, way: str) -> Bowl | None:
+    """The bowl with the smallest stroke whose lowest velocity, from full to empty, is enough, or None."""
+    made, strokes = empty, np.ones(1)  # of the empty bowl
+    for _ in range(MAX_DRIVE_ITERATIONS):
+        emptied = sizing.emptying(made, sought.fill)
+        if np.array_equal(getattr(emptied, way), strokes):
+            return made
+        strokes = getattr(emptied, way)
+        found, _ = sizing.amplitude_for(made, velocity, strokes, emptied.angles)
+        if found is None:
+            return None
+        made = _with_stroke(made, found[0], sought.settings)
+    return made
+
+
+def _with_stroke(bowl: Bowl, amplitude: float, settings: Iterable[Setting]) -> Bowl:
+    """The bowl at a stroke, on the leaves that tune it then, unless the user gave their number."""
+    bowl = replace(bowl, drive=replace(bowl.drive, amplitude=amplitude))
+    if "leaves" in user_keys(settings, "machine"):
+        return bowl
+    return replace(bowl, machine=on_leaves(bowl, user_keys(settings, "machine")))
+
+
+def on_leaves(bowl: Bowl, given: Collection[str]) -> Machine:
+    """Return the machine of a bowl with the leaves that tune it to its drive at its stroke.
+
+    Source: ``tuning.sets``; docs/bowl.md, "1. The part, and the rate".
+
+    Parameters
+    ----------
+    bowl : Bowl
+        With its drive.
+    given : collection of str
+        Fields of the machine that the user gave, which stay.
+
+    Returns
+    -------
+    Machine
+        With the leaves that last and that a maker would take first: at most ``tuning.USUAL_A_BANK`` in a
+        bank, tuned to the upper half of the range, because parts in the bowl lower the natural frequency.
+        Of these, the ones of the width in use, of about the length in use, and of a usual number. Where none
+        lasts, with those of least stress; as it is where no set tunes it.
+    """
+    machine, rules = bowl.machine, bowl.sizing
+    rows: list[tuple[Machine, springs.LeafSet]] = []
+    for width in (
+        (machine.leaf_width,) if "leaf_width" in given else (machine.leaf_width, *springs.LEAF_WIDTHS_M)
+    ):
+        rows += _leaf_sets(bowl, width, given)
+        lasting = [row for row in rows if row[1].stress <= rules.fatigue_stress]
+        best = min(lasting, key=partial(_unusual, bowl), default=None)
+        if best is not None and not any(_unusual(bowl, best)[:2]):
+            break
+    if not rows:
+        return machine
+    long, leaves = best or min(rows, key=_stress)
+    return replace(long, leaves=float(leaves.leaves), leaf_thickness=leaves.thickness)
+
+
+def _leaf_sets(bowl: Bowl, width: float, given: Collection[str]) -> Iterator[tuple[Machine, springs.LeafSet]]:
+    """Every set of leaves of a width [m] that tunes a bowl, each with the machine that has its length."""
+    machine, at_springs = replace(bowl.machine, leaf_width=width), stroke(bowl).springs
+    for length in (
+        (machine.leaf_length,) if "leaf_length" in given else (machine.leaf_length, *springs.LEAF_LENGTHS_M)
+    ):
+        long = replace(machine, leaf_length=length)
+        for one in tuned_leaf_sets(long, bowl.drive.frequency, at_springs, bowl.sizing):
+            if _fits(one, machine, given):
+                yield long, one
+
+
+def _fits(leaves: springs.LeafSet, machine: Machine, given: Collection[str]) -> bool:
+    """Whether a set has the thickness that the user gave, where it was given."""
+    return "leaf_thickness" not in given or leaves.thickness == machine.leaf_thickness
+
+
+def _stress(row: tuple[Machine, springs.LeafSet]) -> float:
+    return row[1].stress
+
+
+def _unusual(bowl: Bowl, row: tuple[Machine, springs.LeafSet]) -> tuple[bool, bool, bool, float, float]:
+    """How unusual leaves are: many in a bank, tuned low, of another width, length, number."""
+    rules, (long, leaves) = bowl.sizing, row
+    middle = 0.5 * (rules.least_detuning + rules.greatest_detuning)
+    return (
+        leaves.leaves > springs.USUAL_A_BANK * rules.banks,
+        leaves.detuning < middle,
+        long.leaf_width != bowl.machine.leaf_width,
+        round(abs(float(np.log(long.leaf_length / bowl.machine.leaf_length))), 6),
+        abs(leaves.leaves - rules.leaves),
+    )
+
+
+@lru_cache(maxsize=4096)
+def drive_shortfall(bowl: Bowl, given: frozenset[str]) -> str:
+    """Return why the machine under a bowl does not make its drive; '' where it does.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        With its drive, a leaf-spring drive.
+    given : frozenset of str
+        Names of the keys that the user gave, 'machine.leaves': these stay.
+
+    Returns
+    -------
+    str
+        Of a machine that is sized from the track alone: the angle of the springs, the tuning of the leaves,
+        their stress, or the pull of the magnets.
+    """
+    under = machine_on(bowl, given, exact=True)
+    made = replace(bowl, machine=under)
+    other = can_make(made)
+    if other is not None:
+        return other.text
+    if "machine.leaves" not in given:
+        words = {name.partition(".")[2] for name in given if name.startswith("machine.")}
+        under = on_leaves(made, words)
+    return leaf_shortfall(replace(made, machine=under))
+
+
+def leaf_shortfall(bowl: Bowl) -> str:
+    """Return what keeps the leaves and the magnets of a machine from making its drive; '' for nothing.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        With its machine.
+    """
+    rules, machine, moved = bowl.sizing, bowl.machine, stroke(bowl)
+    natural = analyse_springs(machine).natural_frequency
+    detuning = natural / moved.frequency - 1.0
+    if not rules.least_detuning <= detuning <= rules.greatest_detuning:
+        return f"its leaves tune it to {natural:.4g} Hz, {100.0 * detuning:.2g} % above the drive"
+    stress = leaf_stress(machine, moved.springs)
+    if stress > rules.fatigue_stress:
+        return f"its leaves bend to {stress / MPA:.4g} MPa"
+    kept = gain(moved.frequency, natural, machine.damping)
+    pull = upright_pull(analyse_springs(machine).stiffness * moved.springs / kept, machine)
+    if pull > GREATEST_PULL_N:
+        return f"its magnets have to pull with {pull:.4g} N"
+    return ""
+
+
+def _frequencies(bowl: Bowl, settings: Iterable[Setting]) -> tuple[float, ...]:
+    """The drive's frequency as given; else that of the size, then the other wave of the mains."""
+    if "frequency" in user_keys(settings, "drive") or "supply" in user_keys(settings, "machine"):
+        return (bowl.drive.frequency,)
+    mains = bowl.sizing.mains_frequency
+    large = 2.0 * bowl.track.radius > bowl.sizing.half_wave_diameter
+    return (mains, FULL_WAVE * mains) if large else (FULL_WAVE * mains, mains)

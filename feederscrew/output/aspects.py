@@ -1,0 +1,563 @@
+"""Files of ``feeder aspects``: its tables and documents, its chart and its sheet of views."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew.documents import hint
+from feederscrew.errors import ArgumentError
+from feederscrew.output import columns, style, tables, tipping_graph
+from feederscrew.output import offers as offer
+from feederscrew.output.columns import G_MM2, MM2, UJ
+from feederscrew.output.heavy import heavy
+from feederscrew.resting import names_file
+from feederscrew.resting.forms import postures
+from feederscrew.units import DEG, MM, shown
+
+shading = heavy("feederscrew.output.shading")
+
+MOST_DRAWN_ASPECTS = 24  # rows that a picture shows
+NORMALS = ("normal_x", "normal_y", "normal_z")
+RECOMMENDED = ("p_recommended", "p_recommended_low", "p_recommended_high")
+PRINTED = (  # the table for people, unless they ask for more
+    "aspect", "lies", "stable", "height_mm", *RECOMMENDED,
+    "p_pmi", "p_csa", "p_stability", "surface", "tumbling",
+)  # fmt: skip
+
+
+def aspects(study):
+    """Return the classes of resting aspects, one row each.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+        An open surface is labelled in every row, and tumbling that fails a self-check.
+
+    Returns
+    -------
+    Frame
+        The columns of ``aspects.csv``.
+    """
+    found = study.aspects
+    return tables.frame(
+        {
+            "aspect": found.names,
+            "kind": found.kinds,
+            "faces": found.faces,
+            "stable": found.stable,
+            **dict(zip(NORMALS, found.normals.T)),
+            "height_mm": found.heights / MM,
+            "contact_area_mm2": found.contact_areas / MM2,
+            "solid_angle_sr": found.solid_angles,
+            "polar_inertia_g_mm2": found.polar_inertias / G_MM2,
+            **{f"p_{rule}": chance for rule, chance in found.probabilities.items()},
+            **_barriers(found),
+            "form": found.forms,
+            **_lies(study),
+            "rolling_circle_mm": np.where(np.isfinite(found.rolling_circles), found.rolling_circles, np.nan)
+            / MM,
+            **_interval("p_drop", study.tally),
+            **_interval("p_recommended", study.recommended),
+            **_labels("surface", "open", study.part.open_surface, len(found.names)),
+            **_labels("tumbling", "doubtful", study.doubtful, len(found.names)),
+        }
+    )
+
+
+def printed(frame, wanted=None):
+    """Return the columns that are printed for people.
+
+    Parameters
+    ----------
+    frame : Frame
+        From ``aspects``.
+    wanted : str, optional
+        Names, or what the table heads them, with commas between, or 'all'; without it the columns of
+        ``PRINTED`` that there are.
+
+    Returns
+    -------
+    Frame
+
+    Raises
+    ------
+    ArgumentError
+        If there is no such column.
+    """
+    if wanted is None:
+        return by_share(frame.only(name for name in PRINTED if name in frame))
+    names = list(frame) if wanted.strip() == "all" else [name.strip() for name in wanted.split(",")]
+    headed = _by_heading(frame)
+    names = [name if name in frame else headed.get(name.casefold(), name) for name in names]
+    for name in names:
+        if name not in frame:
+            raise ArgumentError("columns", f"there is no column {shown(name)}", hint(name, list(frame)))
+    return frame.only(names)
+
+
+def _by_heading(frame):
+    """The columns by what a table heads them, 'height' and 'pmi'; without what heads several, 'low'."""
+    words = [tables.heading(name)[0].casefold() for name in frame]
+    return {word: name for word, name in zip(words, frame) if words.count(word) == 1}
+
+
+def by_share(frame):
+    """Return a table of aspects with the likeliest answer first; as it is where there is no answer."""
+    if RECOMMENDED[0] not in frame:
+        return frame
+    order = np.argsort(
+        -np.nan_to_num(np.asarray(frame[RECOMMENDED[0]], dtype=float), nan=-1.0), kind="stable"
+    )
+    return tables.frame({name: [column[row] for row in order] for name, column in frame.items()})
+
+
+def _lies(study):
+    """How the part lies, in words; nothing of a card, which has no shape."""
+    hull, found = study.part.hull, study.aspects
+    if hull is None:
+        return {}
+    return {"lies": postures(found.normals, found.contact_areas, found.kinds, hull)}
+
+
+def _barriers(found):
+    if found.barriers is None:
+        return {}
+    return {
+        "barrier_mm": found.barriers / MM,
+        "barrier_uJ": found.barrier_energies / UJ,
+        "tip_angle_deg": found.tip_angles / DEG,
+    }
+
+
+def _interval(name, answer):
+    """Probabilities with both ends of their interval; nothing where there are none."""
+    return {} if answer is None else {name: answer.p, f"{name}_low": answer.low, f"{name}_high": answer.high}
+
+
+def _labels(name, text, wanted, count):
+    """A column that says the same in every row, where that is to be said."""
+    return {name: [text] * count} if wanted else {}
+
+
+def document(study):
+    """Return all that is known of a part and its aspects.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+
+    Returns
+    -------
+    dict
+        That of `columns.part`; ``recommended``, the rule of the columns ``p_recommended...``, None for a
+        card; ``aspects``, the table.
+    """
+    answer = study.recommended
+    rule = None if answer is None else answer.rule
+    of_part = columns.part(study.part, study.aspects.warnings)
+    return of_part | {"recommended": rule, "aspects": aspects(study)}
+
+
+def names(study):
+    """Return the text of ``names.yaml``: the aspects by name, to be edited and read again."""
+    return names_file.text(study.part, study.aspects)
+
+
+def profiles(study):
+    """Return the names of the stable aspects that a chart shows, and their probabilities by rule.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+
+    Returns
+    -------
+    names : list of str
+    profiles : dict of str to (A,) float [1]
+    """
+    found = study.aspects
+    stable = np.flatnonzero(found.stable)[:MOST_DRAWN_ASPECTS]
+    return [found.names[row] for row in stable], {rule: p[stable] for rule, p in found.probabilities.items()}
+
+
+def answer(study):
+    """Return the recommended answer for `profiles`, (3, A): share, low, high; None of a card."""
+    known = study.recommended
+    if known is None:
+        return None
+    stable = np.flatnonzero(study.aspects.stable)[:MOST_DRAWN_ASPECTS]
+    return np.array([known.p[stable], known.low[stable], known.high[stable]])
+
+
+def remarks(study):
+    """Return what a user should know of pictures that are missing or not whole, a line each."""
+    count = len(study.aspects.names)
+    if study.part.vertices is None:
+        return ["a part card has no shape to draw: no aspects.png"]
+    return (
+        [f"aspects.png shows the first {MOST_DRAWN_ASPECTS} of {count} rows"]
+        if count > MOST_DRAWN_ASPECTS
+        else []
+    )
+
+
+def offers(study, *, tipping=False):
+    """Offer the table of aspects and its pictures.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+    tipping : bool
+        Offer the tipping graph as well.
+
+    Returns
+    -------
+    list of Offer
+        ``names.yaml`` and ``aspects.png`` only of a part that has a shape.
+    """
+    offered = [
+        offer.table("aspects.csv", aspects, study),
+        offer.document("aspects.json", document, study),
+        offer.picture(
+            "probabilities.png", "Probability of each aspect by every rule", probability_chart, study
+        ),
+    ]
+    if study.part.vertices is not None:
+        offered.append(offer.text("names.yaml", names, study))
+        offered.append(
+            offer.picture("aspects.png", "The part as it rests on each aspect", aspect_sheet, study)
+        )
+    return offered + (tipping_graph.offers(study) if tipping else [])
+
+
+def probability_chart(study):
+    """Draw the probability of each stable aspect: the recommended answer first, then every rule.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+
+    Returns
+    -------
+    Figure
+    """
+    part = study.part
+    title = f"{part.name} (open surface)" if part.open_surface else part.name
+    names, by_rule = profiles(study)
+    shares = answer(study)
+    if shares is None:
+        return profile_bars(names, by_rule, title=title)
+    return answer_bars(names, shares, by_rule, title=title)
+
+
+def aspect_sheet(study):
+    """Draw the part as it rests on each of its first aspects.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+        Of a part with a mesh.
+
+    Returns
+    -------
+    Figure
+    """
+    rows = range(min(len(study.aspects.names), MOST_DRAWN_ASPECTS))
+    return aspect_views(study.part, study.aspects, rows, study.recommended)
+
+
+BAR_IN = 0.34  # [in] of paper a bar gets
+NARROW_IN, WIDE_IN = 5.2, 12.0  # [in] limits of the figure's width
+GROUP_IN = 1.0  # [in] of paper an aspect gets beside the recommended answer
+THICK, ASIDE = 0.3, 0.22  # [1] of a group: width of the recommended answer's bar, its way to the left
+FIRST_MARK, LAST_MARK = 0.0, 0.36  # [1] of a group: where the marks of the rules begin and end
+MARKS = "osD^vPX*<>hp"  # of the rules: who does not see their colours tells them apart by shape
+ANSWERED = "recommended, with interval"
+BROAD, FEW, MANY = 6.0, 3, 5  # [in] width from which a legend has many columns, and how many
+UPRIGHT_IN = 0.31  # [in] below this width of a bar its number stands on end
+
+
+def profile_bars(names, profiles, title=""):
+    """Draw the chart of several profiles side by side, grouped by aspect.
+
+    Parameters
+    ----------
+    names : sequence of str
+        The A aspects.
+    profiles : dict of str to (A,) float [1]
+        Probability by aspect, by rule or by the name of an experiment; NaN draws no bar.
+    title : str
+        Over the chart.
+
+    Returns
+    -------
+    Figure
+    """
+    width = float(np.clip(len(names) * (len(profiles) + 1.0) * BAR_IN + 1.0, NARROW_IN, WIDE_IN))
+    figure = style.figure(width, 3.4)
+    axes = style.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
+    grouped_bars(axes, names, profiles, room=(width - 1.0) / (len(names) * (len(profiles) + 1.0)))
+    figure.legend(loc="outside lower center", ncols=min(len(profiles), 6), frameon=False, fontsize=8)
+    return figure
+
+
+def answer_bars(names, answer, profiles, title=""):
+    """Draw the recommended answer with its interval as a bar, and every rule as a small mark beside it.
+
+    Parameters
+    ----------
+    names : sequence of str
+        The A aspects.
+    answer : (3, A) array_like [1]
+        Probability, and the lower and upper end of its interval.
+    profiles : dict of str to (A,) float [1]
+        Probability by rule.
+    title : str
+        Over the chart.
+
+    Returns
+    -------
+    Figure
+    """
+    width = float(np.clip(len(names) * GROUP_IN + 1.0, NARROW_IN, WIDE_IN))
+    figure = style.figure(width, 3.4)
+    axes = style.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
+    places = np.arange(len(names))
+    share, low, high = 100.0 * np.asarray(answer, dtype=float)
+    axes.bar(places - ASIDE, share, THICK, color=style.ANSWER, label=ANSWERED)
+    reach = np.maximum([share - low, high - share], 0.0)
+    axes.errorbar(places - ASIDE, share, reach, fmt="none", ecolor=style.INK, elinewidth=1.4, capsize=3)
+    _numbers(axes, places - ASIDE, np.maximum(share, high), np.isfinite(share), upright=False, texts=share)
+    steps = np.linspace(FIRST_MARK, LAST_MARK, len(profiles))
+    for place, (step, (name, values)) in enumerate(zip(steps, profiles.items())):
+        label, colour = style.method(name, place)
+        look = {"marker": MARKS[place % len(MARKS)], "markersize": 4.2, "linestyle": "none", "color": colour}
+        axes.plot(places + step, 100.0 * np.asarray(values), label=label, **look)
+    style.named_ticks(axes, places, names)
+    axes.tick_params(axis="x", length=0)
+    axes.set_xlim(-0.55, len(names) - 0.45)
+    every = [high, *(100.0 * np.asarray(values) for values in profiles.values())]
+    axes.set_ylim(0.0, 1.12 * np.nanmax(every))
+    _first_in_legend(figure, axes, MANY if width >= BROAD else FEW)
+    return figure
+
+
+def _first_in_legend(figure, axes, columns):
+    """Draw the legend with the bar before the marks: matplotlib lists lines first."""
+    handles, labels = axes.get_legend_handles_labels()
+    first = labels.index(ANSWERED)
+    order = [first, *(place for place in range(len(labels)) if place != first)]
+    listed = [handles[place] for place in order], [labels[place] for place in order]
+    figure.legend(*listed, loc="outside lower center", ncols=columns, frameon=False, fontsize=7.5)
+
+
+def grouped_bars(axes, names, profiles, room=UPRIGHT_IN):
+    """Draw the bars of several profiles on an Axes, each with its value over it.
+
+    Parameters
+    ----------
+    axes : Axes
+        To draw on.
+    names, profiles
+        As in `probabilities`.
+    room : float [in]
+        Width of paper a bar has; decides whether its number is written across or on end.
+    """
+    places = np.arange(len(names))
+    width = 1.0 / (len(profiles) + 1.0)
+    highest = 0.0
+    for place, (name, values) in enumerate(profiles.items()):
+        label, colour = style.method(name, place)
+        percent = 100.0 * np.nan_to_num(np.asarray(values, dtype=float))
+        highest = max(highest, percent.max())
+        x = places + (place - 0.5 * (len(profiles) - 1)) * width
+        axes.bar(x, percent, 0.9 * width, color=colour, label=label)
+        _numbers(axes, x, percent, np.isfinite(values), upright=room < UPRIGHT_IN)
+    style.named_ticks(axes, places, names)
+    axes.tick_params(axis="x", length=0)
+    reach = max(0.5 * len(names), 1.0) + 0.5 * width
+    axes.set_xlim(places.mean() - reach, places.mean() + reach)
+    axes.set_ylim(0.0, highest * 1.14)
+
+
+def _numbers(axes, x, percent, known, upright, texts=None):
+    """Write the percentages, or ``texts`` in their place, over the ends of bars."""
+    look = {} if texts is None else {"fontweight": "bold"}
+    texts = percent if texts is None else texts
+    for at, value, text in zip(x[known], percent[known], texts[known]):
+        axes.annotate(
+            f"{text:.1f}",
+            (at, value),
+            (0, 2),
+            textcoords="offset points",
+            ha="center",
+            va="bottom",
+            rotation=90 if upright else 0,
+            fontsize=6.5,
+            color=style.INK,
+            **look,
+        )
+
+
+MOST_ACROSS = 4  # panels in a row
+PANEL_PX, SINGLE_PANEL_PX = 400, 720  # [px] width of one panel, and of one that is alone
+LETTER_PX = 22  # [px] width of a letter of the name
+TALLEST = 1.15  # height of a panel over its width
+LINE_PX, SMALL_LINE_PX = 24, 17  # [px] of text, and of the rules' smaller text
+SCALE_PX = 200  # [px] of the head that the scale bar takes
+BAR_PX, BARS_PX = 94, 140  # [px] length of a bar for a probability of 1, and where it starts
+RIGHT_PX = 370  # [px] where the numbers beside the bars end
+HEAD_PX, FOOT_PX = 92, 76  # [px] above and below the panels
+PANEL_ROOM = 1.1  # of a panel over the largest part in it
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """Where everything goes, in pixels from the lower left corner."""
+
+    columns: int
+    rows: int
+    image: tuple[int, int]  # width and height of a panel's image
+    caption: int  # height of the text under it
+    pixel: float  # [size] edge of one pixel, the same in every panel
+
+    @property
+    def page(self):
+        """Width and height of the whole sheet."""
+        width, height = self.image
+        return self.columns * width, self.rows * (height + self.caption) + HEAD_PX + FOOT_PX
+
+    def place(self, panel):
+        """Return the lower left corner of a panel's image."""
+        row, column = divmod(panel, self.columns)
+        width, height = self.image
+        top = self.page[1] - HEAD_PX - row * (height + self.caption)
+        return column * width, top - height
+
+
+def aspect_views(part, found, rows, answer=None):
+    """Draw the part on each of its aspects.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    found : Aspects
+        Its classes.
+    rows : sequence of int
+        Which of them are drawn, in this order.
+    answer : Recommended, optional
+        Told first, with its interval.
+
+    Returns
+    -------
+    Figure
+    """
+    solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
+    points = shading.outermost(solid.points)
+    stances = [shading.stance(points, found.normals[row], found.heights[row] / solid.size) for row in rows]
+    sheet = _layout(stances, len(found.probabilities), answer is not None)
+    figure = style.page(*sheet.page)
+    for panel, (row, standing) in enumerate(zip(rows, stances)):
+        frame = _frame(sheet, standing)
+        colour = shading.STEEL if found.stable[row] else shading.PALE
+        axes = _axes(figure, sheet, panel)
+        axes.imshow(
+            shading.picture(solid, standing, frame, colour), extent=frame.extent, interpolation="nearest"
+        )
+        shading.contact(axes, solid, standing, found.polygons[row] / solid.size)
+        shading.rolling_axis(axes, solid, standing, found.axes[row])
+        shading.centre_of_mass(axes, 11.0 * sheet.pixel)
+        _caption(figure, sheet, panel, found, row, answer)
+    page = _head_and_foot(figure, sheet, part, solid)
+    shading.marks_legend(page, 30, 30, rolling=bool(np.isfinite(found.axes[list(rows)]).any()))
+    return figure
+
+
+def _layout(stances, rules, answered):
+    """The layout in which the largest part just fits its panel."""
+    count = len(stances)
+    columns = count if count <= MOST_ACROSS else 3 if count in (5, 6, 9) else MOST_ACROSS
+    widths, heights = np.max([s.framed[1] - s.framed[0] for s in stances], axis=0) * PANEL_ROOM
+    width = PANEL_PX if count > 1 else SINGLE_PANEL_PX
+    pixel = max(widths / width, heights / (TALLEST * PANEL_PX))
+    image = (width, max(int(np.ceil(heights / pixel)), PANEL_PX // 3))
+    caption = LINE_PX * (2 + answered) + SMALL_LINE_PX * rules
+    return Sheet(columns, -(-count // columns), image, caption, pixel)
+
+
+def _frame(sheet, standing):
+    """The part in the middle of its panel, a little above the lower edge."""
+    width, height = sheet.image
+    lowest, highest = standing.framed
+    left = 0.5 * (lowest[0] + highest[0]) - 0.5 * width * sheet.pixel
+    bottom = 0.5 * (lowest[1] + highest[1]) - 0.5 * height * sheet.pixel
+    return shading.Shot(left, bottom, sheet.pixel, width, height)
+
+
+def _axes(figure, sheet, panel):
+    axes = figure.add_axes(_share(sheet, *sheet.place(panel), *sheet.image))
+    axes.set_axis_off()
+    return axes
+
+
+def _share(sheet, left, bottom, width, height):
+    page = sheet.page
+    return left / page[0], bottom / page[1], width / page[0], height / page[1]
+
+
+def _caption(figure, sheet, panel, found, row, answer):
+    """Name, kind and count of a class; the recommended answer with its interval, then every rule, smaller."""
+    left, bottom = sheet.place(panel)
+    axes = figure.add_axes(_share(sheet, left, bottom - sheet.caption, sheet.image[0], sheet.caption))
+    axes.set_axis_off()
+    axes.set(xlim=(0, sheet.image[0]), ylim=(-sheet.caption, 0))
+    what = f"{found.kinds[row]} ×{found.faces[row]}" if found.stable[row] else "not stable"
+    look = {"color": style.INK, "va": "center"}
+    name = axes.text(30, -0.6 * LINE_PX, found.names[row], fontsize=11, fontweight="bold", **look)
+    beside = {"xycoords": name, "xytext": (6, 0), "textcoords": "offset points"}
+    axes.annotate(what, (1.0, 0.5), fontsize=8, **beside, **look)
+    if not found.stable[row]:
+        return
+    top = -1.55 * LINE_PX
+    if answer is not None:
+        _answer(axes, top, *(float(ends[row]) for ends in (answer.p, answer.low, answer.high)))
+        top -= LINE_PX
+    for place, (rule, values) in enumerate(found.probabilities.items()):
+        label, colour = style.method(rule, place)
+        y = top - place * SMALL_LINE_PX
+        axes.text(30, y, label, fontsize=6, color=style.INK, va="center")
+        axes.barh(y, BAR_PX, height=5, left=BARS_PX, color=style.FAINT, alpha=0.5)
+        axes.barh(y, BAR_PX * values[row], height=5, left=BARS_PX, color=colour)
+        _number(axes, y, f"{100.0 * values[row]:.1f} %", fontsize=6)
+
+
+def _answer(axes, y, share, low, high):
+    """The recommended probability as a broad bar, its interval as a line through it and in words."""
+    axes.text(30, y, "recommended", fontsize=6, color=style.INK, va="center")
+    axes.barh(y, BAR_PX, height=13, left=BARS_PX, color=style.FAINT, alpha=0.5)
+    axes.barh(y, BAR_PX * share, height=13, left=BARS_PX, color=style.ANSWER)
+    ends = [BARS_PX + BAR_PX * low, BARS_PX + BAR_PX * high]
+    axes.plot(ends, [y, y], "|-", color=style.INK, linewidth=1.2, markersize=4)
+    sentence = f"{100.0 * share:.0f} % ({100.0 * low:.0f}–{100.0 * high:.0f})"
+    _number(axes, y, sentence, fontsize=6.5, fontweight="bold")
+
+
+def _number(axes, y, text, **look):
+    axes.text(RIGHT_PX, y, text, color=style.INK, va="center", ha="right", **look)
+
+
+def _head_and_foot(figure, sheet, part, solid):
+    """What is drawn and its scale; the Axes over the whole page, in pixels."""
+    width, height = sheet.page
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set_axis_off()
+    axes.set(xlim=(0, width), ylim=(0, height))
+    longest = (width - SCALE_PX) // LETTER_PX
+    name = part.name if len(part.name) <= longest else f"{part.name[: longest - 3]}..."
+    axes.text(30, height - 34, name, fontsize=13, fontweight="bold", color=style.INK, va="center")
+    facts = f"{part.material}, {1e3 * part.mass:.4g} g" + ", open surface" * part.open_surface
+    colour = style.ACCENT if part.open_surface else style.INK
+    axes.text(30, height - 66, facts, fontsize=8, color=colour, va="center")
+    shading.scale_bar(axes, width - 30, height - 66, sheet.pixel * solid.size)
+    return axes

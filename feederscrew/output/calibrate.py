@@ -1,0 +1,77 @@
+"""Files of ``feeder calibrate``."""
+
+from feederscrew.output import offers as offer
+from feederscrew.output import tables
+
+UNLIKELY = 0.01  # p-value below which no exponent explains the counts
+
+
+def exponents(study):
+    """Return the exponents, one row a column of counts.
+
+    Parameters
+    ----------
+    study : CalibrateStudy
+
+    Returns
+    -------
+    Frame
+        The columns of ``calibrate.csv``.
+    """
+    fits = study.fits
+    found = [fit.calibration for fit in fits]
+    return tables.frame(
+        {
+            "counts": [fit.name for fit in fits],
+            "parts": [fit.parts for fit in fits],
+            "exponent": [each.exponent for each in found],
+            "exponent_low": [each.low for each in found],
+            "exponent_high": [each.high for each in found],
+            "chi_square": [each.chi_square.statistic for each in found],
+            "degrees_of_freedom": [each.chi_square.degrees_of_freedom or None for each in found],
+            "p_value": [each.chi_square.p_value for each in found],
+        }
+    )
+
+
+def document(study):
+    """Return the calibration as one JSON document.
+
+    Parameters
+    ----------
+    study : CalibrateStudy
+
+    Returns
+    -------
+    dict
+    """
+    fitted = {fit.name: dict(zip(study.aspects.names, fit.calibration.shares)) for fit in study.fits}
+    return {"part": study.part.name, "calibrations": exponents(study), "p_surface": fitted}
+
+
+def remarks(study):
+    """Return what a user must know of a calibration, a line each."""
+    listed = []
+    for fit in study.fits:
+        if fit.calibration.bounded:
+            listed.append(f"{fit.name}: the counts limit the exponent on one side only")
+        if (p_value := fit.calibration.chi_square.p_value) < UNLIKELY:
+            listed.append(f"{fit.name}: no exponent explains these counts (p {p_value:.2g})")
+    return listed
+
+
+def offers(study):
+    """Offer the table and the document of a calibration.
+
+    Parameters
+    ----------
+    study : CalibrateStudy
+
+    Returns
+    -------
+    list of Offer
+    """
+    return [
+        offer.table("calibrate.csv", exponents, study),
+        offer.document("calibrate.json", document, study),
+    ]

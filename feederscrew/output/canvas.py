@@ -1,0 +1,97 @@
+"""Pages that matplotlib draws as the same bytes every time, whatever texts users gave."""
+
+import io
+import re
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
+from matplotlib.figure import Figure
+from matplotlib.font_manager import findfont, get_font
+from matplotlib.image import imsave
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.patheffects import withStroke
+
+AXES_MARGIN_IN = 0.08  # [in] round the axes
+MOST_OF_PAGE = 0.95  # [1] of it that one line may take
+LONG_WORD = re.compile(r"(\S{24})\S{24,}(\S{20})")  # a name of more than 67 letters, its middle left out
+HALO = [withStroke(linewidth=2.5, foreground="white")]  # of letters over hatching or colours
+RIM = [withStroke(linewidth=1.1, foreground="#22303c")]  # of white letters over light colours
+
+
+class _Writer(RendererAgg):
+    """Measures and draws every text as it stands: no formula, no letter without a glyph, not off the page."""
+
+    def __init__(self, *size):
+        super().__init__(*size)
+        self._known = {}  # texts and fonts: as they can be drawn, and width, height, descent
+
+    def draw_text(self, gc, x, y, s, prop, *angle, **more):
+        more["ismath"] = False  # a name with a dollar sign is no formula
+        super().draw_text(gc, x, y, self._drawable(s, prop)[0], prop, *angle, **more)
+
+    def get_text_width_height_descent(self, s, prop, ismath):
+        return self._drawable(s, prop)[1]
+
+    def _drawable(self, text, prop):
+        key = text, hash(prop)
+        if key not in self._known:
+            self._known[key] = self._fitted(text, prop)
+        return self._known[key]
+
+    def _fitted(self, text, prop):
+        font, measured = get_font(findfont(prop)), super().get_text_width_height_descent
+        sentence = "".join(letter if font.get_char_index(ord(letter)) else _escape(letter) for letter in text)
+        sentence = LONG_WORD.sub(r"\1…\2", sentence)
+        size, page = (
+            measured(sentence, prop, False),
+            MOST_OF_PAGE * max(self.width, self.height),
+        )  # text may stand upright
+        if size[0] <= page:
+            return sentence, size
+        sentence = sentence[: int(len(sentence) * page / size[0]) - 1] + "…"
+        return sentence, measured(sentence, prop, False)
+
+
+def _escape(letter):
+    return letter.encode("unicode_escape").decode()
+
+
+class Canvas(FigureCanvasAgg):
+    """What figures are drawn on; names of users enter them in many places, and are made harmless here."""
+
+    def get_renderer(self):
+        """Return the writer of this size, one for all texts of a figure."""
+        size = (*self.figure.bbox.size, self.figure.dpi)
+        if getattr(self, "_size", None) != size:
+            self.renderer, self._size = _Writer(*size), size
+        return self.renderer
+
+
+class PixelCanvas(Canvas):
+    """What a picture is that was drawn already: its file has its pixels; axes would take 130 MB for them."""
+
+    image: np.ndarray  # (rows, columns, 3) uint8
+
+    def print_png(self, filename_or_obj, *, metadata=None, **_):
+        """Write the pixels of the image."""
+        imsave(filename_or_obj, self.image, format="png", dpi=self.figure.dpi, metadata=metadata)
+
+
+class ShownFigure(Figure):
+    """A figure that a notebook shows as the last line of a cell, without pyplot."""
+
+    def png(self):
+        """Return its bytes without a time or a version: the same figure gives the same bytes."""
+        buffer = io.BytesIO()
+        canvas: Any = self.canvas
+        canvas.print_png(buffer, metadata={"Software": None})  # savefig would draw it twice
+        return buffer.getvalue()
+
+    def _repr_png_(self):
+        return self.png()
+
+
+def layout():
+    """Return what lays out the axes of a figure by itself."""
+    return ConstrainedLayoutEngine(w_pad=AXES_MARGIN_IN, h_pad=AXES_MARGIN_IN)

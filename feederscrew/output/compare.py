@@ -1,0 +1,564 @@
+"""Files of ``feeder compare``: profiles of a part, feeding tests by device, and many measured sets."""
+
+from pathlib import Path
+
+import numpy as np
+
+from feederscrew.output import offers as offer
+from feederscrew.output import style, tables
+from feederscrew.output.heavy import heavy
+from feederscrew.resting.rules import registry
+from feederscrew.studies.passages import FeedingStudy
+
+mpl_patches = heavy("matplotlib.patches")
+
+TESTS = ("chi_square", "degrees_of_freedom", "p_value")  # columns of the test, which needs counts
+
+
+def comparisons(study):
+    """Return every pair of profiles, a row each.
+
+    Parameters
+    ----------
+    study : CompareStudy
+
+    Returns
+    -------
+    Frame
+        The columns of ``compare.csv``; those of the test are empty where neither profile holds counts.
+    """
+    return _frame(study.comparisons)
+
+
+def printed(study, format):
+    """Return what is printed: for people each measured profile with the rules, the nearest one first.
+
+    Parameters
+    ----------
+    study : CompareStudy
+    format : str
+        Of what is printed; the table leaves out how far rules are from each other, which the files hold.
+
+    Returns
+    -------
+    Frame
+    """
+    if format != "table":
+        return comparisons(study)
+    order = [one.name for one in study.measured.profiles]
+    own = [each for each in study.comparisons if each.first.name in order]
+    beside = [each for each in own if each.second.name not in order]
+    beside.sort(key=lambda each: (order.index(each.first.name), each.total_variation))
+    return _frame([*beside, *(each for each in own if each.second.name in order)])
+
+
+def _frame(compared):
+    tests = [each.chi_square for each in compared]
+    return tables.frame(
+        {
+            "first": [each.first.name for each in compared],
+            "second": [each.second.name for each in compared],
+            "deviation": [each.deviation for each in compared],
+            "total_variation": [each.total_variation for each in compared],
+            "chi_square": [test.statistic for test in tests],
+            "degrees_of_freedom": [test.degrees_of_freedom or None for test in tests],
+            "p_value": [test.p_value for test in tests],
+        }
+    )
+
+
+def hidden(study):
+    """Return the columns that a table for people leaves out, as they hold nothing."""
+    return () if any(each.chi_square.degrees_of_freedom for each in study.comparisons) else TESTS
+
+
+def document(study):
+    """Return the comparison as one JSON document.
+
+    Parameters
+    ----------
+    study : CompareStudy
+
+    Returns
+    -------
+    dict
+    """
+    listed = [
+        {"name": p.name, "kind": p.kind, "values": p.values, "fractions": p.fractions} for p in study.profiles
+    ]
+    return {
+        "part": study.part.name,
+        "aspects": list(study.aspects.names),
+        "profiles": listed,
+        "comparisons": comparisons(study),
+    }
+
+
+FEEDING_FILE = "devices.csv"
+
+
+def feeding_offers(study):
+    """Offer the table of a FeedingStudy, as a list of Offer."""
+    return [offer.table(FEEDING_FILE, device_comparisons, study)]
+
+
+def device_comparisons(study):
+    """Return what passed each device, measured and predicted, a row a device.
+
+    Parameters
+    ----------
+    study : FeedingStudy
+
+    Returns
+    -------
+    Frame
+        The columns of ``devices.csv``: shares of the parts that came to the device.
+    """
+    return feeding_frame([study])
+
+
+def feeding_printed(study, _):
+    """Return what is printed in any format: ``comparisons``."""
+    return device_comparisons(study)
+
+
+def feeding_frame(studies):
+    """Return the same of several feeding tests; the answer of a rule that a test does not have is empty."""
+    rows = [row for study in studies for row in _rows(study)]
+    names = dict.fromkeys(name for row in rows for name in row)
+    return tables.frame({name: [row.get(name) for row in rows] for name in names})
+
+
+def feeding_table(studies):
+    """Return the table for people: without the rules, each share with its interval, files without folders."""
+    found = feeding_frame(studies)
+    columns = found.only(("set", "device", "passed", "rejected"))
+    columns["set"] = [Path(name).name for name in found["set"]]
+    for name in ("measured", "predicted"):
+        ends = zip(found[name], found[f"{name}_low"], found[f"{name}_high"])
+        columns[name] = ["{:.3f} ({:.3f} to {:.3f})".format(*three) for three in ends]
+    return tables.frame(columns | {"agrees": found["agrees"]})
+
+
+def feeding_hidden(study):
+    """Return the columns that a table for people leaves out: the file, and what the rules predict."""
+    return ("set", *_rules([study]))
+
+
+def feeding_document(study):
+    """Return one feeding test as a JSON document.
+
+    Parameters
+    ----------
+    study : FeedingStudy
+
+    Returns
+    -------
+    dict
+    """
+    head = study.measured.head
+    return {
+        "part": study.part.name,
+        "file": study.measured.source,
+        **{key: value for key, value in vars(head).items() if value and key != "part"},
+        "answer": study.answer,
+        "devices": device_comparisons(study),
+    }
+
+
+def _rules(studies):
+    return tuple(dict.fromkeys(f"p_{rule}" for one in studies for rule in _own(one)))
+
+
+def _own(study):
+    """The rules whose own prediction stands beside the recommended answer's."""
+    return [rule for rule in study.answers if rule != "recommended"]
+
+
+def _rows(study):
+    counts, ends = study.measured, study.ends
+    for k, station in enumerate(study.stations):
+        yield {
+            "set": counts.source,
+            "device": station,
+            "passed": int(counts.passed[k]),
+            "rejected": int(counts.rejected[k]),
+            "measured": float(counts.shares[k]),
+            "measured_low": ends[k, 0],
+            "measured_high": ends[k, 1],
+            "predicted": float(study.answers["recommended"][k]),
+            "predicted_low": float(study.low[k]),
+            "predicted_high": float(study.high[k]),
+            "agrees": bool(study.agrees[k]),
+            **{f"p_{rule}": float(study.answers[rule][k]) for rule in _own(study)},
+        }
+
+
+DARKEST_VARIATION = 0.3  # [1] total variation drawn in the darkest shade
+SPARE_RULES = (
+    ("QUASISTATIC",),
+    ("CRSA",),
+    ("BARRIER",),
+    ("HOPS",),
+    ("STABILITY",),
+)  # left out first of a wide table
+ROW_IN, COLUMN_IN = 0.24, 0.78  # [in] of a cell of the picture
+
+
+def sets_offers(study):
+    """Offer the table of a SetsStudy and its picture, as a list of Offer."""
+    alt = "How far each rule and the recommended answer are from each measured set"
+    offered = [
+        offer.table("compare.csv", sets_frame, study),
+        offer.picture("compare.png", alt, sets_figure, study),
+    ]
+    tested = [offer.table(FEEDING_FILE, feeding_frame, study.feedings)]
+    return (offered if study.sets else []) + (tested if study.feedings else [])
+
+
+def sets_printed(study, form):
+    """Return what is printed: for people both tables, else that of the sets or of the feeding tests."""
+    if form != "table":
+        return [sets_frame(study) if study.sets else feeding_frame(study.feedings)]
+    tested = [feeding_table(study.feedings)] if study.feedings else []
+    return ([sets_table(study)] if study.sets else []) + tested
+
+
+def sets_frame(study):
+    """Return the total variation of every set from every answer, a row a set, then a row a series.
+
+    Parameters
+    ----------
+    study : SetsStudy
+
+    Returns
+    -------
+    Frame
+        The columns of ``compare.csv``; an answer that a set does not have is empty.
+    """
+    apart = [one.apart for one in study.sets]
+    rows = [
+        (set_label(one), _series(study, one), one.measured.head.launch or None, *_counted(one), away)
+        for one, away in zip(study.sets, apart)
+    ]
+    rows += [_mean(name, sets) for name, sets in study.series.items() if len(sets) > 1]
+    names = ("set", "series", "launch", "parts", "rule", "aspects", "inside")
+    made = dict(zip(names, zip(*(row[:-1] for row in rows))))
+    return tables.frame(made | {name: [row[-1].get(name) for row in rows] for name in study.answers})
+
+
+def sets_table(study):
+    """Return the same for people: fewer columns, whole numbers as such, three digits behind the point.
+
+    Of the rules those in ``SPARE`` are left out where a line would have more letters than a page.
+    """
+    made = sets_frame(study)
+    columns = {"set": made["set"], "launch": made["launch"], "parts": _whole(made["parts"])}
+    known = zip(_whole(made["inside"]), made["aspects"])
+    columns["inside"] = [None if some is None else f"{some} of {all}" for some, all in known]
+    return tables.frame(columns | {name: _three(made[name]) for name in study.answers})
+
+
+def _three(values):
+    """Numbers as texts with three digits behind the point; None where there is none."""
+    return [None if np.isnan(value) else f"{value:.3f}" for value in values.astype(float)]
+
+
+def _whole(values):
+    return [None if value is None or value != value else f"{value:.0f}" for value in values]
+
+
+def set_label(one):
+    """Return how a SetStudy is called: its file, and its column where there are several."""
+    stem = Path(one.measured.source).stem
+    return stem if len(one.measured.profiles) == 1 else f"{stem}, {one.profile.name}"
+
+
+def _series(study, one):
+    return next(name for name, sets in study.series.items() if one in sets)
+
+
+def _counted(one):
+    """Parts counted, rule of the recommended answer, aspects, and how many of them it holds."""
+    parts = int(one.profile.values.sum()) if one.profile.counted else None
+    rule = None if one.recommended is None else one.recommended.rule
+    return parts, rule, len(one.aspects.names), one.inside
+
+
+def _mean(name, sets):
+    """The row of a series: the mean over its sets."""
+    apart, known = [one.apart for one in sets], [one.inside for one in sets if one.inside is not None]
+    answers = dict.fromkeys(answer for away in apart for answer in away)
+    means = {k: float(np.mean([away[k] for away in apart if k in away])) for k in answers}
+    launches = {one.measured.head.launch or None for one in sets}
+    parts = [int(one.profile.values.sum()) for one in sets if one.profile.counted]
+    return (
+        f"{name}, mean of {len(sets)}",
+        name,
+        launches.pop() if len(launches) == 1 else None,
+        sum(parts) if len(parts) == len(sets) else None,
+        None,
+        sum(len(one.aspects.names) for one in sets),
+        sum(known) if known else None,
+        means,
+    )
+
+
+def sets_document(study):
+    """Return many measured sets and every answer for them as one JSON document.
+
+    Parameters
+    ----------
+    study : SetsStudy
+
+    Returns
+    -------
+    dict
+    """
+    return {
+        "sets": [_set_document(one) for one in study.sets],
+        "total_variation": sets_frame(study),
+        "feeding_tests": [feeding_document(one) for one in study.feedings],
+    }
+
+
+def _set_document(one):
+    head = one.measured.head
+    known = one.recommended
+    return {
+        "file": one.measured.source,
+        "name": one.profile.name,
+        **{key: value for key, value in vars(head).items() if value},
+        "kind": one.profile.kind,
+        "aspects": list(one.aspects.names),
+        "values": one.profile.values,
+        "fractions": one.profile.fractions,
+        "answers": {name: answer.fractions for name, answer in one.answers.items()},
+        "recommended": None if known is None else {"rule": known.rule, "low": known.low, "high": known.high},
+        "total_variation": one.apart,
+    }
+
+
+def sets_figure(study):
+    """Draw the total variation of every set from every answer as a table of shades.
+
+    Parameters
+    ----------
+    study : SetsStudy
+
+    Returns
+    -------
+    Figure
+    """
+    from feederscrew.output import style
+
+    answers = study.answers
+    values = np.array([[one.apart.get(name, np.nan) for name in answers] for one in study.sets])
+    made = style.figure(COLUMN_IN * len(answers) + 2.6, ROW_IN * len(study.sets) + 1.4)
+    axes = made.add_subplot()
+    axes.imshow(values, cmap="Blues", vmin=0.0, vmax=DARKEST_VARIATION, aspect="auto")
+    for (row, column), value in np.ndenumerate(values):
+        if np.isfinite(value):
+            colour = "white" if value > 0.6 * DARKEST_VARIATION else style.INK
+            axes.text(column, row, f"{value:.3f}", ha="center", va="center", fontsize=7, color=colour)
+    style.tidy(axes, title="Total variation between what was measured and each answer", grid="none")
+    axes.set_xticks(range(len(answers)), [look(name)[0] for name in answers], rotation=30, ha="right")
+    axes.set_yticks(range(len(study.sets)), [_set_and_launch(one) for one in study.sets])
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
+    return made
+
+
+def _set_and_launch(one):
+    launch = one.measured.head.launch
+    return f"{set_label(one)} ({launch})" if launch else set_label(one)
+
+
+def offers(study):
+    """Offer the table of comparisons and their picture.
+
+    Parameters
+    ----------
+    study : CompareStudy
+
+    Returns
+    -------
+    list of Offer
+    """
+    alt = "What was measured beside each rule, and how far every two profiles are apart"
+    return [
+        offer.table("compare.csv", comparisons, study),
+        offer.picture("compare.png", alt, _comparison, study),
+    ]
+
+
+def _comparison(study):
+    measured, rules = ({p.name: p.fractions for p in some} for some in (study.measured.profiles, study.rules))
+    pairs = {(each.first.name, each.second.name): each.deviation for each in study.comparisons}
+    return comparison(study.part.name, study.aspects.names, measured, rules, pairs)
+
+
+RAMPS = {  # test series: one hue each, darker with the amplitude
+    "MDBT": ("#c3c8ce", "#8d97a2", "#545f6b"),
+    "MDFT": ("#e3c4d6", "#cc79a7", "#8f4a71"),
+}
+FIXED = {
+    "CSA_at_0.4": ("CSA at ratio 0.4", "#f3c565"),
+    "CSA_Table_3-1": ("CSA, Table 3-1", "#b67c00"),
+    "CSA_mixed_heights": ("CSA, mixed heights", "#f3c565"),
+    "experiment": ("experiment", "#545f6b"),
+    "recommended": ("recommended", style.ANSWER),
+}
+OWN = ("#545f6b", "#cc79a7", "#a9b3bd", "#8f4a71", "#7d6b5d", "#5b3a8e")  # a user's profiles, in turn
+BAR = 0.20  # [in] of paper a bar gets
+WIDEST = 13.0  # [in] of all charts side by side
+UPRIGHT = 0.3  # [in] of a bar below which its number stands upright
+LEAST_ROOM = 0.17  # [in] of a bar below which its number is left out
+
+
+def look(name, place=0):
+    """Return label and colour of a profile, the same in every chart.
+
+    Parameters
+    ----------
+    name : str
+        A rule in any case, 'MDBT_80', or a user's own.
+    place : int
+        Of a user's own profile among its like.
+
+    Returns
+    -------
+    label, colour : str
+    """
+    series, _, amplitude = name.rpartition("_")
+    if series in RAMPS and amplitude in ("78", "80", "82"):
+        return f"{series} {amplitude} %", RAMPS[series][("78", "80", "82").index(amplitude)]
+    if name in FIXED:
+        return FIXED[name]
+    if name.lower() in registry.RULE_OF:
+        return style.method(name.lower())
+    return name.replace("_", " "), OWN[place % len(OWN)]
+
+
+def bars(axes, names, profiles, printed=None, room=BAR):
+    """Draw the grouped bars on an Axes, with a tick where print has the number.
+
+    Parameters
+    ----------
+    axes : Axes
+        To draw on.
+    names : sequence of str
+        The A aspects.
+    profiles : dict of str to (A,) float [1]
+        By profile name.
+    printed : dict of str to (A,) float [1]
+        Published numbers of some of them.
+    room : float [in]
+        Width of paper a bar has.
+    """
+    places, width = np.arange(len(names)), 1.0 / (len(profiles) + 0.9)
+    for place, (name, values) in enumerate(profiles.items()):
+        label, colour = look(name, place)
+        x = places + (place - 0.5 * (len(profiles) - 1)) * width
+        axes.bar(x, 100.0 * values, 0.92 * width, color=colour, label=label)
+        if room >= LEAST_ROOM:
+            _numbers(axes, x, 100.0 * values, upright=room < UPRIGHT)
+        if name in (printed or {}):
+            _ticks(axes, x, 100.0 * printed[name], width)
+    style.named_ticks(axes, places, names)
+    axes.tick_params(axis="x", length=0)
+    axes.set_xlim(-0.55, len(names) - 0.45)
+    above = (
+        132.0 if LEAST_ROOM <= room < UPRIGHT else 114.0
+    )  # numbers that stand upright are kept off the title
+    axes.set_ylim(0.0, above * max(values.max() for values in profiles.values()))
+
+
+def comparison(title, names, measured, rules, compared):
+    """Draw one chart a rule against everything measured, and how far each profile is from what was measured.
+
+    Parameters
+    ----------
+    title : str
+        The part's name.
+    names : sequence of str
+        The A aspects.
+    measured, rules : dict of str to (A,) float [1]
+    compared : dict of (str, str) to float [1]
+        Deviation of each pair of profiles.
+
+    Returns
+    -------
+    Figure
+    """
+    width = float(np.clip(len(names) * (len(measured) + 1.9) * BAR + 1.0, 4.2, 12.0))
+    side, tall = max(3.1, 0.42 * len(measured) + 1.5), 0.42 * (len(measured) + len(rules)) + 1.3
+    across = max(1, min(len(rules), int(WIDEST / width)))
+    rows = -(-max(len(rules), 1) // across)
+    figure = style.figure(across * width + side, max(2.2 * rows, tall))
+    grid = figure.add_gridspec(rows, across + 1, width_ratios=(*[width] * across, side))
+    charts = {name: {**measured, name: values} for name, values in rules.items()} or {title: measured}
+    room = (width - 1.0) / (len(names) * (len(measured) + 1.9))
+    for place, (rule, profiles) in enumerate(charts.items()):
+        row, column = divmod(place, across)
+        axes = figure.add_subplot(grid[row, column])
+        heading = (f"{title}: " if place == 0 else "") + look(rule)[0] if rules else title
+        lowest, first = place + across >= len(charts), column == 0
+        style.tidy(
+            axes, title=heading, x="aspect" if lowest else "", y="share [%]" if first else "", grid="y"
+        )
+        bars(axes, names, profiles, room=room)
+    _legend(figure, measured, rules)
+    _matrix(figure.add_subplot(grid[:, across]), list(measured), list(rules), compared)
+    return figure
+
+
+def _legend(figure, measured, rules):
+    """One entry a profile, whatever chart it stands in."""
+    looks = [look(name, place) for place, name in enumerate(measured)]
+    looks += [look(name, len(measured)) for name in rules]
+    handles = [mpl_patches.Patch(color=colour, label=label) for label, colour in looks]
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=min(len(handles), 9), frameon=False, fontsize=8
+    )
+
+
+def _matrix(axes, measured, rules, compared):
+    """Deviations of every profile from those that were measured, as a table of shades."""
+    names, known = [*measured, *rules], {frozenset(pair): value for pair, value in compared.items()}
+    values = np.full((len(names), len(measured)), np.nan)
+    for j, i in zip(*np.tril_indices(len(names), -1, len(measured))):
+        values[j, i] = known.get(frozenset((names[j], names[i])), np.nan)
+    rows = slice(1, None)  # the first has nothing before it
+    top = max(np.nanmax(values, initial=0.0), 0.1)
+    axes.imshow(values[rows], cmap="Blues", vmin=0.0, vmax=1.25 * top, aspect="equal")
+    for (j, i), value in np.ndenumerate(values[rows]):
+        if np.isfinite(value):
+            colour = "white" if value > 0.6 * top else style.INK
+            axes.text(i, j, f"{value:.3f}", ha="center", va="center", fontsize=7, color=colour)
+    labels = [look(name, place)[0] for place, name in enumerate(names)]
+    style.tidy(axes, title="Deviation from\nwhat was measured", grid="none")
+    axes.set_xticks(range(len(measured)), labels[: len(measured)], rotation=45, ha="right")
+    axes.set_yticks(range(len(names) - 1), labels[1:])
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
+
+
+def _numbers(axes, x, percent, upright):
+    for at, value in zip(x, percent):
+        text = f"{value:.1f}"
+        axes.annotate(
+            text, (at, value), (0, 2), textcoords="offset points", ha="center", va="bottom", fontsize=6.5,
+            rotation=90 if upright else 0, color=style.INK,
+        )  # fmt: skip
+
+
+def _ticks(axes, x, percent, width):
+    axes.hlines(percent, x - 0.46 * width, x + 0.46 * width, color=style.INK, linewidth=1.1, zorder=3)
+
+
+def of_kind(study):
+    """Return the functions of a CompareStudy or a FeedingStudy: offers, what is printed, hidden, document."""
+    if isinstance(study, FeedingStudy):
+        return feeding_offers, feeding_printed, feeding_hidden, feeding_document
+    return offers, printed, hidden, document

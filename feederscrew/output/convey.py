@@ -1,0 +1,553 @@
+"""Files of ``feeder convey``: at one point, along a curve, over the phase, over a map."""
+
+import numpy as np
+
+from feederscrew.conveying import answer, sensitivity, steady
+from feederscrew.conveying.flights import throw_of_flight
+from feederscrew.conveying.setting import PHASES
+from feederscrew.output import offers as offer
+from feederscrew.output import style, tables
+from feederscrew.output.heavy import heavy
+from feederscrew.output.tables import heading
+from feederscrew.output.words import PHASE_WORDS, regime_words
+from feederscrew.units import MM_S, factor
+
+matplotlib = heavy("matplotlib")
+mpl_colors = heavy("matplotlib.colors")
+mpl_patches = heavy("matplotlib.patches")
+
+VELOCITIES = {"velocity": "velocity_mm_s", "low": "velocity_low_mm_s", "high": "velocity_high_mm_s"}
+NO_STEADY_STATE = (
+    "no steady state: the part slides down the track without stopping, and no velocity is steady"
+)
+RUNS_AWAY = (
+    "this velocity is reached from rest; a part that once slides down fast enough does not stop again: "
+    "the climb is steeper than kinetic friction"
+)
+LIMITS = {"forward": "slip up the track", "backward": "slip down the track"}
+
+
+def document(study):
+    """Return a ConveyStudy as the JSON document, without the bowl's values."""
+    found, change = study.answer, sensitivity.CHANGE
+    return {
+        "status": found.status,
+        "period": found.period,
+        **{column: getattr(found, name) / MM_S for name, column in VELOCITIES.items()},
+        "velocity_slowest_period_mm_s": found.slowest / MM_S,
+        "velocity_fastest_period_mm_s": found.fastest / MM_S,
+        "regime": found.regime,
+        "runs_away": found.runs_away,
+        "acceleration_ratio": found.setting.ratio,
+        "throw_number": found.throw_number,
+        "mu_effective": found.setting.static,
+        "mu_effective_kinetic": found.setting.kinetic,
+        "mu_forward": found.mu_forward,
+        "mu_backward": found.mu_backward,
+        "margins": found.margins,
+        "fractions": found.fractions,
+        "longest_flight_periods": found.longest_flight,
+        "hardest_impact_mm_s": found.hardest_impact / MM_S,
+        "flights_per_period": found.flights,
+        "sensitivity": {name: _changed(found, pair, change) for name, pair in study.nearby.items()},
+        "friction_doubt": _changed(found, study.doubt, sensitivity.FRICTION_DOUBT),
+        "restitution_doubt": rebound(study.bowl, study.rebound),
+        "validity": study.validity,
+    }
+
+
+def summary(document):
+    """Return the document of one operating point as a frame for people."""
+    rows = [
+        ("velocity [mm/s]", number(document["velocity_mm_s"])),
+        ("lowest to highest [mm/s]", between(document["velocity_low_mm_s"], document["velocity_high_mm_s"])),
+        *_single_periods(document),
+        ("status", document["status"] + _of_periods(document["period"])),
+        ("regime", regime_words(document["regime"])),
+        ("acceleration ratio A w2/g", number(document["acceleration_ratio"])),
+        ("throw number", _margin(document["throw_number"], document["margins"]["hop"])),
+    ]
+    for way, meaning in LIMITS.items():
+        limit, margin = document[f"mu_{way}"], document["margins"][way]
+        rows.append((f"friction that stops {meaning}", _margin(limit, margin)))
+    times = document["fractions"].items()
+    rows += [(f"time it {PHASE_WORDS[name]} [%]", number(100.0 * share)) for name, share in times]
+    rows += [
+        ("longest flight [periods]", number(document["longest_flight_periods"])),
+        ("hardest impact [mm/s]", number(document["hardest_impact_mm_s"])),
+        *(_change(name, pair) for name, pair in document["sensitivity"].items()),
+        _change("friction", document["friction_doubt"]),
+        *_bounced(document["restitution_doubt"]),
+        ("validity", document["validity"]),
+    ]
+    return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
+
+
+def remarks(document):
+    """Return what a reader of one operating point must not overlook.
+
+    Parameters
+    ----------
+    document : dict
+
+    Returns
+    -------
+    list of str
+    """
+    said = []
+    low, high = document["velocity_low_mm_s"], document["velocity_high_mm_s"]
+    if document["status"] == "no steady state":
+        return [NO_STEADY_STATE]
+    if document["runs_away"]:
+        said.append(RUNS_AWAY)
+    if document["status"] == "averaged":
+        said.append(
+            f"not periodic: an average; means over {steady.BLOCK} periods span {between(low, high)} mm/s, "
+            f"single periods {_slowest_to_fastest(document)}"
+        )
+    elif high - low > answer.COEXIST * abs(high):
+        said.append(
+            f"several steady velocities, {between(low, high)} mm/s, depending on how the part arrives"
+        )
+    return said
+
+
+def cells(study):
+    """Return the cells of a ConveyMap as a frame."""
+    columns = _in_mm_s(study.grid.columns())
+    for name in ("status", "several"):
+        columns.pop(name)
+    regime, throw_number = columns.pop("regime"), columns.pop("throw_number")
+    last = {"regime": regime, "throw_number": throw_number, "status": study.statuses.ravel()}
+    return tables.frame(columns | last)
+
+
+def points(study):
+    """Return the points of a ConveyCurve as a frame."""
+    found = _in_mm_s(study.cells)
+    return tables.frame(
+        {
+            **{axis.column: axis.shown for axis in study.axes},
+            **{column: found[column] for column in VELOCITIES.values()},
+            "regime": np.asarray(answer.REGIMES)[found["regime"]],
+            "throw_number": found["throw_number"],
+            "status": study.statuses,
+        }
+    )
+
+
+def map_remarks(study):
+    """Return how many cells of a ConveyMap have no steady velocity, no period or several velocities."""
+    return _remarks(study.statuses, study.grid.values["several"])
+
+
+def curve_remarks(study):
+    """Return the same of a ConveyCurve."""
+    return _remarks(study.statuses, study.several)
+
+
+def _remarks(status, several):
+    counts = {
+        "no steady state": (status == "no steady state").sum(),
+        "no period (averaged)": (status == "averaged").sum(),
+        "several velocities": several.sum(),
+    }
+    return [f"{count} of {status.size} cells: {what}" for what, count in counts.items() if count]
+
+
+def _in_mm_s(found):
+    return {VELOCITIES.get(name, name): a / MM_S if name in VELOCITIES else a for name, a in found.items()}
+
+
+def _changed(found, pair, change):
+    return {
+        "change_percent": 100.0 * change,
+        "velocity_less_mm_s": pair.less / MM_S,
+        "velocity_more_mm_s": pair.more / MM_S,
+        "percent_per_percent": pair.elasticity(found.velocity, change),
+    }
+
+
+def rebound(bowl, found):
+    """Return a document's entry on the spread of restitution.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    found : Neighbours or None
+        From ``sensitivity.restitution_doubt``; None where nothing is thrown up.
+
+    Returns
+    -------
+    dict or None
+    """
+    if found is None:
+        return None
+    low, high = sensitivity.rebounds(bowl)
+    return {
+        "restitution_low": low,
+        "restitution_high": high,
+        "velocity_less_mm_s": found.less / MM_S,
+        "velocity_more_mm_s": found.more / MM_S,
+    }
+
+
+def _bounced(found):
+    """A row of what the spread of restitution does, where the document has one."""
+    if found is None:
+        return []
+    ends = (number(found[f"restitution_{end}"]) for end in ("low", "high"))
+    speeds = (number(found[f"velocity_{end}_mm_s"]) for end in ("less", "more"))
+    return [(f"velocity for restitution {' / '.join(ends)} [mm/s]", " / ".join(speeds))]
+
+
+def _change(name, pair):
+    less, more = number(pair["velocity_less_mm_s"]), number(pair["velocity_more_mm_s"])
+    return f"velocity for {name} -/+ {pair['change_percent']:g} % [mm/s]", f"{less} / {more}"
+
+
+def _margin(limit, margin):
+    return "never holds" if np.isnan(limit) else f"{number(limit)} (margin {number(margin)})"
+
+
+def _single_periods(document):
+    """A row with the range over single periods, where they are not all alike."""
+    if document["period"] == 1 or document["status"] == "no steady state":
+        return []
+    return [("slowest to fastest period [mm/s]", _slowest_to_fastest(document))]
+
+
+def _slowest_to_fastest(document):
+    return between(*(document[f"velocity_{which}_period_mm_s"] for which in ("slowest", "fastest")))
+
+
+def _of_periods(period):
+    return f", every {period} periods" if period > 1 else ""
+
+
+def between(low, high):
+    """Return two numbers as a range for people."""
+    return f"{number(low)} to {number(high)}"
+
+
+def number(value):
+    """Return a number for people; NaN is none."""
+    return "none" if np.isnan(value) else f"{value:.4g}"
+
+
+def phase_document(found):
+    """Return a BestPhase for the JSON document."""
+    over = zip(found.frictions, found.best_over_friction, found.straight_over_friction)
+    return {
+        "phase_deg": float(np.degrees(found.phase)),
+        "velocity_mm_s": found.velocity / MM_S,
+        "straight_mm_s": found.straight / MM_S,
+        "gain": found.velocity / found.straight if found.straight > 0.0 else np.nan,
+        "nine_tenths_from_deg": float(np.degrees(found.lowest)),
+        "nine_tenths_to_deg": float(np.degrees(found.highest)),
+        "over_friction": [
+            {"friction": share, "velocity_mm_s": best / MM_S, "straight_mm_s": straight / MM_S}
+            for share, best, straight in over
+        ],
+    }
+
+
+def phase_summary(best):
+    """Return the best phase as a frame for people; ``best`` is of ``document``."""
+    low, high = best["nine_tenths_from_deg"], best["nine_tenths_to_deg"]
+    rows = [
+        ("best drive.phase [deg]", number(best["phase_deg"])),
+        ("velocity there [mm/s]", number(best["velocity_mm_s"])),
+        ("velocity of a straight drive [mm/s]", number(best["straight_mm_s"])),
+        ("times as fast", number(best["gain"])),
+        ("nine tenths of it at phases [deg]", between(low, high)),
+        *(
+            (
+                f"at {row['friction']:g} times the friction, best / straight [mm/s]",
+                f"{number(row['velocity_mm_s'])} / {number(row['straight_mm_s'])}",
+            )
+            for row in best["over_friction"]
+        ),
+    ]
+    return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
+
+
+def offers(study, settings):
+    """Offer the files of a ConveyStudy.
+
+    Parameters
+    ----------
+    study : ConveyStudy
+    settings : dict of str to str
+        The bowl's values in effect.
+
+    Returns
+    -------
+    list of Offer
+    """
+    return [
+        offer.document("convey.json", lambda: document(study) | {"bowl": settings}),
+        offer.picture("convey.png", "Plate and part over one steady cycle", _cycle, study),
+    ]
+
+
+def curve_offers(study):
+    """Offer the files of a ConveyCurve, as a list of Offer."""
+    name, alt = f"convey_{study.kind}", f"Velocity over {study.over}"
+    return [
+        offer.table(f"{name}.csv", points, study),
+        offer.picture(f"{name}.png", alt, _curve, study, alt),
+    ]
+
+
+def phase_offers(study, settings):
+    """Offer the files of a ConveyPhase, as a list of Offer; ``settings`` as for ``offers``."""
+    return [
+        offer.document(
+            "convey_phase.json", lambda: {"best_phase": phase_document(study.best), "bowl": settings}
+        ),
+        *curve_offers(study.curve),
+    ]
+
+
+def map_offers(study):
+    """Offer the files of a ConveyMap, as a list of Offer."""
+    names = " and ".join(one.key.name.rpartition(".")[2].replace("_", " ") for one in study.ranges)
+    return [
+        offer.table("convey_map.csv", cells, study),
+        offer.picture("convey_map.png", f"Velocity and regimes over {names}", _map, study),
+    ]
+
+
+def _cycle(study):
+    return cycle(study.trace(), study.bowl.drive.amplitude, study.answer)
+
+
+def _curve(study, title):
+    return curve(points(study), title)
+
+
+def _map(study):
+    line = None if study.line is None else on_axes(study.ranges, study.line)
+    return velocity_map(study.grid, line)
+
+
+PHASE_COLOURS = {"stick": "#5c6b78", "forward": "#009e73", "backward": "#d55e00", "flight": "#0072b2"}
+PLATE = "#aab4bd"
+PHASE_LINES = {"stick": "-", "forward": "-", "backward": "--", "flight": ":"}
+REGIMES = {  # colour and label; what a designer wants is the strongest
+    "stick": ("#eef2f5", "sticks"),
+    "forward": ("#79bfa4", "slips forward only"),
+    "backward": ("#e3a08a", "slips back only"),
+    "both": ("#f3dfae", "slips both ways"),
+    "hop": ("#c9dcea", "hops"),
+    "no steady state": ("#8c8c8c", "no steady state"),
+}
+FIRST_PEAK = 3.0  # [1] near here the velocity per stroke has its first peak, without rebound
+THROWS = {1.0: "hop", FIRST_PEAK: "first peak", round(throw_of_flight(1.0), 4): "one period"}
+HATCH = "////"
+LEAST = 1e-9  # [mm/s] a scale of velocities is at least this wide
+NOWHERE = "no steady velocity anywhere"
+WAY = "[mm]"
+
+
+def cycle(trace, amplitude, found):
+    """Draw plate and part over one steady cycle, along the track and along its normal.
+
+    Parameters
+    ----------
+    trace : CycleTrace
+    amplitude : float [m]
+    found : Answer
+        To the same setting.
+
+    Returns
+    -------
+    Figure
+    """
+    figure = style.figure(6.4, 5.2)
+    top, bottom = figure.subplots(2, 1, sharex=True)
+    style.tidy(top, title=cycle_title(trace, found), y=f"along the track {WAY}")
+    style.tidy(bottom, x="time [periods of the drive]", y=f"along its normal {WAY}")
+    scale = amplitude * 1e3
+    for axes, plate, part in (
+        (top, trace.plate_along, trace.part_along),
+        (bottom, trace.plate_normal, trace.part_normal),
+    ):
+        axes.plot(trace.time, plate * scale, color=PLATE, linewidth=2.6, label="plate")
+        _by_phase(axes, trace, part * scale)
+    top.legend(fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), labelcolor=style.INK)
+    return figure
+
+
+def cycle_title(trace, found):
+    """Return what of a motion a trace shows, and how fast it is."""
+    shown, velocity = round(trace.time[-1]), f"{found.velocity * 1e3:.4g} mm/s"
+    if found.status == "no steady state":
+        return f"No steady state: {shown} periods of a slide that does not stop"
+    if found.status == "averaged":
+        return f"{shown} periods of a motion that does not repeat: {velocity} on average"
+    if shown < found.period:
+        return f"{shown} of the {found.period} periods of a steady cycle: {velocity}"
+    return f"One steady cycle: {velocity}" if shown == found.period else f"Steady motion: {velocity}"
+
+
+def velocity_map(grid, curve=None):
+    """Draw velocity and regimes over two keys of the bowl.
+
+    Parameters
+    ----------
+    grid : Grid
+        Of a ConveyMap.
+    curve : two (N,) float, optional
+        The operating points of one bowl over its radius, in the units of the axes.
+
+    Returns
+    -------
+    Figure
+        Hatched where several velocities coexist.
+    """
+    figure = style.figure(11.0, 4.6)
+    left, right = figure.subplots(1, 2, sharey=True)
+    _velocity(figure, left, grid)
+    _regimes(right, grid)
+    for axes in (left, right):
+        _throws(axes, grid)
+        if curve is not None:
+            axes.plot(*curve, color=style.ACCENT, linewidth=2.0)
+            axes.plot(curve[0][-1], curve[1][-1], "o", color=style.ACCENT, markersize=5)
+            axes.set(xlim=_ends(grid.first), ylim=_ends(grid.second))
+    return figure
+
+
+def curve(frame, title):
+    """Draw velocity over the first column, with its range where several coexist.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of ``tables.points``.
+    title : str
+
+    Returns
+    -------
+    Figure
+    """
+    figure = style.figure()
+    column = next(iter(frame))
+    label = " ".join(heading(column))
+    axes = style.tidy(figure.add_subplot(), title=title, x=label, y="velocity [mm/s]")
+    low, high = frame["velocity_low_mm_s"], frame["velocity_high_mm_s"]
+    if (high > low).any():
+        axes.fill_between(frame[column], low, high, color=PLATE, alpha=0.6, linewidth=0, label="all starts")
+    axes.plot(frame[column], frame["velocity_mm_s"], color=style.ACCENT, label="from rest")
+    axes.legend(fontsize=8, frameon=False, labelcolor=style.INK)
+    return figure
+
+
+def on_axes(spans, bowl):
+    """Return operating points of a bowl in the units of a map's axes.
+
+    Parameters
+    ----------
+    spans : two KeyRange
+    bowl : Bowl
+        One operating point, or arrays of them as of ``radius.at_radius``.
+
+    Returns
+    -------
+    two (N,) float, or None
+        None where the axes are not vibration angle and stroke.
+    """
+    values = {"drive.vibration_angle": bowl.drive.vibration_angle, "drive.amplitude": bowl.drive.amplitude}
+    if {span.key.field for span in spans} != set(values):
+        return None
+    return tuple(np.atleast_1d(values[span.key.field]) / span.key.share / _unit(span.key) for span in spans)
+
+
+def _unit(key):
+    return factor(key.unit, key.dimension)
+
+
+def _by_phase(axes, trace, way):
+    """The part's line, each phase in its colour; drawn once a phase, with gaps."""
+    for place, name in enumerate(PHASES):
+        inside = trace.phase == place
+        if inside.any():
+            shown = np.where(inside, way, np.nan)
+            look = {"color": PHASE_COLOURS[name], "linestyle": PHASE_LINES[name], "linewidth": 1.6}
+            axes.plot(trace.time, shown, label=f"part {PHASE_WORDS[name]}", **look)
+
+
+def _velocity(figure, axes, grid):
+    style.tidy(axes, title="Velocity [mm/s], from rest", grid="none")
+    axes.set(xlabel=_label(grid.first), ylabel=_label(grid.second))
+    velocity = grid.values["velocity"].T / MM_S
+    known = velocity[np.isfinite(velocity)]
+    lowest, highest = known.min(initial=0.0), known.max(initial=LEAST)
+    largest = max(highest, -lowest)
+    shades = matplotlib.colormaps["PuOr_r"].with_extremes(bad="#8c8c8c")
+    norm = mpl_colors.TwoSlopeNorm(0.0, -largest, largest)
+    x, y = grid.first.shown, grid.second.shown
+    mesh = axes.pcolormesh(x, y, velocity, cmap=shades, norm=norm, shading="nearest", rasterized=True)
+    if not known.size:
+        axes.text(0.97, 0.93, NOWHERE, transform=axes.transAxes, ha="right", color="white")
+        return
+    bar = figure.colorbar(mesh, ax=axes, fraction=0.05, pad=0.02).ax
+    bar.tick_params(labelsize=8)
+    bar.set_ylim(lowest, highest)
+    if known.min() < 0.0 < known.max():
+        axes.contour(x, y, velocity, [0.0], colors=style.INK, linewidths=1.2)
+        style.tidy(axes, title="Velocity [mm/s], from rest; line: 0", grid="none")  # a legend hides cells
+        axes.set(xlabel=_label(grid.first), ylabel=_label(grid.second))
+    several = grid.values["several"].T.astype(float)
+    if several.any():
+        with matplotlib.rc_context({"hatch.linewidth": 0.5}):
+            axes.contourf(x, y, several, [0.5, 1.5], colors="none", hatches=[HATCH])
+
+
+def _regimes(axes, grid):
+    style.tidy(axes, title="Regimes", x=_label(grid.first), grid="none")
+    colours = mpl_colors.ListedColormap([REGIMES[name][0] for name in grid.names])
+    axes.pcolormesh(
+        *(grid.first.shown, grid.second.shown, grid.codes.T),
+        **{"cmap": colours, "vmin": -0.5, "vmax": len(grid.names) - 0.5, "shading": "nearest"},
+    )
+    present = [name for code, name in enumerate(grid.names) if (grid.codes == code).any()]
+    handles = [mpl_patches.Patch(facecolor=REGIMES[name][0], label=REGIMES[name][1]) for name in present]
+    if grid.values["several"].any():
+        handles.append(
+            mpl_patches.Patch(fill=False, linewidth=0, hatch=HATCH, label="several velocities (left)")
+        )
+    axes.legend(
+        handles=handles,
+        fontsize=8,
+        frameon=False,
+        loc="upper left",
+        bbox_to_anchor=(1.0, 1.0),
+        labelcolor=style.INK,
+    )
+
+
+def _throws(axes, grid):
+    """Lines of equal throw number: the hop, the first peak of the velocity, a flight of one period."""
+    throw = grid.values["throw_number"].T
+    levels = [level for level in sorted(THROWS) if throw.min() < level < throw.max()]
+    if levels:
+        x, y = grid.first.shown, grid.second.shown
+        lines = axes.contour(x, y, throw, levels, colors=style.INK, linewidths=0.8, linestyles="--")
+        texts = axes.clabel(lines, fmt=lambda level: f"k = {level:.2g} ({_throw_name(level)})", fontsize=7)
+        for text in texts:
+            text.set_path_effects(style.halo())
+
+
+def _throw_name(level):
+    return THROWS[min(THROWS, key=lambda known: abs(known - level))]
+
+
+def _label(axis):
+    return " ".join(heading(axis.column))
+
+
+def _ends(axis):
+    return axis.shown[0], axis.shown[-1]

@@ -1,1 +1,0 @@
-"""A design of a bowl as document, table, bowl file, page and acceptance sheet."""

@@ -1,0 +1,217 @@
+"""Files of ``feeder headings``."""
+
+import numpy as np
+
+from feederscrew.geometry.polygons import turned
+from feederscrew.output import offers as offer
+from feederscrew.output import style, tables
+from feederscrew.output.floor import CONTACT, PART
+from feederscrew.output.heavy import heavy
+from feederscrew.part.smallness import small_part_remarks
+from feederscrew.units import MM
+
+mpl_patches = heavy("matplotlib.patches")
+mpl_ticker = heavy("matplotlib.ticker")
+shading = heavy("feederscrew.output.shading")
+
+HIDDEN = ("contact_1_x_mm", "contact_1_y_mm", "contact_2_x_mm", "contact_2_y_mm")
+SPARE = (
+    ("straight_wall_share",),
+    ("half_turn_of_deg", "mirror_of_deg"),
+)  # left out of a table that is too wide
+
+
+def rows(study):
+    """Return every stable heading of a HeadingsStudy, one a dict, under the columns of ``headings.csv``."""
+    return [_row(one, row, study.chances) for one in study.headings for row in range(len(one.headings))]
+
+
+def frame(study):
+    """Return the rows of a HeadingsStudy as a frame."""
+    found = rows(study)
+    return tables.frame({name: [row[name] for row in found] for name in found[0]})
+
+
+def document(study, settings):
+    """Return a HeadingsStudy as the JSON document.
+
+    Parameters
+    ----------
+    study : HeadingsStudy
+    settings : dict of str to str
+        The bowl's values in effect.
+
+    Returns
+    -------
+    dict
+    """
+    return {
+        "part": study.part.name,
+        "answer": study.answer,
+        "headings": rows(study),
+        "bowl": settings,
+    }
+
+
+def answer(study):
+    """Say whose probabilities of the aspects a HeadingsStudy takes."""
+    return f"Aspect share: {study.answer}"
+
+
+def remarks(study):
+    """Return what a reader of a HeadingsStudy should know, a sentence each."""
+    lines, width = list(small_part_remarks(study.part, {}, study.track.width)), study.track.width / MM
+    for one in study.headings:
+        if one.rounded:
+            lines.append(f"aspect {one.aspect} is round in plan: it takes any heading")
+        if one.falls_off.all():
+            lines.append(f"aspect {one.aspect} falls off the track of {width:.4g} mm in every heading")
+    return lines
+
+
+def _row(one, row, chances):
+    degrees = np.degrees(one.headings)
+    return {
+        "aspect": one.aspect,
+        "heading_deg": float(degrees[row]),
+        "share": float(one.shares[row]),
+        "straight_wall_share": float(one.straight_shares[row]),
+        "aspect_share": chances.get(one.aspect, np.nan) * float(one.shares[row]),
+        "length_mm": float(one.lengths[row]) / MM,
+        "width_mm": float(one.widths[row]) / MM,
+        "overhang_mm": float(one.overhangs[row]) / MM,
+        "falls_off": bool(one.falls_off[row]),
+        "half_turn_of_deg": _partner(degrees, one.half_turns[row]),
+        "mirror_of_deg": _partner(degrees, one.mirrors[row]),
+        **{
+            f"contact_{k + 1}_{axis}_mm": float(one.touching[row, k, i]) / MM
+            for k in (0, 1)
+            for i, axis in enumerate("xy")
+        },
+    }
+
+
+def _partner(degrees, place):
+    return float(degrees[place]) if place >= 0 else np.nan
+
+
+COLUMNS = 4
+MOST = 16  # headings of one picture, the most frequent
+WALL, FALLS = "#5d6b78", "#b5482a"
+SIDE = 2.5  # [in] of one picture
+NARROWEST = 0.4  # half a picture's width, over its height above the foot
+TICKS = 4  # steps of an axis, at most: their numbers stand apart in it
+
+
+def headings(posture, found, track, title):
+    """Draw the part in each stable heading, the wall below, the track's free edge dashed.
+
+    Parameters
+    ----------
+    posture : Posture
+    found : Headings
+        Of that posture.
+    track : Track
+    title : str
+
+    Returns
+    -------
+    Figure
+    """
+    count = min(len(found.headings), MOST)
+    columns = min(COLUMNS, count)
+    lines = -(-count // columns)
+    figure = style.figure(max(columns * SIDE, 2 * SIDE), lines * SIDE + 0.6)
+    every = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True).ravel()
+    figure.suptitle(title, x=0.01, ha="left", fontsize=10.5, color=style.INK, fontweight="bold")
+    size = np.linalg.norm(posture.outline, axis=1).max()
+    for row, axes in enumerate(every[:count]):
+        _one(axes, posture, found, row, track, size)
+    for axes in every[count:]:
+        axes.set_visible(False)
+    figure.supxlabel("along the track [mm]", fontsize=9, color=style.INK)
+    figure.supylabel("away from the wall [mm]", fontsize=9, color=style.INK)
+    return figure
+
+
+def _one(axes, posture, found, row, track, size):
+    heading, falls = found.headings[row], found.falls_off[row]
+    style.tidy(axes, grid="none")
+    axes.set_title(_caption(found, row), fontsize=8, color=FALLS if falls else style.INK, loc="center")
+    _track(axes, found.distances[row], track, size)
+    outline, contact = turned(posture.outline, heading) / MM, turned(posture.contact, heading) / MM
+    edge = FALLS if falls else style.INK
+    axes.add_patch(
+        mpl_patches.Polygon(outline, closed=True, facecolor=PART, edgecolor=edge, linewidth=1.4, zorder=2)
+    )
+    axes.add_patch(
+        mpl_patches.Polygon(contact, closed=True, facecolor=CONTACT, edgecolor=CONTACT, alpha=0.25, zorder=3)
+    )
+    axes.plot(*(found.touching[row] / MM).T, "o", color=style.ACCENT, markersize=5, zorder=5)
+    end = 0.6 * size / MM * np.array([np.cos(heading), np.sin(heading)])
+    axes.annotate(
+        "",
+        end,
+        (0, 0),
+        arrowprops={"arrowstyle": "-|>", "color": style.INK, "linewidth": 1.0, "shrinkA": 0},
+        zorder=4,
+    )
+    shading.centre_of_mass(axes, 0.05 * size / MM)
+    reach = 1.15 * size / MM
+    top = max(reach, (track.width - size) / MM * 1.05)
+    wide = max(reach, NARROWEST * top)  # beside a wide track a small part has few numbers below it
+    axes.set(xlim=(-wide, wide), ylim=(-1.3 * size / MM, top))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(mpl_ticker.MaxNLocator(TICKS))
+    axes.set_aspect("equal")
+
+
+def _caption(found, row):
+    text = f"{np.degrees(found.headings[row]):.4g}°   {100.0 * found.shares[row]:.1f} %"
+    size = f"{found.lengths[row] / MM:.4g} long, {found.widths[row] / MM:.4g} wide [mm]"
+    note = "falls off" if found.falls_off[row] else "overhangs" if found.overhangs[row] > 0.0 else "stays on"
+    return f"{text}\n{size}\n{note}"
+
+
+def _track(axes, distance, track, size):
+    """The wall and the free edge, concentric."""
+    reach = np.linspace(-1.2, 1.2, 81) * max(size, NARROWEST * track.width) / track.radius
+    for radius, dashes in ((track.radius, "-"), (track.radius - track.width, (0, (5, 3)))):
+        x, y = radius * np.sin(reach), track.radius - distance - radius * np.cos(reach)
+        axes.plot(
+            x / MM, y / MM, color=WALL, linewidth=2.2 if dashes == "-" else 1.0, linestyle=dashes, zorder=1
+        )
+        if dashes == "-":
+            axes.fill_between(x / MM, y / MM, y / MM - 0.12 * size / MM, color=WALL, alpha=0.35, linewidth=0)
+
+
+def offers(study, settings):
+    """Offer the files of a HeadingsStudy.
+
+    Parameters
+    ----------
+    study : HeadingsStudy
+    settings : dict of str to str
+        The bowl's values in effect.
+
+    Returns
+    -------
+    list of Offer
+    """
+    return [
+        offer.document("headings.json", document, study, settings),
+        offer.table("headings.csv", frame, study),
+        *(
+            offer.picture(
+                f"headings_{one.name}.png", f"Stable headings of aspect {one.name} from above",
+                _draw, study, place,
+            )
+            for place, one in enumerate(study.postures)
+        ),
+    ]  # fmt: skip
+
+
+def _draw(study, place):
+    posture = study.postures[place]
+    title = f"{study.part.name}, aspect {posture.name}: heading, share"
+    return headings(posture, study.headings[place], study.track, title)

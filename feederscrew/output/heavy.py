@@ -1,0 +1,27 @@
+"""Libraries and modules that take long to import: they are loaded by the picture that needs them first."""
+
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+
+class _Heavy(ModuleType):
+    """Stands for a module, which its first attribute imports."""
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(import_module(self.__name__), name)
+
+
+def heavy(name: str) -> Any:
+    """Return what stands for a module until something of it is needed.
+
+    Parameters
+    ----------
+    name : str
+        Dotted: 'matplotlib.patches'.
+
+    Returns
+    -------
+    ModuleType
+    """
+    return _Heavy(name)

@@ -1,0 +1,387 @@
+"""Files of ``feeder drop --plate``."""
+
+import numpy as np
+
+from feederscrew.dropping.plate.occupancy import FEW
+from feederscrew.output import offers as offer
+from feederscrew.output import style, tables
+from feederscrew.output.heavy import heavy
+from feederscrew.resting.rules import registry
+from feederscrew.units import MM, MM_S, counted
+
+matplotlib = heavy("matplotlib")
+
+SURFACE = ("restitution", "friction")  # of a launch: the plate's own
+HIDDEN = ("velocity_low_mm_s", "velocity_high_mm_s")  # in a table for people
+TIMES = 101  # rows an aspect in the course over time, at most
+
+
+def plates(study):
+    """Return how often parts lie on each aspect of each plate, and how fast they travel there.
+
+    Parameters
+    ----------
+    study : PlateStudy
+
+    Returns
+    -------
+    Frame
+        The columns of ``plate.csv``, one row a plate and aspect.
+    """
+    return _labelled(study, _plate)
+
+
+def spare(frame):
+    """Return groups of columns to leave out of a table for people that is too wide; empty ones go first."""
+    limit = ("p_limit", "p_limit_low", "p_limit_high")
+    groups = [limit, ("height_mm",), ("throw_number",), ("p_start",)]
+    return groups if np.isnan(frame["p_limit"]).all() else groups[1:] + groups[:1]
+
+
+def rates(study):
+    """Return the transitions seen and their rate, one row a plate and pair of aspects: ``plate_rates.csv``.
+
+    A row whose two aspects are the same counts tips onto an equal face.
+    """
+    return _labelled(study, _rates)
+
+
+def course(study):
+    """Return the share of the parts on each aspect over time: ``plate_time.csv``."""
+    return _labelled(study, _course)
+
+
+def drives(study):
+    """Return how fast parts travel on each plate, and how much was seen: ``plate_drives.csv``."""
+    return _labelled(study, _drive)
+
+
+def summary(study):
+    """Yield how fast parts travel on each plate, a line each."""
+    for plate, name in zip(study.plates, study.names):
+        yield f"{_where(plate, name)}: {travels(plate, 4)}, {plate.transitions} transitions seen"
+
+
+def travels(result, digits):
+    """Return the mean velocity on one plate and, of several parts, its interval."""
+    speed, low, high = (f"{end:.{digits}g}" for end in result.occupancy.velocity / MM_S)
+    return f"travels at {speed} mm/s" + f" ({low} to {high})" * (result.parts > 1)
+
+
+def document(study):
+    """Return the test as one JSON document.
+
+    Parameters
+    ----------
+    study : PlateStudy
+
+    Returns
+    -------
+    dict
+    """
+    return {
+        "part": study.part.name,
+        "seed": study.seed,
+        "launch": {name: value for name, value in study.plates[0].launch.items() if name not in SURFACE},
+        "partial": study.partial,
+        "plates": [_plate_document(study.aspects, *pair) for pair in zip(study.plates, study.names)],
+    }
+
+
+def remarks(study):
+    """Return what a user must know of a test, a line each."""
+    listed = []
+    for plate, name in zip(study.plates, study.names):
+        where = _where(plate, name)
+        if changing := _changing(study.aspects, plate):
+            listed.append(
+                f"{where}: the share of {', '.join(changing)} still changes; give a longer `seconds`"
+            )
+        if plate.unsettled:
+            listed.append(f"{where}: {plate.unsettled} of {plate.parts} parts lay on no aspect to the end")
+        if plate.lost:
+            listed.append(f"{where}: {counted(plate.lost, 'part')} could not be followed, not counted")
+        if 0 < plate.transitions < FEW:
+            few = f"too few transitions ({plate.transitions}) for p_limit"
+            listed.append(f"{where}: {few}; give more `drops` or `seconds`")
+    if study.partial:
+        listed.append(f"partial: stopped after {counted(plate.parts, 'part')} on the plate of {where}")
+    return listed
+
+
+def notes(bowls):
+    """Return what is simplified in a bowl's plate, a line each."""
+    if any(bowl.friction.kinetic < bowl.friction.static for bowl in bowls):
+        yield "the plate has one coefficient of friction: the kinetic one, for sticking too"
+    if any(bowl.friction.backward != (bowl.friction.static, bowl.friction.kinetic) for bowl in bowls):
+        yield "the plate has the same friction in every direction: that of slip up the track"
+
+
+def _where(result, name):
+    return f"{name} at {result.bowl.drive.amplitude / MM:.4g} mm"
+
+
+def _changing(aspects, plate):
+    """Aspects whose share still changes."""
+    return [name for name, changing in zip(aspects.names, plate.occupancy.changing) if changing]
+
+
+def _labelled(study, columns):
+    """The columns of all plates as a table; once the user stopped, which plate is not whole."""
+    parts = [columns(study.aspects, *pair) for pair in zip(study.plates, study.names)]
+    joined = {name: np.concatenate([np.asarray(part[name]) for part in parts]) for name in parts[0]}
+    if study.partial:
+        lengths = [len(part["bowl"]) for part in parts]
+        joined["partial"] = np.repeat([plate.partial for plate in study.plates], lengths)
+    return tables.frame(joined)
+
+
+def _head(result, name, count):
+    """The columns that say which plate a row is of."""
+    drive = result.bowl.drive
+    values = {"bowl": name, "amplitude_mm": drive.amplitude / MM, "throw_number": result.throw_number}
+    return {key: [value] * count for key, value in values.items()}
+
+
+def _drive(aspects, result, name):
+    ends = ("velocity_mm_s", "velocity_low_mm_s", "velocity_high_mm_s")
+    return {
+        **_head(result, name, 1),
+        "drops": [result.parts],
+        "seconds": [result.seconds],
+        "unsettled": [result.unsettled],
+        "transitions": [result.transitions],
+        "steady": ["no" if result.occupancy.changing.any() else "yes"],
+        **{end: [result.occupancy.velocity[k] / MM_S] for k, end in enumerate(ends)},
+    }
+
+
+def _plate(aspects, result, name):
+    seen = result.occupancy
+    return {
+        **_head(result, name, len(aspects.names)),
+        "aspect": aspects.names,
+        "height_mm": aspects.heights / MM,
+        "p_start": seen.start,
+        "p_plate": seen.plate,
+        "p_plate_low": seen.plate_low,
+        "p_plate_high": seen.plate_high,
+        "p_limit": seen.limit,
+        "p_limit_low": seen.limit_low,
+        "p_limit_high": seen.limit_high,
+        **{
+            f"velocity{end}_mm_s": seen.velocities[:, k] / MM_S for k, end in enumerate(("", "_low", "_high"))
+        },
+    }
+
+
+def _rates(aspects, result, name):
+    seen, names = result.occupancy, np.array(aspects.names)
+    before, after = np.nonzero(np.ones(seen.counts.shape, bool) & (seen.times > 0.0)[:, None])
+    return {
+        **_head(result, name, len(before)),
+        "from": names[before],
+        "to": names[after],
+        "count": seen.counts[before, after],
+        "rate_per_s": seen.rates[before, after],
+        "rate_low_per_s": seen.rates_low[before, after],
+        "rate_high_per_s": seen.rates_high[before, after],
+    }
+
+
+def _course(aspects, result, name):
+    shares = result.occupancy.course
+    looks = np.unique(np.linspace(0, len(shares) - 1, TIMES).astype(int))
+    time = looks * result.seconds / (len(shares) - 1)
+    return {
+        **_head(result, name, len(looks) * len(aspects.names)),
+        "time_s": np.repeat(time, len(aspects.names)),
+        "aspect": np.tile(aspects.names, len(looks)),
+        "p": shares[looks].ravel(),
+    }
+
+
+def _plate_document(aspects, result, name):
+    """One plate of the document."""
+    drive, seen = result.bowl.drive, result.occupancy
+    velocity = dict(zip(("velocity_mm_s", "velocity_low_mm_s", "velocity_high_mm_s"), seen.velocity / MM_S))
+    head = ("bowl", "amplitude_mm", "throw_number")
+    return {
+        "bowl": name,
+        "amplitude_mm": drive.amplitude / MM,
+        "frequency_Hz": drive.frequency,
+        "vibration_angle_deg": float(np.degrees(drive.vibration_angle)),
+        "throw_number": result.throw_number,
+        **{name: result.launch[name] for name in SURFACE},
+        "drops": result.parts,
+        "lost": result.lost,
+        "unsettled": result.unsettled,
+        "seconds": result.seconds,
+        "steady": not seen.changing.any(),
+        "changing": _changing(aspects, result),
+        "transitions_seen": result.transitions,
+        **velocity,
+        "aspects": tables.frame({k: v for k, v in _plate(aspects, result, name).items() if k not in head}),
+        "rates": tables.frame({k: v for k, v in _rates(aspects, result, name).items() if k not in head}),
+    }
+
+
+COLOURS = [rule.colour for rule in registry.RULES] + list(style.SPARE)
+LABELLED = 0.02  # share of the parts from which an aspect carries its name, or a line in a trend
+APART = 0.012  # of the range of throw numbers: from one aspect's points to the next one's
+GREY = "#aab4bd"
+
+
+def plate_figure(study):
+    """Draw shares over time on one plate, and beside them how parts lay at first, later and in the end.
+
+    Parameters
+    ----------
+    study : PlateStudy
+        Its first plate is drawn.
+
+    Returns
+    -------
+    Figure
+    """
+    aspects, result = study.aspects, study.plates[0]
+    title = f"{study.part.name}: {counted(result.parts, 'part')}, throw number {result.throw_number:.3g}"
+    figure = style.figure(8.2, 3.8)
+    left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
+    style.tidy(left, title=title, x="time on the plate [s]", y="parts [%]", grid="y")
+    style.tidy(
+        right, title=travels(result, 3) + ", partial" * result.partial, x="aspect", y="share [%]", grid="y"
+    )
+    over_time(left, aspects, result)
+    shares(right, aspects, result.occupancy)
+    right.legend(fontsize=8, frameon=False, loc="upper right", labelcolor=style.INK)
+    return figure
+
+
+def over_time(axes, aspects, result):
+    """Draw the stacked share of each aspect at every look; what is white above was not down yet."""
+    course = 100.0 * result.occupancy.course
+    time = np.linspace(0.0, result.seconds, len(course))
+    axes.stackplot(time, course.T, colors=[colour(k) for k in range(course.shape[1])], alpha=0.85, lw=0.0)
+    middle = np.cumsum(course, axis=1) - 0.5 * course
+    for k, name in enumerate(aspects.names):
+        if course[-1, k] > 100.0 * LABELLED:
+            axes.annotate(
+                name, (time[-1], middle[-1, k]), (4, 0), textcoords="offset points", va="center",
+                fontsize=8, color=style.INK, annotation_clip=False,
+            )  # fmt: skip
+    axes.set_xlim(0.0, time[-1])
+    axes.set_ylim(0.0, 100.0)
+
+
+def shares(axes, aspects, seen):
+    """Draw how parts lay at first and in the second half, with its interval, and where the rates lead."""
+    places = np.arange(len(aspects.names))
+    axes.bar(places - 0.2, 100.0 * seen.start, 0.36, color=GREY, label="at first")
+    axes.bar(places + 0.2, 100.0 * seen.plate, 0.36, color=style.INK, alpha=0.8, label="second half")
+    error = 100.0 * np.stack([seen.plate - seen.plate_low, seen.plate_high - seen.plate])
+    axes.errorbar(places + 0.2, 100.0 * seen.plate, error, fmt="none", ecolor=style.INK, capsize=3, lw=1.0)
+    spread = 100.0 * np.stack([seen.limit - seen.limit_low, seen.limit_high - seen.limit])
+    axes.errorbar(
+        places + 0.3, 100.0 * seen.limit, spread, fmt="_", ms=9, mew=2, color=style.ACCENT, capsize=3, lw=1.0,
+        label=None if np.isnan(seen.limit).all() else "where the rates lead",
+    )  # fmt: skip
+    style.named_ticks(axes, places, aspects.names)
+    axes.tick_params(axis="x", length=0)
+
+
+def trend(study):
+    """Draw shares and velocity over the throw number, a line an aspect.
+
+    Parameters
+    ----------
+    study : PlateStudy
+
+    Returns
+    -------
+    Figure
+    """
+    aspects = study.aspects
+    title = f"{study.part.name} on {len(study.plates)} plates" + ", partial" * study.plates[-1].partial
+    figure = style.figure(8.2, 3.8)
+    left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
+    style.tidy(left, title=title, x="throw number", y="share in the second half [%]")
+    style.tidy(right, title="Transport", x="throw number", y="velocity [mm/s]")
+    order = np.argsort([result.throw_number for result in study.plates], kind="stable")
+    results, names = [study.plates[k] for k in order], [study.names[k] for k in order]
+    x = np.array([result.throw_number for result in results])
+    seen = [result.occupancy for result in results]
+    shown = [k for k in range(len(aspects.names)) if max(one.plate[k] for one in seen) > LABELLED]
+    over_throw(left, x, seen, {k: aspects.names[k] for k in shown})
+    velocity = np.array([one.velocity for one in seen]) / MM_S
+    ends = np.abs(velocity[:, 1:] - velocity[:, :1]).T
+    right.errorbar(x, velocity[:, 0], ends, color=style.INK, marker="o", ms=4, capsize=2)
+    named(right, x, results, names)
+    figure.legend(
+        *left.get_legend_handles_labels(), loc="outside lower center", ncols=12, fontsize=8, frameon=False,
+        labelcolor=style.INK, title="dotted: at first" + _left_out(aspects, shown), title_fontsize=8,
+    )  # fmt: skip
+    return figure
+
+
+def over_throw(axes, x, seen, names):
+    """Draw the share of each named aspect over the (N,) throw numbers ``x``, set a little apart."""
+    for place, (k, name) in enumerate(names.items()):
+        at = x + APART * np.ptp(x) * (place - 0.5 * (len(names) - 1))
+        middle, low, high = (
+            100.0 * np.array([getattr(one, end)[k] for one in seen])
+            for end in ("plate", "plate_low", "plate_high")
+        )
+        spread = [middle - low, high - middle]
+        axes.errorbar(at, middle, spread, color=colour(k), marker="o", ms=4, capsize=2, label=name)
+        axes.plot(at, [100.0 * one.start[k] for one in seen], ls=":", lw=1.0, color=colour(k))
+
+
+def _left_out(aspects, shown):
+    """What the picture does not show, as a clause."""
+    count = len(aspects.names) - len(shown)
+    return f"; {count} aspects never above {100.0 * LABELLED:g} % left out" if count else ""
+
+
+def named(axes, x, results, names):
+    """Draw the stroke of each plate over its point, and the bowl's name where there are several."""
+    several = len(set(names)) > 1
+    for at, result, name in zip(x, results, names):
+        stroke = f"{result.bowl.drive.amplitude / MM:.3g} mm"
+        axes.annotate(
+            f"{name} {stroke}" if several else stroke,
+            (at, np.nanmax(result.occupancy.velocity) / MM_S), (0, 4), textcoords="offset points",
+            ha="center", fontsize=7, color=style.INK,
+        )  # fmt: skip
+    axes.margins(x=0.2, y=0.15)
+
+
+def colour(k):
+    """Return the colour of the k-th aspect; further ones run through a map."""
+    return COLOURS[k] if k < len(COLOURS) else matplotlib.colormaps["viridis"]((0.37 * k) % 1.0)
+
+
+def offers(study):
+    """Offer the tables of a dynamic bowl test, its document and its chart.
+
+    Parameters
+    ----------
+    study : PlateStudy
+
+    Returns
+    -------
+    list of Offer
+    """
+    return [
+        offer.table("plate.csv", plates, study),
+        offer.table("plate_rates.csv", rates, study),
+        offer.table("plate_time.csv", course, study),
+        offer.table("plate_drives.csv", drives, study),
+        offer.document("plate.json", document, study),
+        offer.picture("plate.png", "Shares of the aspects on the plate", _plate_picture, study),
+    ]
+
+
+def _plate_picture(study):
+    """Over time on one plate, over the throw number on several."""
+    return plate_figure(study) if len(study.plates) == 1 else trend(study)

@@ -1,0 +1,249 @@
+"""Files of ``feeder rate``."""
+
+import numpy as np
+
+from feederscrew import units
+from feederscrew.output import columns, tables
+from feederscrew.output import offers as offer
+from feederscrew.rates.tipping import remark
+from feederscrew.rates.well_oriented import entering
+from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
+
+SCARCE = 0.25  # share of the parts at the entry that stay on the track, below which it is said
+
+
+def document(study):
+    """Return a RateStudy as the JSON document: the part, the rate and every factor of its chain."""
+    found, rule = study.rate, study.rule
+    known, row = found.orientations, found.row
+    return {
+        **columns.part(
+            study.part, (*study.aspects.warnings, *study.of_size, *stopping(study), *spaced(study))
+        ),
+        **_range("parts_per_minute", found.parts, PER_MINUTE),
+        "aspect": known.aspects[row],
+        "heading_deg": known.headings[row] / DEG,
+        **_range("offered_per_minute", found.offered, PER_MINUTE),
+        "efficiency": found.efficiency,
+        "purity": found.purity,
+        **_range("velocity_mm_s", found.velocity, MM_S),
+        "length_mm": known.lengths[row] / MM,
+        "gap_mm": found.gap / MM,
+        "pitch_mm": found.pitch / MM,
+        "rule": rule,
+        "answer": study.answer,
+        **_range("p_orientation", found.probability, 1.0),
+        "p_aspect": found.probability.value / known.heading_shares[row],
+        "p_heading": known.heading_shares[row],
+        "passes_devices": found.through,
+        "fill": found.fill,
+        "well_oriented_of_leaving": found.purity,
+        "jams_per_hour": 3600.0 * found.jams,
+        "clearing_s": found.clearing,
+        "quasi_static": [device.kind for device in study.devices if device.turns],
+        "rolls_back": [one.name for one in known.lying if one.may_roll_back],
+        "orientations": orientations(known, rule),
+    }
+
+
+def orientations(known, rule):
+    """Return what each station does with each orientation, as a frame: the matrix of the chain.
+
+    Parameters
+    ----------
+    known : Orientations
+    rule : str
+    """
+    stations = dict(zip(known.names, known.passes.T))
+    return tables.frame(
+        {
+            "aspect": known.aspects,
+            "heading_deg": known.headings / DEG,
+            "length_mm": known.lengths / MM,
+            "width_mm": known.widths / MM,
+            f"p_{rule}": known.rules[rule],
+            "margin_mm": known.margin / MM,
+            "fate": known.fates,
+            "leaves_as": [_becomes(known, row) for row in range(len(known.aspects))],
+            **stations,
+            "passes": known.through,
+        }
+    )
+
+
+def _becomes(known, row):
+    """Name of the state in which most of an orientation leaves; None where it is returned."""
+    return known.states[int(known.leaving[row].argmax())].name if known.leaving[row].any() else None
+
+
+def summary(document):
+    """Return the document as a frame for people: the chain from velocity to rate."""
+    d = document
+    rows = [
+        ("correctly oriented parts per minute", _with_range(d, "parts_per_minute")),
+        *_both(d),
+        ("aspect and heading", f"{d['aspect']} at {d['heading_deg']:.4g} deg"),
+        ("velocity [mm/s]", _with_range(d, "velocity_mm_s")),
+        ("parts offered per minute", _with_range(d, "offered_per_minute")),
+        ("efficiency, correctly oriented of what is offered [%]", f"{100.0 * d['efficiency']:.4g}"),
+        ("purity, correctly oriented of what leaves [%]", _number(100.0 * d["purity"])),
+        ("mean pitch [mm]", f"{d['pitch_mm']:.4g} (wanted part {d['length_mm']:.4g}, gap {d['gap_mm']:.4g})"),
+        ("probability of the orientation [%]", _with_range(d, "p_orientation", 100.0)),
+        ("whose probabilities", d["answer"]),
+        ("share that passes the devices [%]", f"{100.0 * d['passes_devices']:.4g}"),
+        ("fill of the track [%]", f"{100.0 * d['fill']:.4g}"),
+    ]
+    rows += [("jams an hour", f"{d['jams_per_hour']:.4g}")] if d["jams_per_hour"] > 0.0 else []
+    rows += (
+        [("time a part swept off blocks the track [s]", f"{d['clearing_s']:.3g}")] if d["clearing_s"] else []
+    )
+    return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
+
+
+def _both(document):
+    """Lines of the trial and of the rule, where the bowl file has a trial that holds."""
+    tried = document.get("verified")
+    if tried:
+        yield "of these as its trial showed", _with_range(tried, "parts_per_minute")
+        yield "of these as the rule says", f"{document['parts_per_minute_static']:.4g}"
+
+
+def remarks(study):
+    """Return what a reader of a RateStudy must not overlook, a sentence each."""
+    found = study.rate
+    if found.velocity.value <= 0.0:
+        return ["the part does not travel up the track: see feeder convey"]
+    turned = [
+        *stopping(study),
+        *spaced(study),
+        *_tipping(found),
+        *_rolling(found),
+        *_scarce(study),
+        *_turned(study.devices),
+    ]
+    if found.orientations.lying[found.row].turns_over:
+        return turned
+    if found.through == 0.0 and found.efficiency > 0.0:
+        return [
+            *turned,
+            "what lands in the wanted orientation is turned or returned; what leaves in it was turned",
+        ]
+    if found.through == 0.0:
+        stations = zip(("the track", *map(_named, study.devices)), found.orientations.passes[found.row])
+        names = [name for name, share in stations if share == 0.0]
+        verb = "reject" if len(names) > 1 else "rejects"
+        return [f"{' and '.join(names)} {verb} the orientation you want; rate is 0"]
+    return turned
+
+
+def stopping(study):
+    """Return what comes to stand before which device, a sentence each."""
+    found, said = study.rate, []
+    known = found.orientations
+    for place, name in enumerate(("the track", *(f"the {one.name}" for one in study.devices))):
+        stands = [one.name for one, share in zip(known.lying, known.stops[:, place]) if share > 0.0]
+        if stands and found.jams > 0.0:
+            verb = "stops" if len(stands) == 1 else "stop"
+            said.append(
+                f"{units.listed(stands)} {verb} before {name} and nothing behind gets through: a jam; "
+                "efficiency and rate hold between jams only"
+            )
+    return said
+
+
+def spaced(study):
+    """Return which devices need more room between parts than they come with, a sentence each."""
+    free = study.rate.orientations.gap
+    if study.rate.gap > free or not free > 0.0:
+        return []
+    kinds = units.listed(
+        [one.name for one in study.devices if one.gap(study.rate.orientations.lying[0], 0.0) > 0.0]
+    )
+    return [
+        f"{kinds} looks at one part at a time: the rate is that of parts that come {free / MM:.3g} mm apart "
+        "- a spacing section before it makes that less"
+    ]
+
+
+def _tipping(found):
+    """What tips on the track at this drive, and what becomes of it."""
+    known = found.orientations
+    if known.tipping is None:
+        return []
+    rocks = known.tipping.tips & ~known.tipping.over
+    lost = "; rate is 0" if known.lying[found.row].turns_over else ""
+    said = [f"{line}{lost}" for line in remark(known.lying)]
+    if rocks[found.row]:
+        tilt, lean = (np.degrees(angle[found.row]) for angle in (known.tipping.tilt, known.tipping.balance))
+        said.append(
+            f"{known.lying[found.row].name} rocks on the track: a stroke tilts it by {tilt:.2g} deg at most, "
+            f"and from {lean:.3g} deg it would tip over"
+        )
+    return said
+
+
+def _rolling(found):
+    """What lies on its round side and may roll back."""
+    known = found.orientations.lying
+    along = [one.name for one in known if one.along_a_bank]
+    why = (
+        "no bank brings to the wall what rolls along the track: no verdict on it is sure, and the purity "
+        "counts it as leaving where the track carries it; see feeder trial"
+    )
+    loose = [f"{units.listed(along)}: {why}"] if along else []
+    back = [one.name for one in known if one.may_roll_back]
+    if not back:
+        return loose
+    lies, rolls, counts = ("lies", "rolls", "counts") if len(back) == 1 else ("lie", "roll", "count")
+    said = (
+        f"{units.listed(back)} {lies} on the round side, not along the track, and {rolls} back down the climb"
+    )
+    lost = "; rate is 0" if known[found.row].may_roll_back else ""
+    return [
+        f"{said}: {counts} as returned, but as carried in the highest rate{lost}; see feeder trial",
+        *loose,
+    ]
+
+
+def _scarce(study):
+    """How many parts have to come to the entry where few of them stay on the track."""
+    share, offered = entering(study.rate.orientations, study.rule)[1], study.rate.offered.value
+    if not 0.0 < share < SCARCE or not offered > 0.0:
+        return []
+    come = offered / share / PER_MINUTE
+    none = study.rate.parts.low == 0.0 < study.rate.velocity.low
+    return [
+        f"{100.0 * share:.2g} % of the parts at the entry stay on the track: this rate "
+        f"needs {come:,.0f} parts a minute there{', and is 0 if none stays' if none else ''}"
+    ]
+
+
+def _turned(devices):
+    """What is not certain of the devices."""
+    names = [device.name for device in devices if device.turns]
+    return [f"{', '.join(names)}: quasi-static, until a trial confirms it"] if names else []
+
+
+def _named(device):
+    return f"{device.name} ({device.text})" if np.isfinite(device.limit) else device.name
+
+
+def _range(name, found, unit):
+    return {name: found.value / unit, f"{name}_low": found.low / unit, f"{name}_high": found.high / unit}
+
+
+def _with_range(document, name, scale=1.0):
+    value, low, high = (scale * document[key] for key in (name, f"{name}_low", f"{name}_high"))
+    return f"{value:.4g} ({low:.4g} to {high:.4g})"
+
+
+def _number(value):
+    return "none" if np.isnan(value) else f"{value:.4g}"
+
+
+def offers(study):
+    """Offer the files of a RateStudy, as a list of Offer."""
+    return [
+        offer.document("rate.json", document, study),
+        offer.table("orientations.csv", orientations, study.rate.orientations, study.rule),
+    ]

@@ -1,0 +1,796 @@
+"""Shaded views of a part: rays, light, contact polygons, and pairs of parts."""
+
+import base64
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from embreex.mesh_construction import TriangleMesh
+from embreex.rtcore_scene import EmbreeScene
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import ConvexHull
+
+from feederscrew.output import style
+from feederscrew.output.heavy import heavy
+from feederscrew.units import MM
+
+ndimage = heavy("scipy.ndimage")
+mpl_patches = heavy("matplotlib.patches")
+
+AWAY = 4.0  # sizes from the centre of mass to where rays start
+MISSED = -1
+SINGLE = np.float32  # what the caster keeps, and more than a picture shows
+
+
+class Rays:
+    """A surface about its centre of mass, scaled to unit size for the single precision of the caster.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [m]
+        Corners of the surface.
+    faces : (F, 3) int
+        Corner indices, counter-clockwise seen from outside.
+    centre : (3,) float [m]
+        Centre of mass, in the same axes.
+    """
+
+    def __init__(self, vertices, faces, centre):
+        points = np.asarray(vertices, dtype=float) - centre
+        self.size = float(np.linalg.norm(points, axis=1).max())
+        self.points = points / self.size
+        self.faces = np.asarray(faces)
+        smooth = corner_normals(self.points, self.faces)
+        self.corner_normals = None if smooth is None else smooth.astype(SINGLE)
+        self._single = self.points.astype(SINGLE)
+        self._scene = EmbreeScene()
+        TriangleMesh(self._scene, self._single, self.faces.astype(np.int32))
+
+    def hits(self, origins, direction):
+        """Return what parallel rays meet first.
+
+        Parameters
+        ----------
+        origins : (N, 3) float [size]
+            Where the rays start, about the centre of mass.
+        direction : (3,) float
+            Unit vector they all follow.
+
+        Returns
+        -------
+        distances : (N,) float [size]
+            Infinite where nothing is met.
+        normals : (N, 3) float
+            Outward unit normals of the surface there, smooth over curved sides; zero where nothing is met.
+        facets : (N,) int
+            Which are met; ``MISSED`` where none is.
+        """
+        origins = np.ascontiguousarray(origins, dtype=SINGLE)
+        directions = np.broadcast_to(np.asarray(direction, dtype=SINGLE), origins.shape)
+        found = self._scene.run(origins, np.ascontiguousarray(directions), output=True)
+        met = found["primID"] != MISSED
+        normals = np.zeros(origins.shape, dtype=SINGLE)
+        normals[met] = self._normals(found["primID"][met], found["u"][met], found["v"][met])
+        return np.where(met, found["tfar"], SINGLE(np.inf)), normals, found["primID"]
+
+    def _normals(self, triangle, u, v):
+        if self.corner_normals is None:
+            a, b, c = np.moveaxis(self._single[self.faces[triangle]], 1, 0)
+            normals = np.cross(b - a, c - a)
+        else:
+            weights = np.column_stack([1.0 - u - v, u, v])
+            normals = np.einsum("nk,nki->ni", weights, self.corner_normals[triangle])
+        return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """Parallel projection; its axes are given along the solid's axes."""
+
+    right: np.ndarray  # (3,)
+    up: np.ndarray  # (3,)
+    back: np.ndarray  # (3,) towards the viewer
+
+    def project(self, points):
+        """Project (N, 3) points to (N, 2), across and up the image, in the points' unit."""
+        return np.asarray(points) @ np.column_stack([self.right, self.up])
+
+    def origins(self, across, up):
+        """Return the ray starts (rows, columns, 3) for a grid of image positions, in sizes of the solid."""
+        u, v = np.meshgrid(np.asarray(across, SINGLE), np.asarray(up, SINGLE))
+        right, above, back = (axis.astype(SINGLE) for axis in (self.right, self.up, self.back))
+        return u[..., None] * right + v[..., None] * above + SINGLE(AWAY) * back
+
+    def cast(self, solid, across, up):
+        """Return depths behind the ray starts (rows, columns) and normals (rows, columns, 3) over a grid."""
+        return self.meet(solid, across, up)[:2]
+
+    def meet(self, solid, across, up):
+        """Return depths, normals and facets (rows, columns), ``MISSED`` without one, over a grid."""
+        origins = self.origins(across, up)
+        distances, normals, facets = solid.hits(origins.reshape(-1, 3), -self.back)
+        grid = origins.shape[:2]
+        return distances.reshape(grid), normals.reshape(origins.shape), facets.reshape(grid)
+
+    def sees(self, solid, points, slack=0.01, away=AWAY):
+        """Return which of (N, 3) points, less than ``away`` behind the solid, it does not hide; (N,) bool."""
+        starts = points + away * self.back
+        distances = solid.hits(starts, -self.back)[0]
+        return distances > away - slack
+
+
+SMOOTH = np.radians(20.0)  # facets that meet under less are one curved side
+MOST_FACETS = 200_000  # beyond it a facet is smaller than a pixel
+
+
+def corner_normals(points, faces):
+    """Return the outward normal at each corner of each facet, averaged over the curved side it belongs to.
+
+    Parameters
+    ----------
+    points : (V, 3) float
+        Corners of the surface.
+    faces : (F, 3) int
+        Corner indices, counter-clockwise seen from outside.
+
+    Returns
+    -------
+    (F, 3, 3) float or None
+        Unit normals by facet and corner; None where there are too many facets to need it.
+    """
+    if len(faces) > MOST_FACETS:
+        return None
+    a, b, c = np.moveaxis(points[faces], 1, 0)
+    areas = np.cross(b - a, c - a)  # (F, 3) normals times twice the area
+    own = _units(areas)
+    labels = curved_sides(faces, own)
+    keys = faces.astype(np.int64) * (labels.max(initial=0) + 1) + labels[:, None]
+    _, place = np.unique(keys, return_inverse=True)
+    place = place.reshape(-1)
+    sums = np.column_stack([np.bincount(place, np.repeat(areas[:, k], 3)) for k in range(3)])
+    mean = _units(sums)[place].reshape(-1, 3, 3)
+    bent = np.einsum("fki,fi->fk", mean, own) < np.cos(SMOOTH)
+    return np.where(bent[..., None], own[:, None, :], mean)
+
+
+def curved_sides(faces, normals):
+    """Return the facets joined across every edge that bends less than ``SMOOTH``.
+
+    Parameters
+    ----------
+    faces : (F, 3) int
+        Corner indices.
+    normals : (F, 3) float
+        Outward unit normals.
+
+    Returns
+    -------
+    (F,) int
+        The side each facet belongs to.
+    """
+    first, second = _across_edges(faces)
+    cosine = np.einsum("ei,ei->e", normals[first], normals[second])
+    joined = cosine > np.cos(SMOOTH)
+    size = len(faces)
+    graph = coo_matrix((np.ones(joined.sum()), (first[joined], second[joined])), shape=(size, size))
+    return connected_components(graph, directed=False)[1]
+
+
+def _across_edges(faces):
+    """Pairs of facets that share an edge, as two index arrays."""
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    facet = np.tile(np.arange(len(faces)), 3)
+    order = np.lexsort((edges[:, 1], edges[:, 0]))
+    same = (edges[order][1:] == edges[order][:-1]).all(axis=1)
+    return facet[order[:-1][same]], facet[order[1:][same]]
+
+
+def _units(vectors):
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-30)
+
+
+ELEVATION = np.radians(27.0)  # of the viewer above the floor
+TURN = np.radians(32.0)  # of the part's long side out of the picture's plane
+FEW = 20_000  # points that are quick to handle all of
+CELLS = 24  # from the middle of the sphere of directions to its side, for more points than that
+SHADOW = 1.18  # of the part's plan: the floor its shadow darkens
+BACK_TALL = 0.02  # of the size: below it neither end counts as the taller
+
+
+@dataclass(frozen=True, eq=False)
+class Stance:
+    """A solid on one aspect, all along its file's axes and in its size."""
+
+    down: np.ndarray  # (3,) towards the floor
+    along: np.ndarray  # (3,) in the floor, along the part's long side
+    height: float  # [size] of the centre of mass over the floor
+    camera: Camera
+    plan: np.ndarray  # (N, 2) [size] the part seen from above, in the floor axes
+    bounds: np.ndarray  # (2, 2) [size] lowest and highest corner of the part's image
+    framed: np.ndarray  # (2, 2) [size] the same with its shadow
+
+    @property
+    def floor_axes(self):
+        """(3, 3) rows x, y in the floor and z up."""
+        return np.stack([self.along, np.cross(self.along, self.down), -self.down])
+
+
+def stance(points, down, height):
+    """Put a part on the floor and look at it.
+
+    Parameters
+    ----------
+    points : (V, 3) float [size]
+        Corners of its surface, about the centre of mass.
+    down : (3,) float
+        Outward unit normal of the aspect.
+    height : float [size]
+        Of the centre of mass over the floor.
+
+    Returns
+    -------
+    Stance
+    """
+    along = _long_side(points, down)
+    lean = np.cov(points @ np.cross(along, down), -points @ down)[0, 1]  # the tall end goes to the back
+    return placed(points, down, height, -along if lean < -(BACK_TALL**2) else along)
+
+
+def placed(points, down, height, along):
+    """Return the stance whose floor axis ``along``, a unit vector, is ``TURN`` out of the picture's plane."""
+    across = np.cross(along, down)
+    camera = _camera(along, across, -down)
+    plan = points @ np.column_stack([along, across])
+    middle = 0.5 * (plan.min(axis=0) + plan.max(axis=0))
+    floor = (middle + SHADOW * (plan - middle)) @ np.stack([along, across]) + height * down
+    bounds = _box(camera.project(points))
+    return Stance(down, along, height, camera, plan, bounds, _box(np.vstack([bounds, camera.project(floor)])))
+
+
+def outermost(points):
+    """Return a few thousand points that reach about as far as all of them: the farthest in each direction.
+
+    Parameters
+    ----------
+    points : (V, 3) float
+        Any number, about the centre of mass.
+
+    Returns
+    -------
+    (N, 3) float
+    """
+    if len(points) <= FEW:
+        return points
+    radii = np.linalg.norm(points, axis=1)
+    cells = np.rint(CELLS * points / np.maximum(radii, 1e-30)[:, None]).astype(np.int64) + CELLS
+    keys = cells @ np.array([(2 * CELLS + 1) ** 2, 2 * CELLS + 1, 1])
+    order = np.lexsort((-radii, keys))
+    first = np.flatnonzero(np.diff(keys[order], prepend=-1))
+    return points[order[first]]
+
+
+def _box(image):
+    return np.stack([image.min(axis=0), image.max(axis=0)])
+
+
+def _long_side(points, down):
+    """Unit vector in the floor along the longer side of the smallest rectangle round the plan."""
+    x = _any_across(down)
+    y = np.cross(-down, x)
+    plan = points @ np.column_stack([x, y])
+    outline = plan[ConvexHull(plan).vertices]
+    sides = np.roll(outline, -1, axis=0) - outline
+    sides /= np.linalg.norm(sides, axis=1, keepdims=True)
+    along = np.ptp(outline @ sides.T, axis=0)
+    across = np.ptp(outline @ (sides @ [[0.0, 1.0], [-1.0, 0.0]]).T, axis=0)
+    best = int(np.argmin(np.round(along * across, 9)))
+    u, v = sides[best] if along[best] >= across[best] else (-sides[best][1], sides[best][0])
+    return u * x + v * y
+
+
+def _any_across(down):
+    """The file axis most across ``down``, made perpendicular to it."""
+    axis = np.eye(3)[np.argmin(np.abs(np.round(down, 9)))]
+    across = axis - (axis @ down) * down
+    return across / np.linalg.norm(across)
+
+
+def _camera(x, y, z):
+    right = np.cos(TURN) * x + np.sin(TURN) * y
+    ahead = np.cos(TURN) * y - np.sin(TURN) * x
+    back = np.sin(ELEVATION) * z - np.cos(ELEVATION) * ahead
+    return Camera(right, np.cross(back, right), back)
+
+
+SAMPLES = 3  # rays a pixel, each way
+BAND = 16  # rows of pixels drawn at a time: all their rays in the caches of a processor
+RIM = 2  # rows of samples beyond a band that have a say in its edges
+PAPER = np.array([1.0, 1.0, 1.0])
+STEEL = np.array([0.72, 0.79, 0.86])
+PALE = np.array([0.86, 0.86, 0.86])  # of an aspect the part does not stay on
+EDGE = np.array([0.13, 0.17, 0.22])
+LIGHTS = (  # towards the light, across and up the image and to the viewer; and how strong it is
+    (np.array([-0.45, 0.60, 0.66]), 0.52),
+    (np.array([0.75, 0.05, 0.66]), 0.22),
+)
+AMBIENT = 0.42
+SHARP = np.cos(np.radians(24.0))  # a turn of the surface that is drawn as an edge
+STEP = 0.02  # [size] a jump in depth that is drawn as an outline
+FLOOR_GRID = 160  # cells each way of the shadow map
+SHADE = 0.42  # darkness of the floor where the part touches it
+
+
+@dataclass(frozen=True, eq=False)
+class Shot:
+    """Where a picture lies in the image plane, in sizes of the solid."""
+
+    left: float
+    bottom: float
+    pixel: float  # edge of one pixel
+    columns: int
+    rows: int
+
+    @property
+    def extent(self):
+        """(left, right, bottom, top), as an image on axes wants it."""
+        return (
+            self.left,
+            self.left + self.columns * self.pixel,
+            self.bottom,
+            self.bottom + self.rows * self.pixel,
+        )
+
+    def positions(self, each=1):
+        """Return the image positions, ``each`` a pixel: across from the left, up from the top row down."""
+        step = self.pixel / each
+        across = self.left + (np.arange(self.columns * each) + 0.5) * step
+        up = self.bottom + (np.arange(self.rows * each)[::-1] + 0.5) * step
+        return across, up
+
+
+def picture(solid, stance, frame, colour=STEEL):
+    """Render the solid on the floor as an image.
+
+    Parameters
+    ----------
+    solid : Rays
+        What is seen.
+    stance : Stance
+        How it stands and from where it is seen.
+    frame : Shot
+        What part of the image plane is drawn.
+    colour : (3,) float
+        Of the solid, 0 to 1.
+
+    Returns
+    -------
+    (rows, columns, 3) float
+        Red, green and blue from 0 to 1, the top row first.
+    """
+    across, up = frame.positions(SAMPLES)
+    floor = _floor(solid, stance, *frame.positions()).astype(SINGLE)
+    covered, columns = _covered(stance.bounds, across, up)
+    image = np.empty_like(floor)
+    for first in range(0, frame.rows, BAND):
+        samples = floor[first : first + BAND].repeat(SAMPLES, axis=0).repeat(SAMPLES, axis=1)
+        start = SAMPLES * first
+        rows = _within(covered, start, start + len(samples))
+        if rows.start < rows.stop:
+            cast = _within(covered, rows.start - RIM, rows.stop + RIM)
+            kept = slice(rows.start - cast.start, rows.stop - cast.start)
+            part = samples[rows.start - start : rows.stop - start, columns]
+            _draw(part, kept, solid, stance.camera, across[columns], up[cast], colour, up[0] - up[1])
+        image[first : first + BAND] = averaged(samples, SAMPLES)
+    return image
+
+
+def averaged(samples, each):
+    """Average the samples of each pixel, ``each`` a side; (rows, columns, 3) from 0 to 1."""
+    rows, columns = (length // each for length in samples.shape[:2])
+    return samples.reshape(rows, each, columns, each, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
+
+
+def _draw(image, kept, solid, camera, across, up, colour, step):
+    """Draw on an image what the rays of its rows meet; they are the rows ``kept`` of those that are cast."""
+    depths, normals = camera.cast(solid, across, up)
+    met = np.isfinite(depths[kept])
+    image[met] = lit(normals[kept][met], camera, colour)
+    image[edges(depths, normals, camera, step)[kept]] = EDGE
+
+
+def _within(rows, start, stop):
+    """Return those of a slice of rows that lie from one row to before another."""
+    return slice(max(rows.start, start), min(rows.stop, stop))
+
+
+def _covered(bounds, across, up):
+    """Rows and columns of samples round the part, with a rim for its outline."""
+    rim = 4.0 * (up[0] - up[1])
+    columns = np.flatnonzero((across > bounds[0, 0] - rim) & (across < bounds[1, 0] + rim))
+    rows = np.flatnonzero((up > bounds[0, 1] - rim) & (up < bounds[1, 1] + rim))
+    return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+
+
+def lit(normals, camera: Camera, colour):
+    """Return the colour of matt surfaces (N, 3) under the lights; from behind it is that from the front."""
+    seen = normals @ np.column_stack([camera.right, camera.up, camera.back]).astype(SINGLE)
+    seen *= np.where(seen[:, 2:] < 0.0, SINGLE(-1.0), SINGLE(1.0))
+    light = np.full(len(seen), AMBIENT, dtype=SINGLE)
+    for towards, strength in LIGHTS:
+        light += strength * np.maximum(seen @ (towards / np.linalg.norm(towards)).astype(SINGLE), 0.0)
+    return light[:, None] * colour.astype(SINGLE)
+
+
+def edges(depths, normals, camera, step):
+    """Return which samples lie on an outline (two wide) or on a sharp edge (one wide)."""
+    met = np.isfinite(depths)
+    depths = np.where(met, depths, 2.0 * AWAY)
+    facing = np.maximum(np.abs(normals @ camera.back.astype(SINGLE)), 0.05)
+    slope = step * np.sqrt(1.0 - np.minimum(facing, 1.0) ** 2) / facing  # depth a flat surface gains a sample
+    outline, crease = np.zeros_like(met), np.zeros_like(met)
+    for axis in (0, 1):
+        near, far = (np.s_[:-1, :], np.s_[1:, :]) if axis == 0 else (np.s_[:, :-1], np.s_[:, 1:])
+        jump = np.abs(depths[near] - depths[far]) > STEP + 2.0 * np.maximum(slope[near], slope[far])
+        bend = np.einsum("rci,rci->rc", normals[near], normals[far]) < SHARP
+        both = met[near] & met[far]
+        outline[near] |= jump
+        outline[far] |= jump
+        crease[near] |= bend & both
+        crease[far] |= bend & both
+    return ndimage.binary_dilation(outline) | crease
+
+
+def _floor(solid, stance, across, up):
+    """White paper with the soft shadow of the part."""
+    camera, axes = stance.camera, stance.floor_axes
+    start = camera.origins(across, up) @ axes.T  # in floor axes
+    towards = -camera.back @ axes.T
+    reach = (-stance.height - start[..., 2]) / towards[2]
+    spot = start[..., :2] + reach[..., None] * towards[:2]
+    shadow, lowest, cell = _shadow(solid, stance)
+    place = (spot - lowest) / cell
+    dark = ndimage.map_coordinates(shadow, [place[..., 0], place[..., 1]], order=1, mode="constant")
+    return PAPER * (1.0 - dark[..., None])
+
+
+def _shadow(solid, stance):
+    """How dark each cell of the floor is: darkest where the part touches it, soft where it is high.
+
+    Returns the map, the position of its first cell and the size of a cell.
+    """
+    axes = stance.floor_axes
+    plan = stance.plan
+    lowest, highest = plan.min(axis=0), plan.max(axis=0)
+    cell = 1.6 * (highest - lowest).max() / FLOOR_GRID
+    lowest = 0.5 * (lowest + highest) - 0.5 * cell * (FLOOR_GRID - 1)
+    x, y = np.meshgrid(*(low + cell * np.arange(FLOOR_GRID) for low in lowest), indexing="ij")
+    spots = np.stack([x, y, np.full_like(x, -stance.height - 0.01)], axis=-1).reshape(-1, 3)
+    distances = solid.hits(spots @ axes, axes[2])[0]
+    cover = np.exp(-np.clip(distances - 0.01, 0.0, None) / 0.35).reshape(x.shape)
+    soft = 0.55 * ndimage.gaussian_filter(cover, 2.0) + 0.45 * ndimage.gaussian_filter(cover, 7.0)
+    return SHADE * soft, lowest, cell
+
+
+MOST_VIEWER_FACETS = 200_000  # that a browser is shown
+FINEST = 2.0**10  # cells across the part of the first grid tried on a larger mesh
+
+
+def reduced_mesh(vertices, faces, most=MOST_VIEWER_FACETS):
+    """Return a mesh of at most so many facets: corners of one grid cell become one, facets that vanish go.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float
+    faces : (F, 3) int
+    most : int
+
+    Returns
+    -------
+    vertices : (W, 3) float
+    faces : (G, 3) int
+    """
+    cells, lowest = FINEST, vertices.min(axis=0)
+    extent = np.ptp(vertices, axis=0).max()
+    kept, corners = faces, vertices
+    while len(kept) > most:
+        grid = np.floor((vertices - lowest) * (cells / extent)).astype(np.int64)
+        _, place = np.unique(grid, axis=0, return_inverse=True)
+        place = place.ravel()
+        count = np.bincount(place)
+        corners = np.column_stack([np.bincount(place, vertices[:, k]) / count for k in range(3)])
+        kept = place[faces]
+        kept = kept[(kept != np.roll(kept, 1, axis=1)).all(axis=1)]
+        cells /= np.sqrt(2.0)
+    return corners, kept
+
+
+def encoded(array, kind):
+    """Return an array's bytes, of a numpy ``kind``, as text in base64."""
+    return base64.b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode()
+
+
+def short(value):
+    """Return a number with the seven digits that single precision has."""
+    return float(f"{value:.7g}")
+
+
+def viewed(part, back):
+    """Return what a scene of the viewer tells of a part and of the viewer's place.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    back : (3,) float
+        Towards the viewer.
+
+    Returns
+    -------
+    dict
+        For JSON: ``positions`` (float32) and ``index`` (uint32), both little-endian in base64, in mm about
+        the centre of mass; ``radius``; ``facets`` shown, of ``all``; ``azimuth`` and ``elevation`` [deg].
+    """
+    points = (part.vertices - part.centre_of_mass) / MM
+    vertices, faces = reduced_mesh(points, part.faces)
+    return {
+        "positions": encoded(vertices, "<f4"),
+        "index": encoded(faces, "<u4"),
+        "radius": short(np.sqrt((points**2).sum(axis=1).max())),
+        "facets": len(faces),
+        "all": len(part.faces),
+        "azimuth": short(np.degrees(np.arctan2(back[1], back[0]))),
+        "elevation": short(np.degrees(np.arctan2(back[2], np.hypot(*back[:2])))),
+    }
+
+
+def track(vertices, faces):
+    """Return a section of track (V, 3) [m] for a scene of the viewer."""
+    return {"positions": encoded(vertices / MM, "<f4"), "index": encoded(faces, "<u4")}
+
+
+STEPS = 60  # pieces an edge of the contact polygon is cut into, to see which are hidden
+LINE = {"color": style.ACCENT, "linewidth": 1.3, "solid_capstyle": "round"}
+HIDDEN = {"color": style.ACCENT, "linewidth": 0.8, "linestyle": (0, (3, 2)), "alpha": 0.8}
+BEYOND = 0.08  # [size] how far a rolling axis sticks out at both ends
+AXIS: dict[str, Any] = {"color": "#0072b2", "linewidth": 0.9, "linestyle": (0, (9, 2.5, 2, 2.5))}
+ROUND_LENGTHS = np.array([1.0, 2.0, 5.0])
+
+
+def centre_of_mass(axes, radius, place=(0.0, 0.0)):
+    """Draw the quartered circle through whatever is in front of it.
+
+    Parameters
+    ----------
+    axes : Axes
+        Over the picture.
+    radius : float
+        Of the circle, in data units.
+    place : (2,) float
+        The projected centre of mass.
+    """
+    axes.add_patch(
+        mpl_patches.Circle(place, radius, facecolor="white", edgecolor="black", linewidth=0.8, zorder=5)
+    )
+    for start in (0.0, 180.0):
+        axes.add_patch(
+            mpl_patches.Wedge(place, radius, start, start + 90.0, color="black", linewidth=0, zorder=6)
+        )
+
+
+def contact(axes, solid, standing, polygon):
+    """Draw the contact polygon: whole where it is seen, dashed where the part hides it.
+
+    Parameters
+    ----------
+    axes : Axes
+        Over the picture.
+    solid : Rays
+        What hides it.
+    standing : Stance
+        How the solid stands and from where it is seen.
+    polygon : (K, 3) float [size]
+        Its corners about the centre of mass, in order.
+    """
+    camera = standing.camera
+    axes.add_patch(
+        mpl_patches.Polygon(
+            camera.project(polygon), closed=True, facecolor=style.ACCENT, alpha=0.16, zorder=2
+        )
+    )
+    pieces = _pieces(polygon)
+    ends = camera.project(pieces.reshape(-1, 3)).reshape(-1, 2, 2)
+    seen = camera.sees(solid, pieces.mean(axis=1))
+    for shown, look in ((seen, LINE), (~seen, HIDDEN)):
+        for run in _runs(shown):
+            chain = np.vstack([ends[run, 0], ends[run[-1], 1]])
+            axes.plot(chain[:, 0], chain[:, 1], zorder=3, **look)
+
+
+def rolling_axis(axes, solid, standing, direction):
+    """Draw the axis a part rolls about, through its centre of mass; nothing where there is none.
+
+    Parameters
+    ----------
+    axes : Axes
+        Over the picture.
+    solid : Rays
+        What rolls; the line is a little longer.
+    standing : Stance
+        How it stands.
+    direction : (3,) float
+        Unit vector, NaN for none.
+    """
+    if not np.isfinite(direction).all():
+        return
+    along = solid.points @ direction
+    ends = standing.camera.project(np.outer([along.min() - BEYOND, along.max() + BEYOND], direction))
+    axes.plot(*ends.T, zorder=4, scalex=False, scaley=False, **AXIS)
+
+
+def scale_bar(axes, right, y, pixel):
+    """Draw a bar of a round number of millimetres that ends at ``right``; ``pixel`` [m] is one data unit."""
+    wanted = 110.0 * pixel * 1e3
+    decade = 10.0 ** np.floor(np.log10(wanted))
+    length = float(max(ROUND_LENGTHS[decade * ROUND_LENGTHS <= wanted * (1.0 + 1e-9)]) * decade)
+    left = right - length * 1e-3 / pixel
+    axes.plot([left, right], [y, y], color=style.INK, linewidth=1.6, solid_capstyle="butt")
+    for end in (left, right):
+        axes.plot([end, end], [y - 5, y + 5], color=style.INK, linewidth=1.0)
+    axes.text(
+        0.5 * (left + right), y + 9, f"{length:g} mm", fontsize=7.5, color=style.INK, ha="center", va="bottom"
+    )
+
+
+def marks_legend(axes, left, y, *, rolling):
+    """Draw what the marks mean, in one line of text from ``left`` on; the axis only if one is drawn."""
+    centre_of_mass(axes, 9.0, (left + 9.0, y))
+    axes.text(left + 26, y, "centre of mass", fontsize=7, color=style.INK, va="center")
+    axes.plot([left + 170, left + 198], [y, y], **LINE)
+    axes.text(left + 208, y, "contact, dashed where hidden", fontsize=7, color=style.INK, va="center")
+    if rolling:
+        axes.plot([left + 460, left + 500], [y, y], **AXIS)
+        axes.text(left + 510, y, "axis it rolls about", fontsize=7, color=style.INK, va="center")
+
+
+def _pieces(polygon):
+    """Every edge of a closed polygon cut up: (K * STEPS, 2, 3) ends of the pieces."""
+    share = np.linspace(0.0, 1.0, STEPS + 1)[:, None]
+    chains = [(1.0 - share) * a + share * b for a, b in zip(polygon, np.roll(polygon, -1, axis=0))]
+    return np.concatenate([np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains])
+
+
+def _runs(flags):
+    """Index arrays of the runs of true entries."""
+    indices = np.flatnonzero(flags)
+    return [run for run in np.split(indices, np.flatnonzero(np.diff(indices) > 1) + 1) if len(run)]
+
+
+METAL = np.array([0.90, 0.91, 0.92])  # the track
+PAIR_SAMPLES = 2  # rays a pixel, each way
+COARSE = 40  # rays each way to find out what is hidden
+THROUGH = 0.45  # of its colour: the part where something is in front of it
+
+
+def pair_picture(track, part, centre, camera, half, columns, rows):
+    """Render a part on a track as an image.
+
+    Parameters
+    ----------
+    track, part : ((V, 3) float [m], (F, 3) int)
+        Corners and faces of each, in the same axes.
+    centre : (3,) float [m]
+        In the middle of the image.
+    camera : Camera
+    half : float [m]
+        What is seen to either side of it.
+    columns, rows : int
+        Pixels.
+
+    Returns
+    -------
+    image : (rows, columns, 3) float
+        0 to 1, the top row first.
+    frame : Shot
+        Where it lies in the image plane, in units of ``size``.
+    size : float [m]
+    """
+    (ground, sides), (corners, faces) = track, part
+    whole = Rays(np.vstack([ground, corners]), np.vstack([sides, faces + len(ground)]), centre)
+    half = half / whole.size
+    frame = Shot(-half, -half * rows / columns, 2.0 * half / columns, columns, rows)
+    across, up = frame.positions(PAIR_SAMPLES)
+    depths, normals = camera.cast(whole, across, up)
+    near, own = _part_alone(part, centre, camera, whole.size, across, up)
+    met, there = np.isfinite(depths), np.isfinite(near)
+    is_part = there & (near <= np.where(met, depths, np.inf) + 1e-3)
+    image = np.ones((*depths.shape, 3))
+    for mask, colour in ((met & ~is_part, METAL), (met & is_part, STEEL)):
+        image[mask] = lit(normals[mask], camera, colour)
+    step = up[0] - up[1]
+    image[edges(depths, normals, camera, step)] = EDGE
+    hidden = there & ~is_part
+    shape = lit(own[hidden], camera, STEEL)
+    shape[edges(near, own, camera, step)[hidden]] = EDGE
+    image[hidden] += THROUGH * (shape - image[hidden])
+    return averaged(image, PAIR_SAMPLES), frame, whole.size
+
+
+def shown_share(track, part, centre, camera, half):
+    """Return the share [1] of what is to be seen of a part that the track does not hide.
+
+    Parameters
+    ----------
+    track, part, centre, camera, half
+        As for ``picture``.
+    """
+    (ground, sides), (corners, faces) = track, part
+    whole = Rays(np.vstack([ground, corners]), np.vstack([sides, faces + len(ground)]), centre)
+    across = up = np.linspace(-half, half, COARSE) / whole.size
+    depths, _ = camera.cast(whole, across, up)
+    near, _ = _part_alone(part, centre, camera, whole.size, across, up)
+    there = np.isfinite(near)
+    seen = there & (near <= np.where(np.isfinite(depths), depths, np.inf) + 1e-3)
+    return float(seen.sum() / max(there.sum(), 1))
+
+
+def _part_alone(part, centre, camera, size, across, up):
+    """Depths (rows, columns) in a size, and normals, of the part without the track."""
+    corners, faces = part
+    alone = Rays(corners, faces, centre)
+    scale = size / alone.size
+    near = np.full((len(up), len(across)), np.inf)
+    normals = np.zeros((*near.shape, 3))
+    low, high = (end(camera.project(corners - centre), axis=0) / size for end in (np.min, np.max))
+    columns = np.flatnonzero((across > low[0]) & (across < high[0]))
+    rows = np.flatnonzero((up > low[1]) & (up < high[1]))
+    if len(columns) and len(rows):
+        box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        near[box], normals[box] = camera.cast(alone, across[columns] * scale, up[rows] * scale)
+    return (near - AWAY) / scale + AWAY, normals
+
+
+DOWN = np.array([0.0, 0.0, -1.0])
+ROOM = 1.08  # of the picture over the part in it
+
+
+def thumbnail(solid, found, row, size):
+    """Return the picture of a solid on one aspect.
+
+    Parameters
+    ----------
+    solid : Rays
+    found : Aspects
+        Of the same part.
+    row : int
+        Of the aspect.
+    size : (2,) int [px]
+        Width and height.
+
+    Returns
+    -------
+    (height, width, C) float [1]
+    """
+    standing = stance(outermost(solid.points), found.normals[row], found.heights[row] / solid.size)
+    return _framed(solid, standing, size)
+
+
+def on_its_lowest(solid, size):
+    """Return the picture of a solid on the lowest side of its file, (height, width, C) float [1].
+
+    Parameters
+    ----------
+    solid : Rays
+    size : (2,) int [px]
+        Width and height.
+    """
+    standing = stance(outermost(solid.points), DOWN, -float(solid.points[:, 2].min()))
+    return _framed(solid, standing, size)
+
+
+def _framed(solid, standing, size):
+    """The picture of a solid in the middle of it."""
+    lowest, highest = standing.framed
+    pixel = ROOM * max((highest - lowest) / size)
+    left, bottom = 0.5 * (lowest + highest) - 0.5 * pixel * np.array(size)
+    return np.clip(picture(solid, standing, Shot(left, bottom, pixel, *size)), 0.0, 1.0)

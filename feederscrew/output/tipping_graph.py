@@ -1,0 +1,234 @@
+"""The tipping graph of ``feeder aspects --graph``: which aspect tips into which, and by what lift."""
+
+from functools import partial
+
+import numpy as np
+
+from feederscrew.output import offers as offer
+from feederscrew.output import style, tables
+from feederscrew.output.columns import UJ
+from feederscrew.units import GRAVITY, MM
+
+
+def transitions(study):
+    """Return the tipping graph, one row a way from one aspect into another or into its equal.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+
+    Returns
+    -------
+    Frame
+        The columns of ``graph.csv``.
+    """
+    ways, names = study.transitions, study.aspects.names
+    axes = np.array([way.axis for way in ways]).reshape(-1, 3)
+    lifts = np.array([way.lift for way in ways], dtype=float)
+    return tables.frame(
+        {
+            "from": [names[way.start] for way in ways],
+            "to": [names[way.end] for way in ways],
+            "barrier_mm": lifts / MM,
+            "barrier_uJ": study.part.mass * GRAVITY * lifts / UJ,
+            "axis_x": axes[:, 0],
+            "axis_y": axes[:, 1],
+            "axis_z": axes[:, 2],
+        }
+    )
+
+
+def offers(study):
+    """Offer the table and the drawing of what tips into what.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+
+    Returns
+    -------
+    list of Offer
+    """
+    alt = "Tipping graph: which aspect tips into which, and the lift it takes"
+    return [
+        offer.table("graph.csv", transitions, study),
+        offer.picture("graph.png", alt, _graph, study),
+    ]
+
+
+def _graph(study):
+    shares = study.aspects.probabilities["quasistatic"]
+    return of_part(study, study.transitions, shares)
+
+
+MOST_GRAPH_ASPECTS = 12  # aspects a picture can show
+CLEAR = 4.0  # [pt] between an arrow and a disc
+BEND = 0.12  # of an arrow, so that there and back lie apart
+LIFT_SPOTS = (0.36, 0.3, 0.42, 0.24, 0.48, 0.54, 0.6, 0.66, 0.72)  # of the way: where the lift may be written
+LETTER_SIZE = (0.041, 0.109)  # width and height of one, over the ring's radius
+DISC_SIZE = (0.22, 0.22)  # half a disc, over the ring's radius
+FRAMED = 4200.0  # [pt2] square about the disc behind a drawn aspect
+HALF = 0.15  # width of a drawn aspect, over the ring's diameter
+PICTURE = (160, 120)  # [px] of it
+LETTERS = 2  # of a name that fits into a disc
+PALE = "#9ba3aa"  # of ways that are not the easiest
+EQUAL_LIFT = 1.001  # of the lowest lift out of a disc, up to which another is as easy
+REACH = 1.45  # of the picture, where the ring of discs has radius 1
+
+
+def graph(title, names, ways, shares, drawn=None):
+    """Draw the aspects on a ring, joined by arrows that carry the lift in mm.
+
+    Parameters
+    ----------
+    title : str
+    names : sequence of str
+        Of the A aspects.
+    ways : sequence of Transition
+    shares : (A,) float [1]
+        Quasi-static probability; an aspect where it is NaN is left out.
+    drawn : function, optional
+        Gives the picture (H, W, C) of an aspect by its row; without it a disc stands for each aspect, whose
+        area grows with its share.
+
+    Returns
+    -------
+    Figure
+    """
+    figure = style.figure(6.4, 6.4)
+    axes = figure.add_subplot()
+    head = f"{title}: lift to tip [mm]"
+    axes.text(-REACH, REACH, head, ha="left", va="top", fontsize=10, color=style.INK)
+    shown = [k for k in range(len(names)) if np.isfinite(shares[k])][:MOST_GRAPH_ASPECTS]
+    turn = np.pi / 2 - 2.0 * np.pi * np.arange(len(shown)) / max(len(shown), 1)
+    places = {k: np.array([np.cos(a), np.sin(a)]) for k, a in zip(shown, turn)}
+    sizes = 500.0 + 2500.0 * np.nan_to_num(shares)  # [pt2] squares about the discs
+    sizes = sizes if drawn is None else np.full(len(names), FRAMED)
+    _arrows(axes, ways, places, sizes, names)
+    for k, place in places.items():
+        if drawn is None:
+            axes.scatter(*place, s=sizes[k], color="white", edgecolor=style.INK, zorder=3)
+            _name(axes, names[k], place)
+        else:
+            axes.scatter(*place, s=sizes[k], color="white", edgecolor=style.FAINT, zorder=3)
+            _framed(axes, drawn(k), f"{names[k]}  {100.0 * shares[k]:.3g} %", place)
+    note = (
+        "orange: the easiest way off each aspect\n"
+        "below each aspect: the share of all attitudes from which the part, let go without speed, ends on it"
+    )
+    axes.text(0.0, -REACH, note, ha="center", va="bottom", fontsize=8, color=style.INK)
+    axes.set_xlim(-REACH, REACH)
+    axes.set_ylim(-REACH, REACH)
+    axes.set_aspect("equal")
+    axes.axis("off")
+    return figure
+
+
+def of_part(study, ways, shares):
+    """Draw the graph of an AspectsStudy or report case with the part in each aspect, where it has a shape.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+    ways : sequence of Transition
+    shares : (A,) float [1]
+
+    Returns
+    -------
+    Figure
+    """
+    part, found = study.part, study.aspects
+    if part.vertices is None:
+        return graph(part.name, found.names, ways, shares)
+    from feederscrew.output import shading
+
+    solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
+    drawn = partial(shading.thumbnail, solid, found, size=PICTURE)
+    return graph(part.name, found.names, ways, shares, drawn)
+
+
+def _framed(axes, picture, text, place):
+    """The part as it rests on an aspect, its name and its share below."""
+    half = HALF * np.array([1.0, picture.shape[0] / picture.shape[1]])
+    low, high = place - half + [0.0, 0.03], place + half + [0.0, 0.03]
+    axes.imshow(picture, extent=(low[0], high[0], low[1], high[1]), zorder=4, interpolation="antialiased")
+    look = {"ha": "center", "va": "top", "color": style.INK, "fontsize": 9, "fontweight": "bold", "zorder": 5}
+    axes.annotate(text, place - [0.0, half[1] - 0.02], **look)
+
+
+def _name(axes, name, place):
+    """A letter within its disc, a longer name across it."""
+    letter = len(name) <= LETTERS
+    box = {} if letter else {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0}}
+    look = {"ha": "center", "va": "center", "color": style.INK, "fontsize": 11 if letter else 9}
+    axes.annotate(name, place, zorder=4, **look, **box)
+
+
+def _arrows(axes, ways, places, sizes, names):
+    """The easiest way between every two discs that are shown; the easiest out of each stands out."""
+    lowest: dict[int, float] = {}
+    between: dict[tuple[int, int], float] = {}
+    for way in ways:
+        lowest[way.start] = min(way.lift, lowest.get(way.start, np.inf))
+        pair = (way.start, way.end)
+        if set(pair) <= set(places) and way.lift < between.get(pair, np.inf):
+            between[pair] = way.lift
+    taken = [(*place, max(DISC_SIZE[0], _half(names[k])[0]), DISC_SIZE[1]) for k, place in places.items()]
+    for (start, end), lift in sorted(between.items(), key=lambda item: -item[1]):  # the easy ones on top
+        ends = (places[start], sizes[start]), (places[end], sizes[end])
+        taken.append(arrow(axes, *ends, lift, lift <= EQUAL_LIFT * lowest[start], taken))
+
+
+def arrow(axes, begin, end, lift, easiest, taken=()):
+    """Draw one way between two discs (place, size), bent to leave room for the way back.
+
+    Parameters
+    ----------
+    axes : Axes
+    begin, end : pair of (2,) float and float
+        Place and size of a disc.
+    lift : float [m]
+    easiest : bool
+        Out of that disc.
+    taken : sequence of 4 float
+        Boxes of discs and labels that are there already: middle, half width, half height.
+
+    Returns
+    -------
+    tuple of 4 float
+        The box of its own label.
+    """
+    (start, from_size), (end, to_size) = begin, end
+    colour, text = style.ACCENT if easiest else PALE, _lift_mm(lift)
+    box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
+    look = {"ha": "center", "va": "center", "fontsize": 9, "zorder": 5, "bbox": box}
+    look["color"] = style.ACCENT if easiest else style.INK
+    if np.allclose(start, end):
+        axes.annotate(text, 1.32 * start, **look)
+        return (*1.32 * start, *_half(text))
+    bent = {"connectionstyle": f"arc3,rad={BEND}", "arrowstyle": "-|>,head_length=0.5,head_width=0.22"}
+    shrunk = {f"shrink{e}": 0.5 * np.sqrt(size) + CLEAR for e, size in (("A", from_size), ("B", to_size))}
+    order = {"zorder": 2 if easiest else 1}
+    axes.annotate("", end, start, arrowprops={**bent, **shrunk, "color": colour, "linewidth": 1.1}, **order)
+    along = end - start
+    beside = np.array([along[1], -along[0]]) * BEND  # of the middle control point of the arc
+    spots = [start + t * along + 2.0 * t * (1.0 - t) * beside for t in LIFT_SPOTS]
+    hidden = [sum(_overlap((*spot, *_half(text)), other) for other in taken) for spot in spots]
+    spot = spots[int(np.argmin(hidden))]
+    axes.annotate(text, spot, **look)
+    return (*spot, *_half(text))
+
+
+def _half(text):
+    """Half the width and the height of a label, over the ring's radius."""
+    return 0.5 * LETTER_SIZE[0] * len(text), 0.5 * LETTER_SIZE[1]
+
+
+def _overlap(one, other):
+    """Area that two boxes share."""
+    sides = [one[k + 2] + other[k + 2] - abs(one[k] - other[k]) for k in (0, 1)]
+    return max(sides[0], 0.0) * max(sides[1], 0.0)
+
+
+def _lift_mm(lift):
+    return f"{lift / MM:.3g}"

@@ -1,0 +1,196 @@
+"""Files of ``feeder drop --launches``."""
+
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
+from feederscrew.dropping import toss_runs
+from feederscrew.dropping.launch_file import FACES
+from feederscrew.output import columns, style, tables
+from feederscrew.output import offers as offer
+from feederscrew.units import MM
+
+NONE = "none"  # the side that points up where no run came to rest
+BY_SIDE = tuple(f"p_{'plus' if side[0] == '+' else 'minus'}_{side[1]}" for side in FACES)
+HIDDEN = ("p_low", "p_high", *BY_SIDE, "settled_runs", "time_s", "x_measured_mm", "y_measured_mm")
+
+
+def tosses(study):
+    """Return where each toss leads, one row a toss.
+
+    Parameters
+    ----------
+    study : TossStudy
+
+    Returns
+    -------
+    Frame
+        The columns of ``tosses.csv``.
+    """
+    found, launches = study.result, study.launches
+    count = len(found.faces)
+    low, high = study.intervals
+    names = study.aspects.names
+    measured: dict[str, Any] = {}
+    if launches.ends is not None:
+        ends = launches.ends[:count] / MM
+        measured |= {"x_measured_mm": ends[:, 0], "y_measured_mm": ends[:, 1], "off_mm": study.off / MM}
+    if launches.faces is not None:
+        measured["face_up_measured"] = list(launches.faces[:count])
+    return tables.frame(
+        {
+            "toss": _numbered(launches.names[:count]),
+            "aspect": [names[row] if row >= 0 else NONE for row in found.rows],
+            "face_up": [FACES[face] if face >= 0 else NONE for face in found.faces],
+            "p": study.p,
+            "p_low": low,
+            "p_high": high,
+            "x_mm": found.places[:, 0] / MM,
+            "y_mm": found.places[:, 1] / MM,
+            "half_within_mm": found.spreads / MM,
+            "time_s": found.times,
+            **dict(zip(BY_SIDE, found.shares.T)),
+            "settled_runs": found.settled,
+            **measured,
+        }
+    )
+
+
+def document(study):
+    """Return the tosses as one JSON document.
+
+    Parameters
+    ----------
+    study : TossStudy
+
+    Returns
+    -------
+    dict
+    """
+    agreement = study.agreement
+    measured = None if agreement is None else asdict(agreement)
+    if measured is not None:
+        off = measured.pop("median_off")
+        measured["median_off_mm"] = None if off is None else off / MM
+    return {
+        **columns.part(study.part),
+        "launches": study.launches.source,
+        "runs": study.result.runs,
+        "seed": study.seed,
+        "frame_s": study.launches.frame,
+        "restitution": list(study.surface.restitution),
+        "friction": list(study.surface.friction),
+        "restitution_scatter": RESTITUTION_DOUBT,
+        "friction_scatter": toss_runs.FRICTION,
+        "partial": study.result.partial,
+        "measured": measured,
+        "tosses": tosses(study),
+    }
+
+
+def remarks(study):
+    """Return what a user must know of the tosses, a line each."""
+    lost = int((study.result.faces < 0).sum())
+    lines = [f"partial: stopped after {len(study.result.faces)} tosses"] * study.result.partial
+    if lost:
+        lines.append(f"{lost} of {len(study.result.faces)} tosses came to rest in no run")
+    if study.launches.frame == 0.0:
+        lines.append(
+            "the file does not say how many pictures a second the camera took: each state is taken as exact "
+            "- name a column frames_148Hz"
+        )
+    return lines
+
+
+def summary(study):
+    """Return how the answers agree with what was measured, a line each; empty where nothing was."""
+    agreement = study.agreement
+    if agreement is None:
+        return []
+    lines = [
+        f"{100.0 * agreement.told:.1f} % of the upper sides are as measured "
+        f"(95 % interval {100.0 * agreement.low:.1f} to {100.0 * agreement.high:.1f} %); the side nearest to "
+        f"the top at the launch tells {100.0 * agreement.at_release:.1f} %"
+    ]
+    if agreement.median_off is not None:
+        lines.append(f"half of the places are within {agreement.median_off / MM:.1f} mm of the measured ones")
+    if agreement.sure:
+        lines.append(
+            f"of the {agreement.sure} answers with p of at least 0.95, {100.0 * agreement.sure_told:.1f} % "
+            f"are as measured: p considers the surface and the launch, not the errors of the model"
+        )
+    return lines
+
+
+def _numbered(names):
+    """The names of the tosses, as numbers where all are whole numbers."""
+    return np.array([int(name) for name in names]) if all(name.isdecimal() for name in names) else list(names)
+
+
+def offers(study):
+    """Offer where each toss leads.
+
+    Parameters
+    ----------
+    study : TossStudy
+
+    Returns
+    -------
+    list of Offer
+    """
+    offered = [
+        offer.table("tosses.csv", tosses, study),
+        offer.document("tosses.json", document, study),
+    ]
+    if study.launches.ends is not None:
+        offered.append(offer.picture("tosses.png", "Places computed and measured", plan, study))
+    return offered
+
+
+LOOKS = (  # what is computed of the upper side: label, marker, colour
+    ("upper side as measured", "o", "#0072b2"),
+    ("another upper side", "X", style.ACCENT),
+    ("upper side not measured", "o", style.INK),
+)
+
+
+def plan(study):
+    """Draw where each toss came to rest, from the place measured to the place computed.
+
+    Parameters
+    ----------
+    study : TossStudy
+        Of a file with measured ends.
+
+    Returns
+    -------
+    Figure
+    """
+    shown = study.result.places / MM
+    measured = study.launches.ends[: len(shown)] / MM
+    figure = style.figure(6.4, 5.6)
+    median = np.nanmedian(study.off) / MM
+    title = f"{study.part.name}: {len(shown)} tosses, median distance {median:.3g} mm"
+    axes = style.tidy(figure.add_subplot(), title=title, x="x [mm]", y="y [mm]")
+    axes.set_aspect("equal")
+    axes.plot(*np.stack([measured, shown]).transpose(2, 0, 1), color=style.FAINT, linewidth=0.8, zorder=1)
+    kinds = _kinds(study)
+    for kind, (label, marker, colour) in enumerate(LOOKS):
+        chosen = kinds == kind
+        if chosen.any():
+            look = {"marker": marker, "color": colour, "s": 18, "linewidths": 0.0}
+            axes.scatter(*shown[chosen].T, label=f"computed, {label}", **look)
+    axes.scatter(*measured.T, marker=".", s=6, color=style.INK, label="measured")
+    figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=8)
+    return figure
+
+
+def _kinds(study):
+    """(N,) index into LOOKS."""
+    faces = study.result.faces
+    if study.launches.faces is None:
+        return np.full(len(faces), 2)
+    measured = [FACES.index(face) for face in study.launches.faces[: len(faces)]]
+    return np.where(faces == measured, 0, 1)

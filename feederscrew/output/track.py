@@ -1,0 +1,636 @@
+"""Files of ``feeder track``: the cycle and the maps."""
+
+import numpy as np
+
+from feederscrew import bowl as bowls
+from feederscrew.geometry.polygons import outline, turned
+from feederscrew.mechanics.floor.balance import HOP, MOTION_STATES, regime
+from feederscrew.mechanics.track.frame import frame
+from feederscrew.output import offers as offer
+from feederscrew.output import style, tables
+from feederscrew.output.floor import (
+    CONTACT,
+    DRIVE,
+    EVERY,
+    FRICTION,
+    NORMAL,
+    OUTSIDE,
+    PART,
+    STATE_WORDS,
+    arrow,
+    chosen,
+    difference,
+    label,
+    mean_velocity,
+    newtons,
+    noiseless,
+    none_slides,
+    phase_axis,
+    shown_value,
+    state_band,
+    state_legend,
+    tips,
+)
+from feederscrew.output.heavy import heavy
+from feederscrew.units import MM
+
+mpl_patches = heavy("matplotlib.patches")
+shading = heavy("feederscrew.output.shading")
+
+CONTACTS = ("floor", "wall_1", "wall_2")
+HELD_ACROSS = (
+    "at rest at the upper reversal, friction across the track or up the wall can hold the part; by the least "
+    "friction along the track, which the reactions show and the cycle follows, it would slide"
+)
+ALONG = (
+    "velocity along the wall, with its friction and the bank [mm/s]"  # not that of a point mass, of convey
+)
+UNKNOWN = "not known: it hops"
+IN_FLIGHT = "in flight"  # no contact of all
+TURNED_OFF = (
+    "friction turns the part about the wall contact that is left; the velocity is that of a part that keeps "
+    "its heading, and too high - feeder trial follows the turning"
+)
+TURNS = 1.0  # [rad/s2] in 10 ms that is less than a hundredth of a degree
+TURNED = 1.0  # [deg] of heading: less is not worth a word
+LABELS = {
+    "normal_force_N": "normal force N",
+    "wall_1_N": "wall reaction R1, trailing contact",
+    "wall_2_N": "wall reaction R2, leading contact",
+    "radial_friction_N": "radial friction R3, away from the wall",
+    "traction_N": "traction R4, against motion ahead",
+    "normal_line_offset_mm": "line of action of N, d ahead",
+    "normal_line_offset_y_mm": "line of action of N, away from the wall",
+    "acceleration_x_m_s2": "acceleration along the track, V'_X",
+    "acceleration_y_m_s2": "acceleration away from the wall",
+    "turning_rad_s2": "turning off the wall",
+    "tips": OUTSIDE,
+}
+
+
+def instant(found):
+    """One instant under the names of the JSON contract; ``found`` is a TrackMotion of one instant."""
+    load = found.normal_force + abs(found.traction)
+    return {
+        "normal_force_N": float(found.normal_force),
+        "wall_1_N": noiseless(found.walls[0], load),
+        "wall_2_N": noiseless(found.walls[1], load),
+        "radial_friction_N": noiseless(found.radial_friction, load),
+        "traction_N": noiseless(found.traction, load),
+        "normal_line_offset_mm": noiseless(found.offset[0] / MM, 1.0),
+        "normal_line_offset_y_mm": noiseless(found.offset[1] / MM, 1.0),
+        "acceleration_x_m_s2": float(found.acceleration[0]),
+        "acceleration_y_m_s2": noiseless(found.acceleration[1], found.acceleration[0]),
+        "turning_rad_s2": noiseless(found.turning, found.acceleration[0] / MM),
+        "wall_1_friction_N": float(found.wall_friction[0]),
+        "wall_2_friction_N": float(found.wall_friction[1]),
+        "floor_couple_N_mm": float(found.couple) / MM,
+        "opened": [] if found.state == HOP else opened(found.closed),
+        "tips": tips(found.inside),
+        "state": MOTION_STATES[int(found.state)],
+    }
+
+
+def printed(found):
+    """Return the same of the printed equations; ``found`` is a PrintedTrack of one instant."""
+    return {
+        "normal_force_N": float(found.normal_force),
+        "wall_1_N": float(found.walls[0]),
+        "wall_2_N": float(found.walls[1]),
+        "radial_friction_N": float(found.radial_friction),
+        "traction_N": float(found.traction),
+        "normal_line_offset_mm": float(found.offset) / MM,
+        "acceleration_x_m_s2": float(found.acceleration),
+        "tips": None,
+        "state": "hop" if found.normal_force <= 0.0 else "slide" if found.slides else "stick",
+    }
+
+
+def over_cycle(found, course):
+    """One period as columns; ``found`` is a TrackMotion of shape (N,)."""
+    shown = slice(None, None, EVERY)
+    pairs = {"": found.walls, "_friction": found.wall_friction}
+    return {
+        "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[shown],
+        "state": [MOTION_STATES[code] for code in found.state[shown]],
+        "normal_force_N": found.normal_force[shown],
+        **{f"wall_{k + 1}{name}_N": pair[shown, k] for name, pair in pairs.items() for k in (0, 1)},
+        "radial_friction_N": found.radial_friction[shown] + 0.0,
+        "traction_N": found.traction[shown],
+        "normal_line_offset_mm": found.offset[shown, 0] / MM,
+        "normal_line_offset_y_mm": found.offset[shown, 1] / MM,
+        "acceleration_x_m_s2": found.acceleration[shown, 0],
+        "acceleration_y_m_s2": found.acceleration[shown, 1],
+        "turning_rad_s2": found.turning[shown],
+        "floor_couple_N_mm": found.couple[shown] / MM,
+        "velocity_m_s": course.velocity[shown],
+        "friction_needed": found.needed[shown, 0],
+        "opened": [
+            IN_FLIGHT if state == HOP else " ".join(opened(pair))
+            for state, pair in zip(found.state[shown], found.closed[shown])
+        ],
+        "tips": [tips(inside) for inside in found.inside[shown]],
+    }
+
+
+def document(found, settings):
+    """Return all of one TrackStudy, for JSON; of one as published, the upper reversal by print.
+
+    Parameters
+    ----------
+    found : TrackStudy
+    settings : dict of str to str
+        The bowl's values in effect.
+
+    Returns
+    -------
+    dict
+    """
+    values = {}
+    if found.printed is not None:
+        values = {"instant": printed(found.printed), "difference": differences(found)}
+        values["omitted_terms"] = omitted_terms(found)
+    return {
+        "part": found.part.name,
+        "aspect": found.posture.name,
+        "heading_deg": float(np.degrees(found.seat.heading)),
+        "height_mm": found.seat.height / MM,
+        "wall_contacts": _contacts(found),
+        "as_published": found.printed is not None,
+        "regime": regime(found.cycle.state),
+        "instant": instant(found.now),
+        **values,
+        "on_the_track": None if found.stands is None else found.stands.way,
+        "on_the_track_said": None if found.stands is None else found.stands.said,
+        "first_to_open": found.opening.contact,
+        "opens_at_drive_factor": found.opening.drive_factor,
+        "opens_at_reversal": found.opening.reversal,
+        "tipping_axis": _axis(found.opening),
+        "friction_needed": friction_needed(found.cycle),
+        "held_across": found.held_across,
+        "stays_on_wall": stays_on_wall(found.cycle),
+        "bank_without_radial_friction_deg": float(np.degrees(found.bank_without_radial_friction)),
+        "mean_velocity_m_s": mean_velocity(found),
+        "settled": found.course.settled,
+        "cycle": over_cycle(found.cycle, found.course),
+        "bowl": settings,
+    }
+
+
+def differences(found):
+    """Return the printed against the complete upper reversal of a TrackAsPublished, as a frame."""
+    return difference(printed(found.printed), instant(found.now), found.terms)
+
+
+def omitted_terms(found):
+    """Return the terms that the printed equations of a TrackAsPublished leave out, as a frame."""
+    names = ("name", "equation", "value", "unit")
+    return tables.frame({name: [getattr(term, name) for term in found.omitted] for name in names})
+
+
+def friction_needed(cycle):
+    """Greatest friction over normal force that holds the part at rest through the cycle, by contact."""
+    if not np.isfinite(cycle.needed).all():
+        return dict.fromkeys(CONTACTS, np.nan)
+    return dict(zip(CONTACTS, cycle.needed.max(axis=0).tolist()))
+
+
+def stays_on_wall(cycle):
+    """Whether a wall contact is closed at every instant; None where it hops: the flight is not followed."""
+    return None if HOP in cycle.state else bool(cycle.closed.any(axis=-1).all())
+
+
+def shown(document, format):
+    """What goes to stdout: the cycle as CSV; for people the upper reversal, or what print leaves out."""
+    if format == "csv":
+        return tables.frame(document["cycle"])
+    return document.get("difference", summary(document))
+
+
+def summary(document):
+    """Return what people want to know first, a row a quantity."""
+    now, needed = document["instant"], document["friction_needed"]
+    rows = {label(name, text): now[name] for name, text in LABELS.items() if name in now}
+    rows |= {
+        "state at the upper reversal": STATE_WORDS.get(now["state"], now["state"]),
+        "regime over the cycle": STATE_WORDS.get(document["regime"], document["regime"]),
+        "on the track, over the strokes": document["on_the_track_said"],
+        ALONG: None if document["mean_velocity_m_s"] is None else document["mean_velocity_m_s"] / MM,
+        "heading [deg]": document["heading_deg"],
+        **_opening(document),
+        "stays against the wall": UNKNOWN if document["stays_on_wall"] is None else document["stays_on_wall"],
+        **{f"friction needed to hold it, {name.replace('_', ' ')}": needed[name] for name in CONTACTS},
+        "bank without radial friction [deg]": document["bank_without_radial_friction_deg"],
+    }
+    return tables.frame({"quantity": list(rows), "value": [shown_value(value) for value in rows.values()]})
+
+
+def _opening(document):
+    """Which contact a growing drive opens first, and when; or which carries nothing even at rest."""
+    contact, factor = document["first_to_open"], document["opens_at_drive_factor"]
+    if factor == 0.0:
+        return {"carries nothing even at rest": contact.replace("_", " ")}
+    return {"first contact to open": contact, "opens at this many times the drive": factor}
+
+
+def remarks(found):
+    """Return what a reader of a TrackStudy should know, a sentence each."""
+    lines, cycle = chosen(found), found.cycle
+    if len(found.seat.contact) == 0:
+        lines.append("a part card has no contact polygon: whether it tips is not known")
+    if found.held_across:
+        lines.append(HELD_ACROSS)
+    if HOP in cycle.state:
+        lines.append(
+            "the part loses contact within the cycle: its flight is not followed here, but by feeder convey; "
+            "whether it stays against the wall is not known"
+        )
+    elif not cycle.closed.all():
+        share = 100.0 * np.mean(~cycle.closed.all(axis=-1))
+        lines.append(f"a wall contact is open for {share:.0f} % of the cycle: {_which(cycle.closed)}")
+        if found.posture.kind != "rolling" and np.abs(cycle.turning).max() > TURNS:
+            lines.append(TURNED_OFF)
+    if found.posture.kind == "rolling":
+        lines.append("rolling aspect: held by the wall, its rolling about the axis is not followed")
+    turn = np.degrees(found.seat.twist(found.bowl.track.bank))
+    if abs(turn) > TURNED:
+        lines.append(
+            f"the wall contacts lie at different heights: banked, the part turns by about {turn:.2g} deg more"
+        )
+    if found.headings is not None and found.headings.overhangs[found.row] > 0.0:
+        lines.append(
+            f"the part overhangs the track's edge by {found.headings.overhangs[found.row] / MM:.3g} mm"
+        )
+    return lines
+
+
+def opened(closed):
+    """Return names of the wall contacts that have opened."""
+    return [name for name, shut in zip(CONTACTS[1:], closed) if not shut]
+
+
+def _which(closed):
+    names = [name.replace("_", " ") for name, shut in zip(CONTACTS[1:], closed.T) if not shut.all()]
+    return " and ".join(names)
+
+
+def _contacts(found):
+    """Place of each wall contact from the foot of the centre of mass, and sigma."""
+    places = found.seat.walls + np.array([0.0, 0.0, found.seat.height])
+    sigma = np.degrees(np.arcsin(-found.seat.walls[:, 0] / found.bowl.track.radius))
+    return [
+        {"name": name, "place_mm": place / MM, "sigma_deg": float(angle)}
+        for name, place, angle in zip(CONTACTS[1:], places, sigma)
+    ]
+
+
+def _axis(opening):
+    return {
+        "point_mm": opening.point / MM,
+        "direction": opening.direction,
+        "pitch_mm": opening.pitch / MM,
+    }
+
+
+IN_MM = {
+    "normal_line_offset_m": "normal_line_offset_mm",
+    "normal_line_offset_across_m": "normal_line_offset_y_mm",
+}
+
+
+def cells(grid):
+    """Return every cell of a grid of ``TrackStudy.over``, as a frame."""
+    columns = grid.columns()
+    return tables.frame(
+        {IN_MM.get(name, name): values / MM if name in IN_MM else values for name, values in columns.items()}
+    )
+
+
+def map_remarks(grid):
+    """Return what a reader of a map should know, a sentence each."""
+    shares = grid.shares()
+    lines = [] if shares["slide"] or shares["leaves the wall"] else [none_slides(grid)]
+    unfit = int(np.round(shares["does not fit"] * grid.codes.size))
+    if unfit:
+        lines.append(f"the part does not fit the track in {unfit} of {grid.codes.size} cells")
+    return lines
+
+
+def labels(grid):
+    """Return what the axes of a map are called."""
+    return tuple(" ".join(tables.heading(axis.column)) for axis in (grid.first, grid.second))
+
+
+def own_point(grid, bowl):
+    """Return the bowl's own values in the units of the map's axes."""
+    return tuple(_value(bowl, axis) for axis in (grid.first, grid.second))
+
+
+def _value(bowl, axis):
+    key = next(key for key in bowls.schema.BOWL_KEYS if key.column == axis.column)
+    section, _, word = key.field.rpartition(".")
+    value = getattr(getattr(bowl, section) if section else bowl, word)
+    return value / key.share / axis.unit
+
+
+WALL, SURFACE, WEIGHT = "#5d6b78", "#e9edf0", "#22303c"
+SHADES = ("#b5482a", "#e08a3c")  # of R1 and R2
+LONGEST = 0.55  # of the part's size: the longest arrow
+LEAST = 1e-3  # of the longest: shorter arrows are left out
+BARE = 0.02  # [m] size of a picture of a part card, which has no outline
+
+
+def part(found, title):
+    """The part on the track at the upper reversal, seen from above and from behind, with what acts on it.
+
+    Parameters
+    ----------
+    found : TrackStudy
+    title : str
+
+    Returns
+    -------
+    Figure
+    """
+    figure = style.figure(11.0, 5.4)
+    above, behind = figure.subplots(1, 2)
+    state = MOTION_STATES[int(found.now.state)]
+    figure.suptitle(
+        f"{title}, upper reversal: {state}; arrow length ∝ √force",
+        x=0.01,
+        ha="left",
+        fontsize=11,
+        color=style.INK,
+        fontweight="bold",
+    )
+    _above(above, found)
+    _behind(behind, found)
+    for axes in (above, behind):
+        axes.set_aspect("equal")
+        axes.margins(0.16)
+        axes.tick_params(labelsize=8)
+    return figure
+
+
+def cycle(found, course, title):
+    """Draw reactions and velocity over one settled period.
+
+    Parameters
+    ----------
+    found : TrackMotion of shape (N,)
+    course : Cycle
+    title : str
+
+    Returns
+    -------
+    Figure
+    """
+    figure = style.figure(6.8, 6.4)
+    upper, middle, lower = figure.subplots(3, 1, sharex=True)
+    phase = np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)
+    style.tidy(upper, title=title, y="force [N]")
+    upper.plot(phase, found.normal_force, color=NORMAL, label="normal force N")
+    upper.plot(phase, found.traction, color=FRICTION, label="traction R4")
+    upper.set_ylim(top=1.28 * max(found.normal_force.max(), 1e-12))
+    style.tidy(middle, y="wall [N]")
+    for k, color in enumerate(SHADES):
+        middle.plot(phase, found.walls[:, k], color=color, label=f"R{k + 1}")
+    middle.plot(phase, found.radial_friction, color=NORMAL, linestyle="--", label="R3")
+    style.tidy(lower, x="phase ωt [deg]; upper reversal at 90°", y="velocity [mm/s]")
+    lower.plot(phase, course.velocity / MM, color="#2f7d5b", label=mean(course))
+    for axes in (upper, middle, lower):
+        phase_axis(axes)
+        axes.axhline(0, color=style.INK, linewidth=0.8)
+        axes.legend(
+            fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), labelcolor=style.INK
+        )
+    state_band(upper, phase, found.state, MOTION_STATES)
+    state_legend(figure, found.state, MOTION_STATES)
+    return figure
+
+
+def mean(course):
+    """Say the mean velocity of a cycle, and of what it is; a part that rolls or gets faster has none."""
+    velocity = f"{course.mean / MM:.3g} mm/s" if course.settled else "none: it gets faster"
+    return f"mean, with the\nwall's friction:\n{velocity}"
+
+
+def _above(axes, found):
+    """Across the track surface: X to the right, the wall below."""
+    seat, now, posture = found.seat, found.now, found.posture
+    style.tidy(
+        axes,
+        title="from above, the wall below",
+        x="along the track [mm]",
+        y="away from the wall [mm]",
+        grid="none",
+    )
+    size = _size(posture)
+    _arcs(axes, found, size)
+    if len(posture.outline):
+        _body(axes, turned(posture.outline, seat.heading) / MM)
+        _contact(axes, seat.contact / MM)
+    side = frame(found.bowl, seat.walls)
+    scale = _Scale(now, size)
+    for k, color in enumerate(SHADES):
+        start = seat.walls[k, :2] / MM
+        scale.draw(axes, start, side.normals[k, :2], now.walls[k], f"R{k + 1}", color, pushing=True)
+        scale.draw(axes, start, -side.courses[k, :2], now.wall_friction[k], f"R{k + 1}f", color)
+    foot = now.offset / MM if np.isfinite(now.offset).all() else np.zeros(2)
+    scale.draw(axes, foot, np.array([-1.0, 0.0]), now.traction, "R4", FRICTION)
+    scale.draw(axes, foot, np.array([0.0, 1.0]), now.radial_friction, "R3", FRICTION)
+    scale.draw(axes, np.zeros(2), *_unit(_drive(found)[:2]), "drive", DRIVE)
+    if now.normal_force > 0.0 and np.isfinite(now.offset).all():
+        axes.plot(*foot, "x", color=NORMAL, markersize=8, markeredgewidth=2, zorder=7)
+    shading.centre_of_mass(axes, 0.02 * size / MM)
+
+
+def _behind(axes, found):
+    """Across the track: the wall to the right, up as gravity has it."""
+    seat, now, posture = found.seat, found.now, found.posture
+    style.tidy(
+        axes, title="from behind, the wall to the right", x="towards the wall [mm]", y="up [mm]", grid="none"
+    )
+    bank, size = float(found.bowl.track.bank), _size(posture)
+    _section(axes, found, bank, size)
+    scale = _Scale(now, size)
+
+    def place(point):
+        return turned(np.asarray(point)[1:], bank) * [-1.0, 1.0] / MM
+
+    side = frame(found.bowl, seat.walls)
+    for k, color in enumerate(SHADES):
+        lift = np.array([0.0, 0.04 - 0.08 * k]) * size / MM  # or two reactions at one height hide each other
+        push = _unit(place(side.normals[k]) * now.walls[k] * MM)
+        scale.draw(axes, place(seat.walls[k]) + lift, *push, f"R{k + 1}", color, pushing=True)
+    foot = np.array([0.0, 0.0 if np.isnan(now.offset[1]) else now.offset[1], -seat.height])
+    scale.draw(axes, place(foot), *_unit(place([0, 0, 1.0]) * now.normal_force * MM), "N", NORMAL, beside=1)
+    scale.draw(axes, place(foot), *_unit(place([0, 1.0, 0]) * now.radial_friction * MM), "R3", FRICTION)
+    weight = seat.mass * float(found.bowl.gravity)
+    scale.draw(axes, np.zeros(2), np.array([0.0, -1.0]), weight, "weight", WEIGHT)
+    scale.draw(axes, np.zeros(2), *_unit(place(_drive(found)) * MM), "drive", DRIVE, beside=-1)
+    shading.centre_of_mass(axes, 0.02 * size / MM)
+
+
+class _Scale:
+    """Arrows of one picture in one scale; their lengths go with the root of the force."""
+
+    def __init__(self, now, size):
+        self.longest = max(float(now.normal_force), float(np.linalg.norm(now.load)), *now.walls)
+        self.length = LONGEST * size / MM
+
+    def draw(self, axes, start, direction, value, name, color, **style):
+        """One force of so many newtons along a unit vector; none where it is zero."""
+        if abs(value) > LEAST * self.longest:
+            step = np.sign(value) * self.length * np.sqrt(abs(value) / self.longest) * np.asarray(direction)
+            arrow(axes, start, step, f"{name} {newtons(abs(value))}", color, **style)
+
+
+def _size(posture):
+    return float(np.ptp(posture.outline, axis=0).max()) if len(posture.outline) else BARE
+
+
+def _drive(found):
+    """Inertial force of the drive in track axes."""
+    bowl = found.bowl
+    push = found.seat.mass * bowl.drive.amplitude * (2.0 * np.pi * bowl.drive.frequency) ** 2
+    return push * frame(bowl, found.seat.walls).drive
+
+
+def _unit(vector) -> tuple[np.ndarray, float]:
+    """Direction and size."""
+    size = float(np.hypot(*vector))
+    return (vector / size if size > 0.0 else np.zeros(2)), size
+
+
+def _arcs(axes, found, size):
+    """The wall and the track's free edge."""
+    track, seat = found.bowl.track, found.seat
+    centre = seat.walls[:, 1].mean() + np.sqrt(track.radius**2 - np.square(seat.walls[:, 0]).mean())
+    reach = np.linspace(-0.75, 0.75, 121) * size / track.radius
+    for radius, dashes in ((track.radius, "-"), (track.radius - track.width, (0, (5, 3)))):
+        x, y = radius * np.sin(reach), centre - radius * np.cos(reach)
+        axes.plot(
+            x / MM, y / MM, color=WALL, linewidth=2.4 if dashes == "-" else 1.2, linestyle=dashes, zorder=1
+        )
+        if dashes == "-":
+            axes.fill_between(
+                x / MM, y / MM, y / MM - 0.06 * size / MM, color=WALL, alpha=0.35, linewidth=0, zorder=1
+            )
+        axes.annotate(
+            "bowl wall" if dashes == "-" else "track edge",
+            (x[-1] / MM, y[-1] / MM), (4, -14 if dashes == "-" else 4),
+            textcoords="offset points", fontsize=8, color=WALL, ha="right", va="bottom",
+        )  # fmt: skip
+
+
+def _section(axes, found, bank, size):
+    """Track, wall and part across the direction of travel."""
+    seat, posture, track = found.seat, found.posture, found.bowl.track
+    at_wall = seat.walls[:, 1].mean()
+    ends = np.array([[at_wall, -seat.height], [at_wall + track.width, -seat.height]])
+    if posture.corners is not None:
+        points = posture.corners - [0.0, 0.0, seat.height]
+        across = np.column_stack([turned(points[:, :2], seat.heading)[:, 1], points[:, 2]])
+        _body(axes, outline(turned(across, bank)) * [-1.0, 1.0] / MM)
+        on_floor = np.column_stack([seat.contact[:, 1], np.full(len(seat.contact), -seat.height)])
+        low, high = on_floor[on_floor[:, 0].argmin()], on_floor[on_floor[:, 0].argmax()]
+        span = turned(np.array([low, high]), bank) * [-1.0, 1.0] / MM
+        axes.plot(*span.T, color=CONTACT, linewidth=3.5, solid_capstyle="butt", zorder=3)
+    surface = turned(ends, bank) * [-1.0, 1.0] / MM
+    touch = -float(turned(seat.walls[:, 1:], bank)[:, 0].min()) / MM
+    surface[0] = surface[0] + (touch - surface[0, 0]) * (surface[0] - surface[1]) / (
+        surface[0, 0] - surface[1, 0]
+    )
+    axes.plot(*surface.T, color=WALL, linewidth=2.4, zorder=1)
+    axes.plot(
+        [touch, touch], [surface[0, 1], surface[0, 1] + 0.9 * size / MM], color=WALL, linewidth=2.4, zorder=1
+    )
+
+
+def _body(axes, polygon):
+    axes.add_patch(
+        mpl_patches.Polygon(
+            polygon, closed=True, facecolor=PART, edgecolor=style.INK, linewidth=1.3, zorder=2
+        )
+    )
+    axes.plot(*polygon.T, alpha=0)
+
+
+def _contact(axes, polygon):
+    axes.add_patch(
+        mpl_patches.Polygon(polygon, closed=True, facecolor=CONTACT, edgecolor=CONTACT, alpha=0.25, zorder=3)
+    )
+
+
+SHOWN = "acceleration_x_m_s2"
+
+
+def offers(study, settings, grid):
+    """Offer the files of a TrackStudy.
+
+    Parameters
+    ----------
+    study : TrackStudy
+    settings : dict of str to str
+        The bowl's values in effect.
+    grid : Grid
+        Of ``study.over``.
+
+    Returns
+    -------
+    list of Offer
+    """
+    printed_beside = [
+        offer.table("track_difference.csv", differences, study),
+        offer.table("track_omitted_terms.csv", omitted_terms, study),
+    ]
+    return [
+        offer.document("track.json", document, study, settings),
+        offer.table("track_cycle.csv", over_cycle, study.cycle, study.course),
+        offer.table("track_map.csv", cells, grid),
+        *(printed_beside if study.printed is not None else []),
+        offer.picture(
+            "track_part.png",
+            "The part on the track from above and from behind, with the forces on it",
+            _part, study,
+        ),
+        offer.picture("track_cycle.png", "Reactions over one cycle", _cycle, study),
+        offer.picture("track_map.png", f"Acceleration along the track over {_axes(grid)}", _map, study, grid),
+    ]  # fmt: skip
+
+
+def at_one_point(study):
+    """Offer what needs no map, as a list of Offer."""
+    return [
+        offer.table("track_cycle.csv", over_cycle, study.cycle, study.course),
+        offer.picture("track_part.png", "The part on the track, with the forces on it", _part, study),
+        offer.picture("track_cycle.png", "Reactions over one cycle", _cycle, study),
+    ]
+
+
+def _part(study):
+    return part(study, _title(study))
+
+
+def _cycle(study):
+    return cycle(study.cycle, study.course, _title(study))
+
+
+def _map(study, grid):
+    from feederscrew.output.floor import regime_map
+
+    return regime_map(
+        grid, SHOWN, title=_title(study), labels=labels(grid),
+        value="acceleration V'_X at the upper reversal [m/s²]",
+        own=own_point(grid, study.bowl), note=map_remarks(grid),
+    )  # fmt: skip
+
+
+def _axes(grid):
+    return " and ".join(label.partition(" [")[0] for label in labels(grid))
+
+
+def _title(study):
+    heading = f"{np.degrees(study.seat.heading):.4g}°"
+    return f"{study.part.name}, aspect {study.posture.name}, heading {heading}"

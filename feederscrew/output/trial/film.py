@@ -1,0 +1,322 @@
+"""A trial as a film: single parts at the device that decides, then the queue, with the bowl around them."""
+
+import math
+import os
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation, Slerp
+
+from feederscrew.errors import FeederError, MissingPackage
+from feederscrew.output import DPI, style
+from feederscrew.output.solid.render import AWAY, MISSED, Camera, Rays
+from feederscrew.output.solid.shading import EDGE, STEEL, Shot, averaged, edges, lit
+from feederscrew.output.tooling.relief import camera_at
+from feederscrew.output.trial.figures import LOOKS, solids, unrolled
+from feederscrew.output.trial.section import WALL, section
+from feederscrew.output.trial.shown import ShownRide, shown
+from feederscrew.part.record import Part
+from feederscrew.studies.trial import TrialStudy
+from feederscrew.tooling import solid
+from feederscrew.trial.kernel import crowd_records
+from feederscrew.trial.queue import QueuedParts
+from feederscrew.trial.result import TrialRun
+from feederscrew.trial.staging import Stage
+
+ENDINGS = ("gif", "mp4", "webm")
+SECONDS, FRAMES_PER_S = 10.0, 12
+QUEUE_FRAMES = 60  # of them for the queue, where there is one
+WIDTH, HEIGHT = 640, 400  # [px] of the picture
+HEAD = 34  # [px] above it for the caption
+SAMPLES = 2  # rays a pixel, each way
+METAL, POT = np.array([0.90, 0.91, 0.92]), np.array([0.80, 0.83, 0.86])  # tooled track; rest of the bowl
+HIDDEN_SHADE = 0.45  # of its colour: a part where the track is in front of it
+MARGIN = 1.5  # of the stretch that parts pass: what is seen
+HOLD_S = 0.4  # [s] of the film: a part that has ended stays to be seen
+LONG_STRETCH = 1.2  # [rad] of the track: from there the whole bowl is seen, from above
+LOWERED = 0.12  # of half the width: the middle of the picture lies so far below the parts
+SHADES = 40  # of the light on a surface: few make small files
+WALL_HEIGHT, FLOOR_DEPTH = 1.1, 3.0  # of the part's radius: wall above the track, floor below it
+WITH_FFMPEG = "install ffmpeg (Debian: apt install ffmpeg), or give a name that ends in .gif"
+
+
+def require_writer(path: str | os.PathLike[str]) -> None:
+    """Raise the line that says what to install where a film cannot be written.
+
+    Parameters
+    ----------
+    path : str or Path
+        Ends in one of ``ENDINGS``.
+
+    Raises
+    ------
+    FeederError
+        If the ending is none of those, or there is no such folder.
+    MissingPackage
+        If it needs ffmpeg, which is not installed.
+    """
+    from matplotlib.animation import FFMpegWriter
+
+    ending = Path(path).suffix.lower().removeprefix(".")
+    if ending not in ENDINGS:
+        raise FeederError(path, "is not a name for a film", f"end it in .{', .'.join(ENDINGS)}")
+    if not Path(path).absolute().parent.is_dir():
+        raise FeederError(path, "lies in no folder that exists", "make the folder first")
+    if ending != "gif" and not FFMpegWriter.isAvailable():
+        raise MissingPackage("film", f"of .{ending} needs ffmpeg, which is not installed", WITH_FFMPEG)
+
+
+def write_film(path: str | os.PathLike[str], study: TrialStudy) -> None:
+    """Write a film of ten seconds of the first run of a trial.
+
+    Parameters
+    ----------
+    path : str or Path
+        Its ending says the format: gif, mp4 or webm.
+    study : TrialStudy
+        With the poses of its queue, if the queue shall be seen: ``trial(..., frames=QUEUE_FRAMES)``.
+
+    Raises
+    ------
+    FeederError
+        As ``require_writer`` does, or if the file cannot be written.
+    """
+    from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+
+    require_writer(path)
+    target = Path(path)
+    writer: AbstractMovieWriter
+    if target.suffix.lower() == ".gif":
+        writer = PillowWriter(fps=FRAMES_PER_S)
+    else:
+        webm = target.suffix.lower() == ".webm"
+        codec = ("libvpx-vp9", "-b:v", "0", "-crf", "36") if webm else ("libx264", "-crf", "23")
+        options = ["-c:v", *codec, "-pix_fmt", "yuv420p", "-map_metadata", "-1", "-fflags", "+bitexact"]
+        writer = FFMpegWriter(fps=FRAMES_PER_S, extra_args=options)
+    figure = style.page(WIDTH, HEIGHT + HEAD)
+    axes = figure.add_axes((0.0, 0.0, 1.0, HEIGHT / (HEIGHT + HEAD)))
+    axes.set_axis_off()
+    shot = axes.imshow(np.ones((HEIGHT, WIDTH, 3)), interpolation="nearest", aspect="auto")
+    place = {"y": 1.0 - 0.5 * HEAD / (HEIGHT + HEAD), "va": "center", "color": style.INK}
+    caption = figure.text(12 / WIDTH, s="", fontsize=9, fontweight="bold", **place)
+    clock = figure.text(1.0 - 12 / WIDTH, s="", fontsize=8, ha="right", **place)
+    try:
+        with tempfile.TemporaryDirectory(prefix=".feeder.", dir=target.absolute().parent) as folder:
+            unfinished = Path(folder) / f"film{target.suffix.lower()}"
+            with writer.saving(figure, unfinished, dpi=DPI):
+                for image, words, time in film_frames(study.part, study.runs[0]):
+                    shot.set_data(image)
+                    caption.set_text(words)
+                    clock.set_text(time)
+                    writer.grab_frame()
+            unfinished.replace(target)
+    except OSError as error:
+        mend = "give a name in a folder that may be written to"
+        raise FeederError(path, f"cannot be written ({error.strerror})", mend) from error
+
+
+def film_frames(part: Part, run: TrialRun) -> Iterator[tuple[NDArray[np.float64], str, str]]:
+    """Yield image (rows, columns, 3), caption, and time of each frame: single parts, then the queue."""
+    frames = round(SECONDS * FRAMES_PER_S)
+    queue = run.queue if run.queue is not None and len(run.queue.poses) else None
+    if queue is not None:
+        frames -= QUEUE_FRAMES
+    yield from _single_parts(part, run, frames)
+    if queue is not None:
+        yield from _queue(part, run, queue)
+
+
+class FilmSet:
+    """A stretch of tooled track in its bowl, seen by a camera that stands still; drawn once.
+
+    Parameters
+    ----------
+    part : Part
+    run : TrialRun
+    stage : Stage
+        The stretch.
+    places : (K, 3) float [m]
+        Where parts come; all of them are to be seen.
+    """
+
+    def __init__(self, part: Part, run: TrialRun, stage: Stage, places: NDArray[np.float64]) -> None:
+        self.part = Rays(part.vertices, part.faces, part.centre_of_mass)
+        self.principal = Rotation.from_matrix(np.array(run.course.principal)).inv()
+        radius = run.bowl.track.radius
+        angles = np.arctan2(places[:, 0], radius - places[:, 1])
+        self.camera = camera_at(0.5 * (angles.min() + angles.max()))
+        track = section(stage, run.bowl.track, WALL_HEIGHT * self.part.size)
+        pot = _bowl_around(stage, run, WALL_HEIGHT * self.part.size, FLOOR_DEPTH * self.part.size)
+        corners, room = np.vstack([track[0], pot[0]]), MARGIN
+        if np.ptp(angles) > LONG_STRETCH:
+            self.camera, places, room = _from_above(self.camera), corners, 1.05
+        flat = self.camera.project(places)
+        spans = np.ptp(flat, axis=0) + (0.0 if places is corners else 3.0 * self.part.size)
+        half = 0.5 * room * max(spans[0], spans[1] * WIDTH / HEIGHT)
+        middle = 0.5 * (flat.min(axis=0) + flat.max(axis=0))
+        middle[1] -= 0.0 if places is corners else LOWERED * half
+        self.centre = middle @ np.array([self.camera.right, self.camera.up])
+        self.centre += (places.mean(axis=0) @ self.camera.back) * self.camera.back
+        rays = Rays(corners, np.vstack([track[1], pot[1] + len(track[0])]), self.centre)
+        pixel = 2.0 * half / WIDTH
+        frame = Shot(-half, -0.5 * HEIGHT * pixel, pixel, WIDTH, HEIGHT)
+        self.across, self.up = frame.positions(SAMPLES)  # [m]
+        depths, normals, facets = self.camera.meet(rays, self.across / rays.size, self.up / rays.size)
+        self.samples = np.ones((*depths.shape, 3))
+        for mask, colour in (
+            ((facets != MISSED) & (facets < len(track[1])), METAL),
+            (facets >= len(track[1]), POT),
+        ):
+            self.samples[mask] = _shaded(normals[mask], self.camera, colour)
+        step = (self.up[0] - self.up[1]) / rays.size
+        self.samples[edges(depths, normals, self.camera, step)] = EDGE
+        self.image = averaged(self.samples, SAMPLES)
+        self.nearness = (AWAY - depths) * rays.size  # [m] towards the viewer; -inf where nothing is
+
+    def drawn(self, poses: NDArray[np.float64], colours: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+        """Return the image (rows, columns, 3) with parts at poses (N, 7), position [m] and w x y z."""
+        samples, nearness, image = self.samples.copy(), self.nearness.copy(), self.image.copy()
+        boxes = [
+            self._draw(samples, nearness, pose, colour)
+            for pose, colour in zip(poses, colours)
+            if np.isfinite(pose).all()
+        ]
+        for rows, columns in filter(None, boxes):
+            own = averaged(samples[rows, columns], SAMPLES)
+            image[
+                rows.start // SAMPLES : rows.stop // SAMPLES,
+                columns.start // SAMPLES : columns.stop // SAMPLES,
+            ] = own
+        return image
+
+    def _draw(
+        self,
+        samples: NDArray[np.float64],
+        nearness: NDArray[np.float64],
+        pose: NDArray[np.float64],
+        colour: NDArray[np.float64],
+    ) -> tuple[slice, slice] | None:
+        """Add one part, its rays cast along its own axes: its mesh is prepared once; where it is drawn."""
+        turn = (Rotation.from_quat(pose[[4, 5, 6, 3]]) * self.principal).as_matrix()
+        axes = [turn.T @ axis for axis in (self.camera.right, self.camera.up, self.camera.back)]
+        camera, size = Camera(*axes), self.part.size
+        offset = pose[:3] - self.centre
+        x, y = offset @ self.camera.right, offset @ self.camera.up
+        low, high = (end(camera.project(self.part.points), axis=0) * size for end in (np.min, np.max))
+        columns = _whole_pixels((self.across > x + low[0]) & (self.across < x + high[0]))
+        rows = _whole_pixels((self.up > y + low[1]) & (self.up < y + high[1]))
+        if rows is None or columns is None:
+            return None
+        box = rows, columns
+        across, up = (self.across[columns] - x) / size, (self.up[rows] - y) / size
+        depths, normals = camera.cast(self.part, across, up)
+        own = (AWAY - depths) * size + offset @ self.camera.back
+        inside = np.isfinite(depths)
+        shades = np.ones((*depths.shape, 3))
+        shades[inside] = _shaded(normals[inside], camera, colour)
+        shades[edges(depths, normals, camera, (self.up[0] - self.up[1]) / size) & inside] = EDGE
+        front = inside & (own >= nearness[box] - 1e-3 * size)
+        hidden = inside & ~front
+        samples[box][front] = shades[front]
+        samples[box][hidden] += HIDDEN_SHADE * (shades[hidden] - samples[box][hidden])
+        nearness[box][front] = own[front]
+        return box
+
+
+def _shaded(normals: NDArray[np.float64], camera: Camera, colour: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The colours (N, 3) of lit surfaces, of few shades."""
+    return np.round(lit(normals, camera, np.ones(3)) * SHADES) / SHADES * colour
+
+
+def _whole_pixels(covered: NDArray[np.bool_]) -> slice | None:
+    """The range of samples from the first to the last that is covered, in whole pixels; None without one."""
+    places = np.flatnonzero(covered)
+    if not len(places):
+        return None
+    return slice(places[0] // SAMPLES * SAMPLES, -(-(places[-1] + 1) // SAMPLES) * SAMPLES)
+
+
+def _bowl_around(
+    stage: Stage, run: TrialRun, above: float, below: float
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The rest of the bowl as a mesh: bare track and wall over the rest of the turn, a floor below."""
+    radius, width = run.bowl.track.radius, run.bowl.track.width
+    corners = np.concatenate(solids(stage))
+    way, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), radius)
+    first, last = way.min() / radius, way.max() / radius
+    middle = shapely.Point(0.0, radius)
+    full, inner = middle.buffer(radius, quad_segs=64), middle.buffer(radius - width, quad_segs=64)
+    outer = middle.buffer(radius + WALL, quad_segs=64)
+    deep = -stage.plates[0, crowd_records.DEPTH]
+    bodies = [solid.prism(outer, -below - WALL, -below), solid.prism(outer.difference(full), -below, deep)]
+    if last - first < 2.0 * math.pi - 0.05:
+        turns = np.linspace(last, first + 2.0 * math.pi, 181)
+        edge = 3.0 * radius * np.column_stack([np.sin(turns), -np.cos(turns)]) + [0.0, radius]
+        rest = shapely.make_valid(shapely.Polygon([(0.0, radius), *edge]))
+        for area, low, high in ((full.difference(inner), deep, 0.0), (outer.difference(full), deep, above)):
+            bodies.append(solid.prism(area.intersection(rest), low, high))
+    starts = np.cumsum([0] + [len(vertices) for vertices, _ in bodies])
+    vertices = np.concatenate([vertices for vertices, _ in bodies])
+    return vertices, np.concatenate([faces + n for (_, faces), n in zip(bodies, starts)])
+
+
+def _from_above(camera: Camera) -> Camera:
+    """A camera that looks more steeply down, over the wall that is nearer."""
+    back = camera.back * [0.45, 0.45, 1.0]
+    back /= np.linalg.norm(back)
+    return Camera(camera.right, np.cross(back, camera.right), back)
+
+
+def _single_parts(part: Part, run: TrialRun, frames: int) -> Iterator[tuple[NDArray[np.float64], str, str]]:
+    """One part that passes the device that decides and one that does not, one after the other."""
+    rides = shown(run)
+    stage = run.course.stations[rides[0].place]
+    scene = FilmSet(part, run, stage, np.concatenate([ride.path[:, 1:4] for ride in rides]))
+    for k, ride in enumerate(rides):
+        count = frames * (k + 1) // len(rides) - frames * k // len(rides)
+        rgb = LOOKS[ride.fate][0]
+        passed = ride.fate == "passed"
+        colour = STEEL if passed else np.array([int(rgb[n : n + 2], 16) / 255 for n in (1, 3, 5)])
+        yield from _one_ride(scene, ride, ride.title(run.course), count, colour)
+
+
+def _one_ride(
+    scene: FilmSet, ride: ShownRide, title: str, count: int, colour: NDArray[np.float64]
+) -> Iterator[tuple[NDArray[np.float64], str, str]]:
+    path = ride.path
+    moved = np.flatnonzero(np.abs(path[:, 1:4] - path[-1, 1:4]).max(axis=1) > 5e-5)  # [m]
+    begin, end = path[0, 0], path[min(moved[-1] + 1 if len(moved) else 0, len(path) - 1), 0]
+    moving = max(count - round(HOLD_S * FRAMES_PER_S), 1)
+    speed = _speed((end - begin) / (moving / FRAMES_PER_S))
+    attitudes = Slerp(path[:, 0], Rotation.from_quat(path[:, [5, 6, 7, 4]])) if len(path) > 1 else None
+    for time in np.minimum(np.linspace(begin, end + (end - begin) * (count - moving) / moving, count), end):
+        pose = np.array(path[-1, 1:])
+        if attitudes is not None:
+            turn = attitudes(time).as_quat()[[3, 0, 1, 2]]
+            pose = np.array([*(np.interp(time, path[:, 0], path[:, k]) for k in (1, 2, 3)), *turn])
+        yield scene.drawn(pose[None], [colour]), title, f"{time - begin:.2f} s, {speed}"
+
+
+def _queue(part: Part, run: TrialRun, queue: QueuedParts) -> Iterator[tuple[NDArray[np.float64], str, str]]:
+    """The parts that push each other, on the track with all its devices."""
+    places = queue.poses[..., :3].reshape(-1, 3)
+    lowest = -FLOOR_DEPTH * float(np.linalg.norm(part.vertices - part.centre_of_mass, axis=1).max())
+    places = places[np.isfinite(places[:, 0]) & (places[:, 2] > lowest)]
+    if queue.stage is None or not len(places):
+        return
+    scene = FilmSet(part, run, queue.stage, places)
+    speed = _speed(queue.seconds / (len(queue.poses) / FRAMES_PER_S))
+    for poses, (time, left, returned) in zip(queue.poses, queue.moments):
+        words = f"queue of {queue.parts}: {left} left, {returned} returned"
+        yield scene.drawn(poses, [STEEL] * len(poses)), words, f"{time:.2f} s, {speed}"
+
+
+def _speed(times: float) -> str:
+    """'real time', '2.5 times as fast' or '4 times slower': seconds of the trial in one of the film."""
+    if 0.95 < times < 1.05:
+        return "real time"
+    return f"{times:.2g} times as fast" if times > 1.0 else f"{1.0 / max(times, 1e-9):.2g} times slower"

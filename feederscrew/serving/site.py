@@ -1,0 +1,347 @@
+"""The pages and answers of ``feeder serve``: who may ask, what may be sent; one part, one design at a time.
+
+Every request is refused that does not name this machine as its host, has no token of this run, or changes
+something and comes from another origin. The name of an uploaded file is shown and never used as a path.
+"""
+
+import hmac
+import io
+import json
+import secrets
+import shutil
+import threading
+import zipfile
+from collections.abc import Callable, Iterable, Sequence
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from werkzeug.exceptions import HTTPException
+from werkzeug.wrappers import Request, Response
+
+from feederscrew.errors import FeederError, printable
+from feederscrew.output import aspects as aspects_output
+from feederscrew.output.page.as_html import html
+from feederscrew.output.page.blocks import Chapter, Page, Table
+from feederscrew.output.report.resting import aspect_views
+from feederscrew.part import load
+from feederscrew.part.density import MATERIALS
+from feederscrew.part.reading.formats import CARD, FORMATS
+from feederscrew.studies.aspects import AspectsStudy, aspects
+
+HOST = "127.0.0.1"
+NAMES = (HOST, "localhost")  # of this machine, as a browser may write them
+COOKIE = "feeder"
+PART_BYTES, VALUES_BYTES = 64 * 2**20, 4096  # that a part file and the values of a design may have
+MOST_UPLOADS = 200  # part files of one run
+ENDINGS = tuple(suffix for name, one in FORMATS.items() if name != CARD for suffix in one.suffixes)
+UNITS = ("mm", "cm", "m", "um", "in")
+MACHINES = {  # what a reader chooses: label, and the options of the design
+    "50": ("leaf springs, 50 Hz mains", ("--drive", "leaf-spring", "--set", "machine.mains=50 Hz")),
+    "60": ("leaf springs, 60 Hz mains", ("--drive", "leaf-spring", "--set", "machine.mains=60 Hz")),
+    "two": ("two-axis drive", ("--drive", "two-axis")),
+}
+RATES = (0.1, 3000.0)  # [1/min] that may be asked for
+NAME_LETTERS = 80  # of a file name that is shown
+KINDS = {  # of the files of a result, by their ending; others are saved
+    "html": "text/html; charset=utf-8", "png": "image/png", "svg": "image/svg+xml",
+    "pdf": "application/pdf", "csv": "text/csv; charset=utf-8", "json": "application/json",
+    "yaml": "text/plain; charset=utf-8",
+}  # fmt: skip
+GUARD = {
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "SAMEORIGIN",
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-store",
+    "Cross-Origin-Resource-Policy": "same-origin",
+}
+POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: 'self'; "
+    "connect-src 'self'; frame-src 'self'; frame-ancestors 'self'; base-uri 'none'; form-action 'none'"
+)
+
+
+class Refusal(Exception):
+    """A request that is not answered: its status and one line that says why and how to mend it."""
+
+    def __init__(self, status: int, line: str) -> None:
+        super().__init__(line)
+        self.status = status
+
+
+class Site:
+    """The WSGI application of one run.
+
+    Parameters
+    ----------
+    folder : Path
+        Empty; all that is uploaded and computed is below it. Whoever made it removes it.
+    program : sequence of str
+        That runs ``feeder``; ``design`` and its arguments follow.
+    start_job : callable
+        Of a command and a folder of results; gives a ``DesignJob``.
+    """
+
+    def __init__(
+        self, folder: Path, program: Sequence[str], start_job: Callable[[Sequence[str], Path], Any]
+    ) -> None:
+        self.folder, self.program, self.start_job = folder, tuple(program), start_job
+        self.token, self.port = secrets.token_urlsafe(24), 0
+        self.part: Path | None = None
+        self.view = self.name = ""
+        self.uploads = 0
+        self.job: Any = None
+        self._one_at_a_time = threading.Lock()
+        self.answers: dict[tuple[str, str], Callable[[Request], Response]] = {
+            ("GET", "/"): self.start_page,
+            ("POST", "/part"): self.take_part,
+            ("GET", "/aspects"): self.aspects_page,
+            ("POST", "/design"): self.start_design,
+            ("GET", "/progress"): self.progress,
+            ("POST", "/stop"): self.stop_design,
+            ("GET", "/folder.zip"): self.zipped,
+        }
+
+    @property
+    def address(self) -> str:
+        """The address to open, with the token of this run."""
+        return f"http://{HOST}:{self.port}/?token={self.token}"
+
+    def __call__(self, environ: dict[str, Any], start_response: Callable[..., Any]) -> Iterable[bytes]:
+        """Answer one request as WSGI has it."""
+        request = Request(environ)
+        try:
+            response = self.answer(request)
+        except Refusal as refusal:
+            response = _json({"error": str(refusal)}, refusal.status)
+        except FeederError as fault:
+            response = _json({"error": " ".join(fault.lines)}, 422)
+        except HTTPException as fault:
+            response = _json({"error": f"{fault.name} - reload the page"}, fault.code or 400)
+        for name, value in GUARD.items():
+            response.headers[name] = value
+        response.headers.setdefault("Content-Security-Policy", POLICY)
+        return response(environ, start_response)
+
+    def answer(self, request: Request) -> Response:
+        """Return the answer to a request that may ask.
+
+        Raises
+        ------
+        Refusal, FeederError
+        """
+        self.check_host(request)
+        if request.method == "GET" and request.path == "/" and "token" in request.args:
+            return self.let_in(request)
+        if not hmac.compare_digest(request.cookies.get(COOKIE, "").encode(), self.token.encode()):
+            raise Refusal(403, "no token of this run - open the address that feeder serve printed")
+        if request.method == "POST":
+            self.check_origin(request)
+        if request.method == "GET" and request.path.startswith("/result/"):
+            return self.result(request)
+        make = self.answers.get((request.method, request.path))
+        if make is None:
+            raise Refusal(404, "there is no such page - open / instead")
+        return make(request)
+
+    def check_host(self, request: Request) -> None:
+        """Refuse what names another host: a page elsewhere may let its own name lead to this machine."""
+        if request.environ.get("HTTP_HOST", "") not in [f"{name}:{self.port}" for name in NAMES]:
+            raise Refusal(421, f"another host is named - open http://{HOST}:{self.port}/")
+
+    def check_origin(self, request: Request) -> None:
+        """Refuse what another page sends."""
+        if request.headers.get("Origin") != f"http://{request.environ['HTTP_HOST']}":
+            raise Refusal(403, "sent from another page - use the page of feeder serve")
+
+    def let_in(self, request: Request) -> Response:
+        """Set the cookie of a browser that has the token, and take the token out of the address."""
+        if not hmac.compare_digest(request.args["token"].encode(), self.token.encode()):
+            raise Refusal(403, "that is not the token of this run - open the address that was printed")
+        response = Response(status=303, headers={"Location": "/"})
+        response.set_cookie(COOKIE, self.token, httponly=True, samesite="Strict")
+        return response
+
+    def start_page(self, request: Request) -> Response:
+        """The page of the job."""
+        text = resources.files("feederscrew.serving").joinpath("start.html").read_text(encoding="utf-8")
+        values = {
+            "endings": [f".{ending}" for ending in ENDINGS],
+            "units": UNITS,
+            "materials": [material.name for material in MATERIALS],
+            "machines": [[name, label] for name, (label, _) in MACHINES.items()],
+            "bytes": PART_BYTES,
+        }
+        filled = text.replace("{{values}}", json.dumps(values).replace("<", "\\u003c"))
+        return Response(filled, mimetype="text/html")
+
+    def take_part(self, request: Request) -> Response:
+        """Read a part file, find its aspects, and keep both; the name only says how it is read and shown."""
+        name = printable(request.args.get("name", ""))[-NAME_LETTERS:]
+        stem, _, ending = name.lower().rpartition(".")
+        units = request.args.get("units", "mm")
+        if not stem or ending not in ENDINGS:
+            raise Refusal(415, f"{name}: not a part file - give one that ends in .{', .'.join(ENDINGS)}")
+        if units not in UNITS:
+            raise Refusal(400, f"units {units} - choose one of {', '.join(UNITS)}")
+        data = _body(request, PART_BYTES, "a part file", "export it with fewer facets")
+        with self._alone():
+            if self.uploads >= MOST_UPLOADS:
+                raise Refusal(429, f"{MOST_UPLOADS} files were sent in this run - start feeder serve again")
+            self.uploads += 1
+            self._clear()
+            path = self.folder / f"part.{ending}"
+            path.write_bytes(data)
+            try:
+                study = aspects(load(str(path), units=units))
+                view = _aspects_page(name, study)
+            except FeederError as fault:
+                path.unlink()
+                raise Refusal(422, " ".join(fault.lines).replace(str(path), name)) from fault
+            self.part, self.name, self.view = path, name, view
+        return _json({"name": name, "aspects": list(study.aspects.names)})
+
+    def aspects_page(self, request: Request) -> Response:
+        """The resting aspects of the part, to be turned."""
+        if self.part is None:
+            raise Refusal(409, "there is no part yet - drop a part file on the page")
+        return Response(self.view, mimetype="text/html", headers={"Content-Security-Policy": POLICY})
+
+    def start_design(self, request: Request) -> Response:
+        """Start a design of the part that is here."""
+        values = _values(request)
+        options = _design_options(values)
+        with self._alone():
+            if self.part is None:
+                raise Refusal(409, "there is no part yet - drop a part file on the page")
+            if self.job is not None and self.job.is_running:
+                raise Refusal(409, "a design is running - stop it first")
+            results = self.folder / "results"
+            shutil.rmtree(results, ignore_errors=True)
+            results.mkdir()
+            command = [*self.program, "design", str(self.part), *options, "-o", str(results)]
+            self.job = self.start_job(command, results)
+        return _json({"state": self.job.state})
+
+    def progress(self, request: Request) -> Response:
+        """State and last lines of the design."""
+        if self.job is None:
+            return _json({"state": "none", "lines": [], "files": []})
+        names = [name for name in self.job.files() if name]
+        lines = [printable(line).replace(str(self.folder), "") for line in self.job.lines]
+        return _json({"state": self.job.state, "lines": lines, "files": names})
+
+    def stop_design(self, request: Request) -> Response:
+        """Stop the design, as Ctrl-C would."""
+        if self.job is None or not self.job.is_running:
+            raise Refusal(409, "no design is running - start one")
+        self.job.stop()
+        return _json({"state": self.job.state})
+
+    def result(self, request: Request) -> Response:
+        """One file of the result, looked up by its name among those that are there."""
+        files = self.job.files() if self.job is not None else {}
+        name = request.path.removeprefix("/result/")
+        if name not in files:
+            raise Refusal(404, "the result has no such file - see the list on the page")
+        kind = KINDS.get(name.rpartition(".")[2].lower())
+        response = Response(files[name].read_bytes(), content_type=kind or "application/octet-stream")
+        if kind is None:
+            response.headers["Content-Disposition"] = "attachment"
+        return response
+
+    def zipped(self, request: Request) -> Response:
+        """The whole folder of the result."""
+        files = self.job.files() if self.job is not None else {}
+        if not files:
+            raise Refusal(404, "there is no result yet - start a design and wait for its end")
+        packed = io.BytesIO()
+        with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+            for name, path in files.items():
+                archive.write(path, f"design/{name}")
+        response = Response(packed.getvalue(), mimetype="application/zip")
+        response.headers["Content-Disposition"] = 'attachment; filename="design.zip"'
+        return response
+
+    def close(self) -> None:
+        """End a design that is running."""
+        if self.job is not None:
+            self.job.end()
+
+    def _clear(self) -> None:
+        """Forget the part before: its file, its view and its design."""
+        if self.job is not None and self.job.is_running:
+            raise Refusal(409, "a design is running - stop it first")
+        if self.part is not None:
+            self.part.unlink(missing_ok=True)
+        self.part, self.view, self.name, self.job = None, "", "", None
+        shutil.rmtree(self.folder / "results", ignore_errors=True)
+
+    def _alone(self) -> "OneAtATime":
+        return OneAtATime(self._one_at_a_time)
+
+
+class OneAtATime:
+    """A context that refuses a request while another is at work."""
+
+    def __init__(self, lock: threading.Lock) -> None:
+        self.lock = lock
+
+    def __enter__(self) -> None:
+        if not self.lock.acquire(blocking=False):
+            raise Refusal(409, "another request is at work - wait for its end")
+
+    def __exit__(self, *fault: object) -> None:
+        self.lock.release()
+
+
+def _json(document: Any, status: int = 200) -> Response:
+    return Response(json.dumps(document), status=status, mimetype="application/json")
+
+
+def _body(request: Request, most: int, what: str, mend: str) -> bytes:
+    """The bytes that were sent, read no further than they may be."""
+    length = request.content_length
+    if length is None:
+        raise Refusal(411, f"the length of {what} is not said - use the page of feeder serve")
+    if length > most:
+        raise Refusal(413, f"{what} has more than {most // 2**10} KiB - {mend}")
+    data = request.stream.read(most + 1)
+    if not 0 < len(data) <= most:
+        raise Refusal(413 if data else 400, f"{what} is empty or too large - {mend}")
+    return data
+
+
+def _values(request: Request) -> dict[str, Any]:
+    """The values of a design as sent."""
+    try:
+        values = json.loads(_body(request, VALUES_BYTES, "the request", "use the page of feeder serve"))
+    except ValueError:
+        values = None
+    if not isinstance(values, dict):
+        raise Refusal(400, "the values of the design are not JSON - use the page of feeder serve")
+    return values
+
+
+def _design_options(values: dict[str, Any]) -> list[str]:
+    """The options of ``feeder design``: each value is one of a list, or a number within bounds."""
+    material, machine, units = (values.get(name) for name in ("material", "machine", "units"))
+    rate = values.get("rate")
+    if material not in [known.name for known in MATERIALS]:
+        raise Refusal(400, "material is not one of the list - choose one")
+    if machine not in list(MACHINES):
+        raise Refusal(400, "machine is not one of the list - choose one")
+    if units not in UNITS:
+        raise Refusal(400, f"units are not of the list - choose one of {', '.join(UNITS)}")
+    if isinstance(rate, bool) or not isinstance(rate, (int, float)) or not RATES[0] <= rate <= RATES[1]:
+        raise Refusal(400, f"rate is not from {RATES[0]:g} to {RATES[1]:g} parts a minute - give another")
+    return ["--target", f"{rate:g}/min", "--density", material, "--units", units, *MACHINES[machine][1]]
+
+
+def _aspects_page(name: str, study: AspectsStudy) -> str:
+    """The aspects as a page: views to be turned, and their table."""
+    table = aspects_output.aspects(study).only(("aspect", "lies", "stable", "height_mm"))
+    chapter = Chapter(
+        (*aspect_views(study.part, study), Table(table)), warnings=tuple(study.aspects.warnings)
+    )
+    return html(Page(name, "", (chapter,), "aspects"))

@@ -1,0 +1,576 @@
+"""Air: the thrust of a nozzle, the vision reject that blows pulses, and the steady jet.
+
+Source: isentropic flow through a nozzle; docs/tooling.md.
+"""
+
+import functools
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+from scipy.optimize import brentq
+
+from feederscrew import units
+from feederscrew import value_forms as forms
+from feederscrew.geometry import vectors
+from feederscrew.geometry.polygons import turned
+from feederscrew.tooling.devices import orientation_names, values
+from feederscrew.tooling.devices.base import (
+    GRIP,
+    MM,
+    RETURNED,
+    UNSURE,
+    Device,
+    Jet,
+    Sensor,
+    Standing,
+    keeps,
+    length_text,
+    length_words,
+    mapping_text,
+    room_of,
+)
+
+AMBIENT_PRESSURE_PA = 101325.0  # [Pa]
+CHOKED = ((1.4 + 1.0) / 2.0) ** (1.4 / 0.4)  # [1] of absolute pressures: beyond it the nozzle is choked
+SPREAD = math.tan(math.radians(11.0))  # [1] growth of a free jet's radius: 10 to 12 deg to either side
+RAYS, GOLDEN = 24, math.pi * (3.0 - math.sqrt(5.0))  # of a jet; [rad] from one to the next
+TRIED, ENOUGH = 12, 0.5  # heights at which an orientation is blown at, and the least share of the thrust
+JET_REACH_M = 0.5  # [m] no track is wider
+ACROSS = (0.0, 1.0, 0.0)  # straight across the track
+
+
+def thrust(diameter, pressure):
+    """Return the thrust [N] of a nozzle.
+
+    Source: the ideal nozzle, choked beyond a ratio of pressures; docs/validation.md, "Air jet".
+
+    Parameters
+    ----------
+    diameter : float [m]
+    pressure : float [Pa]
+        At the nozzle, above the ambient.
+
+    Notes
+    -----
+    Isentropic flow of air (ratio of heats 1.4), of a convergent nozzle: beyond the critical ratio of 1.893
+    the mouth has the critical pressure, below it the ambient one.
+    """
+    area, whole = 0.25 * math.pi * diameter**2, pressure + AMBIENT_PRESSURE_PA
+    if whole / AMBIENT_PRESSURE_PA > CHOKED:
+        return 2.4 / CHOKED * whole * area - AMBIENT_PRESSURE_PA * area
+    ratio = AMBIENT_PRESSURE_PA / whole
+    return 2.0 * area * whole * 3.5 * (ratio ** (1.0 / 1.4) - ratio)
+
+
+@dataclass(frozen=True)
+class Nozzles:
+    """Nozzles in the wall, one above the other, that blow straight across the track."""
+
+    diameter: float  # [m] of each
+    pressure: float  # [Pa] at the nozzles, above the ambient
+    height: float | None = None  # [m] of the lowest over the track; None: as `heights` says
+    count: int = 1
+
+    @property
+    def thrust(self):
+        """Thrust [N] of one."""
+        return thrust(self.diameter, self.pressure)
+
+    def heights(self, orientations):
+        """Return their heights [m] over the track, (N,), upwards.
+
+        Where nothing is said of it, one nozzle blows at the lowest centre of mass. Several blow where each
+        orientation has something before its centre of mass that is not a mere slope, as far as they are
+        enough for that; the others are spread between those and the top of the tallest.
+        """
+        return np.array(_heights(self, tuple(orientations)))
+
+    def _placed(self, orientations):
+        low, top = self.height, max(orientation.height for orientation in orientations)
+        if low is None and self.count > 1:
+            impulses = _meeting(
+                [_solid_at_middle(orientation) for orientation in orientations], 0.5 * self.diameter
+            )
+            if len(impulses) <= self.count:
+                return _spread(self._at_slopes(impulses, orientations), top, self.count)
+        if low is None:
+            low = max(min(orientation.posture.height for orientation in orientations), 0.5 * self.diameter)
+        high = max(top - low, low)
+        return np.linspace(low, high, self.count) if high > low else np.full(self.count, low)
+
+    def _at_slopes(self, heights, orientations):
+        """Some heights [m], and those at which what they blow at slopes of is pushed most, of the rest."""
+        candidates = list(heights)
+        for orientation in orientations:
+            if len(candidates) < self.count and self._moves(orientation, candidates) < ENOUGH:
+                tried = orientation.height * (np.arange(TRIED) + 0.5) / TRIED
+                best = max(tried, key=lambda height: self._moves(orientation, [height]))
+                candidates += (
+                    [float(best)]
+                    if self._moves(orientation, [best]) > self._moves(orientation, candidates)
+                    else []
+                )
+        return candidates
+
+    def _moves(self, orientation, heights):
+        """The force outwards, less the friction of that down, over the thrust of a nozzle [1]."""
+        pushes = [_share(orientation, self.diameter, float(height)) for height in heights]
+        return sum(out - (orientation.grip or GRIP) * down for out, down in pushes)
+
+    def push(self, orientation, orientations, ahead=0.0):
+        """Return the force [N] outwards, and down, on an orientation whose centre of mass is before them.
+
+        Or ``ahead`` [m] of them. Air gives a facet what of its momentum goes into that, so a slope is pressed
+        down or lifted as well.
+        """
+        pushes = [
+            _share(orientation, self.diameter, float(height), ahead) for height in self.heights(orientations)
+        ]
+        return tuple(self.thrust * sum(push[k] for push in pushes) for k in range(2))
+
+    def jets(self, place, orientations, seconds=math.inf):
+        """Return their Jets at a place [m] along the device."""
+        return tuple(
+            Jet((place, 0.0, height), ACROSS, 0.5 * self.diameter, SPREAD, self.thrust, JET_REACH_M, seconds)
+            for height in self.heights(orientations)
+        )
+
+
+@functools.lru_cache(maxsize=256)
+def _heights(nozzles, orientations):
+    """As `Nozzles.heights`."""
+    return tuple(nozzles._placed(orientations))
+
+
+def _share(orientation, diameter, height, ahead=0.0):
+    """What of a jet's thrust an orientation takes [1]: outwards from the wall, and down."""
+    return _taken(orientation.posture, orientation.heading, (ahead, orientation.distance), diameter, height)
+
+
+@functools.lru_cache(maxsize=4096)
+def _taken(posture, heading, place, diameter, height):
+    points, faces = posture.surface, posture.solid.faces
+    plan = turned(points[:, :2], heading) + place
+    corners = np.column_stack([plan, points[:, 2]])[faces]
+    sides = vectors.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    corners, sides = corners[sides[:, 1] < 0.0], sides[sides[:, 1] < 0.0]  # those that face the wall
+    turn, off = GOLDEN * np.arange(RAYS), np.sqrt((np.arange(RAYS) + 0.5) / RAYS)
+    places = off[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
+    directions = np.column_stack([SPREAD * places[:, 0], np.ones(RAYS), SPREAD * places[:, 1]])
+    mouths = 0.5 * diameter * places + [0.0, height]
+    mouths = np.column_stack([mouths[:, 0], np.zeros(RAYS), mouths[:, 1]])
+    out = down = 0.0
+    for direction, k in zip(directions, _first_met(corners, sides, mouths, directions)):
+        if k >= 0:
+            size = np.sqrt((sides[k] ** 2).sum())
+            into = (sides[k] * direction).sum() / (size * np.sqrt((direction**2).sum()))
+            out, down = out + into * sides[k, 1] / size, down - into * sides[k, 2] / size
+    return float(out) / RAYS, float(down) / RAYS
+
+
+def _first_met(corners, sides, mouths, directions):
+    """Which (R,) of some triangles (F, 3, 3) [m] with normals (F, 3) each ray meets first; -1 of none."""
+    if not len(sides):
+        return np.full(len(directions), -1)
+    slope = (sides * directions[:, None]).sum(axis=2)
+    fall = ((corners[:, 0] - mouths[:, None]) * sides).sum(axis=2)
+    far = np.divide(fall, slope, out=np.full(slope.shape, np.inf), where=slope < 0.0)
+    ray, facet = np.nonzero(np.isfinite(far) & (far >= 0.0))
+    spots = mouths[ray] + far[ray, facet][:, None] * directions[ray]
+    inside = np.ones(len(ray), bool)
+    for a in range(3):
+        along, to = (corners[:, (a + 1) % 3] - corners[:, a])[facet], spots - corners[facet, a]
+        inside &= (vectors.cross(along, to) * sides[facet]).sum(axis=1) >= 0.0
+    nearest = np.full(far.shape, np.inf)
+    nearest[ray[inside], facet[inside]] = far[ray[inside], facet[inside]]
+    return np.where(np.isfinite(nearest.min(axis=1)), nearest.argmin(axis=1), -1)
+
+
+def _solid_at_middle(orientation):
+    """From which height [m] to which the lowest goes that an orientation has at its centre of mass."""
+    upright = shapely.LineString([(0.0, -orientation.height), (0.0, 2.0 * orientation.height)])
+    spans = [piece.bounds for piece in shapely.get_parts(orientation.aside.intersection(upright))]
+    return min(((span[1], span[3]) for span in spans), default=(0.0, orientation.height))
+
+
+def _meeting(spans, radius):
+    """Return the fewest heights [m] of which each span (low, high) has one, a radius within its ends."""
+    met_shares: list[float] = []
+    for low, high in sorted(spans, key=lambda span: span[1]):
+        if not any(low <= height <= high for height in met_shares):
+            met_shares.append(max(high - radius, 0.5 * (low + high)))
+    return met_shares
+
+
+def _spread(heights, top, count):
+    """Return some heights [m] and as many more as make a count, each amid the widest space up to a top."""
+    spread_heights = sorted(heights)
+    while len(spread_heights) < count:
+        spaces = np.diff([*spread_heights, top])
+        k = int(np.argmax(np.round(spaces, 9)))
+        spread_heights.insert(k + 1, spread_heights[k] + 0.5 * float(spaces[k]))
+    return np.array(spread_heights)
+
+
+SENSOR_VIEWS = ("outline", "side", "height", "relief")
+RESOLUTION = {"outline": 1e-4, "side": 1e-4, "height": 1e-3, "relief": 1e-4}  # [m] camera, fibre, laser
+PULSE_BORE_M, PULSE_PRESSURE_PA, PULSE = 2e-3, 3e5, 0.04  # [m], [Pa], [s] of each nozzle: 1.28 N, 0.051 N s
+NOZZLE_COUNT = 4.0
+PULSE_BAR_PA, MS = units.factor("bar", "pressure"), units.factor("ms", "time")
+REACTION = 0.01  # [s] of sensor and valve: 5 to 15 ms
+NOZZLES = forms.mapping(
+    ("nozzle", "pressure", "height", "time", "nozzles"),
+    nozzle=forms.LENGTH_FORM,
+    pressure=forms.quantity("pressure"),
+    height=forms.LENGTH_FORM,
+    time=forms.quantity("time"),
+    nozzles=forms.quantity("count", "1", "20"),
+)
+SEEN_BY = {  # what sees a part so, and what it compares
+    "outline": ("camera from above", "outlines that differ"),
+    "side": ("camera from the side", "side views that differ"),
+    "height": ("fibre sensor", "heights that differ"),
+    "relief": ("laser along the middle", "height profiles that differ"),
+}
+SENSOR_TO_NOZZLE_M = (
+    0.01  # [m] from the sensor to the nozzles: a part is blown at as its middle comes to them
+)
+
+
+@dataclass(frozen=True)
+class Sorter(Device):
+    """A sensor that compares each part with the wanted one, and a pulse of air."""
+
+    like: tuple[str, float, float] = ()  # type: ignore[assignment]  # a sorter is always like something
+    sees: str = "outline"
+    resolution: float | None = None  # [m] of the sensor; None: as common
+    nozzle: float = PULSE_BORE_M  # [m]
+    pressure: float = PULSE_PRESSURE_PA  # [Pa] at the nozzle, above the ambient
+    height: float | None = None  # [m] of the lowest nozzle over the track; None: low enough for the thinnest
+    time: float = PULSE  # [s] of a pulse
+    nozzles: float = NOZZLE_COUNT  # one above the other
+
+    kind = "sorter"
+    cost_class = 3
+    trade = "vision reject"
+    form = forms.mapping(
+        ("sees", "resolution", "jet"),
+        of=forms.either(forms.NAMED, {"type": "array", "minItems": 1, "items": forms.NAMED}),
+        play=forms.LENGTH_FORM,
+        sees={"enum": list(SENSOR_VIEWS)},
+        resolution=forms.LENGTH_FORM,
+        jet=NOZZLES,
+    )
+    example = "{of: A@90, play: 0.5 mm, sees: outline}"
+    meaning = (
+        "sensor and pulse of air: passes what is seen to differ from an orientation by less than play, blows "
+        "the rest off the free edge; of may be a list, [A@90, A@270]: what is like any of them passes; "
+        "sees outline (from above), side, height or relief (heights under a laser along the middle); "
+        "resolution: 0.1 mm and "
+        "jet: {nozzle: 2 mm, pressure: 3 bar, height: 4 mm, time: 40 ms, "
+        "nozzles: 4} may follow; parts must come with gaps"
+    )
+    proposed = True
+    senses = True
+    feature = "outline seen by a sensor"
+    picture = "above"
+    layer = "SENSOR"
+
+    @classmethod
+    def read(cls, entry):
+        return values.sensor(entry, SENSOR_VIEWS)
+
+    @property
+    def blur(self):
+        """By how much [m] what it sees is uncertain."""
+        return RESOLUTION[self.sees] if self.resolution is None else self.resolution
+
+    @classmethod
+    def around(cls, encounter, margin, where, unlike=lambda view: ()):
+        """Return the sorters of an orientation, with the play [m] by which what they pass may differ.
+
+        Those that ``unlike`` gives for a view are named beside it: they pass too, though they look otherwise.
+        """
+        orientation, sorters = encounter.one, []
+        for view in SENSOR_VIEWS:
+            also = tuple((other.aspect, other.heading) for other in unlike(view))
+            like = (
+                orientation.aspect,
+                orientation.heading,
+                float(margin) + RESOLUTION[view] + encounter.askew(view),
+            )
+            device = cls(where, like=like, sees=view, also=also)
+            sorters.append(replace(device, like=(*like[:2], like[2] + device.hop_blur(orientation))))
+        return sorters
+
+    def with_play(self, play):
+        """Return the same sorter with other play [m], and headings as its text has them."""
+        turns = [(name, f"{np.degrees(turn):.6g}") for name, turn in (self.like[:2], *self.also)]
+        first, *also = ((name, float(np.radians(float(turn)))) for name, turn in turns)
+        return replace(self, like=(*first, float(play)), also=tuple(also)).rewritten()
+
+    @property
+    def canonical_text(self):
+        """Its value with what it lets pass in one order."""
+        (aspect, heading, play), *also = self.like, *self.also
+        first, *rest = sorted([(aspect, heading), *also])
+        return replace(self, like=(*first, play), also=tuple(rest)).value_text()
+
+    def with_pulse(self, time):
+        """Return the same sorter with a pulse of some time [s]."""
+        return replace(self, time=time).rewritten()
+
+    def value_text(self):
+        names = [orientation_names.written(*orientation) for orientation in (self.like[:2], *self.also)]
+        return mapping_text(
+            (
+                ("of", names[0] if len(names) == 1 else f"[{', '.join(names)}]"),
+                ("play", length_text(self.like[2])),
+                ("sees", self.sees),
+                ("resolution", "" if self.resolution is None else length_text(self.resolution)),
+                ("jet", self._jet_text()),
+            )
+        )
+
+    @property
+    def full_name(self):
+        return f"{self.name} ({SEEN_BY[self.sees][0]})"
+
+    @property
+    def value_words(self):
+        what, most = SEEN_BY[self.sees][1], length_words(self.like[2])
+        pulse = "" if self.time == PULSE else f", air for {self.time / MS:.4g} ms"
+        return f"keeps {keeps((self.like[:2], *self.also))}, rejects {what} by more than {most}{pulse}"
+
+    def _jet_text(self):
+        """Its nozzles and its pulse as a bowl file has them, as far as they are not as by default."""
+        nozzles = [
+            ("nozzle", length_text(self.nozzle), self.nozzle != PULSE_BORE_M),
+            ("pressure", f"{self.pressure / PULSE_BAR_PA:.9g} bar", self.pressure != PULSE_PRESSURE_PA),
+            ("height", "" if self.height is None else length_text(self.height), True),
+            ("time", f"{self.time / MS:.9g} ms", self.time != PULSE),
+            ("nozzles", f"{self.nozzles:.9g}", self.nozzles != NOZZLE_COUNT),
+        ]
+        entries = [(key, text) for key, text, changed in nozzles if changed and text]
+        return mapping_text(entries) if entries else ""
+
+    def differs(self, encounter):
+        """Return by how much [m] an orientation is seen to differ from the nearest of the wanted ones.
+
+        At least, of what is not wanted; at most, of what is: either may come askew.
+        """
+        wanted = self.wanted(encounter.every)
+        if any(
+            (orientation.aspect, orientation.heading) == (encounter.one.aspect, encounter.one.heading)
+            for orientation in wanted
+        ):
+            return encounter.askew(self.sees)
+        return min(encounter.differs(orientation, self.sees) for orientation in wanted)
+
+    def wanted(self, orientations):
+        """Return the orientations that it passes."""
+        source = self.where, f"{self.kind} names"
+        return tuple(
+            orientations[orientation_names.place_of(orientations, *orientation, *source)]
+            for orientation in (self.like[:2], *self.also)
+        )
+
+    @property
+    def jet(self):
+        """Its Nozzles."""
+        return Nozzles(self.nozzle, self.pressure, self.height, round(self.nozzles))
+
+    def standing(self, track, orientations):
+        """Return the sensor half a room behind its begin, and the nozzles in the wall behind it."""
+        room = room_of(orientations)
+        middle = 0.5 * room
+        sensor = Sensor(middle, self.sees, self.wanted(orientations), self.like[2], self.blur)
+        return Standing(
+            room + SENSOR_TO_NOZZLE_M,
+            jets=self.jet.jets(middle + SENSOR_TO_NOZZLE_M, orientations, self.time),
+            sensor=sensor,
+        )
+
+    def hop_blur(self, orientation):
+        """Return what the hop of an orientation takes of its margin [m]: nothing as it is seen from above."""
+        return 0.0 if self.sees == "outline" else orientation.hop
+
+    def gap(self, orientation, speed):
+        """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
+        beam = self.nozzle + 2.0 * SPREAD * orientation.width
+        return max(beam + speed * (REACTION + self.time), self.blur)
+
+    def fate(self, encounter):
+        return RETURNED
+
+    def judged(self, encounter):
+        margin = self.like[2] - self.differs(encounter)
+        margin = math.copysign(max(abs(margin) - self.blur, 0.0), margin)
+        if (
+            margin < 0.0
+            and encounter.blown(*self.jet.push(encounter.one, encounter.every or (encounter.one,)), self.time)
+            <= 0.0
+        ):
+            return encounter.verdict(0.0)  # it is carried on, whatever is seen
+        return encounter.verdict(margin)
+
+    def edge(self, start, length, width):
+        """Return what it sees, unrolled: the track as far as the longest part."""
+        return np.array([[start, 0.0], [start + length, 0.0], [start + length, width], [start, width]])
+
+    def told(self):
+        return {
+            "value_mm": self.like[2] / MM,
+            "sees": self.sees,
+            "resolution_mm": self.blur / MM,
+            "thrust_N": self.jet.thrust,
+        }
+
+
+SURE_FORCE_RATIO = (
+    2.0  # times the force that just moves a part off: within it, to either side, nothing is sure
+)
+JET_POSITIONS = 9  # along a part at which a jet meets it
+FORCE_RESERVE = 1.1  # beyond that, of a jet that a design proposes
+NOZZLE_HEIGHTS = 6  # that a design tries, evenly up to the tallest orientation
+MAX_JET_PRESSURE_PA, REGULATOR_STEP_PA = 4e5, 5e3  # of a usual compressed-air net, and of a regulator
+JET_BORE_M, JET_PRESSURE_PA = 2e-3, 2e4  # [m], [Pa]
+BAR_PA = units.factor("bar", "pressure")
+
+
+@dataclass(frozen=True)
+class SteadyJet(Device):
+    """A nozzle in the wall that blows all the time: it moves off what offers it enough area at its height."""
+
+    nozzle: float = JET_BORE_M  # [m]
+    pressure: float = JET_PRESSURE_PA  # [Pa] above the ambient
+    height: float = 0.0  # [m] of the nozzle over the track
+
+    kind = "jet"
+    trade = "air jet"
+    form = forms.mapping(
+        nozzle=forms.LENGTH_FORM, pressure=forms.quantity("pressure"), height=forms.LENGTH_FORM
+    )
+    example = "{nozzle: 2 mm, pressure: 0.2 bar, height: 8 mm}"
+    meaning = (
+        "nozzle in the wall that blows all the time, at a height over the track: returns what it moves over "
+        "the free edge while it passes; sure where the force is twice as large or half as large as that takes"
+    )
+    feature = "area that it offers a jet"
+    picture = "above"
+    layer = "NOZZLE"
+    cost_class = 2
+    proposed = True
+
+    @classmethod
+    def read(cls, entry):
+        return values.nozzle(entry, needed=("nozzle", "pressure", "height"))
+
+    @classmethod
+    def proposals(cls, wanted, others, orientations, where):
+        """Return the jets that blow surely off some orientations and surely leave others, one a height.
+
+        Parameters
+        ----------
+        wanted, others : sequence of DeviceEncounter
+            That shall stay, and that shall be blown off where they can.
+        orientations : sequence of Orientation
+            Of the part.
+        where : str
+
+        Returns
+        -------
+        list of SteadyJet
+            Of the least pressure that blows off as many as the greatest one that leaves all that are wanted.
+        """
+        jets, top = [], max(orientation.height for orientation in orientations)
+        for height in np.round(top * (np.arange(NOZZLE_HEIGHTS) + 0.5) / NOZZLE_HEIGHTS, 4):
+            jet = cls(where, height=float(height))
+            own, full = jet.jet.thrust, thrust(jet.nozzle, MAX_JET_PRESSURE_PA)
+            most = max(jet.most(encounter) for encounter in wanted) / own
+            limit = min(full, 1.0 / (SURE_FORCE_RATIO * FORCE_RESERVE * most) if most > 0.0 else full)
+            ratio = SURE_FORCE_RATIO * FORCE_RESERVE
+            thrusts = [ratio * own / max(jet.factor(encounter), 1e-12) for encounter in others]
+            enough = [force for force in thrusts if force <= limit]
+            if enough:
+                steps = math.ceil(_pressure(jet.nozzle, max(enough)) / REGULATOR_STEP_PA - 1e-6)
+                jets.append(replace(jet, pressure=steps * REGULATOR_STEP_PA).rewritten())
+        return jets
+
+    def value_text(self):
+        entries = (("nozzle", length_text(self.nozzle)), ("pressure", f"{self.pressure / BAR_PA:.9g} bar"))
+        return mapping_text((*entries, ("height", length_text(self.height))))
+
+    @property
+    def value_words(self):
+        bore, high = length_words(self.nozzle), length_words(self.height)
+        return f"nozzle of {bore} at {self.pressure / BAR_PA:.4g} bar, {high} over the track"
+
+    @property
+    def jet(self):
+        """Its Nozzles, one."""
+        return Nozzles(self.nozzle, self.pressure, self.height)
+
+    def fate(self, encounter):
+        return RETURNED
+
+    def factor(self, encounter):
+        """Return its mean force on an orientation that passes, over the one that just moves it off [1]."""
+        return float(np.mean(self._factors(encounter)))
+
+    def most(self, encounter):
+        """Return the greatest such factor [1] at any place along an orientation."""
+        return float(self._factors(encounter).max())
+
+    def _factors(self, encounter):
+        """The same (PLACES,) at places along its length: it may offer more ahead or behind than amid."""
+        orientation = encounter.one
+        wide = self.nozzle + SPREAD * orientation.width + orientation.length
+        ends = orientation.outline[:, 0].min(), orientation.outline[:, 0].max()
+        shares = (np.arange(JET_POSITIONS) + 0.5) / JET_POSITIONS
+        pushes = [
+            self.jet.push(
+                orientation, encounter.every or (orientation,), -float(ends[0] + share * (ends[1] - ends[0]))
+            )
+            for share in shares
+        ]
+        force = encounter.force_to_clear(wide, self.height)
+        return np.array([out - encounter.grip * max(down, 0.0) for out, down in pushes]) / force
+
+    def judged(self, encounter):
+        """Return what it does: what hangs between rails is held by them, and may be pressed on them."""
+        if encounter.hanging:
+            return encounter.verdict(0.0)
+        factor, most = self.factor(encounter), self.most(encounter)
+        distance = encounter.one.track.width - encounter.one.distance
+        margin = distance * (1.0 - (most if factor < 1.0 else factor))
+        if most > 1.0 / SURE_FORCE_RATIO and factor < SURE_FORCE_RATIO:
+            margin = 0.0 if factor < 1.0 else -UNSURE
+        return encounter.verdict(max(margin, -distance))
+
+    def standing(self, track, orientations):
+        room = room_of(orientations)
+        return Standing(room, jets=self.jet.jets(0.5 * room, orientations))
+
+    def edge(self, start, length, width):
+        """Return its beam, unrolled."""
+        middle, near = start + 0.5 * length, 0.5 * self.nozzle
+        far = near + SPREAD * width
+        return np.array(
+            [[middle - near, 0.0], [middle + near, 0.0], [middle + far, width], [middle - far, width]]
+        )
+
+    def told(self):
+        return {"nozzle_mm": self.nozzle / MM, "pressure_bar": self.pressure / 1e5,
+                "height_mm": self.height / MM, "thrust_N": self.jet.thrust}  # fmt: skip
+
+    @property
+    def label(self):
+        return f"{self.kind} {self.text}"
+
+
+def _pressure(nozzle, force):
+    """The pressure [Pa] at which a nozzle [m] has a thrust [N], which the supply makes."""
+    return float(brentq(lambda pressure: thrust(nozzle, pressure) - force, 0.0, MAX_JET_PRESSURE_PA))

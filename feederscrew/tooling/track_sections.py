@@ -1,0 +1,345 @@
+"""A stretch of track with devices on it, as it is drawn and made, and parts where their margin is least."""
+
+import itertools
+from dataclasses import dataclass, replace
+from functools import reduce
+
+import numpy as np
+import shapely
+
+from feederscrew.bowl.record import Track
+from feederscrew.tooling import footprints
+from feederscrew.tooling.devices.base import BLADE, GATE_FRAME_M, Device, Verdict, room_of
+from feederscrew.tooling.devices.openings import through_the_wall
+from feederscrew.tooling.fates import astride, leading
+from feederscrew.tooling.orientations import Orientation, hang
+from feederscrew.tooling.verdicts import DeviceEncounter, verdict
+
+DRAWN_TRACK_MARGIN_M = (
+    5e-3  # [m] of track beyond what parts and cuts need, where the whole track is not drawn
+)
+DRAWN_CHORD_M = 1e-5  # [m] by which an arc may be seen too flat
+
+
+@dataclass(frozen=True, eq=False)
+class Station:
+    """One device at its place along the track."""
+
+    device: Device
+    start: float  # [m] along the wall
+    length: float  # [m]
+    hole: np.ndarray | None  # (K, 2) [m] what is cut away, unrolled: length along the wall, distance from it
+    blade: np.ndarray | None  # (4, 2) [m] where a gate stands, unrolled
+    openings: tuple[np.ndarray, ...]  # (K, 2) [m] of a gate: distance from the wall, height
+    top: float  # [m] height of a gate
+    drop: float = 0.0  # [m] by which the track goes on lower, from the middle of its length
+    edge: np.ndarray | None = None  # (4, 2) [m] where parts turn over, unrolled: a step's or a ledge's edge
+    wall: float | None = (
+        None  # [rad] by which the wall leans back over the track from there on; None: as before
+    )
+
+    @property
+    def label(self):
+        """'gap 9 mm': kind and value, the latter where it is one number."""
+        return self.device.label
+
+
+@dataclass(frozen=True, eq=False)
+class TrackSection:
+    """The stretch of track, unrolled: X ahead along the wall, Y from the wall."""
+
+    track: Track
+    length: float  # [m] along the wall
+    width: float  # [m] of it that is drawn
+    tallest: float  # [m] of all orientations
+    stations: tuple[Station, ...]
+
+    @property
+    def walls(self):
+        """Stretches of the wall, (from, to, lean) [m, m, rad]; a groove listed first begins at the entry."""
+        first = leading([station.device for station in self.stations])
+        turns = [
+            (0.0 if place < len(first) else station.start, station.wall)
+            for place, station in enumerate(self.stations)
+            if station.wall is not None
+        ]
+        ends = [(0.0, 0.0), *turns, (self.length, 0.0)]
+        return [(begin, end, lean) for (begin, lean), (end, _) in itertools.pairwise(ends) if end > begin]
+
+    def bent(self, ring):
+        """Return a ring (K, 2) [m] unrolled as it lies in the bowl, its corners joined by short chords.
+
+        The wall is tangent to the X axis at the origin and the bowl's axis is at (0, radius).
+        """
+        return bend_ring(ring, self.track.radius)
+
+    def laid(self, outline, place):
+        """Return an outline (K, 2) [m] from the wall as it lies in the bowl at a length along it."""
+        c, s = np.cos(place / self.track.radius), np.sin(place / self.track.radius)
+        x, up = outline[:, 0], self.track.radius - outline[:, 1]
+        return np.column_stack([c * x + s * up, self.track.radius + s * x - c * up])
+
+
+def build_section(track, devices, orientations, lead=0.5):
+    """Return the stretch of track that holds a chain of devices.
+
+    Parameters
+    ----------
+    track : Track
+    devices : sequence of Device
+        In the order parts meet them; measured yields need no place.
+    orientations : sequence of Orientation
+        Of the part.
+    lead : float [1]
+        Rooms, of a device each, before the first one.
+
+    Returns
+    -------
+    TrackSection
+    """
+    placed = [device for device in devices if device.placed]
+    room = room_of(orientations)
+    tallest = max(orientation.height for orientation in orientations)
+    bare = TrackSection(track, 0.0, _width(track, placed, orientations), tallest, ())
+    stations, start = [], lead * room
+    for device in placed:
+        length = room + device.goes_on(bare.width)
+        stations.append(_station(device, start, length, bare, orientations))
+        start += length + 0.5 * room
+    return replace(bare, length=start, stations=tuple(stations))
+
+
+def bend_ring(ring, radius, shift=0.0, chord=DRAWN_CHORD_M):
+    """Return a ring (K, 2) [m] of lengths along the wall and distances from it as it lies in the bowl.
+
+    Parameters
+    ----------
+    ring : (K, 2) float [m]
+    radius : float [m]
+        Of the wall.
+    shift : float [rad]
+        By which it is turned ahead.
+    chord : float [m]
+        By which an arc may be seen too flat.
+
+    Returns
+    -------
+    (N, 2) float [m]
+        From the point where the wall is tangent to X, the bowl's axis at (0, radius).
+    """
+    border = shapely.linestrings(np.vstack([ring, ring[:1]]))
+    fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(8.0 * radius * chord)))[:-1]
+    theta, r = fine[:, 0] / radius + shift, radius - fine[:, 1]
+    return np.column_stack([r * np.sin(theta), radius - r * np.cos(theta)])
+
+
+def _width(track, devices, orientations):
+    """The track's own width, or as much of a very wide one as parts and cuts need."""
+    if track.width <= track.extent:
+        return track.width
+    needed = [orientation.width for orientation in orientations] + [device.across for device in devices]
+    return min(max(needed) + DRAWN_TRACK_MARGIN_M, track.extent)
+
+
+def _station(device, start, length, section, orientations):
+    """A device at its start; a gate stands in the middle of its length."""
+    cut = device.outline_on(replace(section.track, width=section.width), length)
+    gate = device.opening(orientations, section.width)
+    lower = device.lower(orientations)
+    middle, blade = start + 0.5 * length, None
+    if gate is not None:
+        middle -= 0.5 * device.goes_on(section.width)
+        blade = device.footprint(middle, section.width, BLADE)
+    return Station(
+        device=device,
+        start=start,
+        length=length,
+        hole=None if cut is None else np.add(cut, [start, 0.0]),
+        blade=blade,
+        openings=() if gate is None else _rings(gate),
+        top=0.0 if gate is None else max(section.tallest, gate.bounds[3]) + GATE_FRAME_M,
+        drop=lower[0] if lower is not None and lower[1] <= 0.0 else 0.0,
+        edge=device.edge(start, length, section.width),
+        wall=_wall_lean(device, section.track, orientations),
+    )
+
+
+def _wall_lean(device, track, orientations):
+    """By how much [rad] the wall leans back from square to the track from a device on; None: as before."""
+    slopes = [slope for slope in device.standing(track, orientations).slopes if slope.wall is not None]
+    return (slopes[-1].wall - slopes[-1].bank if slopes[-1].wall else 0.0) if slopes else None
+
+
+def _rings(area):
+    """The outer borders of an area, without the last corner that repeats the first."""
+    parts = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
+    return tuple(np.asarray(part.exterior.coords)[:-1] for part in parts)
+
+
+PASSAGE_CHORD_M = 1e-7  # [m] by which an arc may be seen too flat
+EDGE_OFFSET_RAD = 3e-6  # [rad] to either side of a place where an edge of the hole meets a corner of the foot
+SHOWN_HOLE_LENGTHS = 3.0  # lengths of the part: how far a device that goes on along the track is shown
+
+
+@dataclass(frozen=True, eq=False)
+class Passage:
+    """One orientation at the worst place of one device; lengths ahead and distances from the wall."""
+
+    device: Device
+    orientation: Orientation
+    verdict: Verdict
+    fate: str  # what becomes of what it does not let pass: 'returned' or 'stopped'
+    after: Orientation  # that most parts go on in
+    picture: str  # 'above', 'ahead', 'side', 'turned' or '': from where it is seen
+    outline: np.ndarray  # (J, 2) [m] of the part from above
+    foot: shapely.Geometry  # [m] what touches the whole track
+    hole: shapely.Geometry | None  # [m] what is cut away
+    supported: np.ndarray  # (K, 2) [m] hull of what still touches
+    weight: tuple[float, float]  # [m] where the weight meets the track
+    opening: shapely.Geometry | None  # [m] of a gate, in distances from the wall and heights
+
+    def angle(self, station):
+        """Return where the part then is on a track section [rad]: from the wall's tangent at its start.
+
+        Parameters
+        ----------
+        station : Station
+            Of this device.
+        """
+        orientation, radius = self.orientation, self.orientation.track.radius
+        if station.blade is not None and self.verdict.passes <= 0.0:
+            ahead, from_wall = self.outline.T
+            blade = station.blade[:, 0].min() / radius
+            return blade - np.arctan2(ahead, radius - from_wall).max()  # it touches it
+        if self.device.hole_on(orientation.track) is not None:
+            return station.start / radius - _hole_shift(self.device, orientation)
+        return (station.start + 0.5 * station.length) / radius
+
+
+def worst_passage(device, orientation, orientations, hanging=()):
+    """Return an orientation at the place of a device where its margin is least.
+
+    Parameters
+    ----------
+    device : Device
+    orientation : Orientation
+    orientations : sequence of Orientation
+        Of the part, which a profile may name.
+    hanging : sequence of Hanging
+        What hangs already.
+
+    Returns
+    -------
+    Passage
+    """
+    outcome = verdict(device, orientation, orientations)
+    touching, weight = foot_area(orientation), (0.0, orientation.distance - orientation.shift)
+    holes = [_hole(device, orientation, by) for by in (0.0, -EDGE_OFFSET_RAD, EDGE_OFFSET_RAD)]
+    hulls = [(touching if cut is None else touching.difference(cut)).convex_hull for cut in holes]
+    worst = int(np.argmin([_within(hull, weight) for hull in hulls]))
+    return Passage(
+        device=device,
+        orientation=orientation,
+        verdict=outcome,
+        fate=device.fate(DeviceEncounter(orientation, orientations)),
+        after=_orientation_after(device, orientation, outcome, orientations, hanging),
+        picture=device.picture,
+        outline=np.add(orientation.outline, [0.0, orientation.distance]),
+        foot=touching,
+        hole=holes[worst],
+        supported=shapely.get_coordinates(hulls[worst]),
+        weight=weight,
+        opening=device.opening(orientations, orientation.track.width),
+    )
+
+
+def foot_area(orientation):
+    """Return what of an orientation touches the track, as a shapely geometry from the wall [m]."""
+    up = [0.0, orientation.distance]
+    areas = [shapely.Polygon(ring + up) for ring in orientation.foot.rings]
+    parts = [reduce(shapely.symmetric_difference, areas)] if areas else []
+    parts += [shapely.LineString(edge + up) for edge in orientation.foot.edges]
+    parts += [shapely.Point(point + up) for point in orientation.foot.points]
+    return shapely.union_all(parts)
+
+
+def _within(hull, weight):
+    """How far [m] a point lies inside a hull, negative: outside."""
+    point = shapely.Point(weight)
+    return hull.boundary.distance(point) if hull.contains(point) else -hull.distance(point)
+
+
+def passage_fate(orientation, passages):
+    """Return in words what becomes of an orientation at the end of its passages.
+
+    Parameters
+    ----------
+    orientation : Orientation
+        As it comes.
+    passages : sequence of Passage
+        None of which returned it.
+
+    Returns
+    -------
+    str
+    """
+    last = passages[-1].after if passages else orientation
+    if last.returned:
+        return "falls off the track" if last.falls_off else "tips over on the track"
+    if last.kind == "hanging":
+        return f"leaves {last.name}"
+    return "leaves" if last.name == orientation.name else f"leaves as {last.name}"
+
+
+def _orientation_after(device, orientation, outcome, orientations, hanging):
+    """The orientation in which most parts go on from a device."""
+    if outcome.onto:
+        return device.onward(orientations[max(outcome.onto, key=lambda place: place[1])[0]])
+    if outcome.hangs:
+        return hang(orientation, device.span, hanging)
+    return (
+        astride(orientation, device.span)
+        if device.hangs and outcome.passes > 0.0
+        else device.onward(orientation)
+    )
+
+
+def until_returned(devices, orientation, orientations):
+    """Return the passages of an orientation, as most parts go on, up to the device that returns it.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+        In the order parts meet them.
+    orientation : Orientation
+    orientations : sequence of Orientation
+
+    Returns
+    -------
+    list of Passage
+        None of one that the bare track does not carry.
+    """
+    passages = []
+    for device in () if orientation.returned else devices:
+        passages.append(worst_passage(device, orientation, orientations))
+        orientation = passages[-1].after
+        if passages[-1].verdict.passes <= 0.0 or orientation.returned:
+            break
+    return passages
+
+
+def _hole_shift(device, orientation):
+    """By how much [rad] a hole with an edge across the track is ahead of the part where it bears least."""
+    hole = device.hole_on(orientation.track)
+    return None if hole is None else footprints.least(orientation.standing, hole)[1]
+
+
+def _hole(device, orientation, by):
+    """What a device cuts away where the margin is least, about the radial line of the foot."""
+    track, length = orientation.track, SHOWN_HOLE_LENGTHS * orientation.length
+    ring, shift = device.outline_on(track, length), _hole_shift(device, orientation)
+    if ring is None:
+        return None
+    shift = -0.5 * length / track.radius if shift is None else shift + by
+    ring = bend_ring(np.array(through_the_wall(ring.tolist())), track.radius, shift, PASSAGE_CHORD_M)
+    return shapely.make_valid(shapely.Polygon(ring))

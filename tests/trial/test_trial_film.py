@@ -1,0 +1,96 @@
+"""The film of a trial: where parts are drawn, the file, and what is refused before anything is computed."""
+
+import os
+import shutil
+import stat
+
+import numpy as np
+import pytest
+import shapes
+from PIL import Image
+
+from feederscrew import bowl as bowls
+from feederscrew.errors import FeederError
+from feederscrew.output.trial import film
+from feederscrew.studies.trial import trial
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    file = tmp_path_factory.mktemp("film") / "bowl.yaml"
+    file.write_text("track: {climb: 0 deg}\ndevices:\n  - gap: 9 mm\n")
+    block = shapes.part(shapes.box(20, 12, 5))
+    return trial(block, [bowls.read(file)], "A", parts=4, queue=3, seconds=0.4, frames=5)
+
+
+@pytest.fixture
+def small(monkeypatch):
+    for name, value in (("SECONDS", 1.0), ("QUEUE_FRAMES", 5), ("WIDTH", 96), ("HEIGHT", 60), ("SAMPLES", 1)):
+        monkeypatch.setattr(film, name, value)
+
+
+def test_poses_of_the_queue_are_evenly_in_time_and_on_the_track(study):
+    queue = study.runs[0].queue
+    times = [time for time, _, _ in queue.moments]
+    assert times == pytest.approx([0.08, 0.16, 0.24, 0.32, 0.4])
+    assert queue.poses.shape == (5, 3, 7)
+    assert np.nanmin(queue.poses[..., 2]) == pytest.approx(2.5e-3, abs=2e-4)  # half the height of the block
+    np.testing.assert_allclose(np.linalg.norm(queue.poses[..., 3:], axis=-1), 1.0, atol=1e-9)
+
+
+def test_a_part_is_drawn_where_it_is(study, small):
+    """The coloured pixels lie about the projection of its centre of mass, which the camera gives."""
+    run = study.runs[0]
+    pose = run.queue.poses[0, :1]
+    scene = film.FilmSet(study.part, run, run.queue.stage, run.queue.poses[:, 0, :3])
+    image = scene.drawn(pose, [np.array([1.0, 0.0, 0.0])])
+    red = (image[..., 0] > 0.3) & (image[..., 1] < 0.05)
+    rows, columns = np.nonzero(red)
+    assert len(rows) > 20
+    x, y = scene.camera.project(pose[:, :3] - scene.centre)[0]
+    pixel = scene.across[1] - scene.across[0]
+    assert columns.mean() == pytest.approx((x - scene.across[0]) / pixel, abs=4.0)
+    assert rows.mean() == pytest.approx((scene.up[0] - y) / pixel, abs=4.0)
+    hidden = np.array(pose)
+    hidden[0, 2] -= 0.2  # below the floor of the bowl: it shines through, and is not in front
+    assert not ((scene.drawn(hidden, [np.array([1.0, 0.0, 0.0])])[..., 1] < 0.05) & red).any()
+
+
+def test_the_film_is_a_gif_of_single_parts_and_the_queue(study, small, tmp_path):
+    words = [caption for _, caption, _ in film.film_frames(study.part, study.runs[0])]
+    assert len(words) == 12 and words[-1] == "queue of 3: 0 left, 0 returned"
+    assert [one.partition(" at ")[0] for one in words[:7]] == sorted(
+        one.partition(" at ")[0] for one in words[:7]
+    )
+    path = tmp_path / "film.gif"
+    film.write_film(path, study)
+    with Image.open(path) as picture:
+        assert picture.format == "GIF" and picture.n_frames > 2
+    assert [one.name for one in tmp_path.iterdir()] == ["film.gif"]  # nothing half-written is left
+
+
+@pytest.mark.parametrize("ending", ["mp4", "webm"])
+def test_a_film_that_needs_ffmpeg_is_written_by_it(study, small, ending, tmp_path, monkeypatch):
+    """The program is stood in for by one that notes what it is called with."""
+    program = tmp_path / "ffmpeg"
+    program.write_text(
+        '#!/bin/sh\nfor last; do :; done\ncat > /dev/null\necho "$@" > "$last"\n'  # the last word is the file
+    )
+    program.chmod(program.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
+    film.write_film(tmp_path / f"film.{ending}", study)
+    words = (tmp_path / f"film.{ending}").read_text()
+    assert {"mp4": "libx264", "webm": "libvpx-vp9"}[ending] in words and "yuv420p" in words
+
+
+def test_what_cannot_be_written_is_said_before_anything_is_computed(run, tmp_path, monkeypatch):
+    found = shutil.which
+    monkeypatch.setattr("shutil.which", lambda name, *rest, **more: None if name == "ffmpeg" else found(name))
+    (tmp_path / "none.stl").write_text("")
+    result = run("trial", "none.stl", "--film", "film.avi")
+    assert result.exit_code == 2 and "end it in .gif, .mp4, .webm" in result.output
+    monkeypatch.setenv("PATH", "/nowhere")
+    with pytest.raises(FeederError, match="needs ffmpeg"):
+        film.require_writer(tmp_path / "film.mp4")
+    with pytest.raises(FeederError, match="folder"):
+        film.require_writer(tmp_path / "missing" / "film.gif")
