@@ -25,7 +25,8 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.part import load
-from feederscrew.studies import tooling, trial
+from feederscrew.studies import tooling as tooling_study
+from feederscrew.studies import trial
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.isolating import tracks
 from feederscrew.tooling.isolating.chain import limits
@@ -63,10 +64,10 @@ def chain(part, folder, drive):
     Where none can be isolated, the chain that comes nearest for the most frequent one.
     """
     bowl, nearest, own = bowls.read(None, drive), None, {"rule": RULE, "verdicts": VERDICTS}
-    first = tooling.tooling(part, bowl, rule=RULE, verdicts=1, seconds=1e-3)
+    first = tooling_study.tooling(part, bowl, rule=RULE, verdicts=1, seconds=1e-3)
     for k in np.argsort(-first.shares, kind="stable"):
         one = first.orientations[k]
-        study = tooling.tooling(part, bowl, one.aspect, heading=one.heading, known=first.aspects, **own)
+        study = tooling_study.tooling(part, bowl, one.aspect, heading=one.heading, known=first.aspects, **own)
         found = study.design
         nearest = nearest or (found.cuts and (study, f"{one.name}, not isolated"))
         if found.isolated and found.cuts and tracks.TRACK_REMARK not in found.reasons:

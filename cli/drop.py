@@ -124,13 +124,13 @@ def _on_floor(part, launch, own, test, pictures, out):
     with held_back():
         from feederscrew.output import columns, offers
         from feederscrew.output import drop as drop_output
-        from feederscrew.studies.simulated.drop import drop as drop_study
+        from feederscrew.studies.drop import drop as drop_study
 
     solid = out.part(part)
     with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:
         with waiting.bar(out, "drops") as bar:
             values = {"progress": bar.reach, "before": lambda: waiting.drops(out)}
-            study = drop_study(solid, launch, own, **values, **test)
+            study = drop_study(solid, launch, **own, **values, **test)
         out.warn(*drop_output.remarks(study))
         offers.write(folder, drop_output.offers(study), pictures=pictures)
     out.show(drop_output.counts(study), drop_output.document(study))

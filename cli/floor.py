@@ -35,7 +35,7 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out):
     solid, given = out.part(part), out.settings(bowl)
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
-        found = (by_print if as_published else complete).floor(solid, record(given), aspect, heading)
+        found = (by_print if as_published else complete).floor(solid, record(given), aspect, heading=heading)
         out.say(*floor_output.remarks(found), *(floor_output.map_remarks(found) if folder else ()))
         offered = floor_output.offers(found, texts(given))
         offers.write(folder, offered, pictures=pictures)

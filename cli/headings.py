@@ -26,12 +26,11 @@ def headings(part, aspect, bowl, pictures, out):
     from feederscrew.output import columns, offers
     from feederscrew.output import headings as headings_output
     from feederscrew.studies.headings import headings as study
-    from feederscrew.studies.rate import arriving
 
     solid, given = out.part(part), out.settings(bowl)
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
-        found = study(solid, record(given).track, aspect, arriving(solid, record(given)))
+        found = study(solid, record(given), aspect)
         out.say(headings_output.answer(found), *headings_output.remarks(found))
         offers.write(folder, headings_output.offers(found, texts(given)), pictures=pictures)
     shown, document = headings_output.frame(found), headings_output.document(found, texts(given))

@@ -44,7 +44,7 @@ def run(part, plate, launch, own, test, pictures, out):
     with held_back():
         from feederscrew.output import columns, offers
         from feederscrew.output import plate as plate_output
-        from feederscrew.studies.simulated.plate import plate as plate_study
+        from feederscrew.studies.plate import shake
 
     bowls, names, inputs, values = _bowls(plate)
     out = replace(out, command="drop plate")
@@ -54,8 +54,8 @@ def run(part, plate, launch, own, test, pictures, out):
     with out.folder(solid.name, inputs, columns.conditions(solid) | values) as folder:
         with waiting.bar(out, "parts") as bar:
             document = {"progress": bar.reach, "before": lambda: waiting.plate(out)}
-            study = plate_study(
-                solid, bowls, launch, own, names=names, seconds=plate["seconds"], **document, **test
+            study = shake(
+                solid, bowls, launch, **own, names=names, seconds=plate["seconds"], **document, **test
             )
         out.say(*plate_output.summary(study))
         out.warn(*plate_output.remarks(study))

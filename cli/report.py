@@ -83,7 +83,7 @@ def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
     solid = out.part(part)
     waiting.conveying(out)
     chosen = orientation.choice(taken) | orientation.telling(out)
-    found = study(solid, **bowl, **wanted, **chosen, command=repeated(out.arguments))
+    found = study(solid, bowl=bowl, **wanted, **chosen, command=repeated(out.arguments))
     tried, kept = verified(bowl["path"]), record(found.settings)
     found = replace(found, as_tried=proof.holds(tried, solid, kept, orientation.name(wanted)))
     effective = columns.conditions(solid) | texts(found.settings)

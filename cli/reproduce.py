@@ -18,7 +18,7 @@ def reproduce(out):
     from feederscrew.thesis import reproduction
 
     with out.step("tables and figures"):
-        items = reproduction.reproduced().items
+        items = reproduction.reproduce().items
     with out.folder("thesis", {}) as folder, out.step("files"):
         files = reproduction.write(folder.write, items) if folder else {}
     out.warn(*(f"{item.name}: a cell differs without a reason" for item in reproduction.unexplained(items)))

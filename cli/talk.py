@@ -82,9 +82,9 @@ class Output:
             solid = load(**keywords)
         self.warn(*solid.warnings)
         if self.verbose:
-            from feederscrew.studies.simulated import on_disk
+            from feederscrew.studies import simulation_cache
 
-            self.say(*filter(None, [on_disk.refusal()]))
+            self.say(*filter(None, [simulation_cache.refusal()]))
         return solid
 
     def settings(self, bowl):

@@ -141,7 +141,7 @@ def tooling(part, asked, cad, static, taken, bowl, pictures, out):
     with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
         given = {"known": known.aspects, **asked}
         with Progress(None, not out.quiet, "orientations") as bar:
-            found = study(solid, record, told=heeding(bar.reach), **given)
+            found = study(solid, record, progress=heeding(bar.reach), **given)
         if not static:
             again = partial(tooling_without, part=solid, bowl=record, **given)
             found = own_trial.own_trials(found, again, before=lambda: waiting.trial(out))

@@ -26,14 +26,14 @@ def run(part, path, own, test, pictures, out):
     with held_back():
         from feederscrew.output import columns, offers
         from feederscrew.output import tosses as tosses_output
-        from feederscrew.studies.simulated import tosses
+        from feederscrew.studies import tosses as tosses_study
 
     out = replace(out, command="drop launches")
     solid = out.part(part)
     with waiting.bar(out, "tosses") as bar:
         values = {"progress": bar.reach, "before": lambda: waiting.drops(out)}
         run = {"runs": test["drops"], "seed": test["seed"], "jobs": test["jobs"]}
-        study = tosses.follow(solid, path, own, **values, **run)
+        study = tosses_study.follow(solid, path, own, **values, **run)
     inputs = solid.inputs | {study.launches.source: study.launches.sha256}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
         out.warn(*tosses_output.remarks(study))

@@ -43,7 +43,7 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
     solid, given, varied = out.part(part), out.settings(bowl), key_ranges(spans)
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
-        found = (by_print if as_published else complete).track(solid, record(given), aspect, heading)
+        found = (by_print if as_published else complete).track(solid, record(given), aspect, heading=heading)
         grid = found.over(given, varied) if spans or folder else None
         out.say(*track_output.remarks(found), *(track_output.map_remarks(grid) if grid else ()))
         if folder:

@@ -2,7 +2,7 @@
 
 The page has tables of keys and devices, from the JSON Schema; the keywords are those of `DriveSettings`.
 
-Example: python docs/bowl_file.py          (writes docs/bowl_file.md, api/bowl_settings.py and configs/)
+Example: python docs/bowl_file.py          (writes docs/bowl_file.md, studies/arguments.py and configs/)
          python docs/bowl_file.py --check  (status 1, and the differences, if one is out of date)
 """
 
@@ -16,7 +16,7 @@ from feederscrew.bowl.schema import BOWL_KEYS
 from feederscrew.dropping import conditions
 
 PAGE = Path(__file__).resolve().parent / "bowl_file.md"
-KEYWORDS = PAGE.parent.parent / "feederscrew" / "api" / "bowl_settings.py"
+KEYWORDS = PAGE.parent.parent / "feederscrew" / "studies" / "arguments.py"
 CONFIGS = PAGE.parent.parent / "configs"
 BEGIN, END = "    # keys, written by docs/bowl_file.py\n", "    # end of keys\n"
 HEAD = "| Key | Default | From | To | Units | Meaning |\n|---|---|---|---|---|---|\n"

@@ -17,7 +17,7 @@ from feederscrew.dropping.launch_file import FACES
 from feederscrew.part import load
 from feederscrew.studies.aspects import aspects
 from feederscrew.studies.compare import compare_sets
-from feederscrew.studies.simulated.tosses import SURE, follow
+from feederscrew.studies.tosses import SURE, follow
 
 PAGE = Path(__file__).resolve().parent / "validation.md"
 METHOD = PAGE.parent / "method/validation.md"

@@ -1,5 +1,9 @@
 """Resting aspects, screw mechanics and conveying of small parts in vibratory bowl feeders.
 
+A function has the name of its command, and returns the record that the command writes its files from: a
+short text, its table by ``to_frame()``, its picture by ``plot()``. Quantities are texts, '2 mm', or numbers
+in SI units; shares are fractions.
+
 Shape letters in docstrings: V vertices, F mesh faces, T hull triangles, A aspects, K corners of a polygon,
 N samples; other letters are explained where they stand. SI units and radians throughout; ``[1]`` means no
 unit.
@@ -13,7 +17,42 @@ from typing import TYPE_CHECKING
 __version__ = "0.2.0"
 
 if TYPE_CHECKING:
-    from feederscrew.api import *  # noqa: F403
+    from feederscrew.bowl.record import Bowl as Bowl
+    from feederscrew.conveying.answer import Answer as Answer
+    from feederscrew.designing.design import design as design
+    from feederscrew.errors import ConfigError as ConfigError
+    from feederscrew.errors import Faults as Faults
+    from feederscrew.errors import FeederError as FeederError
+    from feederscrew.errors import MeshError as MeshError
+    from feederscrew.part.record import Part as Part
+    from feederscrew.rates.well_oriented import Rate as Rate
+    from feederscrew.resting.aspects import Aspects as Aspects
+    from feederscrew.resting.posture import Posture as Posture
+    from feederscrew.studies.aspects import aspects as aspects
+    from feederscrew.studies.aspects import find_aspects as find_aspects
+    from feederscrew.studies.bowl import size_bowl as size_bowl
+    from feederscrew.studies.calibrate import calibrate as calibrate
+    from feederscrew.studies.compare import compare as compare
+    from feederscrew.studies.convey import convey as convey
+    from feederscrew.studies.drop import drop as drop
+    from feederscrew.studies.floor import floor as floor
+    from feederscrew.studies.headings import headings as headings
+    from feederscrew.studies.inertia import inertia as inertia
+    from feederscrew.studies.inputs import load as load
+    from feederscrew.studies.inputs import posture as posture
+    from feederscrew.studies.inputs import read_bowl as read_bowl
+    from feederscrew.studies.inputs import write_names as write_names
+    from feederscrew.studies.plate import shake as shake
+    from feederscrew.studies.rate import Shares as Shares
+    from feederscrew.studies.rate import rate as rate
+    from feederscrew.studies.rate import shares as shares
+    from feederscrew.studies.report import report as report
+    from feederscrew.studies.slide import slide as slide
+    from feederscrew.studies.tooling import tooling as tooling
+    from feederscrew.studies.track import track as track
+    from feederscrew.studies.trial import trial as trial
+    from feederscrew.studies.tune import tune as tune
+    from feederscrew.thesis.reproduction import reproduce as reproduce
 
 __all__ = [
     "Answer", "Aspects", "Bowl", "ConfigError", "Faults", "FeederError", "MeshError", "Part", "Posture",
@@ -22,6 +61,36 @@ __all__ = [
     "shares", "size_bowl", "slide", "tooling", "track", "trial", "tune", "write_names",
 ]  # fmt: skip
 
+HOMES = {  # module: the names that it offers
+    "bowl.record": "Bowl",
+    "conveying.answer": "Answer",
+    "designing.design": "design",
+    "errors": "ConfigError Faults FeederError MeshError",
+    "part.record": "Part",
+    "rates.well_oriented": "Rate",
+    "resting.aspects": "Aspects",
+    "resting.posture": "Posture",
+    "studies.aspects": "aspects find_aspects",
+    "studies.bowl": "size_bowl",
+    "studies.calibrate": "calibrate",
+    "studies.compare": "compare",
+    "studies.convey": "convey",
+    "studies.drop": "drop",
+    "studies.floor": "floor",
+    "studies.headings": "headings",
+    "studies.inertia": "inertia",
+    "studies.inputs": "load posture read_bowl write_names",
+    "studies.plate": "shake",
+    "studies.rate": "Shares rate shares",
+    "studies.report": "report",
+    "studies.slide": "slide",
+    "studies.tooling": "tooling",
+    "studies.track": "track",
+    "studies.trial": "trial",
+    "studies.tune": "tune",
+    "thesis.reproduction": "reproduce",
+}
+HOME = {name: f"{__name__}.{module}" for module, names in HOMES.items() for name in names.split()}
 ROOMS = ("tooling", "trial")  # functions that share their name with a folder of the package
 
 
@@ -40,8 +109,8 @@ def __getattr__(name: str) -> object:
     """Import a public name when it is first used: ``import feederscrew`` stays quick."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module(f"{__name__}.api"), name)
-    if name in ROOMS:  # `import feederscrew.tooling.orientations as x` looks for `mirrored` in the function
+    value = getattr(import_module(HOME[name]), name)
+    if name in ROOMS:  # `import feederscrew.tooling.fates as x` looks for `fates` in the function
         folder = import_module(f"{__name__}.{name}").__dict__
         folder.update(value.__dict__)
         value.__dict__ = folder

@@ -18,8 +18,7 @@ from hypothesis import settings
 from feederscrew.dropping.plate import arrival
 from feederscrew.output import shading as shading_output
 from feederscrew.output import style
-from feederscrew.studies import aspects, tune
-from feederscrew.studies.simulated import memory
+from feederscrew.studies import aspects, simulation_cache, tune
 from feederscrew_cli.main import feeder
 
 # A shell that starts the tests in the background ignores these, and so would every command they start.
@@ -90,8 +89,19 @@ def pytest_collection_modifyitems(items):
 
 
 def _sort(items):
-    """Begin with solids, while the trial is compiled, then what takes longest: nobody is left with it."""
-    items.sort(key=lambda item: (item.path.parent.name != EARLY[0], item.get_closest_marker("long") is None))
+    """Let every process begin with tests that run while the trial is compiled, then with what takes longest.
+
+    pytest-xdist hands each process one stretch of the list, all as long: files are dealt out to as many.
+    """
+    files = {}
+    for item in sorted(items, key=lambda item: (not _early(item), item.get_closest_marker("long") is None)):
+        files.setdefault((item.path, _early(item), item.get_closest_marker("long") is None), []).append(item)
+    count = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    stretches, room = [[] for _ in range(count)], len(items) // count
+    for tests in files.values():
+        fits = [one for one in stretches[:-1] if len(one) + len(tests) <= room]
+        min([*fits, stretches[-1]], key=len).extend(tests)
+    items[:] = [item for one in stretches for item in one]
 
 
 def pytest_collection_finish():
@@ -143,7 +153,7 @@ def fewer():
     @contextlib.contextmanager
     def context():
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(memory, "_RECORDS", OrderedDict())
+            patch.setattr(simulation_cache, "_RECORDS", OrderedDict())
             _set(patch, FEWEST)
             yield
 
@@ -154,10 +164,10 @@ def fewer():
 def many(request, monkeypatch):
     """As many as for a user in a test that is marked ``thorough``."""
     if request.node.get_closest_marker("thorough"):
-        memory.forget()
+        simulation_cache.forget()
         _set(monkeypatch, MANY)
         yield
-        memory.forget()
+        simulation_cache.forget()
     else:
         yield
 

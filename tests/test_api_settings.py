@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 import feederscrew as fs
-from feederscrew import api
-from feederscrew.api.bowl_settings import BowlSettings
 from feederscrew.bowl.schema import BOWL_KEYS
 from feederscrew.bowl.schema import UNBALANCE_KEYS as TOGETHER
+from feederscrew.studies import arguments
+from feederscrew.studies.arguments import BowlSettings
 
 ROOT = Path(__file__).parent.parent
 FILE = """
@@ -62,8 +62,8 @@ def test_a_setting_over_a_bowl_is_that_of_the_file_with_it(bowl, key):
         assert by_dict == fs.read_bowl(bowl, f"{key.name}={text}")
     if key.word not in SHARED:
         assert fs.read_bowl(bowl, **{key.word: value}) == by_dict
-        assert api.asked.a_bowl(fs.read_bowl(bowl), settings={key.word: value}) == by_dict
-    assert api.asked.a_bowl(fs.read_bowl(bowl), {key.name: value}) == by_dict
+        assert arguments.a_bowl(fs.read_bowl(bowl), settings={key.word: value}) == by_dict
+    assert arguments.a_bowl(fs.read_bowl(bowl), {key.name: value}) == by_dict
 
 
 def test_keys_of_one_body_are_settings_together(bowl):

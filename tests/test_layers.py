@@ -14,7 +14,7 @@ ORDER = [
     "errors", "check", "units", "value_forms", "records", "running", "documents", "dxf",
     "geometry", "part", "resting", "tooling.devices", "bowl", "screw", "mechanics", "conveying", "dropping",
     "tooling", "rates", "trial", "machine", "solidbowl", "studies", "designing", "output", "thesis", "batch",
-    "serving", "api",
+    "serving",
 ]  # fmt: skip
 DOORS = {
     "trimesh": {"feederscrew/part"},

@@ -20,6 +20,7 @@ from feederscrew.batch.task import (
     FAILED_BEFORE,
     MEDDLED,
     NEW,
+    PARTS,
     Choices,
     Outcome,
     Task,
@@ -33,7 +34,6 @@ from feederscrew.output.folder import RECORD
 from feederscrew.part.reading import source
 
 MARKER = "batch.json"  # says that the folder is a batch's
-PARTS = "parts"
 RESUME_STORE_ADVICE = "make room there, then start this batch again with `resume`: what is finished is kept"
 STALE = ".batch-"  # how the name of what is not finished begins
 REPLACED = "replaced"  # folder in it of results that make room for new ones

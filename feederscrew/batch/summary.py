@@ -5,8 +5,7 @@ import io
 from pathlib import Path
 from urllib.parse import quote
 
-from feederscrew.batch.run import PARTS
-from feederscrew.batch.task import DONE, NOT_COMPUTED, THUMBNAIL
+from feederscrew.batch.task import DONE, NOT_COMPUTED, PARTS, THUMBNAIL
 from feederscrew.output import tables
 from feederscrew.output.batch import ACROSS, DOWN
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture

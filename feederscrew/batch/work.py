@@ -135,7 +135,7 @@ def _answered(part, task, files):
         known = shares(part, bowl, launch=choices.launch, rule=choices.rule, jobs=1)
         return AspectsStudy(part, known.aspects), {}
     from feederscrew.output import drop as drop_output
-    from feederscrew.studies.simulated.drop import drop
+    from feederscrew.studies.drop import drop
 
     found, seed = find(part, launch=choices.launched), int(task.sha256[:SEED_DIGITS], 16)
     study = drop(part, choices.launched, drops=choices.drops, seed=seed, aspects=found)

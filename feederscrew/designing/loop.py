@@ -40,7 +40,7 @@ from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import Shares
-from feederscrew.studies.wishes import may_be_left_out, may_be_up
+from feederscrew.studies.tooling import may_be_left_out, may_be_up
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.tooling.isolating.design import place

@@ -1,12 +1,11 @@
 """The study of ``feeder aspects``: how one part rests, how often, and what tips it."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from feederscrew import check
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
@@ -14,12 +13,12 @@ from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.resting.rules.surface import EXPONENTS
 from feederscrew.resting.tumbling.by_class import Transition, ground, transitions
-from feederscrew.running import CoresKeywords, OnCores
-from feederscrew.studies.simulated import memory
+from feederscrew.running import OnCores
+from feederscrew.studies import arguments, simulation_cache
 
 if TYPE_CHECKING:
     from feederscrew.dropping.ensemble import Tally
-    from feederscrew.studies.simulated.drop import DropStudy
+    from feederscrew.studies.drop import DropStudy
 
 AIM = "1%"  # half the widest 95 % interval of the sampling at which a part is dropped no further
 MOST = 20_000  # drops: a share of a half takes half of them
@@ -62,11 +61,13 @@ def aspects(
     unstable: bool = False,
     as_published: bool = False,
     surface: str | float | None = None,
-    launch: str = LAUNCH,
+    launch: str | None = None,
     drops: int | None = None,
-    **run: Unpack[CoresKeywords],
+    jobs: int | None = None,
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
 ) -> AspectsStudy:
-    """Study how a part comes to rest.
+    """Find the resting aspects of a part and how often it lands on each, as ``feeder aspects``.
 
     Parameters
     ----------
@@ -79,34 +80,53 @@ def aspects(
     surface : str or float [1], optional
         What it lands on, 'soft', 'medium', 'hard', or the exponent: the surface-weighted rule is then the
         answer, and the part is not dropped.
-    launch : str
-        What is done to the part: 'place', 'drop', 'flip', 'roll', 'feed'.
+    launch : str, optional
+        What is done to the part: 'place', 'drop', 'flip', 'roll', 'feed'; the last without it.
     drops : int, optional
         Drop it so often; with 0 never: the answer is then the closed form. Without it the part is dropped
         until every share is known to AIM.
-    **run
-        jobs : int, cores to use; all there are without it. Nothing else depends on it.
-        progress : function, as in ``ensemble.drop``.
-        before : function, called before a drop test begins, with the number of drops, None where that is
-        not known.
+    jobs : int, optional
+        Cores to use; all there are without it. Nothing else depends on it.
+    progress : callable, optional
+        As in ``ensemble.drop``.
+    before : callable, optional
+        Called before a drop test begins, with the number of drops, None where that is not known.
 
     Returns
     -------
     AspectsStudy
+        Its ``aspects`` are the record of arrays, in SI units; ``to_frame()`` is ``aspects.csv``.
 
     Raises
     ------
     FeederError
         If the centre of mass is not inside the convex hull, or a card is to be dropped.
     """
-    dropping = check.options("aspects", OnCores, run)
+    part, surface = arguments.a_part(part), arguments.surface(surface)
+    launch = LAUNCH if launch is None else launch
     exponent = EXPONENTS[surface] if isinstance(surface, str) else surface
     found = find(part, unstable=unstable, as_published=as_published, exponent=exponent, launch=launch)
     wanted = part.vertices is not None and np.count_nonzero(found.stable) > 1 and exponent is None
     if drops == 0 or (drops is None and not wanted):
         return AspectsStudy(part, found)
     launch = recommended.launch_named(launch)
-    return with_drops(found, _dropped(part, found, launch, drops, dropping), launch)
+    return with_drops(found, _dropped(part, found, launch, drops, OnCores(jobs, progress, before)), launch)
+
+
+def find_aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -> Aspects:
+    """Return the resting aspects of a part as a record of arrays, in SI units.
+
+    Parameters
+    ----------
+    part : Part
+    unstable, as_published : bool
+        As for ``aspects``.
+
+    Returns
+    -------
+    Aspects
+    """
+    return aspects(part, unstable=unstable, as_published=as_published).aspects
 
 
 def answered(part: Part) -> Aspects:
@@ -117,7 +137,7 @@ def answered(part: Part) -> Aspects:
 def _dropped(part: Part, found: Aspects, launch: str, drops: int | None, run: OnCores) -> "DropStudy":
     """The drop test, made once in a run."""
     from feederscrew.dropping.ensemble import drops_of
-    from feederscrew.studies.simulated.drop import drop
+    from feederscrew.studies.drop import drop
 
     many: dict[str, Any] = {"drops": MOST, "until": AIM} if drops is None else {"drops": drops}
 
@@ -133,10 +153,10 @@ def _dropped(part: Part, found: Aspects, launch: str, drops: int | None, run: On
     def from_arrays(arrays: Mapping[str, np.ndarray]) -> "DropStudy":
         return drop(part, launch, **many, dropped=drops_of(arrays, many["drops"]), aspects=found)
 
-    simulation = memory.Simulation(
+    simulation = simulation_cache.Simulation(
         "drop", (launch, drops), make, lambda test: not test.result.drops.partial, to_arrays, from_arrays
     )
-    return replace(memory.once(part, found, simulation), part=part, aspects=found)
+    return replace(simulation_cache.once(part, found, simulation), part=part, aspects=found)
 
 
 def with_drops(found: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:

@@ -8,8 +8,8 @@ from typing import Any, Unpack, cast
 
 import numpy as np
 
+from feederscrew import __version__, check, units
 from feederscrew import bowl as bowls
-from feederscrew import check, units
 from feederscrew.bowl.record import Bowl, Track, vibration_angle
 from feederscrew.bowl.settings import Setting, has_machine
 from feederscrew.conveying import answer
@@ -32,12 +32,21 @@ from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import remark
+from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.solidbowl.closed_body import BowlSolid
-from feederscrew.solidbowl.plan import TrackTooLow
-from feederscrew.studies import solidbowl
-from feederscrew.studies.rate import arriving
+from feederscrew.solidbowl.plan import SolidOptions, TrackTooLow
+from feederscrew.studies import arguments, solidbowl
+from feederscrew.studies.arguments import (
+    BowlSettings,
+    Overrides,
+    Path,
+    Quantity,
+    override_texts,
+    with_settings,
+)
+from feederscrew.studies.rate import LEAST, arriving
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
 
@@ -174,7 +183,9 @@ def bowl(
     rule: str = "recommended",
     known: Aspects | None = None,
     as_tried: bool = False,
-    **options: Unpack[solidbowl.SizingKeywords],
+    gap: float = 0.0,
+    fill: float = 1.0,
+    solid: SolidOptions | None = None,
 ) -> MachineSheet:
     """Compute the bowl, the drive and the stroke that bring a part at a rate.
 
@@ -195,9 +206,11 @@ def bowl(
     as_tried : bool
         Whether a trial has shown what the settings say: their drive is kept, and what the static rule takes
         is only told.
-    **options
-        gap : float [m], fill : float [1] : as for ``studies.rate.rate``.
-        solid : Asked, of the bowl as a solid: its rise and mass take the place of the estimate.
+    gap : float [m]
+    fill : float [1]
+        As for ``rate``.
+    solid : SolidOptions, optional
+        Of the bowl as a solid: its rise and mass take the place of the estimate.
 
     Returns
     -------
@@ -209,14 +222,13 @@ def bowl(
     FeederError
         If no bowl is so large, or none reaches the target; the latter not of what was tried.
     """
-    own = check.options("bowl", solidbowl.SizingOptions, options)
-    plain = solidbowl.in_material(answer.conveying(bowls.record(settings)), own.solid)
+    plain = solidbowl.in_material(answer.conveying(bowls.record(settings)), solid)
     found = arriving(part, plain, rule) if known is None else known
     straight = replace(sizing.STRAIGHT_TRACK, climb=plain.track.climb)
     wanted = None if aspect is None else well_oriented.wanted(part, found, straight, aspect, heading)
     lying = sizing.find_lying(part, found, wanted)
     _check_rule(rule, found)
-    counted: dict[str, Any] = {"rule": rule, "gap": own.gap, "fill": own.fill}
+    counted: dict[str, Any] = {"rule": rule, "gap": gap, "fill": fill}
     least = None
     while True:
         size = _size(lying, part, plain, settings, sorts=wanted is None, climb=least)
@@ -225,7 +237,7 @@ def bowl(
         ways = _ways(part, found, track, plain.devices)
         try:
             size, made = solidbowl.solid(
-                replace(plain, track=track), size, part, ways(None), own.solid, counted | {"target": one}
+                replace(plain, track=track), size, part, ways(None), solid, counted | {"target": one}
             )
             break
         except TrackTooLow as fault:
@@ -259,6 +271,52 @@ def bowl(
         static_drive=note,
     )
     return replace(_sheet(driven, settings, size.depth, (sought.bulk, PART), order), solid=made)
+
+
+@with_settings
+def size_bowl(
+    part: Part,
+    target: Quantity,
+    aspect: str | None = None,
+    *,
+    heading: Quantity | None = None,
+    rule: str = RECOMMENDED_RULE,
+    gap: Quantity = 0.0,
+    fill: float = 1.0,
+    path: Path | None = None,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
+) -> MachineSheet:
+    """Size the bowl for a part and a rate, with its springs, tuning and drift, as ``feeder bowl``.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    target : str or float [1/s]
+        '60/min' of parts that count.
+    aspect : str, optional
+        That counts; whatever passes the devices without it.
+    heading, rule, gap, fill
+        As for ``rate``.
+    path, overrides, **settings
+        As for ``read_bowl``: what they give is kept, the rest is sized.
+
+    Returns
+    -------
+    MachineSheet
+        At the stroke that was tried, where the file has a trial that is still of this part and bowl.
+    """
+    own: dict[str, Any] = {"rule": rule, "gap": arguments.amount("gap", gap, "length", 0.0), "fill": fill}
+    wanted = arguments.amount("target", target, "rate", LEAST)
+    angle = arguments.angle("heading", heading)
+    solid = arguments.a_part(part)
+    file = None if path is None else arguments.a_file("path", path)
+    effective = bowls.settings(file, override_texts(overrides, settings))
+    name = aspect if aspect is None or angle is None else f"{aspect}@{round(np.degrees(angle)) % 360}"
+    tried = bowls.verified(file)
+    void = tried is None or any(tried.void(solid, bowls.record(effective), __version__, name))
+    return bowl(effective, solid, wanted, aspect=aspect, heading=angle, as_tried=not void, **own)
 
 
 def _driven(

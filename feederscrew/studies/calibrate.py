@@ -8,7 +8,7 @@ from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.counts import count_rows, passed, profiles
 from feederscrew.resting.counts.calibration import Fit, fit_counts, fit_passes
-from feederscrew.studies import passages
+from feederscrew.studies import arguments, passages
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +22,7 @@ class CalibrateStudy(Shown):
 
 
 def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
-    """Study which exponent of the surface-weighted rule explains counts by aspect or by device.
+    """Fit the exponent of a surface to counts by aspect or by device, as ``feeder calibrate``.
 
     Parameters
     ----------
@@ -41,6 +41,7 @@ def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
         Every fault of the file, each with its line; if the part has no shape, no column holds counts, or
         they do not tell an exponent.
     """
+    part, counts = arguments.a_part(part), arguments.a_file("counts", counts)
     text, sha256 = count_rows.content(counts)
     table, found = count_rows.parse(text, str(counts)), find(part)
     if not passed.by_device(table):

@@ -12,6 +12,7 @@ from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import count_rows, deviation, passed, profiles
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
+from feederscrew.studies import arguments
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.passages import FeedingStudy, feeding
 
@@ -118,7 +119,7 @@ def compare(
     progress: Callable[..., None] | None = None,
     before: Callable[..., None] | None = None,
 ) -> CompareStudy | FeedingStudy:
-    """Study how far what was counted by aspect, or by device, is from every rule.
+    """Set the rules' probabilities beside counts of a test, as ``feeder compare PART --with COUNTS``.
 
     Parameters
     ----------
@@ -143,6 +144,7 @@ def compare(
     FeederError
         Every fault of the file, each with its line.
     """
+    part, counts = arguments.a_part(part), arguments.a_file("counts", counts)
     text, sha256 = count_rows.content(counts)
     table = count_rows.parse(text, str(counts))
     if passed.by_device(table):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Unpack
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from feederscrew.conveying.steady import STATUSES
 from feederscrew.geometry import grids
 from feederscrew.machine import checks
 from feederscrew.records import Shown
+from feederscrew.studies import arguments
+from feederscrew.studies.arguments import BowlSettings, Overrides, with_settings
 from feederscrew.units import DEG, MM
 
 
@@ -105,23 +108,27 @@ class ConveyMap(Shown):
         return np.asarray(STATUSES)[self.grid.values["status"].astype(int)]
 
 
-def convey(bowl: Bowl) -> ConveyStudy:
-    """Study how a part travels on the track of a bowl.
+@with_settings
+def convey(bowl: Bowl, *, overrides: Overrides = (), **settings: Unpack[BowlSettings]) -> ConveyStudy:
+    """Compute how a part travels on the bowl's track, as ``feeder convey``.
 
     Parameters
     ----------
     bowl : Bowl
-        Single values.
+    overrides, **settings
+        As for ``read_bowl``, amplitude='0.3 mm': in place of the bowl's own.
 
     Returns
     -------
     ConveyStudy
+        Its ``answer`` has the velocity in m/s, status, regime and margins.
 
     Raises
     ------
     ConfigError
         If the bowl cannot convey.
     """
+    bowl = arguments.a_bowl(bowl, overrides, settings)
     return ConveyStudy(bowl, answer.answer(bowl))
 
 

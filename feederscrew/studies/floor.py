@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Unpack
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from feederscrew.mechanics.standing import standing
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.posture import Posture
+from feederscrew.studies import arguments
+from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
 from feederscrew.studies.rate import likeliest
 
 TOP_ANGLE, TOP_FRICTION = np.pi / 2.0, 1.0  # [rad], [1] as Figure 5-6
@@ -115,18 +117,28 @@ class FloorStudy(Shown):
         return headings, self.cells(self.bowl, headings)
 
 
-def floor(part: Part, bowl: Bowl, aspect: str | None = None, heading: float = 0.0) -> FloorStudy:
-    """Study a part on the bowl floor.
+@with_settings
+def floor(
+    part: Part,
+    bowl: Bowl,
+    aspect: str | None = None,
+    *,
+    heading: Quantity = 0.0,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
+) -> FloorStudy:
+    """Compute the forces on a part on the bowl's floor and what it does, as ``feeder floor``.
 
     Parameters
     ----------
     part : Part
     bowl : Bowl
-        Single values.
     aspect : str, optional
-        Its name; without one, as ``standing`` chooses.
-    heading : float [rad]
-        theta.
+        Its name; the likeliest without it.
+    heading : str or float [rad]
+        '90 deg': how it lies to the drive.
+    overrides, **settings
+        As for ``read_bowl``: in place of the bowl's own.
 
     Returns
     -------
@@ -137,15 +149,17 @@ def floor(part: Part, bowl: Bowl, aspect: str | None = None, heading: float = 0.
     FeederError
         If the part has no such aspect, or the drive is not ``limits.plain``.
     """
+    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
+    angle = arguments.amount("heading", heading, "angle")
     limits.plain(bowl)
     stand, why = standing(part, aspect, "floor", partial(likeliest, bowl=bowl))
-    cycle, course = balance.over_cycle(stand, bowl, heading)
+    cycle, course = balance.over_cycle(stand, bowl, angle)
     return FloorStudy(
         part=part,
         posture=stand,
         bowl=bowl,
-        heading=heading,
-        now=balance.motion(stand, bowl, heading),
+        heading=angle,
+        now=balance.motion(stand, bowl, angle),
         cycle=cycle,
         course=course,
         why=why,

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Unpack
 
-from feederscrew.bowl.record import Track
+from feederscrew.bowl.record import Bowl, Track
 from feederscrew.mechanics.wall import stable_headings as wall
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
-from feederscrew.studies.aspects import answered
+from feederscrew.studies import arguments
+from feederscrew.studies.arguments import BowlSettings, Overrides, with_settings
+from feederscrew.studies.rate import arriving
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,20 +34,29 @@ class HeadingsStudy(Shown):
         return replace(self, postures=postures, headings=found)
 
 
+@with_settings
 def headings(
-    part: Part, track: Track, aspect: str | None = None, aspects: Aspects | None = None
+    part: Part,
+    bowl: Bowl,
+    aspect: str | None = None,
+    *,
+    known: Aspects | None = None,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
 ) -> HeadingsStudy:
-    """Study the stable headings of a part's aspects.
+    """Find how a part lies along the track's wall, as ``feeder headings``.
 
     Parameters
     ----------
     part : Part
         From a mesh.
-    track : Track
+    bowl : Bowl
     aspect : str, optional
-        Only this one; without it, every stable aspect.
-    aspects : Aspects, optional
-        Of the part, with the answer to take, where they are known already.
+        One alone; every stable one without it.
+    known : Aspects, optional
+        Of the part, with the answer to take; what arrives from the bowl's moving floor without it.
+    overrides, **settings
+        As for ``read_bowl``: in place of the bowl's own.
 
     Returns
     -------
@@ -55,7 +67,9 @@ def headings(
     FeederError
         If there is no such aspect, the bowl is smaller than the part, or the part is a card.
     """
-    found = answered(part) if aspects is None else aspects
+    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
+    track = bowl.track
+    found = arriving(part, bowl) if known is None else known
     names = [name for name, stays in zip(found.names, found.stable) if stays] if aspect is None else [aspect]
     postures = tuple(posture(part, found, name) for name in names)
     return HeadingsStudy(

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from feederscrew.part.mass_balance import Balance, balance
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
+from feederscrew.studies import arguments
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,15 +17,15 @@ class InertiaStudy(Shown):
 
 
 def inertia(part: Part) -> InertiaStudy:
-    """Study the mass properties of a part.
+    """Return the mass properties of a part, as ``feeder inertia``.
 
     Parameters
     ----------
     part : Part
-        From a mesh or from a part card.
 
     Returns
     -------
     InertiaStudy
     """
+    part = arguments.a_part(part)
     return InertiaStudy(part, balance(part))

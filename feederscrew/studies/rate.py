@@ -1,9 +1,9 @@
 """The study of ``feeder rate``: well-oriented parts per minute of one part from one bowl."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any, TypedDict, Unpack
+from typing import Any, Unpack, cast
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from feederscrew.bowl.devices import strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import hop
 from feederscrew.conveying.answer import conveying
+from feederscrew.dropping.ensemble import wilson
 from feederscrew.machine import checks
 from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
@@ -21,12 +22,16 @@ from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH, launch_named
-from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER, require_rule
-from feederscrew.running import CoresKeywords, OnCores
+from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER as RECOMMENDED
+from feederscrew.resting.rules.registry import require_rule
+from feederscrew.running import OnCores
+from feederscrew.studies import arguments, simulation_cache
+from feederscrew.studies.arguments import BowlSettings, Overrides, Path, Quantity, with_settings
 from feederscrew.studies.aspects import aspects as resting
-from feederscrew.studies.simulated import memory
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.isolating.design import PLAY_M, TOLERANCE_M
+
+DEVICES = "give devices in a list, as a bowl's devices are"
 
 ALIKE = 1.0 - 1e-9  # of the most frequent orientation: as frequent
 LEAST = 1e-6  # of what must be above 0
@@ -48,16 +53,21 @@ class Shares(Shown):
         return {} if self.measured is None else {self.measured.source: self.measured.sha256}
 
 
+@with_settings
 def shares(
     part: Part,
     bowl: Bowl,
     *,
     launch: str | None = None,
     probabilities: str | PathLike[str] | None = None,
-    rule: str = RECOMMENDED_ANSWER,
+    rule: str = RECOMMENDED,
     fed: int | None = None,
     seed: int = SEED,
-    **run: Unpack[CoresKeywords],
+    jobs: int | None = None,
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
 ) -> Shares:
     """Return the aspects of a part with the answer that rate, report, tune, batch and tooling take.
 
@@ -79,31 +89,44 @@ def shares(
         Parts that are fed onto the floor; without it as many as make every share known to 2 %.
     seed : int
         Of the parts on the floor.
-    **run
-        jobs : int, cores for that; all there are without it. Nothing else depends on it.
-        progress, before : function, of drops and of parts on the floor, as for ``studies.aspects``.
+    jobs : int, optional
+        Cores for that; all there are without it. Nothing else depends on it.
+    progress, before : callable, optional
+        Of drops and of parts on the floor, as for ``aspects``.
+    overrides, **settings
+        As for ``read_bowl``: in place of the bowl's own.
 
     Returns
     -------
     Shares
+        To be handed on as ``known``: what takes long is computed once.
 
     Raises
     ------
     FeederError
         Every fault of the file; if the part has no shape to drop.
     """
-    own = check.options("shares", OnCores, run)
+    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
+    run = OnCores(jobs, progress, before)
     require_rule(rule)
-    check.argument("seed", seed, 0)
-    if fed is not None:
-        check.argument("fed", fed, 1)
+    seed, fed = arguments.whole("seed", seed, 0), arguments.count("fed", fed)
     if probabilities is not None:
+        probabilities = arguments.a_file("probabilities", probabilities)
         found = resting(part, drops=0).aspects
         measured = profiles.read(probabilities, found.names)
         return Shares(arrivals.counted(found, measured), measured)
-    if launch is not None or rule != RECOMMENDED_ANSWER or part.vertices is None:
-        drops = None if rule == RECOMMENDED_ANSWER else 0
-        return Shares(resting(part, launch=launch_named(launch or LAUNCH), drops=drops, **run).aspects)
+    if launch is not None or rule != RECOMMENDED or part.vertices is None:
+        drops = None if rule == RECOMMENDED else 0
+        return Shares(
+            resting(
+                part,
+                launch=launch_named(launch or LAUNCH),
+                drops=drops,
+                jobs=jobs,
+                progress=progress,
+                before=before,
+            ).aspects
+        )
     found = resting(part, drops=0).aspects
     if not bowl.gravity > 0.0:
         conveying(bowl)  # says so
@@ -111,11 +134,11 @@ def shares(
         return Shares(found)
     if arrivals.too_long(found, bowl):
         return Shares(arrivals.not_fed(found))
-    arrived = arrivals.arrived(found, _on_the_floor(part, found, bowl, fed, seed, own), seed)
+    arrived = arrivals.arrived(found, _on_the_floor(part, found, bowl, fed, seed, run), seed)
     return Shares(arrived, fed=arrived.recommended is not found.recommended)
 
 
-def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED_ANSWER) -> Aspects:
+def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED) -> Aspects:
     """Return the aspects of a part with what arrives at the entry of a bowl's track as their answer."""
     return shares(part, bowl, rule=rule).aspects
 
@@ -123,8 +146,8 @@ def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED_ANSWER) -> Aspects:
 def likeliest(part: Part, bowl: Bowl) -> Aspects:
     """Return the aspects of a part with what arrives, of as few parts as show which aspect is the likeliest.
 
-    CHOOSING parts are fed first. Where the interval of the most frequent aspect is apart from that of every
-    other one, they decide. Else the answer is that of ``arriving``.
+    CHOOSING parts are fed first. Where the 95 % interval of the most frequent aspect is above those of all
+    others, they decide. Else the answer is that of ``arriving``.
 
     Parameters
     ----------
@@ -140,9 +163,10 @@ def likeliest(part: Part, bowl: Bowl) -> Aspects:
     answer = sample.aspects.recommended
     if not sample.fed or answer is None:
         return sample.aspects
+    low, high = wilson(np.nan_to_num(answer.p) * CHOOSING, CHOOSING)  # of the sample alone
     first = int(np.argmax(answer.p))
-    others = np.delete(answer.high, first)
-    return sample.aspects if answer.low[first] > others.max(initial=0.0) else arriving(part, bowl)
+    is_clear = low[first] > np.delete(high, first).max(initial=0.0)
+    return sample.aspects if is_clear else arriving(part, bowl)
 
 
 def _on_the_floor(part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed: int, run: OnCores) -> Any:
@@ -155,39 +179,11 @@ def _on_the_floor(part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed:
         return floor.arrival(part, found, bowl, drops=fed, seed=seed, jobs=run.cores, progress=run.progress)
 
     settings = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity, fed, seed)
-    simulation = memory.Simulation(
+    simulation = simulation_cache.Simulation(
         "arrival", settings, make, lambda arrived: not arrived.shaken.partial, floor.to_arrays,
         lambda arrays: floor.from_arrays(part, found, bowl, fed, arrays),
     )  # fmt: skip
-    return memory.once(part, found, simulation)
-
-
-@dataclass(frozen=True)
-class Spacing:
-    """How parts stand along the track."""
-
-    gap: float = 0.0  # [m] between one part and the next
-    fill: float = 1.0  # [1] share of the track that is occupied
-
-
-@dataclass(frozen=True)
-class RateOptions(Spacing):
-    """The same, and how devices spread."""
-
-    sigma: float = 0.0  # [m] standard deviation of play and tolerance together, of every device
-
-
-class SpacingKeywords(TypedDict, total=False):
-    """A Spacing as keywords."""
-
-    gap: float
-    fill: float
-
-
-class RateKeywords(SpacingKeywords, total=False):
-    """RateOptions as keywords."""
-
-    sigma: float
+    return simulation_cache.once(part, found, simulation)
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,18 +231,27 @@ class RateStudy(Shown):
         )
 
 
+@with_settings
 def rate(
     part: Part,
     bowl: Bowl,
     aspect: str | None = None,
     *,
-    heading: float | None = None,
-    rule: str = RECOMMENDED_ANSWER,
+    heading: Quantity | None = None,
     devices: Sequence[Device] | None = None,
+    gap: Quantity = 0.0,
+    fill: float = 1.0,
+    sigma: float = 0.0,
+    rule: str = RECOMMENDED,
+    launch: str | None = None,
+    probabilities: Path | None = None,
+    fed: int | None = None,
+    seed: int = 1,
     known: Shares | None = None,
-    **options: Unpack[RateKeywords],
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
 ) -> RateStudy:
-    """Study how many well-oriented parts leave a bowl.
+    """Compute the well-oriented parts per second, with each factor, as ``feeder rate``.
 
     Parameters
     ----------
@@ -254,25 +259,37 @@ def rate(
         From a mesh.
     bowl : Bowl
     aspect : str, optional
-        The one wanted, as ``feeder aspects`` names it; without it the orientation that leaves the bowl
-        most often.
-    heading : float [rad], optional
-        Of that aspect; without one, the most frequent that stays on the track.
+        The one wanted, as ``aspects`` names it; without it the orientation that leaves most often.
+    heading : str or float [rad], optional
+        Without one, the most frequent that stays on the track.
+    devices : sequence of Device
+        From ``feederscrew.tooling.devices``; those of the bowl without it.
+    gap : str or float [m]
+        Between one part and the next.
+    fill : float [1]
+        Share of the track that is occupied.
+    sigma : float [m]
+        Standard deviation of play and tolerance together, of every device.
     rule : str
         Whose probabilities are taken.
-    devices : sequence of Device
-        Along the track, in the order parts meet them; those of the bowl without it.
+    launch : str, optional
+        What is done to the part on a floor at rest: 'place', 'drop', 'flip', 'roll' or 'feed'; without it
+        parts are fed onto the moving floor of the bowl.
+    probabilities : str or Path, optional
+        File of counts whose shares are taken.
+    fed : int, optional
+        How many parts are fed; without it until every share is known to 2 %.
+    seed : int
+        Of these parts.
     known : Shares, optional
-        Of the part; without them those that arrive from the bowl's moving floor.
-    **options
-        With the defaults of ``RateOptions``.
-        gap : float [m], between one part and the next.
-        fill : float [1], share of the track that is occupied.
-        sigma : float [m], standard deviation of play and tolerance together, of every device.
+        What ``shares`` returned, in place of all of them.
+    overrides, **settings
+        As for ``read_bowl``, amplitude='0.3 mm': in place of the bowl's own.
 
     Returns
     -------
     RateStudy
+        Its ``parts`` are parts per second with an interval.
 
     Raises
     ------
@@ -280,16 +297,25 @@ def rate(
         If the part has no outline, more facets than can be followed past devices, or no such aspect, no such
         rule has probabilities of it, or the bowl has no steady state.
     """
-    own = check.options("rate", RateOptions, options)
-    checked(bowl, heading, own, own.sigma)
+    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
+    if devices is not None:
+        devices = arguments.several("devices", devices, Device, DEVICES)
+    known = the_shares(known)
+    if known is None:
+        known = shares(
+            part, bowl,
+            rule=rule, launch=launch, probabilities=probabilities, fed=fed, seed=seed,
+        )  # fmt: skip
+    angle, space = arguments.angle("heading", heading), arguments.amount("gap", gap, "length", 0.0)
+    check.argument("fill", fill, LEAST, 1.0)
+    check.argument("sigma", sigma, 0.0)
     require_rule(rule)
     chain = bowl.devices if devices is None else tuple(devices)
     if any(device.placed for device in chain):
         refuse_many_facets(part)
-    known = shares(part, bowl, rule=rule) if known is None else known
     found = known.aspects
-    target = None if aspect is None else well_oriented.wanted(part, found, bowl.track, aspect, heading)
-    ways = stream.follow_orientations(part, found, bowl.track, chain, own.sigma, bowl)
+    target = None if aspect is None else well_oriented.wanted(part, found, bowl.track, aspect, angle)
+    ways = stream.follow_orientations(part, found, bowl.track, chain, sigma, bowl)
     lying = arrivals.oriented(ways, known.measured)
     speed = well_oriented.velocity(stream.queueing(bowl, lying.lying))
     target = most_frequent(lying, rule) if target is None else target
@@ -299,19 +325,17 @@ def rate(
         aspects=found,
         devices=chain,
         rule=rule,
-        rate=well_oriented.rate(lying, speed, target, rule, gap=own.gap, fill=own.fill),
+        rate=well_oriented.rate(lying, speed, target, rule, gap=space, fill=fill),
         measured=known.measured,
-        sigma=own.sigma,
+        sigma=sigma,
     )
 
 
-def checked(bowl: Bowl, heading: float | None, spacing: Spacing, sigma: float = 0.0) -> None:
-    """Raise an ArgumentError that names the argument that cannot be used."""
-    check.argument("gap", spacing.gap, 0.0)
-    check.argument("fill", spacing.fill, LEAST, 1.0)
-    check.argument("sigma", sigma, 0.0)
-    if heading is not None:
-        check.argument("heading", heading)
+def the_shares(known: object) -> Shares | None:
+    """Return shares as ``shares`` gave them; None stays None."""
+    if known is not None:
+        check.kind("known", known, Shares, "give what shares returned")
+    return cast(Shares | None, known)
 
 
 def most_frequent(known: well_oriented.Orientations, rule: str) -> tuple[str, float]:

@@ -1,11 +1,11 @@
 """The study of ``feeder report``: what the other studies find of one part in one bowl, each on request."""
 
 import os
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
-from typing import Any, TypedDict, Unpack
+from typing import Unpack
 
 from feederscrew import bowl as bowls
 from feederscrew import check
@@ -15,10 +15,18 @@ from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.posture import posture
-from feederscrew.running import ToldKeywords
 from feederscrew.solidbowl.closed_body import BowlSolid
+from feederscrew.studies import arguments, convey, solidbowl
 from feederscrew.studies import bowl as machines
-from feederscrew.studies import convey, solidbowl
+from feederscrew.studies.arguments import (
+    BowlFile,
+    BowlSettings,
+    Overrides,
+    Path,
+    Quantity,
+    override_texts,
+    with_settings,
+)
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.convey import ConveyMap, ConveyStudy
@@ -26,7 +34,7 @@ from feederscrew.studies.floor import FloorStudy, floor
 from feederscrew.studies.headings import HeadingsStudy, headings
 from feederscrew.studies.inertia import InertiaStudy, inertia
 from feederscrew.studies.passages import PassagesStudy, passages
-from feederscrew.studies.rate import RateStudy, Shares, Spacing, SpacingKeywords, rate, shares
+from feederscrew.studies.rate import LEAST, RateStudy, Shares, rate, shares
 from feederscrew.studies.slide import SlideStudy, slide
 from feederscrew.studies.track import TrackStudy, track
 from feederscrew.studies.trial import TrialStudy, trial
@@ -81,7 +89,7 @@ class ReportStudy(Shown):
     @cached_property
     def headings(self) -> HeadingsStudy:
         """The stable headings of every aspect, a HeadingsStudy."""
-        return headings(self.part, self.bowl.track, aspects=self.resting.aspects)
+        return headings(self.part, self.bowl, known=self.resting.aspects)
 
     @cached_property
     def convey(self) -> ConveyStudy:
@@ -142,12 +150,12 @@ class ReportStudy(Shown):
     @cached_property
     def track(self) -> TrackStudy:
         """The part on the track, a TrackStudy."""
-        return track(self.part, self.bowl, self.aspect, self.heading)
+        return track(self.part, self.bowl, self.aspect, heading=self.heading)
 
     @cached_property
     def floor(self) -> FloorStudy:
         """The part on the floor, a FloorStudy."""
-        return floor(self.part, self.bowl, self.aspect, self.heading or 0.0)
+        return floor(self.part, self.bowl, self.aspect, heading=self.heading or 0.0)
 
     @cached_property
     def slide(self) -> SlideStudy:
@@ -155,73 +163,76 @@ class ReportStudy(Shown):
         return slide(self.bowl)
 
 
-class AnswerKeywords(ToldKeywords, total=False):
-    """Keywords of ``report`` that ``studies.rate.shares`` receives."""
-
-    launch: str | None
-    probabilities: str | PathLike[str] | None
-    fed: int | None
-    seed: int
-
-
-class PageKeywords(TypedDict, total=False):
-    """Keywords of ``report`` that its record receives."""
-
-    command: str
-    sent: int | None
-
-
-class ReportKeywords(AnswerKeywords, PageKeywords, SpacingKeywords, total=False):
-    """The keywords of ``report`` that few callers need."""
-
-
-ANSWER, PAGE = AnswerKeywords.__optional_keys__, PageKeywords.__optional_keys__
-
-
+@with_settings
 def report(
     part: Part,
-    path: str | PathLike[str] | None = None,
-    overrides: Iterable[str] = (),
-    *,
     aspect: str | None = None,
-    heading: float | None = None,
+    *,
+    heading: Quantity | None = None,
+    target: Quantity | None = None,
+    bowl: BowlFile | None = None,
+    gap: Quantity = 0.0,
+    fill: float = 1.0,
     rule: str = RECOMMENDED,
-    target: float | None = None,
-    **options: Unpack[ReportKeywords],
+    launch: str | None = None,
+    probabilities: Path | None = None,
+    fed: int | None = None,
+    seed: int = 1,
+    sent: int | None = None,
+    command: str = "",
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
 ) -> ReportStudy:
-    """Check everything that can be wrong with the inputs of a report, before anything long is computed.
+    """Gather all that is known of a part in a bowl, as ``feeder report``: each chapter when it is asked for.
 
     Parameters
     ----------
     part : Part
-    path, overrides
-        As for ``bowl.read``.
     aspect : str, optional
-        The wanted one; without it, the likeliest.
-    heading : float [rad], optional
-    rule : str
-        Whose probabilities count for the rate.
-    target : float [1/s], optional
+        The one wanted; the likeliest without it.
+    heading : str or float [rad], optional
+    target : str or float [1/s], optional
         Rate that a bowl is sized for.
-    **options
-        gap : float [m], fill : float [1] : as for ``studies.rate.rate``.
-        launch, probabilities, fed, seed, progress, before : as for ``studies.rate.shares``.
-        command : str, that repeats the report.
-        sent : int, parts of a trial, which is a chapter then.
+    bowl : dict, optional
+        path, overrides: as for ``read_bowl``.
+    gap, fill, rule, launch, probabilities, fed, seed
+        As for ``rate``.
+    sent : int, optional
+        Parts of a trial, which is a chapter then.
+    command : str
+        That repeats the report.
+    progress, before : callable, optional
+        As for ``shares``.
+    overrides, **settings
+        As for ``read_bowl``; they go over those of ``bowl``.
 
     Returns
     -------
     ReportStudy
+        ``rate``, ``convey``, ``slide``, ``track``, ``machine`` ... are the records of those commands.
 
     Raises
     ------
     FeederError
         If there is no such aspect or rule, or the bowl file has faults.
     """
-    spacing = check.options("report", Spacing, options, beside=ANSWER | PAGE)
-    settings = bowls.settings(path, overrides)
-    bowl = bowls.record(settings)
-    known = shares(part, bowl, rule=rule, **_of(options, ANSWER))
+    file = arguments.a_file_of_bowl(bowl)
+    path = file.get("path")
+    texts = (*override_texts(file.get("overrides", ()), {}), *override_texts(overrides, settings))
+    path = None if path is None else arguments.a_file("path", path)
+    part, angle = arguments.a_part(part), arguments.angle("heading", heading)
+    space = arguments.amount("gap", gap, "length", 0.0)
+    check.argument("fill", fill, LEAST, 1.0)
+    wanted = None if target is None else arguments.amount("target", target, "rate")
+    given = bowls.settings(path, texts)
+    chosen = bowls.record(given)
+    known = shares(
+        part, chosen,
+        rule=rule, launch=launch, probabilities=probabilities, fed=fed, seed=seed,
+        progress=progress, before=before,
+    )  # fmt: skip
     found = known.aspects
     rule = found.ranking if rule == RECOMMENDED else rule  # a card has no such answer
     if rule not in found.chances:
@@ -229,22 +240,18 @@ def report(
         raise ArgumentError(f"rule {rule}", "has no probabilities of this part", f"choose one of {names}")
     return ReportStudy(
         resting=AspectsStudy(part, found),
-        settings=settings,
-        bowl=bowl,
+        settings=given,
+        bowl=chosen,
         path=path,
         aspect=posture(part, found, found.likeliest if aspect is None else aspect).name,
-        heading=heading,
+        heading=angle,
         rule=rule,
-        gap=spacing.gap,
-        fill=spacing.fill,
-        target=target,
+        gap=space,
+        fill=fill,
+        target=wanted,
         counted=aspect,
         shares=known,
         inputs=part.inputs | bowls.identity(path) | known.inputs,
-        **_of(options, PAGE),
+        command=command,
+        sent=sent,
     )
-
-
-def _of(options: Mapping[str, Any], names: Collection[str]) -> dict[str, Any]:
-    """Those of some keywords that were given."""
-    return {name: value for name, value in options.items() if name in names}

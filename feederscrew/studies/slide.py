@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Unpack
 
 import numpy as np
 
@@ -12,6 +13,8 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.geometry.grids import Grid, GridAxis, evaluate
 from feederscrew.mechanics import limits, wedge
 from feederscrew.records import Shown
+from feederscrew.studies import arguments
+from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
 
 STEPS = (1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # round numbers within a decade
 PLAIN_TOP = 3.0  # G that every sliding map reaches
@@ -88,17 +91,26 @@ class SlideStudy(Shown):
         return tuple(sliding_map(self.bowl, one.beta, shape=shape) for one in self.maps)
 
 
-def slide(bowl: Bowl, betas: Sequence[float] = (), *, as_published: bool = False) -> SlideStudy:
-    """Study when a part slips on a bowl's track.
+@with_settings
+def slide(
+    bowl: Bowl,
+    angles: Iterable[Quantity] = (),
+    *,
+    as_published: bool = False,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
+) -> SlideStudy:
+    """Compute when a part slips, which way, and when it hops, as ``feeder slide``.
 
     Parameters
     ----------
     bowl : Bowl
-        Single values.
-    betas : sequence of float [rad]
-        Vibration angles; without any, the bowl's own.
+    angles : iterable of str or float [rad]
+        Vibration angles, a map each; the bowl's without them.
     as_published : bool
-        Keep [4.27] where it is negative: past the hop, and where the drive is reversed.
+        Keep mu_limit where [4.27] is negative, as past the hop.
+    overrides, **settings
+        As for ``read_bowl``: in place of the bowl's own.
 
     Returns
     -------
@@ -109,8 +121,12 @@ def slide(bowl: Bowl, betas: Sequence[float] = (), *, as_published: bool = False
     ConfigError
         If the drive is not ``limits.plain``.
     """
-    angles = dict.fromkeys(betas or [bowl.drive.vibration_angle])
-    maps = tuple(sliding_map(bowl, beta, as_published=as_published) for beta in angles)
+    bowl = arguments.a_bowl(bowl, overrides, settings)
+    betas = [arguments.amount("angles", angle, "angle") for angle in angles]
+    maps = tuple(
+        sliding_map(bowl, beta, as_published=as_published)
+        for beta in dict.fromkeys(betas or [bowl.drive.vibration_angle])
+    )
     return SlideStudy(bowl, as_published, maps)
 
 

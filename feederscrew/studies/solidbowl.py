@@ -1,7 +1,7 @@
 """``feeder bowl --solid``: the bowl of a sheet as one closed body."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -27,7 +27,6 @@ from feederscrew.solidbowl.plan import (
     material,
     plan,
 )
-from feederscrew.studies.rate import Spacing, SpacingKeywords
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import hang, neck
 
@@ -35,19 +34,6 @@ CLIMB_STEP_RAD = np.radians(0.25)  # in which a climb is sought that leaves room
 STEEPEST_RAD = np.radians(
     10.0
 )  # up to which it is sought: parts slide back from there on with most frictions
-
-
-@dataclass(frozen=True)
-class SizingOptions(Spacing):
-    """How parts stand along the track of the bowl that is sized, and whether it is made a solid."""
-
-    solid: SolidOptions | None = None  # its rise and mass take the place of the estimate
-
-
-class SizingKeywords(SpacingKeywords, total=False):
-    """The same as keywords."""
-
-    solid: SolidOptions | None
 
 
 def asked(

@@ -1,10 +1,10 @@
-"""The study of ``feeder tooling``: which orientation can be isolated, and by which cuts."""
+"""The study of ``feeder tooling``: which orientations of a part can be isolated, and by which devices."""
 
 import functools
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Unpack
+from typing import Any, Unpack, cast
 
 import numpy as np
 
@@ -17,17 +17,78 @@ from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.rates.tipping import marked, remark, steady
+from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
-from feederscrew.studies.rate import arriving
-from feederscrew.studies.wishes import ToolingKeywords, ToolingOptions, asked_for, listed
-from feederscrew.tooling.devices.kinds import names
+from feederscrew.studies import arguments
+from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
+from feederscrew.studies.rate import Shares, arriving, the_shares
+from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.devices.kinds import KINDS, leaning, names
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import tracks
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, DesignConstraints
 from feederscrew.tooling.isolating.design import MARGIN_M, PLAY_M, TOLERANCE_M, place
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Design, Goal
-from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations
+from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations, travel_speed
+from feederscrew.units import shown
+
+SEARCH_SECONDS = 600.0  # [s] the last resort: a search that it ends may differ from machine to machine
+OUTCOMES = ("lying", "hanging", "any")
+
+
+def _usable(
+    part: Part,
+    bowl: Bowl,
+    aspects: Aspects,
+    *,
+    outcome: str,
+    without: str | Sequence[str],
+    up: str | Sequence[str],
+    **wishes: Any,
+) -> DesignConstraints:
+    """What a design may use, checked."""
+    if outcome not in OUTCOMES:
+        raise ArgumentError("outcome", f"{outcome!r} is unknown", f"choose {', '.join(OUTCOMES)}")
+    kinds = may_be_left_out(without)
+    usable = DesignConstraints(outcome=outcome, without=kinds, up=may_be_up(part, aspects, up), **wishes)
+    return replace(usable, separation=_separation(bowl, usable))
+
+
+def listed(names: str | Sequence[str]) -> tuple[str, ...]:
+    """Return the names of a list, or of a text with commas."""
+    names = names.split(",") if isinstance(names, str) else names
+    return tuple(name.strip() for name in names if name.strip())
+
+
+def may_be_left_out(without: str | Sequence[str]) -> tuple[str, ...]:
+    """Return the names of kinds of devices that are not used, checked."""
+    kinds = listed(without)
+    for kind in kinds:
+        if kind not in KINDS:
+            raise ArgumentError("without", f"unknown device {shown(kind)}", hint(kind, list(KINDS)))
+    return kinds
+
+
+def may_be_up(part: Part, found: Aspects, up: str | Sequence[str]) -> tuple[str, ...]:
+    """Return the names of aspects that may be up as well, checked."""
+    known = {name.casefold() for name in found.names}
+    for name in listed(up):
+        if name.casefold() not in known:
+            mend = f"choose one of {', '.join(found.names)}"
+            raise ArgumentError("up", f"{part.name} has no aspect {shown(name)}", mend)
+    return listed(up)
+
+
+def _separation(bowl: Bowl, wishes: DesignConstraints) -> Device | None:
+    """The stretch that makes gaps in this bowl; None where it may not be used or makes none."""
+    for kind in leaning():
+        steeper = kind.parting(DESIGN_KEY) if wishes.allows(kind.kind) else None
+        if steeper is not None and travel_speed(steeper.onward(bowl)) > travel_speed(bowl):
+            return steeper
+    return None
+
 
 WIDER = "the track has to be {:.4g} mm wide"
 LATE = "the search stopped at the time limit: another machine may find more - raise the limit"
@@ -100,18 +161,36 @@ class ToolingStudy(Shown):
         return small_part_remarks(self.part, allowances, self.bowl.track.width)
 
 
+@with_settings
 def tooling(
     part: Part,
     bowl: Bowl,
     aspect: str | None = None,
     *,
-    heading: float | None = None,
-    rule: str = "recommended",
-    margin: float = MARGIN_M,
-    known: Aspects | None = None,
-    **wishes: Unpack[ToolingKeywords],
+    heading: Quantity | None = None,
+    rule: str = RECOMMENDED_RULE,
+    margin: Quantity = MARGIN_M,
+    purity: float = Goal.purity,
+    efficiency: float = Goal.efficiency,
+    outcome: str = DesignConstraints.outcome,
+    up: str | Sequence[str] = DesignConstraints.up,
+    without: str | Sequence[str] = DesignConstraints.without,
+    turn: bool = DesignConstraints.turn,
+    air: bool = DesignConstraints.air,
+    vary: bool = DesignConstraints.vary,
+    step: Quantity = DesignConstraints.step,
+    cutter: Quantity = DesignConstraints.cutter,
+    play: Quantity = PLAY_M,
+    tolerance: Quantity = TOLERANCE_M,
+    seed: int = HoleSearch.seed,
+    verdicts: int = HoleSearch.verdicts,
+    seconds: Quantity = SEARCH_SECONDS,
+    known: Shares | Aspects | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
 ) -> ToolingStudy:
-    """Study which orientations of a part can be isolated by cuts, and how.
+    """Find cuts that isolate an orientation of a part, as ``feeder tooling``.
 
     Parameters
     ----------
@@ -119,36 +198,47 @@ def tooling(
         From a mesh.
     bowl : Bowl
     aspect : str, optional
-        The one wanted; without it every orientation is designed for.
-    heading : float [rad], optional
-        Of that aspect; without one, its most frequent that stays on the track.
+        The one wanted; every orientation without it.
+    heading : str or float [rad], optional
+        Of that aspect.
     rule : str
         Whose probabilities are taken.
-    margin : float [m]
+    margin : str or float [m]
         By which the wanted orientation passes and the others fail, at least.
-    known : Aspects, optional
-        Of the part, with the answer to take, where they are known already.
-    **wishes
-        What a design is to reach and may use, with the defaults of ``ToolingOptions``.
-        purity : float [1], of what leaves, that is enough.
-        efficiency : float [1], of what is offered, that is asked for.
-        outcome : str, how parts shall leave: 'lying', 'hanging' or 'any'.
-        without : str or list of str, kinds of devices that are not used: 'wiper,cut_out'.
-        step : float [m], of which values are whole multiples.
-        up : str or list of str, other aspects that count as the one wanted: 'B,C'.
-        cutter : float [m], the radius that corners of holes are rounded to.
-        vary : bool, whether other banks, grooves and widths of the track and sweeps are tried where they
-        give more.
-        turn : bool, whether devices that turn parts over may be used, where returning them wastes too much.
-        air : bool, whether air that blows all the time may be used, where cuts and blades are not enough.
-        play, tolerance : float [m], of the part from the wall and of its size, which are added to the margin
-        that is asked for.
-        seed : int, of the search for holes.
-        verdicts : int, most of them in the search for the holes of one orientation: then the best so far
-        is taken.
-        seconds : float [s], the last resort: what is found until then may differ from machine to machine,
-        and is marked.
-        told : callable, called with how many designs are done of how many, first with none.
+    purity : float [1]
+        Of what leaves, that is enough.
+    efficiency : float [1]
+        Of what is offered, that is asked for.
+    outcome : str
+        How parts leave: 'lying', 'hanging' or 'any'.
+    up : str or sequence of str
+        Other aspects that count as the one wanted, 'B,C'.
+    without : str or sequence of str
+        Kinds of devices that are not used, 'wiper,cut_out'.
+    turn : bool
+        Whether devices that turn parts over may be used.
+    air : bool
+        Whether air that blows all the time may be used, where cuts and blades are not enough.
+    vary : bool
+        Whether other banks, grooves and widths of the track are tried.
+    step : str or float [m]
+        Values of cuts are whole multiples of it.
+    cutter : str or float [m]
+        Radius of the corners of holes.
+    play, tolerance : str or float [m]
+        Of the part from the wall and of its size; both are added to the margin.
+    seed : int
+        Of the search for holes.
+    verdicts : int
+        The most in the search for the holes of one orientation.
+    seconds : str or float [s]
+        After which the search ends.
+    known : Shares or Aspects, optional
+        Of ``shares``.
+    progress : callable, optional
+        Called with how many orientations are done, and of how many.
+    overrides, **settings
+        As for ``read_bowl``: in place of the bowl's own.
 
     Returns
     -------
@@ -160,45 +250,63 @@ def tooling(
         If the part has no mesh or very many facets, is too large for the bowl, or has no such orientation or
         rule.
     """
-    own = check.options("tooling", ToolingOptions, wishes)
-    check.of_an_aspect(aspect, heading)
+    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
+    aspect, angle = arguments.an_aspect(aspect), arguments.angle("heading", heading)
+    clear, play, tolerance = (
+        arguments.amount(name, value, "length", 0.0)
+        for name, value in (("margin", margin), ("play", play), ("tolerance", tolerance))
+    )
+    goal = Goal(arguments.share("purity", purity), arguments.share("efficiency", efficiency))
+    check.of_an_aspect(aspect, angle)
     refuse_many_facets(part)
-    found = arriving(part, bowl, rule) if known is None else known
+    if known is None:
+        found = arriving(part, bowl, rule)
+    else:
+        found = known if isinstance(known, Aspects) else cast(Shares, the_shares(known)).aspects
     every = _coming(part, found, bowl)
     if rule not in found.chances:
         raise ArgumentError(
             f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
         )
     shares = np.nan_to_num([one.chances[rule] for one in every])
-    wanted = None if aspect is None else place(every, aspect, heading, part.source)
-    search = HoleSearch(seed=own.seed, verdicts=own.verdicts, until=time.monotonic() + own.seconds)
-    margin += own.play + own.tolerance
-    may_use = asked_for(part, bowl, found, own)
-    asked_of_each = {"goal": Goal(own.purity, own.efficiency), "before": bowl.devices, "constraints": may_use}
-    asked_of_each |= {"margin": margin, "search": search}
+    wanted = None if aspect is None else place(every, aspect, angle, part.source)
+    search = HoleSearch(
+        seed=arguments.whole("seed", seed, 0),
+        verdicts=arguments.whole("verdicts", verdicts),
+        until=time.monotonic() + arguments.amount("seconds", seconds, "time", 0.0),
+    )
+    clear += play + tolerance
+    may_use = _usable(
+        part, bowl, found,
+        outcome=outcome, without=without, up=up, vary=bool(vary), turn=turn, air=air,
+        step=arguments.amount("step", step, "length", SHOP_ROUNDING_M),
+        cutter=arguments.amount("cutter", cutter, "length", 0.0),
+    )  # fmt: skip
+    asked_of_each = {"goal": goal, "before": bowl.devices, "constraints": may_use}
+    asked_of_each |= {"margin": clear, "search": search}
     asked = range(len(every)) if wanted is None else [wanted]
     designs: list[Design | None] = [None] * len(every)
-    if own.told is not None:
-        own.told(0, len(asked))
+    if progress is not None:
+        progress(0, len(asked))
     cache: dict[float, _Track] = {bowl.track.width: _Track(bowl, every, shares, {})}
     for done, k in enumerate(asked):
         designs[k] = best = _best(part, found, rule, k, cache, asked_of_each)
         check_written(best.devices, "tooling.yaml")
-        if own.told is not None:
-            own.told(done + 1, len(asked))
+        if progress is not None:
+            progress(done + 1, len(asked))
     study = ToolingStudy(
         part=part,
         bowl=bowl,
         aspects=found,
         rule=rule,
-        margin=margin,
+        margin=clear,
         orientations=every,
         shares=shares,
         designs=tuple(designs),
         wanted=wanted,
         up=may_use.up,
-        play=own.play,
-        tolerance=own.tolerance,
+        play=play,
+        tolerance=tolerance,
     )
     return study if wanted is None else study.on_its_width(wanted)
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Unpack
 
 import numpy as np
 
@@ -24,6 +24,8 @@ from feederscrew.part.record import Part
 from feederscrew.rates import tipping
 from feederscrew.records import Shown
 from feederscrew.resting.posture import Posture
+from feederscrew.studies import arguments
+from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
 from feederscrew.studies.rate import likeliest
 from feederscrew.tooling import orientations
 
@@ -75,19 +77,29 @@ class TrackStudy(Shown):
         return grids.evaluate(grids.axis(first), grids.axis(second), function, cells.TRACK_REGIMES)
 
 
-def track(part: Part, bowl: Bowl, aspect: str | None = None, heading: float | None = None) -> TrackStudy:
-    """Study a part on the track, against the wall.
+@with_settings
+def track(
+    part: Part,
+    bowl: Bowl,
+    aspect: str | None = None,
+    *,
+    heading: Quantity | None = None,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
+) -> TrackStudy:
+    """Compute the reactions on a part on the track against the wall, as ``feeder track``.
 
     Parameters
     ----------
     part : Part
     bowl : Bowl
-        Single values.
     aspect : str, optional
-        Its name; without one, as ``standing`` chooses.
-    heading : float [rad], optional
-        As laid down: pushed to the wall, the part turns to the stable heading of that range. Without one,
-        the most frequent heading that stays on the track.
+        Its name; the likeliest without it.
+    heading : str or float [rad], optional
+        As laid down: pushed to the wall, the part turns to the stable heading of that range. The most
+        frequent that stays on the track without it.
+    overrides, **settings
+        As for ``read_bowl``: in place of the bowl's own.
 
     Returns
     -------
@@ -99,9 +111,11 @@ def track(part: Part, bowl: Bowl, aspect: str | None = None, heading: float | No
         If there is no such aspect, the bowl is smaller than the part, the part falls off the track, or
         the drive is not ``limits.plain``.
     """
+    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
+    angle = arguments.angle("heading", heading)
     limits.plain(bowl)
     posture, why = standing(part, aspect, "track", partial(likeliest, bowl=bowl))
-    seat, found, row = cells.seated(posture, bowl, heading)
+    seat, found, row = cells.seated(posture, bowl, angle)
     now, held_across = _from_rest(seat, bowl)
     cycle, course = balance.over_cycle(seat, bowl)
     return TrackStudy(
@@ -117,7 +131,7 @@ def track(part: Part, bowl: Bowl, aspect: str | None = None, heading: float | No
         opening=first_to_open(seat, bowl),
         bank_without_radial_friction=bank_without_radial_friction(seat),
         held_across=held_across,
-        laid=heading,
+        laid=angle,
         why=why,
         stands=None if found is None else _stands(posture, found, row, bowl, cycle),
     )

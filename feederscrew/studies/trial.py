@@ -7,7 +7,6 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from feederscrew import check
 from feederscrew.bowl.devices import strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
@@ -22,8 +21,10 @@ from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH
-from feederscrew.running import RunKeywords, RunSettings
-from feederscrew.studies.rate import Shares
+from feederscrew.running import RunSettings
+from feederscrew.studies import arguments
+from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
+from feederscrew.studies.rate import Shares, the_shares
 from feederscrew.studies.rate import shares as arriving
 from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.trial import course, outlet
@@ -35,6 +36,7 @@ from feederscrew.trial.shape import solid_of
 from feederscrew.trial.starts import PLAY
 
 ENGINE = "feeder's own kernel"
+QUEUE_SECONDS = 10.0  # [s] for which a queue is followed
 PARTS, FEW = 200, 60  # parts one at a time; fewer where they only tell what a queue meets
 
 
@@ -96,71 +98,69 @@ class TrialStudy(Shown):
         return tuple(listed)
 
 
-@dataclass(frozen=True)
-class TrialOptions(RunSettings):
-    """How many parts are sent and how; an option means what it means for ``trial``."""
-
-    parts: int | None = None
-    landing: int | None = None
-    queue: int | None = None
-    poured: bool = False
-    seconds: float = 10.0  # [s]
-    frames: int = 0
-
-
-class TrialKeywords(RunKeywords, total=False):
-    """The same as keywords."""
-
-    parts: int | None
-    landing: int | None
-    queue: int | None
-    poured: bool
-    seconds: float
-    frames: int
-
-
+@with_settings
 def trial(
     part: Part,
-    bowls: Sequence[Bowl],
+    bowls: Bowl | Sequence[Bowl],
     aspect: str | None = None,
     *,
+    parts: int | None = None,
+    landing: int | None = None,
+    queue: int | None = None,
+    poured: bool = False,
+    seconds: Quantity = QUEUE_SECONDS,
+    frames: int = 0,
     rule: str = RECOMMENDED_RULE,
     known: Shares | None = None,
     measured: profiles.Measured | None = None,
-    **options: Unpack[TrialKeywords],
+    seed: int = 1,
+    jobs: int = 1,
+    progress: Callable[[int, int], None] | None = None,
+    before: Callable[[], None] | None = None,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
 ) -> TrialStudy:
-    """Send parts of true shape along the tooled track of a bowl, at one or several amplitudes.
+    """Send parts along the vibrating, tooled track of one or several bowls, as ``feeder trial``.
 
     Parameters
     ----------
     part : Part
         From a mesh.
-    bowls : sequence of Bowl
-        The same but for the drive.
+    bowls : Bowl or sequence of Bowl
+        With their devices.
     aspect : str, optional
-        Only its orientations are tried; every orientation without it.
+        Only its orientations.
+    parts : int, optional
+        One at a time; 200 without it, 60 beside a queue.
+    landing : int, optional
+        So many fall onto the moving track as well.
+    queue : int, optional
+        So many at once, which push each other.
+    poured : bool
+        Whether these fall onto the track in any attitude; in a row without it.
+    seconds : str or float [s]
+        For which the queue is followed.
     rule : str
-        Whose probabilities say in which shares orientations are offered.
+        Whose probabilities say in which shares orientations come.
     known : Shares, optional
-        What arrives; without them what the first bowl's moving floor gives.
+        Of ``shares``.
     measured : Measured, optional
-        From ``at_outlet``: what left a bowl, to stand beside the profile of the queue.
-    **options
-        With the defaults of ``TrialOptions``.
-        parts : int, one at a time, the orientations in turn; 200 without it, 60 with a queue.
-        landing : int, so many parts fall onto the moving track, as their launch says, as well.
-        queue : int, so many parts that push each other, as well.
-        poured : bool, whether those fall onto the track in any attitude; in a row without it.
-        seconds : float [s], the queue is followed.
-        frames : int, poses of the queue that are noted for a film; none without it.
-        seed : int.
-        jobs : int, cores to use; the outcome does not depend on it.
-        progress : callable, called with how many are done, and of how many.
-        before : callable, called before anything is compiled.
+        What left a bowl, beside the profile of the queue: ``at_outlet`` reads it.
+    seed : int
+        Of play and phase.
+    jobs : int
+        Cores to use; nothing else depends on it.
+    progress : callable, optional
+        Called with how many parts are done, and of how many.
+    before : callable, optional
+        Called before anything is compiled.
+    overrides, **settings
+        As for ``read_bowl``: in place of each bowl's own.
 
     Returns
     -------
     TrialStudy
+        With a run for each bowl.
 
     Raises
     ------
@@ -169,32 +169,36 @@ def trial(
     KeyboardInterrupt
         If nothing was finished.
     """
-    own = check.options("trial", TrialOptions, options)
+    part, aspect = arguments.a_part(part), arguments.an_aspect(aspect)
+    driven = arguments.some_bowls(bowls, overrides, settings)
+    known = the_shares(known)
+    parts, landing, queue = (
+        arguments.count(name, value)
+        for name, value in (("parts", parts), ("landing", landing), ("queue", queue))
+    )
+    followed = arguments.amount("seconds", seconds, "time", 0.0)
+    seed, jobs = arguments.whole("seed", seed, 0), arguments.whole("jobs", jobs)
     solid_of(part)  # refuses a part without a surface before anything else
-    known = arriving(part, bowls[0], rule=rule) if known is None else known
+    known = arriving(part, driven[0], rule=rule) if known is None else known
     found = known.aspects
     if rule not in found.chances:
         raise ArgumentError(
             f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
         )
-    count = own.parts or (FEW if own.queue else PARTS)
+    count = parts or (FEW if queue else PARTS)
     launch = LAUNCH if found.recommended is None else found.recommended.launch
-    fall = None if own.landing is None else {"launch": launch, "parts": own.landing}
-    crowd = (
-        None
-        if own.queue is None
-        else QueuePlan(own.queue, own.seconds, None if own.poured else GAPS, own.frames)
-    )
-    run = RunSettings(own.seed, own.jobs, own.progress)
+    fall = None if landing is None else {"launch": launch, "parts": landing}
+    crowd = None if queue is None else QueuePlan(queue, followed, None if poured else GAPS, frames)
+    run = RunSettings(seed, jobs, progress)
     made: list[TrialRun] = []
     stopped = False
-    for bowl in bowls:
+    for bowl in driven:
         answer.answer(bowl)  # refuses a drive that cannot convey
         ways = stream.follow_orientations(part, found, bowl.track, bowl.devices, bowl=bowl)
         ways = arrivals.oriented(ways, known.measured)
         tried = _tried(part, found, ways, aspect)
         shares = _shares(ways, rule, tried)
-        here = replace(run, progress=_after(len(made), own.progress, len(bowls)), before=own.before)
+        here = replace(run, progress=_after(len(made), progress, len(driven)), before=before)
         sent = course.Sending(tried, max(count, len(tried)))
         try:
             seen = course.course(
@@ -211,7 +215,7 @@ def trial(
             stopped = True
         if stopped or made[-1].partial:
             break
-    return TrialStudy(part, found, rule, own.seed, tuple(made), stopped, measured)
+    return TrialStudy(part, found, rule, seed, tuple(made), stopped, measured)
 
 
 def _further(

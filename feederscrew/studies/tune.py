@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
-from typing import Unpack
+from typing import Any, Unpack
 
 from feederscrew import check
 from feederscrew.bowl.devices import strangers
@@ -15,7 +15,9 @@ from feederscrew.rates import drive_settings as knobs
 from feederscrew.rates.stream import along
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
-from feederscrew.studies.rate import LEAST, Shares, Spacing, SpacingKeywords, checked, shares
+from feederscrew.studies import arguments
+from feederscrew.studies.arguments import BowlSettings, Overrides, Path, Quantity, with_settings
+from feederscrew.studies.rate import LEAST, RECOMMENDED, Shares, shares, the_shares
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
 
@@ -51,38 +53,31 @@ class TuneStudy(Shown):
         return (*strangers(self.devices, self.aspects.names), *self.aspects.warnings)
 
 
-@dataclass(frozen=True)
-class TuneOptions(Spacing):
-    """How parts come and what is enough; an option means what it means for ``tune``."""
-
-    devices: Sequence[Device] | None = None
-    worst: bool = False
-    arriving: Callable[[Bowl], Shares] | None = None
-    rough: Callable[[Bowl], Shares] | None = None
-    progress: Callable[[int, int], None] | None = None
-
-
-class TuneKeywords(SpacingKeywords, total=False):
-    """The same as keywords."""
-
-    devices: Sequence[Device] | None
-    worst: bool
-    arriving: Callable[[Bowl], Shares] | None
-    rough: Callable[[Bowl], Shares] | None
-    progress: Callable[[int, int], None] | None
-
-
+@with_settings
 def tune(
     part: Part,
     bowl: Bowl,
     aspect: str,
-    target: float,
+    target: Quantity,
     *,
-    heading: float | None = None,
-    rule: str = "recommended",
-    **options: Unpack[TuneKeywords],
+    heading: Quantity | None = None,
+    devices: Sequence[Device] | None = None,
+    worst: bool = False,
+    gap: Quantity = 0.0,
+    fill: float = 1.0,
+    rule: str = RECOMMENDED,
+    launch: str | None = None,
+    probabilities: Path | None = None,
+    fed: int | None = None,
+    seed: int = 1,
+    known: Shares | None = None,
+    arriving: Callable[[Bowl], Shares] | None = None,
+    rough: Callable[[Bowl], Shares] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
 ) -> TuneStudy:
-    """Study which amplitude, angle or frequency alone gives a rate.
+    """Find settings of the drive that reach a rate, as ``feeder tune``.
 
     Parameters
     ----------
@@ -91,19 +86,19 @@ def tune(
     bowl : Bowl
     aspect : str
         The one wanted.
-    target : float [1/s]
-        Well-oriented parts, above 0.
-    heading, rule
+    target : str or float [1/s]
+        '60/min' of it.
+    heading, devices, gap, fill, rule, launch, probabilities, fed, seed, known, overrides, **settings
         As for ``rate``.
-    **options
-        With the defaults of ``TuneOptions``.
-        devices, gap, fill : as for ``rate``.
-        worst : bool, meet the target at the slowest of every start and surface, as
-        ``well_oriented.velocity``.
-        arriving : function, from a bowl to the Shares that arrive at its drive; ``studies.rate.shares``
-        without it.
-        rough : function, the same of FEW parts, which leads to a setting.
-        progress : function, called with how many settings are found, and of how many.
+    worst : bool
+        Meet the target at the worst of every start, of friction a fifth lower and higher and, where parts
+        hop, of restitution over its spread.
+    arriving : callable, optional
+        From a bowl to the Shares that arrive at its drive; ``shares`` without it.
+    rough : callable, optional
+        The same of FEW parts, which leads to a setting.
+    progress : callable, optional
+        Called with how many settings are computed, and of how many.
 
     Returns
     -------
@@ -115,34 +110,39 @@ def tune(
     FeederError
         If the part never leaves in that orientation, or no setting gives the rate.
     """
-    own = check.options("tune", TuneOptions, options)
-    check.argument("target", target, LEAST)
-    checked(bowl, heading, own)
-    chain = bowl.devices if own.devices is None else tuple(own.devices)
-    arriving, rough = own.arriving, own.rough
+    part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
+    wanted_rate = arguments.amount("target", target, "rate", LEAST)
+    angle, space = arguments.angle("heading", heading), arguments.amount("gap", gap, "length", 0.0)
+    check.argument("fill", fill, LEAST, 1.0)
+    if (shared := the_shares(known)) is not None:
+        arriving, rough = (lambda driven: shared), None
     if arriving is None:
-        arriving, rough = (partial(shares, part, rule=rule, fed=fed) for fed in (None, FEW))
+        own: dict[str, Any] = {"rule": rule, "launch": launch, "probabilities": probabilities, "seed": seed}
+        arriving = partial(shares, part, fed=fed, **own)
+        is_fed = rule == RECOMMENDED and launch is None and probabilities is None and fed is None
+        rough = partial(shares, part, fed=FEW, **own) if is_fed else None
+    chain = bowl.devices if devices is None else tuple(devices)
     ways = _DriveWays(part, bowl, chain, arriving)
     lead = None if rough is None else _DriveWays(part, bowl, chain, rough)
     found = ways.shares(bowl).aspects
-    wanted = well_oriented.wanted(part, found, bowl.track, aspect, heading)
+    wanted = well_oriented.wanted(part, found, bowl.track, aspect, angle)
     # raises where none ever leaves so
-    well_oriented.parts_per_metre(ways.along(None), wanted, rule, gap=own.gap, fill=own.fill)
+    well_oriented.parts_per_metre(ways.along(None), wanted, rule, gap=space, fill=fill)
     well_oriented.holds(ways.along(bowl), wanted)
 
     def density(ways: _DriveWays, driven: Bowl | None) -> float:
-        return well_oriented.leaving_per_metre(ways.along(driven), wanted, rule, gap=own.gap, fill=own.fill)
+        return well_oriented.leaving_per_metre(ways.along(driven), wanted, rule, gap=space, fill=fill)
 
     led = None if lead is None else partial(density, lead)
-    to_turn = bowl, target, partial(density, ways)
-    made = knobs.solutions(*to_turn, rough=led, worst=own.worst, progress=own.progress)
+    to_turn = bowl, wanted_rate, partial(density, ways)
+    made = knobs.solutions(*to_turn, rough=led, worst=worst, progress=progress)
     return TuneStudy(
         part=part,
         bowl=bowl,
         aspects=found,
         devices=chain,
-        target=target,
-        worst=own.worst,
+        target=wanted_rate,
+        worst=worst,
         settings=tuple(_tuned(one, bowl, ways) for one in made),
     )
 

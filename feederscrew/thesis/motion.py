@@ -117,7 +117,7 @@ class TrackAsPublished(track_study.TrackStudy):
 
 def floor(part: Part, bowl: Bowl, aspect: str | None = None, heading: float = 0.0) -> FloorAsPublished:
     """Study a part on the bowl floor as ``studies.floor.floor``, which names the errors, by print as well."""
-    study = floor_study.floor(part, bowl, aspect, heading)
+    study = floor_study.floor(part, bowl, aspect, heading=heading)
     return FloorAsPublished(**vars(study), printed=solve_floor(study.posture, bowl, heading))
 
 
@@ -125,7 +125,7 @@ def track(
     part: Part, bowl: Bowl, aspect: str | None = None, heading: float | None = None
 ) -> TrackAsPublished:
     """Study a part against the wall as ``studies.track.track``, which names the errors, by print as well."""
-    study = track_study.track(part, bowl, aspect, heading)
+    study = track_study.track(part, bowl, aspect, heading=heading)
     posture, seat = study.posture, study.seat
     card = {} if posture.corners is not None else (posture.printed or {})["track"]
     levers = levers_of(seat, float(posture.offset * np.cos(seat.heading)), card.get("axes", "tilted"))

@@ -142,7 +142,7 @@ class Reproduction(Shown):
         return drawing.draw(FIGURE_OF[name])
 
 
-def reproduced() -> Reproduction:
+def reproduce() -> Reproduction:
     """Compute every table, then every figure again.
 
     Returns

@@ -12,10 +12,10 @@ from feederscrew.mechanics.wedge import effective
 @pytest.mark.parametrize("restitution", [0.0, 0.3])
 def test_random_settings(restitution):
     results = []
-    for ratio, angle, climb, friction in random_settings(36, np.random.default_rng(2)):
+    for ratio, angle, climb, friction in random_settings(20, np.random.default_rng(2)):
         setting = plain(ratio, angle, climb, friction, restitution)
         results.append(agreed(setting, Reference(ratio, angle, climb, friction, friction, restitution)))
-    assert results.count(True) >= 25
+    assert results.count(True) >= 14
     assert results.count(False) == 0
 
 

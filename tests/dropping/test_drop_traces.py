@@ -15,7 +15,7 @@ from feederscrew.output.tables import data_frame
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.studies.simulated.drop import DropStudy
+from feederscrew.studies.drop import DropStudy
 
 PARTS = Path(__file__).parents[2] / "parts"
 MM = 1e-3

@@ -11,7 +11,7 @@ from feederscrew.dropping import launch_file, toss_runs
 from feederscrew.dropping.launch_file import FACES, STATE
 from feederscrew.errors import Faults, FeederError
 from feederscrew.part import load
-from feederscrew.studies.simulated.tosses import follow
+from feederscrew.studies.tosses import follow
 
 CUBE = {"restitution": "0.125", "friction": "0.18"}
 FILMED = "docs/measured/filmed/cube_tosses.csv"

@@ -116,24 +116,24 @@ def _launches(name):
 
 def _cache(name):
     """Read a damaged entry of the cache, under a digest that fits it where it is still JSON."""
-    from feederscrew.studies.simulated import on_disk
+    from feederscrew.studies import simulation_cache
 
     damaged, key = Path(name).read_bytes(), {"part": "of the fuzzer"}
-    before, os.environ[on_disk.VARIABLE] = os.environ.get(on_disk.VARIABLE), "kept"
+    before, os.environ[simulation_cache.VARIABLE] = os.environ.get(simulation_cache.VARIABLE), "kept"
     try:
-        on_disk.write(key, {"shares": np.array([0.25, 0.75])})
+        simulation_cache.write(key, {"shares": np.array([0.25, 0.75])})
         (entry,) = Path("kept").iterdir()
         with contextlib.suppress(ValueError, KeyError, TypeError, RecursionError):
             whole = json.loads(entry.read_bytes()) | {"arrays": json.loads(damaged)["arrays"]}
             signed = json.dumps([whole["key"], whole["arrays"]], sort_keys=True).encode()
             damaged = json.dumps(whole | {"sha256": hashlib.sha256(signed).hexdigest()}).encode()
         entry.write_bytes(damaged)
-        arrays = on_disk.read(key)
+        arrays = simulation_cache.read(key)
         assert arrays is None or all(array.dtype.kind in "fib" for array in arrays.values())
     finally:
-        os.environ.pop(on_disk.VARIABLE)
+        os.environ.pop(simulation_cache.VARIABLE)
         if before is not None:
-            os.environ[on_disk.VARIABLE] = before
+            os.environ[simulation_cache.VARIABLE] = before
 
 
 READERS = {  # seeds, how the damaged file is called, and what reads it

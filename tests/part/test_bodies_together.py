@@ -109,7 +109,7 @@ def test_no_damaged_mesh_gives_moments_that_no_body_has(tmp_path):
     tube = np.array(trimesh.creation.annulus(3.0, 5.0, 8.0, sections=12).triangles)
     parts = [LARGE, tube, np.concatenate([tube, SMALL + 2.0]), np.concatenate([LARGE, tube + [12, 0, 0]])]
     taken = 0
-    for k in range(150):
+    for k in range(80):
         path = files.written(tmp_path, files.obj(damaged(parts[k % 4], rng)), "damaged.obj")
         try:
             part = load(path, allow_open=True)
@@ -121,4 +121,4 @@ def test_no_damaged_mesh_gives_moments_that_no_body_has(tmp_path):
         assert low > 0.0, k
         assert low + middle >= high * (1.0 - 1e-6), k
         assert 0.0 < part.volume <= part.hull.volume * (1.0 + 1e-5), k
-    assert taken > 25
+    assert taken > 13

@@ -82,7 +82,7 @@ def test_it_tips_where_feeder_track_says_so():
     part, _ = pin(10)
     known, told = tilts(10)
     for one, tips in zip(known.lying, told.tips):
-        states = track(part, BOWL, one.aspect, one.heading).cycle.state
+        states = track(part, BOWL, one.aspect, heading=one.heading).cycle.state
         assert tips == (TIP in states)
 
 

@@ -12,7 +12,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.resting.counts.deviation import total_variation
 from feederscrew.resting.rules import recommended
 from feederscrew.studies.compare import compare_sets
-from feederscrew.studies.simulated.drop import drop
+from feederscrew.studies.drop import drop
 
 MEASURED = Path(__file__).parents[2] / "docs/measured"
 

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from test_solid import CHAINS, Asked, planned
+from test_solid import CHAINS, planned
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl import schema
@@ -15,6 +15,7 @@ from feederscrew.machine.sizing import Size
 from feederscrew.machine.springs import analyse_springs, centred_mass, rocking
 from feederscrew.output import designs
 from feederscrew.solidbowl.closed_body import body
+from feederscrew.solidbowl.plan import SolidOptions
 
 
 def sized(solid):
@@ -24,7 +25,7 @@ def sized(solid):
 
 @pytest.mark.parametrize("hand", ["right", "left"])
 def test_a_solid_s_springs_are_the_same_when_its_bowl_file_is_read_back(hand):
-    solid = body(planned(CHAINS["gap"], asked=Asked(left=hand == "left", outlet_angle=0.8)))
+    solid = body(planned(CHAINS["gap"], asked=SolidOptions(left=hand == "left", outlet_angle=0.8)))
     under = machine_for(bowls.read(None, ()), sized(solid), set())
     assert analyse_springs(under).effective_mass < centred_mass(under) * (1.0 - 1e-5)
     texts = [f"machine.{word}={text}" for word, text in beside._machine(under)]

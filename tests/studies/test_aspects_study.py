@@ -9,7 +9,7 @@ from feederscrew.output import aspects as aspects_output
 from feederscrew.output import offers
 from feederscrew.part import load
 from feederscrew.studies.aspects import MOST, aspects
-from feederscrew.studies.simulated.drop import drop
+from feederscrew.studies.drop import drop
 
 CARD = "parts/arc_chute.yaml"
 

@@ -13,8 +13,8 @@ from feederscrew.output import plate as plate_output
 from feederscrew.studies.aspects import aspects
 from feederscrew.studies.calibrate import calibrate
 from feederscrew.studies.compare import compare
-from feederscrew.studies.simulated.drop import drop
-from feederscrew.studies.simulated.plate import plate
+from feederscrew.studies.drop import drop
+from feederscrew.studies.plate import shake
 
 OWN = {"fall": "5 mm"}
 
@@ -32,7 +32,7 @@ def counts(tmp_path_factory):
 
 
 def test_the_library_returns_what_the_study_counts(box):
-    study = drop(box, "drop", OWN, drops=40, seed=4)
+    study = drop(box, "drop", **OWN, drops=40, seed=4)
     again = fs.drop(box, launch="drop", drops=40, seed=4, **OWN)
     assert again.tally.counts.tolist() == study.result.tally.counts.tolist()
     assert study.drops == 40
@@ -53,7 +53,7 @@ def test_a_drop_test_becomes_the_recommended_answer(box):
 
 
 def test_a_plate_offers_its_tables_and_counts_what_it_saw(box):
-    study = plate(box, [fs.read_bowl()], "place", drops=6, seconds=0.1)
+    study = shake(box, [fs.read_bowl()], "place", drops=6, seconds=0.1)
     (only,) = study.plates
     assert study.names == ("bowl",) and not study.partial
     assert only.transitions == only.occupancy.counts.sum() - np.trace(only.occupancy.counts)

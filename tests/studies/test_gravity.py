@@ -17,7 +17,7 @@ import pytest
 import shapes
 from scipy.optimize import brentq
 
-from feederscrew import api
+import feederscrew as fs
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
 from feederscrew.tooling import verdicts
@@ -135,7 +135,7 @@ def test_a_trial_scales_with_gravity(tmp_path):
     part, runs = shapes.part(shapes.box(20, 12, 5)), []
     for k, text in enumerate(texts()):
         (tmp_path / f"{k}.yaml").write_text(text)
-        (one,) = api.trial(part, bowls.read(tmp_path / f"{k}.yaml"), parts=6, rule="quasistatic").runs
+        (one,) = fs.trial(part, bowls.read(tmp_path / f"{k}.yaml"), parts=6, rule="quasistatic").runs
         runs.append(one.course)
     one, other = runs
     assert np.array_equal(one.fates, other.fates) and np.array_equal(one.ended, other.ended)

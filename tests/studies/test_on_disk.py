@@ -15,9 +15,9 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.dropping.plate import arrival
+from feederscrew.studies import simulation_cache
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.rate import shares
-from feederscrew.studies.simulated import memory, on_disk
 
 PART = shapes.part(shapes.box(20, 12, 5))
 BOWL = bowls.read(None, ())
@@ -26,12 +26,12 @@ BOWL = bowls.read(None, ())
 @pytest.fixture
 def runs(tmp_path, monkeypatch):
     """Each call is a run of its own: it tells the shares, and how often was simulated so far."""
-    monkeypatch.setenv(on_disk.VARIABLE, str(tmp_path / "kept"))
+    monkeypatch.setenv(simulation_cache.VARIABLE, str(tmp_path / "kept"))
     made, simulate = [], arrival.arrival
     monkeypatch.setattr(arrival, "arrival", lambda *args, **own: made.append(1) or simulate(*args, **own))
 
     def run(part=PART, bowl=BOWL, **own):
-        monkeypatch.setattr(memory, "_RECORDS", OrderedDict())
+        monkeypatch.setattr(simulation_cache, "_RECORDS", OrderedDict())
         return shares(part, bowl, fed=40, **own).aspects, len(made)
 
     run.folder = tmp_path / "kept"
@@ -60,7 +60,7 @@ def test_what_differs_is_simulated_anew(runs, other):
 
 def test_other_code_does_not_find_it(runs, monkeypatch):
     runs()
-    monkeypatch.setattr(on_disk, "_code", lambda: "another edition")
+    monkeypatch.setattr(simulation_cache, "_code", lambda: "another edition")
     assert runs()[1] == 2
 
 
@@ -78,7 +78,7 @@ def test_a_damaged_file_is_made_again(runs, damaged):
 def test_without_a_place_to_write_all_goes_on(runs, monkeypatch, tmp_path):
     (tmp_path / "file").write_text("")
     for place in ("", str(tmp_path / "file" / "below")):
-        monkeypatch.setenv(on_disk.VARIABLE, place)
+        monkeypatch.setenv(simulation_cache.VARIABLE, place)
         before = runs()[1]
         assert runs()[1] == before + 1
 
@@ -88,7 +88,7 @@ KEY = {"kind": "test", "settings": "()"}
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setenv(on_disk.VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setenv(simulation_cache.VARIABLE, str(tmp_path / "cache"))
     return tmp_path / "cache"
 
 
@@ -97,19 +97,19 @@ def numbered(k):
 
 
 def test_the_oldest_go_and_what_is_kept_cannot_be_changed(monkeypatch, folder):
-    monkeypatch.setattr(on_disk, "MAX_ENTRIES", 3)
+    monkeypatch.setattr(simulation_cache, "MAX_ENTRIES", 3)
     folder.mkdir()
     (folder / "mine.txt").write_text("older than all")
     (folder / "mine.simulated").mkdir()
     for k in range(5):
-        on_disk.write(numbered(k), {"p": np.arange(3.0)})
+        simulation_cache.write(numbered(k), {"p": np.arange(3.0)})
     assert len(list(folder.iterdir())) == 5 and (folder / "mine.txt").exists()
-    found = on_disk.read(numbered(4))
+    found = simulation_cache.read(numbered(4))
     with pytest.raises(ValueError, match="read-only"):
         found["p"][0] = 1.0
-    monkeypatch.setattr(on_disk, "MAX_ENTRY_BYTES", 10)
-    on_disk.write(numbered(9), {"p": np.arange(3.0)})
-    assert on_disk.read(numbered(9)) is None
+    monkeypatch.setattr(simulation_cache, "MAX_ENTRY_BYTES", 10)
+    simulation_cache.write(numbered(9), {"p": np.arange(3.0)})
+    assert simulation_cache.read(numbered(9)) is None
 
 
 def test_arrays_come_back_as_they_were(folder):
@@ -119,8 +119,8 @@ def test_arrays_come_back_as_they_were(folder):
         "which": np.array([True, False]),
         "none": np.zeros((0, 3)),
     }
-    on_disk.write(KEY, arrays)
-    found = on_disk.read(KEY)
+    simulation_cache.write(KEY, arrays)
+    found = simulation_cache.read(KEY)
     assert set(found) == set(arrays)
     for name, array in arrays.items():
         np.testing.assert_array_equal(found[name], array)
@@ -129,11 +129,11 @@ def test_arrays_come_back_as_they_were(folder):
 
 def test_entries_that_were_swapped_are_of_another_key(folder):
     for k in (1, 2):
-        on_disk.write(numbered(k), {"p": np.full(2, float(k))})
+        simulation_cache.write(numbered(k), {"p": np.full(2, float(k))})
     first, second = folder.iterdir()
     held = first.read_bytes(), second.read_bytes()
     first.write_bytes(held[1]), second.write_bytes(held[0])
-    assert on_disk.read(numbered(1)) is None and on_disk.read(numbered(2)) is None
+    assert simulation_cache.read(numbered(1)) is None and simulation_cache.read(numbered(2)) is None
 
 
 class Bomb:
@@ -147,11 +147,11 @@ class Bomb:
 
 
 def test_nothing_of_an_entry_is_run(folder, tmp_path):
-    on_disk.write(KEY, {"p": np.arange(3.0)})
+    simulation_cache.write(KEY, {"p": np.arange(3.0)})
     (entry,) = folder.iterdir()
     data = pickle.dumps(Bomb(tmp_path / "ran"))
     entry.write_bytes(hashlib.sha256(data).digest() + data)
-    assert on_disk.read(KEY) is None and not (tmp_path / "ran").exists()
+    assert simulation_cache.read(KEY) is None and not (tmp_path / "ran").exists()
 
 
 def as_pipe(entry, tmp_path):
@@ -179,29 +179,29 @@ def as_hole(entry, tmp_path):
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes")
 @pytest.mark.parametrize("other", [as_pipe, as_device, as_link, as_folder, as_hole])
 def test_only_a_regular_file_is_read(folder, tmp_path, other):
-    on_disk.write(KEY, {"p": np.arange(3.0)})
+    simulation_cache.write(KEY, {"p": np.arange(3.0)})
     (entry,) = folder.iterdir()
     as_link.data = entry.read_bytes()
     entry.unlink()
     other(entry, tmp_path)
-    assert on_disk.read(KEY) is None
-    on_disk.write(KEY, {"p": np.arange(3.0)})
-    assert (on_disk.read(KEY) is not None) == (other is not as_folder)
+    assert simulation_cache.read(KEY) is None
+    simulation_cache.write(KEY, {"p": np.arange(3.0)})
+    assert (simulation_cache.read(KEY) is not None) == (other is not as_folder)
     assert len(list(folder.iterdir())) == 1
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="needs owners")
 def test_a_folder_that_others_may_write_is_not_used(folder, monkeypatch):
-    on_disk.write(KEY, {"p": np.arange(3.0)})
-    assert on_disk.refusal() is None and stat.S_IMODE(folder.stat().st_mode) == 0o700
+    simulation_cache.write(KEY, {"p": np.arange(3.0)})
+    assert simulation_cache.refusal() is None and stat.S_IMODE(folder.stat().st_mode) == 0o700
     folder.chmod(0o777)
-    assert on_disk.read(KEY) is None and "other users" in on_disk.refusal()
-    on_disk.write(numbered(2), {"p": np.arange(3.0)})
+    assert simulation_cache.read(KEY) is None and "other users" in simulation_cache.refusal()
+    simulation_cache.write(numbered(2), {"p": np.arange(3.0)})
     assert len(list(folder.iterdir())) == 1
     folder.chmod(0o755)
-    assert on_disk.read(KEY) is not None
+    assert simulation_cache.read(KEY) is not None
     monkeypatch.setattr(os, "geteuid", lambda: folder.stat().st_uid + 1)
-    assert on_disk.read(KEY) is None and "another user" in on_disk.refusal()
+    assert simulation_cache.read(KEY) is None and "another user" in simulation_cache.refusal()
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a full disk")
@@ -217,7 +217,7 @@ def test_a_full_disk_leaves_nothing(folder, monkeypatch):
         return handle
 
     monkeypatch.setattr(os, "open", full)
-    on_disk.write(KEY, {"p": np.arange(3.0)})
+    simulation_cache.write(KEY, {"p": np.arange(3.0)})
     assert list(folder.iterdir()) == []
 
 
@@ -226,8 +226,8 @@ def test_what_a_killed_run_left_is_tidied_up(folder):
     old, fresh = folder / "tmp1.simulated", folder / "tmp2.simulated"
     old.write_bytes(b"half"), fresh.write_bytes(b"half")
     os.utime(old, (1.0, 1.0))
-    on_disk.write(KEY, {"p": np.arange(3.0)})
-    assert not old.exists() and fresh.exists() and on_disk.read(KEY) is not None
+    simulation_cache.write(KEY, {"p": np.arange(3.0)})
+    assert not old.exists() and fresh.exists() and simulation_cache.read(KEY) is not None
 
 
 def rewritten(entry, change):
@@ -241,14 +241,14 @@ def rewritten(entry, change):
 
 def test_an_entry_damaged_anywhere_is_as_none(folder, rng):
     arrays = {"p": np.arange(4.0), "n": np.array(3)}
-    on_disk.write(KEY, arrays)
+    simulation_cache.write(KEY, arrays)
     (entry,) = folder.iterdir()
     whole = entry.read_bytes()
     for _ in range(300):
         start, length = rng.integers(len(whole)), rng.integers(0, 40)
         odd = rng.choice([b"", b"[" * 3000, b"1e999", b"null", b"\x00", b"9" * 5000, bytes(rng.bytes(10))])
         entry.write_bytes(whole[:start] + odd + whole[start + length :])
-        found = on_disk.read(KEY)
+        found = simulation_cache.read(KEY)
         assert found is None or all((found[name] == arrays[name]).all() for name in arrays)
 
 
@@ -304,11 +304,11 @@ def test_an_entry_of_numbers_that_cannot_be_is_as_none(runs, name, wrong):
 
 
 def test_a_drop_test_is_checked_as_well(tmp_path, monkeypatch):
-    monkeypatch.setenv(on_disk.VARIABLE, str(tmp_path / "kept"))
+    monkeypatch.setenv(simulation_cache.VARIABLE, str(tmp_path / "kept"))
     made = []
 
     def run():
-        monkeypatch.setattr(memory, "_RECORDS", OrderedDict())
+        monkeypatch.setattr(simulation_cache, "_RECORDS", OrderedDict())
         return resting(PART, drops=30, before=made.append).tally
 
     first, again = run(), run()

@@ -52,7 +52,7 @@ def test_a_track_no_wider_than_one_part(tmp_path, width, narrow):
     part = chip(tmp_path)
     for lines in (
         rate(part, bowl, "A", rule="csa").warnings,
-        headings_output.remarks(headings(part, bowl.track)),
+        headings_output.remarks(headings(part, bowl)),
     ):
         assert any("no wider than one part" in line for line in lines) == narrow
 

@@ -21,7 +21,7 @@ NUMBERS = [f"3-{n}" for n in range(6, 14)] + [f"5-{n}" for n in range(1, 8)]
 
 @pytest.fixture(scope="module")
 def items():
-    return reproduction.reproduced().items
+    return reproduction.reproduce().items
 
 
 @pytest.fixture(scope="module")

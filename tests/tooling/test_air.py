@@ -19,7 +19,7 @@ from feederscrew.geometry.polygons import turned
 from feederscrew.part import load
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
-from feederscrew.studies import tooling
+from feederscrew.studies import tooling as tooling_study
 from feederscrew.tooling import sensor_views, verdicts
 from feederscrew.tooling.devices.kinds import KINDS, made
 from feederscrew.tooling.devices.pneumatics import Nozzles
@@ -75,10 +75,10 @@ def test_the_jets_that_a_design_tries_surely_blow_off_others_and_surely_leave_wh
 def test_a_design_takes_a_steady_jet_where_air_may_be_used_and_nothing_else():
     others = [name for name, kind in KINDS.items() if kind.proposed and kind.kind != "jet"]
     own = {"margin": 2.5e-4, "without": others, "play": 0.0, "tolerance": 0.0, "up": FLAT.aspect}
-    found = tooling.tooling(PART, BOWL, FLAT.aspect, heading=FLAT.heading, air=True, **own).design
+    found = tooling_study.tooling(PART, BOWL, FLAT.aspect, heading=FLAT.heading, air=True, **own).design
     assert [cut.device.kind for cut in found.cuts] == ["jet"]
     assert TALL.name in found.cuts[0].returns and FLAT.name not in found.cuts[0].returns
-    assert not tooling.tooling(PART, BOWL, FLAT.aspect, heading=FLAT.heading, **own).design.cuts
+    assert not tooling_study.tooling(PART, BOWL, FLAT.aspect, heading=FLAT.heading, **own).design.cuts
 
 
 def test_the_force_that_tips_is_weight_times_foot_over_height():
@@ -187,7 +187,7 @@ def test_a_screw_that_hangs_is_seen_head_first_and_thread_first():
     steep = bowls.read(None, ["track.bank=8 deg", "track.width=15 mm"])
     met = [name for name, kind in KINDS.items() if kind.proposed and name != "sorter"]
     own = {"heading": np.radians(350.93), "outcome": "hanging", "without": met}
-    found = tooling.tooling(screw, steep, "A", **own)
+    found = tooling_study.tooling(screw, steep, "A", **own)
     devices = [cut.device for cut in found.design.cuts]
     kinds = [device.kind for device in devices]
     assert kinds == ["separation", "sorter", "separation", "rails"]

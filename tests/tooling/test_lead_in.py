@@ -9,7 +9,8 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
 from feederscrew.part import load
-from feederscrew.studies import tooling, trial
+from feederscrew.studies import tooling as tooling_study
+from feederscrew.studies import trial
 from feederscrew.tooling.orientations import neck
 from feederscrew.tooling.verdicts import verdict
 from feederscrew.trial import course
@@ -52,7 +53,7 @@ def test_a_lead_in_narrower_than_its_slot_is_refused(devices):
 
 def test_a_shank_whose_tip_lies_on_the_rail_is_not_sure_to_go_down(devices):
     part, bowl = load(SCREW), devices("rails: {from: 4.4 mm, to: 11.45 mm}")
-    study = tooling.tooling(part, bowl, rule="csa", verdicts=1, seconds=1e-3)
+    study = tooling_study.tooling(part, bowl, rule="csa", verdicts=1, seconds=1e-3)
     one = next(one for one in study.orientations if one.name == "A@188")
     assert 1e3 * neck(one).tip == pytest.approx(-2.41, abs=0.05)  # nearer to the wall than its weight
     narrow = verdict(bowl.devices[0], one, study.orientations)
@@ -63,7 +64,7 @@ def test_a_shank_whose_tip_lies_on_the_rail_is_not_sure_to_go_down(devices):
 
 def test_the_screw_is_fed_between_rails_and_its_trial_agrees(devices):
     part = load(SCREW)
-    design = tooling.tooling(part, bowls.read(None, []), "A", rule="csa").design
+    design = tooling_study.tooling(part, bowls.read(None, []), "A", rule="csa").design
     (rails,) = [cut.device for cut in design.cuts if cut.device.hangs]
     assert 0.2e-3 < rails.span[1] - rails.span[0] - 6.643e-3 < 0.6e-3
     assert rails.lead[0] < rails.span[0] and rails.lead[1] > rails.span[1]

@@ -1,7 +1,7 @@
 """The drive of a bowl as knobs: what the script of the page needs to compute velocity, regime and rate."""
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.output.convey.figures import REGIMES
+from feederscrew.output.convey import REGIMES
 from feederscrew.output.page.blocks import Knob, Knobs, Text
 from feederscrew.rates.well_oriented import Rate, fed
 from feederscrew.studies.report import ROOM, ReportStudy

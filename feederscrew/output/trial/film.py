@@ -13,8 +13,7 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.output import DPI, style
-from feederscrew.output.solid.render import AWAY, MISSED, Camera, Rays
-from feederscrew.output.solid.shading import EDGE, STEEL, Shot, averaged, edges, lit
+from feederscrew.output.shading import AWAY, EDGE, MISSED, STEEL, Camera, Rays, Shot, averaged, edges, lit
 from feederscrew.output.tooling.relief import camera_at
 from feederscrew.output.trial.figures import LOOKS, solids, unrolled
 from feederscrew.output.trial.section import WALL, section

@@ -1,8 +1,7 @@
 """The study of ``feeder drop``: a virtual drop test of one part on a hard plane."""
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Unpack
 
 import numpy as np
 
@@ -13,7 +12,9 @@ from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import launch_named
-from feederscrew.running import RunKeywords, RunSettings
+from feederscrew.running import RunSettings
+from feederscrew.studies import arguments
+from feederscrew.studies.arguments import Condition
 
 BESIDE = ("csa", "surface")  # rules that the drops are shown with
 
@@ -50,60 +51,74 @@ class DropStudy(Shown):
 def drop(
     part: Part,
     launch: str = "feed",
-    conditions: Mapping[str, str | None] | None = None,
     *,
     drops: int | None = None,
     until: str | None = None,
+    seed: int = 1,
+    jobs: int = 1,
     traced: int = 0,
+    fall: Condition = None,
+    spin: Condition = None,
+    speed: Condition = None,
+    restitution: Condition = None,
+    friction: Condition = None,
     aspects: Aspects | None = None,
     dropped: Drops | None = None,
-    **run: Unpack[RunKeywords],
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
 ) -> DropStudy:
-    """Study on which aspects a part comes to rest when it is dropped again and again.
+    """Run a virtual drop test on a hard plane, as ``feeder drop``.
 
     Parameters
     ----------
     part : Part
         From a mesh.
     launch : str
-        'place', 'drop' or 'tumble'.
-    conditions : dict of str to (str or None), optional
-        Ranges that replace the launch's, as typed: fall, spin, speed, restitution, friction.
+        'place', 'drop', 'flip', 'roll' or 'feed': what was done to the part.
     drops : int, optional
-        How many; with ``until`` at most so many.
+        How many; 10,000 without it. With ``until`` at most so many.
     until : str, optional
         Go on until every class's 95 % interval is this narrow to either side, '1%'.
+    seed : int
+        Of the random launches.
+    jobs : int
+        Cores to use; the counts do not depend on it.
     traced : int
         Of how many drops, from the first, the motion is kept as well.
+    fall, spin, speed, restitution, friction : str, float or pair of them [m, rad/s, m/s, 1, 1], optional
+        Ranges that replace the launch's: fall='20 mm:50 mm' or fall=(0.02, 0.05).
     aspects : Aspects, optional
         Of the part, where they are known already.
     dropped : Drops, optional
         Of an earlier run of the same arguments: nothing is dropped then.
-    **run
-        With the defaults of ``RunSettings``.
-        seed : int, of the random launches.
-        jobs : int, cores to use; the counts do not depend on it.
-        progress : function, as in ``ensemble.drop``.
-        before : function, called once all inputs are found right, before anything is compiled.
+    progress : callable, optional
+        As in ``ensemble.drop``.
+    before : callable, optional
+        Called once all inputs are found right, before anything is compiled.
 
     Returns
     -------
     DropStudy
+        Its ``tally`` has counts, shares and intervals by class, in the order of ``find_aspects``.
 
     Raises
     ------
     FeederError
-        If the part has no shape, or a condition is not such a quantity or out of range.
+        If the part has no shape, or an argument is of the wrong kind or out of range.
     KeyboardInterrupt
         If the user stops it before there is anything to count; later, the result is partial.
     """
-    own = check.options("drop", RunSettings, run)
+    ranges = arguments.conditions(
+        fall=fall, spin=spin, speed=speed, restitution=restitution, friction=friction
+    )
+    part, drops = arguments.a_part(part), arguments.count("drops", drops)
     launch_named(launch)
-    check_run(drops, own.seed, own.jobs)
+    check_run(drops, seed, jobs)
     found = find(part) if aspects is None else aspects
     result = drop_test.test(
-        part, found, launch, dict(conditions or {}),
-        drops=drops, until=until, traced=traced, dropped=dropped, run=own,
+        part, found, launch, ranges,
+        drops=drops, until=until, traced=traced, dropped=dropped,
+        run=RunSettings(seed, jobs, progress, before),
     )  # fmt: skip
     return DropStudy(part, found, result)
 

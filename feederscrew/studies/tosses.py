@@ -1,4 +1,4 @@
-"""The study of ``feeder drop --launches``: tosses of one part, each followed from its own state."""
+"""The study of ``feeder drop --launches``: tosses of one part from a file."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.tumbling.by_class import ground
-from feederscrew.studies.simulated.drop import check_run
+from feederscrew.studies.drop import check_run
 
 SURE = 0.95  # [1] from here on an answer is called sure
 

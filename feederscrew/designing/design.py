@@ -1,21 +1,20 @@
-"""From a part and a rate to a bowl that its own trial confirms."""
+"""The study of ``feeder design``: from a part and a rate to a bowl that its own trial confirms."""
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from typing import Unpack, overload
 
 from feederscrew import bowl as bowls
-from feederscrew.api import asked
-from feederscrew.api.asked import Quantity
-from feederscrew.api.bowl_settings import BowlSettings, Overrides, with_settings
 from feederscrew.bowl import Bowl
 from feederscrew.designing import beside, families, loop
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import OUTCOMES, DesignRequest, DesignStudy
 from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
-from feederscrew.studies.rate import LEAST, Shares
-from feederscrew.studies.wishes import listed as names_of
+from feederscrew.studies import arguments
+from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
+from feederscrew.studies.rate import LEAST, Shares, the_shares
+from feederscrew.studies.tooling import listed as names_of
 from feederscrew.units import listed
 
 
@@ -136,32 +135,32 @@ def design(
         ``status``.
     """
     request = DesignRequest(
-        target=asked.amount("target", target, "rate", LEAST),
-        aspect=asked.an_aspect(aspect),
-        heading=asked.angle("heading", heading),
+        target=arguments.amount("target", target, "rate", LEAST),
+        aspect=arguments.an_aspect(aspect),
+        heading=arguments.angle("heading", heading),
         up=names_of(up),
         outcome=outcome,
         without=names_of(without),
-        diameter=None if diameter is None else asked.pair("diameter", diameter, "length"),
+        diameter=None if diameter is None else arguments.pair("diameter", diameter, "length"),
         rule=rule,
         drive=drive,
-        tolerance=asked.amount("tolerance", tolerance, "length", 0.0),
-        budget=asked.whole("budget", budget),
+        tolerance=arguments.amount("tolerance", tolerance, "length", 0.0),
+        budget=arguments.whole("budget", budget),
         alternatives=bool(alternatives),
-        draws=asked.whole("draws", draws),
-        seed=asked.whole("seed", seed, 0),
-        jobs=asked.whole("jobs", jobs),
+        draws=arguments.whole("draws", draws),
+        seed=arguments.whole("seed", seed, 0),
+        jobs=arguments.whole("jobs", jobs),
     )
     if request.outcome not in OUTCOMES:
         raise ArgumentError("outcome", f"is {request.outcome!r}", f"give {listed(list(OUTCOMES))}")
-    plain = asked.a_bowl(bowls.default() if bowl is None else bowl, overrides, settings)
+    plain = arguments.a_bowl(bowls.default() if bowl is None else bowl, overrides, settings)
     kept_keys = frozenset(given) | {setting.key.name for setting in plain.settings if setting.given}
     kept_settings = beside.settings_of(plain, kept_keys)
     if isinstance(part, (list, tuple)) and part:
-        parts = [asked.a_part(one, mesh=True) for one in part]
+        parts = [arguments.a_part(one) for one in part]
         family = families.family(parts, plain, kept_keys, request, told=progress)
         members = (beside.with_machine(one, beside.built(one, kept_settings)) for one in family.members)
         return replace(family, members=tuple(members))
-    shared = asked.the_shares(known)
-    study = loop.design(asked.a_part(part, mesh=True), plain, kept_keys, request, known=shared, told=progress)
+    shared = the_shares(known)
+    study = loop.design(arguments.a_part(part), plain, kept_keys, request, known=shared, told=progress)
     return beside.with_machine(study, beside.built(study, kept_settings))

@@ -1,14 +1,14 @@
-"""A part, its mass and how it comes to rest."""
+"""What the library reads and writes first: parts, bowls, postures and names of aspects."""
 
 from collections.abc import Sequence
-from typing import IO
+from typing import IO, Unpack
 
 import numpy as np
 
+from feederscrew import bowl as bowls
 from feederscrew import check
 from feederscrew import part as parts
-from feederscrew.api import asked
-from feederscrew.api.asked import Path
+from feederscrew.bowl import Bowl
 from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
 from feederscrew.part.density import HEAVIEST, LIGHTEST
@@ -16,12 +16,8 @@ from feederscrew.resting import names_file
 from feederscrew.resting import posture as postures
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture
-from feederscrew.studies import aspects as resting
-from feederscrew.studies.aspects import AspectsStudy
-from feederscrew.studies.calibrate import CalibrateStudy
-from feederscrew.studies.compare import CompareStudy
-from feederscrew.studies.inertia import InertiaStudy
-from feederscrew.studies.passages import FeedingStudy
+from feederscrew.studies import arguments
+from feederscrew.studies.arguments import BowlSettings, Overrides, Path, override_texts, with_settings
 
 
 def load(
@@ -66,126 +62,42 @@ def load(
         If the file is damaged, or an argument cannot be used.
     """
     return parts.load(
-        asked.a_file("source", source),
+        arguments.a_file("source", source),
         units=units,
         density=_density(density),
         centre_of_mass=_point(centre_of_mass),
-        names=None if names is None else asked.a_file("names", names),
+        names=None if names is None else arguments.a_file("names", names),
         body=_body(body),
         allow_open=allow_open,
         stdin=stdin,
     )
 
 
-def aspects(
-    part: Part,
-    *,
-    unstable: bool = False,
-    as_published: bool = False,
-    surface: str | float | None = None,
-    launch: str | None = None,
-    drops: int | None = None,
-) -> AspectsStudy:
-    """Find the resting aspects of a part and how often it lands on each, as ``feeder aspects``.
+@with_settings
+def read_bowl(path: Path | None = None, overrides: Overrides = (), **settings: Unpack[BowlSettings]) -> Bowl:
+    """Read a bowl from its file, from settings, or take the defaults.
 
     Parameters
     ----------
-    part : Part
-    unstable : bool
-        List the facets that it rolls off too.
-    as_published : bool
-        Count each class once in the PMI rule, as the thesis's tables do.
-    surface : str or float, optional
-        'hard', 'medium', 'soft' or an exponent of the surface-weighted rule.
-    launch : str, optional
-        What is done to the part; 'feed' without it.
-    drops : int, optional
-        Of the drop test, where no closed form answers; 0 for closed forms alone.
+    path : str or Path, optional
+        Bowl file (YAML).
+    overrides : dict, str or sequence of str
+        {'drive.frequency': '50 Hz'} or 'drive.frequency=50 Hz'; the last of one key holds.
+    **settings : str or float [SI]
+        Keys of a bowl file by their last word, amplitude='0.3 mm'. They go over the overrides, and these
+        over the file.
 
     Returns
     -------
-    AspectsStudy
-        Its ``aspects`` are the record of arrays, in SI units; ``to_frame()`` is ``aspects.csv``.
+    Bowl
+
+    Raises
+    ------
+    Faults
+        Every fault of the file and of the overrides.
     """
-    own = {"surface": asked.surface(surface), "drops": drops} | ({} if launch is None else {"launch": launch})
-    part = asked.a_part(part)
-    return resting.aspects(part, unstable=unstable, as_published=as_published, **own)  # type: ignore[arg-type]
-
-
-def find_aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -> Aspects:
-    """Return the resting aspects of a part as a record of arrays, in SI units.
-
-    Parameters
-    ----------
-    part : Part
-    unstable, as_published : bool
-        As for ``aspects``.
-
-    Returns
-    -------
-    Aspects
-    """
-    return aspects(part, unstable=unstable, as_published=as_published).aspects
-
-
-def inertia(part: Part) -> InertiaStudy:
-    """Return the mass properties of a part, as ``feeder inertia``.
-
-    Parameters
-    ----------
-    part : Part
-
-    Returns
-    -------
-    InertiaStudy
-    """
-    from feederscrew.studies.inertia import inertia as study
-
-    return study(asked.a_part(part))
-
-
-def compare(
-    part: Part, counts: Path, *, launch: str | None = None, as_published: bool = False
-) -> CompareStudy | FeedingStudy:
-    """Set the rules' probabilities beside counts of a test, as ``feeder compare PART --with COUNTS``.
-
-    Parameters
-    ----------
-    part : Part
-    counts : str or Path
-        File of counts or shares (CSV).
-    launch : str, optional
-        What was done to the part.
-    as_published : bool
-        As for ``aspects``.
-
-    Returns
-    -------
-    CompareStudy or FeedingStudy
-        The second of a file that counts by device.
-    """
-    from feederscrew.studies.compare import compare as study
-
-    counts = asked.a_file("counts", counts)
-    return study(asked.a_part(part), counts, launch=launch, as_published=as_published)
-
-
-def calibrate(part: Part, counts: Path) -> CalibrateStudy:
-    """Fit the exponent of a surface to counts of a test, as ``feeder calibrate``.
-
-    Parameters
-    ----------
-    part : Part
-    counts : str or Path
-        File of counts (CSV).
-
-    Returns
-    -------
-    CalibrateStudy
-    """
-    from feederscrew.studies.calibrate import calibrate as study
-
-    return study(asked.a_part(part), asked.a_file("counts", counts))
+    texts = override_texts(overrides, settings)
+    return bowls.read(None if path is None else arguments.a_file("path", path), texts)
 
 
 def posture(part: Part, found: Aspects, aspect: str) -> Posture:
@@ -203,7 +115,7 @@ def posture(part: Part, found: Aspects, aspect: str) -> Posture:
     -------
     Posture
     """
-    return postures.posture(asked.a_part(part), asked.the_aspects(found), aspect)
+    return postures.posture(arguments.a_part(part), arguments.the_aspects(found), aspect)
 
 
 def write_names(part: Part, found: Aspects, path: Path) -> None:
@@ -223,7 +135,9 @@ def write_names(part: Part, found: Aspects, path: Path) -> None:
     FeederError
         If the part is a card, which has its own names, or the file cannot be written.
     """
-    names_file.write_names(asked.a_part(part), asked.the_aspects(found), asked.a_file("path", path))
+    names_file.write_names(
+        arguments.a_part(part), arguments.the_aspects(found), arguments.a_file("path", path)
+    )
 
 
 def _point(given: str | Sequence[float] | None) -> str | None:

@@ -1,1 +1,0 @@
-"""The studies that simulate drops, and what a run has simulated already."""
