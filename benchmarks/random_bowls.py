@@ -19,7 +19,7 @@ import trial_parts
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
-from feederscrew.output.solidbowl import printing
+from feederscrew.output import solid_files
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.solidbowl import cuts, facets, measuring, riding
@@ -145,8 +145,8 @@ def faults(one, solid, every):
     lifted = 1e3 * LIFT * float(riding.leaning(planned, np.array(0.0)))  # a cone is wider there
     found += [f"a side {seen['side_mm']:.3f}"] * (not seen["side_mm"] <= 0.1 + lifted)
     again = made(one)[0]
-    same = printing.stl(again) == printing.stl(solid)
-    same &= printing.threemf(again, "bowl") == printing.threemf(solid, "bowl")
+    same = solid_files.bowl_stl(again) == solid_files.bowl_stl(solid)
+    same &= solid_files.bowl_3mf(again, "bowl") == solid_files.bowl_3mf(solid, "bowl")
     return found + ["other bytes the second time"] * (not same), seen
 
 
@@ -171,7 +171,7 @@ def _laid(one, planned, whole, every, low, last):
         low = max(low, float(planned.way.at(-2.0 * np.pi)) + planned.outlet + 0.02)
     for k, s in enumerate(one.rng.uniform(min(low, 0.9 * last), last - 0.015, LAID)):
         lying = fitting[k % len(fitting)]
-        points = facets.as_planned(planned, riding.laid(planned, lying, own, s))
+        points = facets.as_planned(planned, riding.place_rider(planned, lying, own, s))
         near = points[_lowest(planned, lying, points, s)]
         gaps = [_gap(planned, whole, at) for at in near]
         feet.append(min((abs(x) for x in gaps if x is not None), default=np.inf))
@@ -206,7 +206,10 @@ def sliced(solid):
     """What a slicer says against the STL and the 3MF of a bowl, a list of str."""
     found, program = [], shutil.which("prusa-slicer")
     with tempfile.TemporaryDirectory() as folder:
-        for name, data in {"b.stl": printing.stl(solid), "b.3mf": printing.threemf(solid, "b")}.items():
+        for name, data in {
+            "b.stl": solid_files.bowl_stl(solid),
+            "b.3mf": solid_files.bowl_3mf(solid, "b"),
+        }.items():
             (Path(folder) / name).write_bytes(data)
             told = subprocess.run([program, "--info", name], cwd=folder, capture_output=True, text=True)
             found += [f"{name} is not manifold"] * ("manifold = yes" not in told.stdout)

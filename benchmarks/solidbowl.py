@@ -10,7 +10,7 @@ import numpy as np
 from feederscrew.bowl.record import Track
 from feederscrew.bowl.settings import effective, record
 from feederscrew.machine.sizing import Size
-from feederscrew.output.solidbowl import printing
+from feederscrew.output import solid_files
 from feederscrew.solidbowl import segments
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.exact import exact_file
@@ -28,7 +28,7 @@ def main():
         made = body(plan(size, TRACK, material("pla", rules), None, SolidOptions(shape=shape),
                          extents=(18e-3, 14e-3, 12e-3)))  # fmt: skip
         times.append(time.process_time())
-        files = printing.stl(made), printing.threemf(made, "bowl")
+        files = solid_files.bowl_stl(made), solid_files.bowl_3mf(made, "bowl")
         times.append(time.process_time())
         pieces = segments.segments(made, (0.22, 0.22, 0.25)).pieces
         times.append(time.process_time())

@@ -120,10 +120,10 @@ def _report(found, out):
     from feederscrew.units import counted
 
     out.say(*(f"Error: {fault}" for fault in found.faults))
-    if found.strangers:
-        folders, one = counted(len(found.strangers), "folder"), len(found.strangers) == 1
-        text = f"{'is of a part' if one else 'are of parts'} not in this batch: {found.strangers[0]}"
+    if found.foreign:
+        folders, one = counted(len(found.foreign), "folder"), len(found.foreign) == 1
+        text = f"{'is of a part' if one else 'are of parts'} not in this batch: {found.foreign[0]}"
         out.warn(f"{folders} {text}{'' if one else ', ...'}")
-    kept = f", {found.kept} of them as they were" if found.kept else ""
+    kept = f", {found.reused} of them as they were" if found.reused else ""
     out.say(f"Wrote {out.directory} ({counted(len(found.rows), 'part')}{kept}; open index.html)")
     out.show(summary.frame(found.rows), {"parts": list(found.rows)}, hidden=summary.HIDDEN_SUMMARY_COLUMNS)

@@ -78,9 +78,10 @@ def _of_the_solid(command):
     "fill=50 %': what it does now beside what it should, and the likely cause.",
 )
 @options.bowl
+@options.title_block
 @options.pictures
 @options.output
-def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
+def bowl(part, target, made, measured, bowl, fields, pictures, out, **wanted):
     """Example: feeder bowl parts/lbracket_30x20x15.stl --target 60/min -o results
 
     With PART and --target: the diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs
@@ -95,13 +96,13 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
     What the bowl file says of track, drive and machine is kept. Section 'sizing' has the rules of thumb.
     With -o: bowl.json, bowl.csv, bowl_angles.csv, bowl_leaves.csv, bowl_leaf_changes.csv,
     bowl_emptying.csv and bowl.png. --solid adds bowl.stl and bowl.3mf, the bowl as one closed body with
-    its track, cuts, blades and outlet. It also adds the drawing sheet bowl.pdf, and bowl_solid.png. The
+    its track, cuts, blades and outlet. It also adds the drawing sheets as bowl.pdf and
+    bowl.dxf, and bowl_solid.png. The
     mass and inertia of that body take the place of the estimate.
     """
     from feederscrew import bowl as bowls
     from feederscrew.errors import FeederError
-    from feederscrew.output import columns, machine, offers, proof
-    from feederscrew.output.machine import tables
+    from feederscrew.output import columns, machine, marking, offers, proof
     from feederscrew.studies import bowl as study
     from feederscrew.studies import solidbowl as solids
 
@@ -132,9 +133,10 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
             out.warn(f"{fault}; what follows is the machine as it was tried")
             found = study.machine(settings)
         out.warn(*found.remarks, *proof.warnings(tried, *own))
-        offers.write(folder, machine.offers(found, holding), pictures=pictures)
-        document = proof.beside(tables.document(found), tried, *own)
-        out.show(tables.summary(found, holding), document)
+        made_of = machine.offers(found, holding, fields=marking.SheetFields(**fields))
+        offers.write(folder, made_of, pictures=pictures)
+        document = proof.beside(machine.document(found), tried, *own)
+        out.show(machine.summary(found, holding), document)
 
 
 def _typed_options(*names):
@@ -148,12 +150,12 @@ def _found(bowl, measured, out):
     """The machine of a bowl file as it was found."""
     from feederscrew import bowl as bowls
     from feederscrew.machine import condition
-    from feederscrew.output.machine import as_found as tables
+    from feederscrew.output import machine
     from feederscrew.studies import bowl as study
 
     values = condition.read(measured)
     found = condition.diagnose(study.machine(bowls.settings(**bowl)), values)
-    out.show(tables.summary(found), tables.document(found))
+    out.show(machine.measured_summary(found), machine.measured_document(found))
 
 
 def _fitting(part, target, made, measured):

@@ -14,9 +14,16 @@ from feederscrew_cli import grouped, options, orientation, waiting
     "--launch", type=options.LAUNCHES, help="What was done to PART.  [default: as the file says, else feed]"
 )
 @click.option("--as-published", is_flag=True, help="Count each class once in PMI, as Tables 3-8 and 3-9 do.")
+@click.option(
+    "--bowl",
+    "bowl",
+    metavar="FILE",
+    type=options.FILE,
+    help="Bowl file of the bowl in which FILE was filmed: fit friction, restitution and stroke to it.",
+)
 @options.pictures
 @options.output
-def compare(sources, reading, counts, launch, as_published, pictures, out):
+def compare(sources, reading, counts, launch, as_published, bowl, pictures, out):
     """Example: feeder compare parts/arc_chute.yaml --with counts.csv -o results
 
     How far your counts of PART are from each rule. Three measures: the deviation of the thesis's
@@ -38,12 +45,19 @@ def compare(sources, reading, counts, launch, as_published, pictures, out):
     The share that passed each device then stands beside what the static rules say, with both intervals
     (devices.csv).
 
+    With --bowl the one FILE has velocities that were filmed in that bowl: columns of bowl-file keys that
+    were changed ('drive.amplitude'), then 'velocity_mm_s', and 'spread_mm_s' and 'parts'. The answer is
+    friction, restitution and stroke with their intervals, and what remains of each velocity
+    (bowl_fit.csv, velocities.csv). How to measure: docs/validation.md.
+
     The acceptance.csv of `feeder design`, filled in at the machine, is read back: it says line by line
     what agrees with what was computed.
     """
     from feederscrew.designing import accepting
 
-    if counts is None and len(sources) == 1 and accepting.is_sheet(sources[0]):
+    if bowl is not None:
+        _fitted(sources, bowl, out)
+    elif counts is None and len(sources) == 1 and accepting.is_sheet(sources[0]):
         _accepted(sources[0], out)
     elif counts is None:
         _over_files(sources, launch, as_published, pictures, out)
@@ -51,6 +65,27 @@ def compare(sources, reading, counts, launch, as_published, pictures, out):
         raise click.UsageError("--with goes with one PART - leave it out to compare many files")
     else:
         _of_part(reading | {"source": sources[0]}, counts, launch, as_published, pictures, out)
+
+
+def _fitted(sources, bowl, out):
+    """What explains the velocities of one bowl."""
+    from feederscrew import bowl as bowls
+    from feederscrew.output import bowl_fit as files
+    from feederscrew.output import offers
+    from feederscrew.studies.bowl_fit import fit_bowl
+
+    if len(sources) > 1:
+        raise click.UsageError(
+            "--bowl goes with one file of velocities - compare counts in a call of their own"
+        )
+    study = fit_bowl(sources[0], bowl)
+    inputs = bowls.identity(sources[0]) | bowls.identity(bowl)
+    with out.folder("bowl_fit", inputs) as folder:
+        offers.write(folder, files.offers(study))
+    out.say(files.remark(study))
+    out.show(files.quantities(study), files.document(study))
+    if out.format == "table":
+        out.show(files.velocities(study), files.document(study))
 
 
 def _accepted(source, out):

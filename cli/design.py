@@ -16,7 +16,6 @@ REQUEST = (  # what shall leave, and what may be used
     click.option(
         "--target",
         type=Quantity("rate", positive=True),
-        required=True,
         metavar="RATE",
         help="Parts that must leave the bowl: 60/min.",
     ),
@@ -112,12 +111,15 @@ def _asked(command):
 @options.part
 @click.argument("others", metavar="[PART...]", nargs=-1, type=options.FILE)
 @_asked
+@click.option(
+    "--batch", "listed", is_flag=True, help="PART is a list of parts and targets: part,target,aspect."
+)
 @options.rule
 @orientation.taken
 @options.bowl
 @options.pictures
 @options.output
-def design(part, others, asked, rule, taken, bowl, pictures, out):
+def design(part, others, asked, listed, rule, taken, bowl, pictures, out):
     """Example: feeder design parts/washer_m6.stl --target 40/min -o results
 
     Which way up to feed PART, the chain of devices, the track and the drive. Each proposal is tried, and
@@ -136,13 +138,23 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
     changed from one to the next is listed in family/changeover.csv and on the page family/family.html. Each
     has its own folder.
 
+    --batch designs each part of a list for a bowl of its own, one after the other. A line without a target
+    has that of --target. One table says what holds (designs.csv); a part that fails does not stop the others.
+
     With -o: design.yaml, a bowl file that says what its trial showed, and design.html, the page to hand on.
     Also alternatives.csv, acceptance.csv, design_trials.csv, and the files of feeder tooling and feeder
     bowl, with the bowl as a solid. Drawings of what falls short bear a mark across; what delivers nothing
     has none.
     """
-    if others:
+    if asked["target"] is None and not listed:
+        raise click.MissingParameter(
+            ctx=click.get_current_context(),
+            param=next(p for p in click.get_current_context().command.params if p.name == "target"),
+        )
+    if others or listed:
         _of_one_part(asked, taken, part)
+    if others and listed:
+        raise click.UsageError("--batch goes with one list - or name the parts without it")
     orientation.of_an_aspect(asked)
     with held_back():
         from feederscrew import bowl as bowls
@@ -152,8 +164,12 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
 
     settings = bowls.settings(**bowl)
     out.warn(*bowls.assumptions(settings))
-    record, given = bowls.record(settings), {s.key.name for s in settings if s.given}
-    request = DesignRequest(**asked | {"jobs": asked["jobs"] or os.cpu_count()}, rule=rule)
+    record, given = bowls.record(settings), {s.key.name for s in settings if s.is_own}
+    own = asked | {"jobs": asked["jobs"] or os.cpu_count(), "rule": rule}
+    if listed:
+        _batch(out, part, own, (record, given), (settings, bowl["path"], pictures))
+        return
+    request = DesignRequest(**own)
     named = any(value is not None for value in taken.values())
     if others:
         parts = [out.part(part | {"source": source}) for source in (part["source"], *others)]
@@ -168,6 +184,46 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
         found = _written(out, folder, found, settings, pictures)
         out.show(designs.summary(found), designs.document(found))
     _ended(found)
+
+
+def _batch(out, part, own, bowl, written):
+    """Each part of a list for a bowl of its own, and one table of what holds."""
+    from feederscrew import bowl as bowls
+    from feederscrew.batch import design_list
+    from feederscrew.designing import loop
+    from feederscrew.designing.record import DesignRequest
+    from feederscrew.errors import FeederError
+    from feederscrew.output import designs, offers
+
+    (settings, path, pictures), (record, given) = written, bowl
+    orders = design_list.read_orders(part["source"])
+    lacks = next((order for order in orders if (order.target or own["target"]) is None), None)
+    if lacks:
+        raise click.UsageError(f"{lacks.line} has no target, nor has the call - add --target 40/min")
+    rows = []
+    for order in orders:
+        asked = own | {"target": order.target or own["target"], "aspect": order.aspect}
+        out.say(f"{order.line}: {order.source}")
+        try:
+            solid = out.part(part | {"source": order.source})
+            with _folder(out, solid, solid.inputs | bowls.identity(path), settings) as folder:
+                with _stoppable(out) as search:
+                    study = loop.design(solid, record, given, DesignRequest(**asked), **search)
+                study = _written(out, folder, study, settings, pictures)
+        except FeederError as fault:
+            out.say(f"Error: {fault}")
+            rows.append(design_list.row_of_fault(order, asked["target"], fault))
+            continue
+        rows.append(design_list.row_of(order, asked["target"], designs.document(study)))
+        if study.partial:
+            break
+    inputs = bowls.identity(part["source"]) | bowls.identity(path)
+    with out.folder("designs", inputs, bowls.texts(settings)) as folder:
+        offers.write(folder, [offers.table("designs.csv", design_list.table, rows)])
+    out.show(design_list.table(rows), {"designs": rows})
+    if rows[-1]["status"] == "not proved":
+        click.get_current_context().exit(INTERRUPTED)
+    click.get_current_context().exit(int(any(row["status"] == design_list.FAILED for row in rows)))
 
 
 def _ended(found):

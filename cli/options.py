@@ -272,6 +272,26 @@ def output(command):
     )
 
 
+TITLE_LETTERS = 40  # of a field of the title block
+
+
+def _title_text(context, option, value):
+    """A field of the title block: one short line."""
+    if len(value) > TITLE_LETTERS or not value.isprintable():
+        raise click.BadParameter(f"give one line of at most {TITLE_LETTERS} letters", context, option)
+    return value
+
+
+def title_block(command):
+    """Fields of the title block of drawings; the command receives them as ``fields``, by keyword."""
+    named = {"default": "", "callback": _title_text, "metavar": "TEXT"}
+    return stacked(
+        packed(command, "fields", ("date", "revision")),
+        click.option("--date", help="Date in the title block of the drawings.  [default: empty]", **named),
+        click.option("--rev", "revision", help="Revision, in the same place.  [default: empty]", **named),
+    )
+
+
 def packed(command, name, keywords, pack=dict):
     """The command with several options handed to it as one argument: ``pack`` of them by keyword."""
 

@@ -38,7 +38,9 @@ class Quantity(click.ParamType):
             number = units.quantity(value, self.name)
         except units.QuantityError as fault:
             return self.fail(f"{fault.what} - {fault.mend}", param, ctx)
-        return number if self._within(number) else self.fail(self._range(units.shown(value)), param, ctx)
+        return (
+            number if self._within(number) else self.fail(self._range(units.quantity_text(value)), param, ctx)
+        )
 
     def _within(self, number):
         if self.most is not None and number > self.most:

@@ -100,10 +100,11 @@ def _asked(command):
 @click.option("--static", is_flag=True, help="Do not send parts through what is proposed.")
 @orientation.taken
 @options.bowl
+@options.title_block
 @options.pictures
 @options.output
 @_asked
-def tooling(part, asked, cad, static, taken, bowl, pictures, out):
+def tooling(part, asked, cad, static, taken, bowl, fields, pictures, out):
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect, the
@@ -124,16 +125,15 @@ def tooling(part, asked, cad, static, taken, bowl, pictures, out):
 
     from feederscrew import bowl as bowls
     from feederscrew.designing import own_trial
-    from feederscrew.output import columns, offers
-    from feederscrew.output.tooling import files, tables
+    from feederscrew.output import columns, marking, offers, solid_files
+    from feederscrew.output import tooling as files
+    from feederscrew.output import tooling_tables as tables
     from feederscrew.studies.tooling import tooling as study
     from feederscrew.studies.tooling import tooling_without
 
     orientation.of_an_aspect(asked)
     if cad:
-        from feederscrew.output.tooling import written_step as steps
-
-        steps.check()
+        solid_files.check_opencascade()
     solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
@@ -149,5 +149,6 @@ def tooling(part, asked, cad, static, taken, bowl, pictures, out):
         denied, agreed = tables.trials(found)
         out.warn(*found.warnings, *denied)
         out.say(*agreed, *tables.remarks(found, asked["efficiency"]))
-        offers.write(folder, files.offers(found, settings, cad), pictures=pictures)
+        made = files.offers(found, settings, cad, fields=marking.SheetFields(**fields))
+        offers.write(folder, made, pictures=pictures)
         out.show(tables.summary(found, out.format), document, hidden=tables.HIDDEN, spare=tables.SPARE)

@@ -64,10 +64,10 @@ def kind(name: str, value: object, wanted: type | tuple[type, ...], mend: str) -
         What to give: 'give a part, as load returns it'.
     """
     if not isinstance(value, wanted):
-        raise ArgumentError(name, f"is {_said(value)}", mend)
+        raise ArgumentError(name, f"is {_shape_text(value)}", mend)
 
 
-def _said(value: object) -> str:
+def _shape_text(value: object) -> str:
     """A value as a line shows it; of a record its class."""
     plain = isinstance(value, (int, float, str, type(None), list))
     return f"{value!r:.40}" if plain else f"a {type(value).__name__}"
@@ -118,8 +118,8 @@ def ranged(
     )
     if not fits or array.dtype.kind != ("i" if whole else "f"):
         raise ValueError(f"{name} is an array {array.shape} of {array.dtype}, not {shape}")
-    known = np.isfinite(array) & (array >= low) & (array <= high)
-    if not (known | np.isnan(array) if gaps else known).all():
+    ranged = np.isfinite(array) & (array >= low) & (array <= high)
+    if not (ranged | np.isnan(array) if gaps else ranged).all():
         raise ValueError(f"{name} has a number that is not within {low:g} to {high:g}")
     array.setflags(write=False)
     return array
@@ -153,7 +153,7 @@ def argument(name: str, value: Any, low: float = -np.inf, high: float = np.inf) 
     try:
         number = float(value)
     except (TypeError, ValueError):
-        raise ArgumentError(name, f"is {_said(value)}, not a number", "give a number") from None
+        raise ArgumentError(name, f"is {_shape_text(value)}, not a number", "give a number") from None
     if low <= number <= high and np.isfinite(number):
         return number
     ends = [f"from {low:g}"] if np.isfinite(low) else []
@@ -164,7 +164,7 @@ def argument(name: str, value: Any, low: float = -np.inf, high: float = np.inf) 
 
 
 def options(
-    function: str, kind: type[Options], given: Mapping[str, Any], beside: Collection[str] = ()
+    function: str, kind: type[Options], values: Mapping[str, Any], extra: Collection[str] = ()
 ) -> Options:
     """Return the record of the keywords of a function that has many; its fields hold their defaults.
 
@@ -174,9 +174,9 @@ def options(
         The name that its callers know.
     kind : type
         A dataclass with a field for each keyword.
-    given : dict
+    values : dict
         The keywords by name.
-    beside : collection of str
+    extra : collection of str
         Keywords that the function takes as well, but hands on as they are.
 
     Returns
@@ -189,8 +189,8 @@ def options(
         If the function has no such keyword, as Python says it of any other.
     """
     make = cast(Any, kind)
-    own = {one.name for one in fields(make)}
-    for name in given:
-        if name not in own and name not in beside:
+    own = {field.name for field in fields(make)}
+    for name in values:
+        if name not in own and name not in extra:
             raise TypeError(f"{function}() got an unexpected keyword argument {name!r}")
-    return cast(Options, make(**{name: value for name, value in given.items() if name in own}))
+    return cast(Options, make(**{name: value for name, value in values.items() if name in own}))

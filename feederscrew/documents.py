@@ -11,7 +11,7 @@ from typing import Any, BinaryIO
 import yaml
 
 from feederscrew.errors import ArgumentError, ConfigError, Faults, FeederError
-from feederscrew.units import shown
+from feederscrew.units import quantity_text
 
 MAX_DOCUMENT_BYTES = (
     200_000  # [bytes]: a bowl file or part card has a few hundred; parsing time grows with size
@@ -226,11 +226,11 @@ def raise_all(faults: Iterable[FeederError]) -> None:
         raise Faults(listed)
 
 
-def hint(word: str, known: Iterable[str]) -> str:
+def hint(word: str, candidates: Iterable[str]) -> str:
     """Return how to mend an unknown word: the nearest known one, or the list of them."""
-    folded = {name.lower(): name for name in known}
+    folded = {name.lower(): name for name in candidates}
     near = difflib.get_close_matches(word.lower(), folded, n=1, cutoff=0.6)
-    return f"did you mean {folded[near[0]]}?" if near else f"known are {', '.join(known)}"
+    return f"did you mean {folded[near[0]]}?" if near else f"known are {', '.join(candidates)}"
 
 
 class _Builder:
@@ -262,36 +262,42 @@ class _Builder:
         return Node(self.where(event), "text", text=getattr(event, "value", ""))
 
     def entries(self, events: Iterator[Any], depth: int) -> tuple[Entry, ...]:
-        found: dict[str, Entry] = {}
+        entries: dict[str, Entry] = {}
         while not isinstance(event := next(events), yaml.MappingEndEvent):
             key = self.node(event, events, depth + 1)
             value = self.node(next(events), events, depth + 1)
             if key.kind != "text":
                 self.faults.append(ConfigError(key.where, "a key is not plain text", "write 'key: value'"))
-            elif key.text in found:
-                self.faults.append(self.duplicate(key, found[key.text]))
+            elif key.text in entries:
+                self.faults.append(self.duplicate(key, entries[key.text]))
             else:
-                found[key.text] = Entry(key.text, key.where, value)
-        return tuple(found.values())
+                entries[key.text] = Entry(key.text, key.where, value)
+        return tuple(entries.values())
 
     def items(self, events: Iterator[Any], depth: int) -> tuple[Node, ...]:
-        found: list[Node] = []
+        items: list[Node] = []
         while not isinstance(event := next(events), yaml.SequenceEndEvent):
-            found.append(self.node(event, events, depth + 1))
-        return tuple(found)
+            items.append(self.node(event, events, depth + 1))
+        return tuple(items)
 
     def duplicate(self, key: Node, first: Entry) -> ConfigError:
         line = first.where.rsplit(":", 2)[1]
-        return ConfigError(key.where, f"key {shown(key.text)} is already in line {line}", "keep one of them")
+        return ConfigError(
+            key.where, f"key {quantity_text(key.text)} is already in line {line}", "keep one of them"
+        )
 
     def note_extras(self, event: Any) -> None:
         """Note what a plain settings file has no use for: aliases, anchors and tags."""
         if isinstance(event, yaml.AliasEvent):
-            self.note(event, f"alias {shown('*' + event.anchor)} is not allowed", "write the value itself")
+            self.note(
+                event, f"alias {quantity_text('*' + event.anchor)} is not allowed", "write the value itself"
+            )
         elif event.anchor is not None:
-            self.note(event, f"anchor {shown('&' + event.anchor)} is not allowed", "write the value alone")
+            self.note(
+                event, f"anchor {quantity_text('&' + event.anchor)} is not allowed", "write the value alone"
+            )
         elif event.tag is not None:
-            self.note(event, f"tag {shown(event.tag)} is not allowed", "write the value alone")
+            self.note(event, f"tag {quantity_text(event.tag)} is not allowed", "write the value alone")
 
     def note(self, event: Any, what: str, mend: str) -> None:
         self.faults.append(self.fault(event, what, mend))

@@ -22,7 +22,6 @@ MILLIMETRES = {  # by $INSUNITS: DXF Reference of Autodesk, "HEADER Section"; 0 
 }  # fmt: skip
 UNITLESS, IN_MILLIMETRES = 0, 4  # of $INSUNITS
 MAX_DXF_COORDINATE_M = 1e3  # [m] from the origin of a drawing to a corner of a hole
-TEXT_HEIGHT_MM = 3.0  # [mm] height of texts
 CHORD_ERROR_M = 1e-6  # at most between a curve and the chord read for it; the corners lie on the curve
 MAX_CHORD_ANGLE = math.radians(15.0)  # of an arc to one chord
 JOIN_M = 1e-6  # ends of lines and arcs so near are one corner
@@ -49,20 +48,6 @@ class _Unread(Exception):
     def __init__(self, what: str, mend: str) -> None:
         super().__init__(what)
         self.what, self.mend = what, mend
-
-
-@dataclass(frozen=True, eq=False)
-class Layer:
-    """One layer of a drawing."""
-
-    name: str
-    colour: int  # of AutoCAD's index: 1 red, 3 green, 5 blue, 7 white or black, 8 grey
-    rings: tuple = ()  # of (K, 2) [m], each becomes a closed polyline
-    lines: tuple = ()  # of (K, 2) [m], each becomes an open polyline
-    texts: tuple[tuple[str, tuple[float, float]], ...] = ()  # with the place [m] where each begins
-    across: tuple[str, tuple[float, float], float, float] | None = (
-        None  # text, middle [m], height [m], turn [rad]
-    )
 
 
 @dataclass(frozen=True)
@@ -120,20 +105,20 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
             if file.read(len(documents.POINTER_HEAD)) == documents.POINTER_HEAD:
                 raise ConfigError(where, f"{name} {documents.POINTER}", documents.PULL)
         drawing = _drawing(path)
-        found = _outlines(drawing, layer)
+        outlines = _outlines(drawing, layer)
     except FileNotFoundError:
         raise ConfigError(where, f"{name}: no such file", "check the path") from None
     except _Unread as fault:
-        what = f"layer {units.shown(layer)} of {units.printable(path.name)} {fault.what}"
+        what = f"layer {units.quantity_text(layer)} of {units.printable(path.name)} {fault.what}"
         raise ConfigError(where, what, fault.mend) from None
     except (*REFUSED, ezdxf.DXFError):
         raise ConfigError(
             where, f"{name} cannot be read as DXF", "save it as ASCII DXF R2000 or later"
         ) from None
-    if not found:
-        what = f"{units.printable(path.name)} has no closed outline on layer {units.shown(layer)}"
+    if not outlines:
+        what = f"{units.printable(path.name)} has no closed outline on layer {units.quantity_text(layer)}"
         raise ConfigError(where, what, "draw the hole as one closed polyline (LWPOLYLINE)")
-    return Outlines(found, _unit_code(drawing) != UNITLESS)
+    return Outlines(outlines, _unit_code(drawing) != UNITLESS)
 
 
 def _drawing(path: Path) -> Any:
@@ -214,8 +199,8 @@ def _points(kind: str, entity: Any, sagitta: float) -> tuple[list[Point], bool]:
         return _round(kind, entity, sagitta)
     if kind == "ELLIPSE":
         _near((*dxf.center, *dxf.major_axis))
-        found = itertools.islice(entity.flattening(sagitta, MAX_CORNERS // 16), MAX_CORNERS + 2)
-        return [tuple(point) for point in found], False
+        flattened = itertools.islice(entity.flattening(sagitta, MAX_CORNERS // 16), MAX_CORNERS + 2)
+        return [tuple(point) for point in flattened], False
     if kind == "SPLINE" and len(entity.control_points):
         return _spline(entity, sagitta), False
     if kind == "SPLINE":
@@ -286,8 +271,8 @@ def _spline(entity: Any, sagitta: float) -> list[Point]:
     while count * len(spans) <= 4 * MAX_CORNERS:
         shares = np.arange(2 * count) / (2.0 * count)
         times = np.append((spans[:-1, None] + np.diff(spans)[:, None] * shares).ravel(), spans[-1])
-        found = curve(times)
-        points = found[:, :3] / found[:, 3:]
+        homogeneous = curve(times)
+        points = homogeneous[:, :3] / homogeneous[:, 3:]
         off = points[1::2] - 0.5 * (points[:-2:2] + points[2::2])
         if np.sqrt((off**2).sum(axis=1)).max(initial=0.0) <= sagitta:
             return [tuple(map(float, point)) for point in points[::2]]
@@ -338,15 +323,15 @@ def _joined(chains: list[list[tuple[float, float]]]) -> Iterator[list[tuple[floa
         left.remove(first)
         ring = list(chains[first])
         while math.dist(ring[0], ring[-1]) > JOIN_M or len(ring) < 3:
-            met = [
+            contacts = [
                 (k, end)
                 for cell in _around(_cell(ring[-1]))
                 for k, end in ends.get(cell, ())
                 if k in left and math.dist(chains[k][end], ring[-1]) <= JOIN_M
             ]
-            if len(met) != 1:
-                raise _open(ring[-1], len(met), chains, left, ring[0])
-            k, end = met[0]
+            if len(contacts) != 1:
+                raise _open(ring[-1], len(contacts), chains, left, ring[0])
+            k, end = contacts[0]
             left.remove(k)
             ring += chains[k][1:] if end == 0 else chains[k][-2::-1]
         yield ring
@@ -357,8 +342,8 @@ def _open(place: Point, count: int, chains: list[Any], left: set[int], start: Po
     at = f"at ({1e3 * place[0]:.4g}, {1e3 * place[1]:.4g}) mm"
     if count:
         return _Unread(f"has an outline that branches {at}", "keep one closed outline on the layer")
-    others = [chains[k][end] for k in left for end in (0, -1)] + [start]
-    gap = min(math.dist(place, other) for other in others)
+    rest = [chains[k][end] for k in left for end in (0, -1)] + [start]
+    gap = min(math.dist(place, other) for other in rest)
     return _Unread(
         f"has an outline that is open {at}: {1e3 * gap:.3g} mm to the next end", "close the outline"
     )
@@ -377,14 +362,14 @@ def _simplified(ring: list[tuple[float, float]]) -> list[tuple[float, float]]:
     """The outline without corners that repeat the last one or lie on the line through their neighbours."""
     corners = [b for a, b in zip((ring[-1], *ring), ring, strict=False) if math.dist(a, b) > REPEATED_M]
     corners = corners or ring[:1]
-    kept = [
+    simplified = [
         b
         for a, b, c in zip((corners[-1], *corners), corners, (*corners[1:], corners[0]), strict=False)
         if not _is_straight(a, b, c)
     ]
-    if len(kept) > MAX_CORNERS:
-        raise _Unread(f"has an outline of {len(kept)} corners", f"keep it below {MAX_CORNERS}")
-    return kept
+    if len(simplified) > MAX_CORNERS:
+        raise _Unread(f"has an outline of {len(simplified)} corners", f"keep it below {MAX_CORNERS}")
+    return simplified
 
 
 def _is_straight(a: Point, b: Point, c: Point) -> bool:
@@ -394,26 +379,21 @@ def _is_straight(a: Point, b: Point, c: Point) -> bool:
     return on and (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) > 0.0
 
 
-def written(layers: Iterable[Layer]) -> bytes:
-    """Return a drawing as the bytes of a DXF file in millimetres, the same for the same layers.
-
-    Parameters
-    ----------
-    layers : sequence of Layer
-
-    Returns
-    -------
-    bytes
-    """
+def new_document() -> Any:
+    """Return an empty drawing of ``ezdxf`` in millimetres, without a date."""
     import ezdxf
 
     with _without_a_date(ezdxf.options):
         drawing = ezdxf.new("R2010", units=IN_MILLIMETRES)
-        drawing.header["$MEASUREMENT"] = 1  # metric
-        space = drawing.modelspace()
-        for layer in layers:
-            drawing.layers.add(layer.name, color=layer.colour)
-            _draw(space, layer)
+    drawing.header["$MEASUREMENT"] = 1  # metric
+    return drawing
+
+
+def document_bytes(drawing: Any) -> bytes:
+    """Return a drawing of ``new_document`` as the bytes of a DXF file, the same for the same entities."""
+    import ezdxf
+
+    with _without_a_date(ezdxf.options):
         # ezdxf would add those that it needs in the order of a set, another one in each process
         for kind in sorted(drawing.entitydb.dxf_types_in_use()):
             drawing.classes.add_class(kind)
@@ -422,22 +402,54 @@ def written(layers: Iterable[Layer]) -> bytes:
     return file.getvalue().encode()
 
 
-def _draw(space: Any, layer: Layer) -> None:
-    look = {"layer": layer.name}
-    for closed, lines in ((True, layer.rings), (False, layer.lines)):
-        for line in lines:
-            corners = [(1e3 * float(x), 1e3 * float(y)) for x, y in line]
-            space.add_lwpolyline(corners, close=closed, dxfattribs=look)
-    for text, place in layer.texts:
-        space.add_text(text, height=TEXT_HEIGHT_MM, dxfattribs=look).set_placement(
-            [1e3 * float(x) for x in place]
-        )
-    if layer.across is not None:
-        from ezdxf.enums import TextEntityAlignment
+def primitives(entity: Any, sagitta: float = 0.02) -> Iterator[tuple[str, Any]]:
+    """Yield the lines, filled areas and texts that an entity is drawn by, those of its blocks too.
 
-        text, middle, height, turn = layer.across
-        written = space.add_text(text, height=1e3 * height, rotation=math.degrees(turn), dxfattribs=look)
-        written.set_placement([1e3 * float(x) for x in middle], align=TextEntityAlignment.MIDDLE_CENTER)
+    Parameters
+    ----------
+    entity : DXFGraphic
+    sagitta : float
+        By which an arc may be seen too flat, in the drawing's unit.
+
+    Yields
+    ------
+    ("line", (K, 2) float), ("area", list of (K, 2) float) or ("text", (words, place (2,), height, turn
+    [deg], 'left' | 'center' | 'right', 'baseline' |
+    'center_baseline'))
+    """
+    from ezdxf.disassemble import recursive_decompose
+    from ezdxf.path import make_path
+
+    one: Any
+    for one in recursive_decompose([entity]):
+        kind = one.dxftype()
+        if kind in ("TEXT", "MTEXT"):
+            yield "text", _written_text(one, kind)
+        elif kind in ("SOLID", "HATCH"):
+            rings = [one.vertices()] if kind == "SOLID" else [path.vertices for path in one.paths]
+            yield "area", [np.array([(place[0], place[1]) for place in ring]) for ring in rings]
+        elif kind != "POINT":
+            places = make_path(one).flattening(sagitta)
+            yield "line", np.array([(place.x, place.y) for place in places])
+
+
+def _written_text(entity: Any, kind: str) -> tuple[str, tuple[float, float], float, float, str, str]:
+    """Words, place, height, turn [deg] and alignment of a text."""
+    dxf = entity.dxf
+    if kind == "TEXT":
+        place = dxf.align_point if dxf.halign else dxf.insert
+        across = ("left", "center", "right")[dxf.halign]
+        return dxf.text, (place.x, place.y), dxf.height, dxf.get("rotation", 0.0), across, "baseline"
+    across = ("left", "center", "right")[(dxf.attachment_point - 1) % 3]
+    place = dxf.insert
+    return (
+        entity.plain_text(),
+        (place.x, place.y),
+        dxf.char_height,
+        entity.get_rotation(),
+        across,
+        "center_baseline",
+    )
 
 
 @contextlib.contextmanager

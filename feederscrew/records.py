@@ -21,12 +21,12 @@ MOST_LETTERS = 500  # of a text that says an answer
 VIEWS = "feederscrew.output.record_views"
 
 
-class Shown:
+class ReadableRecord:
     """A record whose text is short, and that has a table and, where its command draws, pictures."""
 
     def __init_subclass__(cls, **keywords: Any) -> None:
         super().__init_subclass__(**keywords)
-        cls.__repr__ = Shown.__repr__  # type: ignore[method-assign]  # or a dataclass makes its own
+        cls.__repr__ = ReadableRecord.__repr__  # type: ignore[method-assign]  # or a dataclass makes its own
 
     def __repr__(self) -> str:
         answer = import_module(VIEWS).answer(self)
@@ -104,12 +104,12 @@ def _field(value: Any) -> str:
             return f"{type(value).__name__} {name!r}"
         within = text(value)
         return within if len(within) <= MAX_FIELD_LENGTH else f"{type(value).__name__}(...)"
-    if isinstance(value, (tuple, list)) and not all(isinstance(one, (str, int, float)) for one in value):
+    if isinstance(value, (tuple, list)) and not all(isinstance(item, (str, int, float)) for item in value):
         return f"<{len(value)} {type(value[0]).__name__}>"
     if isinstance(value, dict):
         return f"<{len(value)} by name>"
-    said = repr(value)
-    return said if len(said) <= MAX_FIELD_LENGTH else f"{said[: MAX_FIELD_LENGTH - 3]}..."
+    field_text = repr(value)
+    return field_text if len(field_text) <= MAX_FIELD_LENGTH else f"{field_text[: MAX_FIELD_LENGTH - 3]}..."
 
 
 def _view(kind: str) -> Callable[..., Any]:

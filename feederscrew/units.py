@@ -113,13 +113,13 @@ def split(text: str) -> tuple[float, str]:
     """Return the number and unit of '0.5 mm', as (0.5, 'mm'); raises QuantityError where no number leads."""
     plain = text.strip().translate(UNIT_CHARACTERS)
     if COMMA.match(plain):
-        raise QuantityError(f"{shown(text)} has a comma", _without_comma(plain))
+        raise QuantityError(f"{quantity_text(text)} has a comma", _without_comma(plain))
     match = NUMBER_PATTERN.match(plain)
     if match is None:
         raise _no_number(text)
     number = float(match.group())
     if not math.isfinite(number):
-        raise QuantityError(f"{shown(text)} is too large", "give a finite number")
+        raise QuantityError(f"{quantity_text(text)} is too large", "give a finite number")
     unit = " ".join(plain[match.end() :].split())
     return number, SPELLINGS.get(unit, unit)
 
@@ -155,13 +155,15 @@ def listed(names: Iterable[str]) -> str:
     return f"{', '.join(most)} and {last}" if most else last
 
 
-def shown(text: str) -> str:
+def quantity_text(text: str) -> str:
     """Return a user's text fit for a message, in quotes."""
     return f"'{one_line(text)}'"
 
 
 def _no_number(text: str) -> QuantityError:
-    return QuantityError(f"{shown(text)} is not a number", "write digits with a decimal point, as in 0.4")
+    return QuantityError(
+        f"{quantity_text(text)} is not a number", "write digits with a decimal point, as in 0.4"
+    )
 
 
 def _without_comma(plain: str) -> str:
@@ -170,20 +172,21 @@ def _without_comma(plain: str) -> str:
 
 
 def _wrong_unit(text: str, unit: str, dimension: str, suggest: str) -> QuantityError:
-    known = next((other for other, units in UNITS_BY_DIMENSION.items() if unit in units), None)
+    wrong_unit = next((other for other, units in UNITS_BY_DIMENSION.items() if unit in units), None)
     if dimension in ("number", "count"):
-        what = f"{shown(text)} has a unit, and this is a plain number"
-        return QuantityError(what, "write the number alone") if known else _no_number(text)
+        what = f"{quantity_text(text)} has a unit, and this is a plain number"
+        return QuantityError(what, "write the number alone") if wrong_unit else _no_number(text)
     if unit == "":
-        return QuantityError(f"{shown(text)} has no unit", f"write {text} {suggest}")
-    if known:
-        what = f"{shown(text)} is {_with_article(known)}, not {_with_article(dimension)}"
+        return QuantityError(f"{quantity_text(text)} has no unit", f"write {text} {suggest}")
+    if wrong_unit:
+        what = f"{quantity_text(text)} is {_with_article(wrong_unit)}, not {_with_article(dimension)}"
         longer = [
-            text + one[len(unit) :] for one in UNITS_BY_DIMENSION[dimension] if one.startswith(f"{unit} ")
+            text + item[len(unit) :] for item in UNITS_BY_DIMENSION[dimension] if item.startswith(f"{unit} ")
         ]
         return QuantityError(what, f"write {' or '.join(longer)}" if longer else f"give it in {suggest}")
     return QuantityError(
-        f"{shown(text)}: {shown(unit)} is not a unit of {dimension}", _units_of(unit, dimension)
+        f"{quantity_text(text)}: {quantity_text(unit)} is not a unit of {dimension}",
+        _units_of(unit, dimension),
     )
 
 
@@ -193,7 +196,7 @@ def _with_article(dimension: str) -> str:
 
 
 def _units_of(unit: str, dimension: str) -> str:
-    folded = {known.lower(): known for known in UNITS_BY_DIMENSION[dimension]}
+    folded = {item.lower(): item for item in UNITS_BY_DIMENSION[dimension]}
     if unit.lower() in folded:
         return f"did you mean {folded[unit.lower()]}?"
     return f"known are {', '.join(UNITS_BY_DIMENSION[dimension])}"

@@ -94,20 +94,20 @@ def _header_faults(path, line, header):
 
 def _row(path, line, header, cells, faults):
     """Return the part of a line, or none."""
-    where, given = f"{path}:{line}", dict(zip(header, cells))
+    where, texts = f"{path}:{line}", dict(zip(header, cells))
     if len(cells) > len(header):
         faults.append(ConfigError(where, "has more cells than the first line", "quote cells with commas"))
         return []
-    if not given.get(PART):
+    if not texts.get(PART):
         faults.append(ConfigError(where, "names no part", "fill its first column, or remove the line"))
         return []
-    beside = Path(path).parent
-    options = tuple((name, given[name]) for name in LISTED_OPTIONS if given.get(name))
-    config, names = (str(beside / given[file]) if given.get(file) else None for file in (CONFIG, NAMES))
-    return [ListedPart(str(beside / given[PART]), options, config, where, given.get(ASPECT) or None, names)]
+    folder = Path(path).parent
+    options = tuple((name, texts[name]) for name in LISTED_OPTIONS if texts.get(name))
+    config, names = (str(folder / texts[file]) if texts.get(file) else None for file in (CONFIG, NAMES))
+    return [ListedPart(str(folder / texts[PART]), options, config, where, texts.get(ASPECT) or None, names)]
 
 
-MESHES = {suffix for name, known in FORMATS.items() if name != CARD for suffix in known.suffixes}
+MESHES = {suffix for name, file_format in FORMATS.items() if name != CARD for suffix in file_format.suffixes}
 CARDS = set(FORMATS[CARD].suffixes)
 CARD_KEY = re.compile(rb"^(mass|inertia|aspects)\s*:", re.MULTILINE)
 LONGEST, MOST_BYTES = 80, 160  # letters and bytes of a folder's name
@@ -168,16 +168,16 @@ def _request(row, conditions, names):
 
 def _names(rows, faults):
     """Read the names of the aspects by the file that a row asks for; None where it has faults."""
-    known = {None: None}
+    names_by_file = {None: None}
     for row in rows:
-        if row.names not in known:
-            known[row.names] = None
+        if row.names not in names_by_file:
+            names_by_file[row.names] = None
             try:
-                known[row.names] = aspect_names.read(row.names)
+                names_by_file[row.names] = aspect_names.read(row.names)
             except FeederError as fault:
-                one = ConfigError(f"{row.line}: {fault.where}", fault.what, fault.mend)
-                faults += getattr(fault, "faults", [one])
-    return known
+                located = ConfigError(f"{row.line}: {fault.where}", fault.what, fault.mend)
+                faults += getattr(fault, "faults", [located])
+    return names_by_file
 
 
 def _rows(source, faults):
@@ -191,11 +191,11 @@ def _expanded(typed, suffixes, kind):
     """Return the files of a folder or of a pattern by name; a file itself, there or not."""
     path = Path(typed)
     if found_as(Path.is_dir, path):
-        found = [str(p) for p in sorted(path.iterdir()) if _fits(p, suffixes, kind)]
-        return _some(found, typed, f"holds no {kind} file", f"name a folder of {kind} files, or a pattern")
+        paths = [str(p) for p in sorted(path.iterdir()) if _fits(p, suffixes, kind)]
+        return _some(paths, typed, f"holds no {kind} file", f"name a folder of {kind} files, or a pattern")
     if glob.has_magic(typed) and not found_as(Path.exists, path):
-        found = _once(p for p in sorted(glob.glob(typed, recursive=True)) if _there(Path(p)))  # noqa: PTH207 - takes any path
-        return _some(found, typed, "fits no file", "check the pattern")
+        paths = _once(p for p in sorted(glob.glob(typed, recursive=True)) if _there(Path(p)))  # noqa: PTH207 - takes any path
+        return _some(paths, typed, "fits no file", "check the pattern")
     return [typed]
 
 
@@ -223,10 +223,10 @@ def _once(paths):
     return sorted(shortest.values())
 
 
-def _some(found, typed, what, mend):
-    if not found:
+def _some(matches, typed, what, mend):
+    if not matches:
         raise FeederError(typed, what, mend)
-    return found
+    return matches
 
 
 def _conditions(path, overrides, faults, line):
@@ -235,9 +235,14 @@ def _conditions(path, overrides, faults, line):
         settings = bowls.settings(path, overrides)
         bowl = answer.conveying(bowls.record(settings))
         texts = tuple(bowls.texts(settings).items())
-        made = bowls.remarks(settings)
+        remarks = bowls.remarks(settings)
         return Conditions(
-            bowls.name(path), bowl, texts, given=path is not None, warnings=made, tried=bowls.verified(path)
+            bowls.name(path),
+            bowl,
+            texts,
+            has_file=path is not None,
+            warnings=remarks,
+            tried=bowls.verified(path),
         )
     except FeederError as fault:
         faults += getattr(fault, "faults", [_placed(fault, path, line)])
@@ -257,12 +262,12 @@ def _named(requests):
     labels = [_label(request, several) for request in requests]
     taken = set(map(_folded, labels))
     named: set[str] = set()
-    found = []
+    labelled = []
     for request, label in zip(requests, labels):
         name = _unlike(label, named, taken)
         named.add(_folded(name))
-        found.append(replace(request, name=name))
-    return tuple(found)
+        labelled.append(replace(request, name=name))
+    return tuple(labelled)
 
 
 def _label(request, several):

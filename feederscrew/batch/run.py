@@ -126,7 +126,7 @@ class Store:
         """Put the results of one part in place, instead of those of an earlier run."""
         with self._writing(), tempfile.TemporaryDirectory(prefix=STALE, dir=self.path) as staging:
             fresh, place = Path(staging, "new"), self.parts / outcome.name
-            record = tables.json_text({"batch": _told(outcome)})
+            record = tables.json_text({"batch": _report_outcome(outcome)})
             for name, content in {**outcome.files, RECORD: record.encode()}.items():
                 (fresh / name).parent.mkdir(parents=True, exist_ok=True)
                 (fresh / name).write_bytes(content)
@@ -179,7 +179,7 @@ class Store:
             what = f"cannot be written ({error.strerror or error})"
             raise FeederError(self.path, what, RESUME_STORE_ADVICE) from error
 
-    def strangers(self, names):
+    def foreign_folders(self, names):
         """Return the folders of parts that are not in this batch, by name."""
         return sorted({p.name for p in self.parts.iterdir()} - set(names))
 
@@ -192,7 +192,7 @@ class Store:
         return record if isinstance(record, dict) else {}
 
 
-def _told(outcome):
+def _report_outcome(outcome):
     return {
         "version": __version__,
         "key": outcome.key,
@@ -228,8 +228,8 @@ class Batch:
     """What a finished batch has to say."""
 
     rows: tuple[dict[str, object], ...]  # one a part, in the order asked for
-    kept: int  # parts whose results were there already
-    strangers: tuple[str, ...]  # folders of parts that are not in this batch
+    reused: int  # parts whose results were there already
+    foreign: tuple[str, ...]  # folders of parts that are not in this batch
     targets: tuple[Path, ...]  # files of the whole batch
     sources: tuple[str, ...]  # files of its parts
 
@@ -261,7 +261,7 @@ def crew(jobs=None, scheduler=None):
     return Cluster(scheduler) if scheduler else Processes(jobs or processors())
 
 
-def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda kept: None):
+def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda run: None):
     """Compute every part and write the folder of the batch.
 
     Parameters
@@ -302,7 +302,9 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
             return _finished(store, requests, under_way.kept, workers)
         except KeyboardInterrupt:
             done = {
-                one.name for one in requests if one.name in under_way.finished or _stays(store, one, choices)
+                request.name
+                for request in requests
+                if request.name in under_way.finished or _stays(store, request, choices)
             }
             raise StoppedBatchError(len(done), len(requests), _stopped(store, requests, done)) from None
 
@@ -322,12 +324,12 @@ def count_stale(requests, directory, choices=None):
     dict of str to int
         The most frequent reason first; parts whose file cannot be read are not counted.
     """
-    store, found = Store(directory), Counter[str]()
+    store, stale = Store(directory), Counter[str]()
     for request in requests:
         with contextlib.suppress(FeederError):
             reason = _why_again(store, request, choices or Choices())
-            found.update([reason] if reason else [])
-    return dict(found.most_common())
+            stale.update([reason] if reason else [])
+    return dict(stale.most_common())
 
 
 def _why_again(store, request, choices):
@@ -393,7 +395,7 @@ def _stopped(store, requests, finished):
     return store.path / name
 
 
-def _finished(store, requests, kept, workers):
+def _finished(store, requests, complete, workers):
     """Write the summary, the contact sheets and the index page, from what lies on the disk."""
     from feederscrew.output.page.as_html import html
 
@@ -407,8 +409,8 @@ def _finished(store, requests, kept, workers):
     store.write(files, without=[SHEET.format("*"), summary.PARTIAL])
     return Batch(
         rows=rows,
-        kept=kept,
-        strangers=tuple(store.strangers([request.name for request in requests])),
+        reused=complete,
+        foreign=tuple(store.foreign_folders([request.name for request in requests])),
         targets=(store.path / summary.SUMMARY_FILE, store.path / summary.INDEX_FILE),
         sources=tuple(dict.fromkeys(request.source for request in requests)),
     )

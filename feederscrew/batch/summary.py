@@ -45,8 +45,8 @@ def rows(store, requests, finished=None):
     """
     nothing = {"status": NOT_COMPUTED, "reason": "", "warnings": (), "row": {}}
     return tuple(
-        _row(store.record(one.name) if finished is None or one.name in finished else nothing, one)
-        for one in requests
+        _row(store.record(request.name) if finished is None or request.name in finished else nothing, request)
+        for request in requests
     )
 
 
@@ -56,7 +56,7 @@ def is_partial(text):
 
 
 def _row(record, request):
-    known = {
+    columns = {
         "part": Path(request.source).name,
         "folder": request.name,
         "config": request.conditions.name,
@@ -64,7 +64,7 @@ def _row(record, request):
         "reason": record["reason"] or None,
         "warnings": "; ".join(record["warnings"]) or None,
     }
-    numbers = record["row"] | known
+    numbers = record["row"] | columns
     return {name: numbers.get(name) for name in SUMMARY_COLUMNS}
 
 
@@ -103,14 +103,14 @@ def sheets(store, rows):
 
 def _tile(store, row):
     if row["status"] != DONE:
-        said = _reason(row)
+        reason = _reason(row)
     elif row["parts_per_minute"] is None and row.get("note"):
-        said = row["note"]
+        reason = row["note"]
     else:
-        said = f"{row['orientation'] or '-'}: {rate(row)}"
+        reason = f"{row['orientation'] or '-'}: {rate(row)}"
         if row["parts_per_minute"] == 0.0 and row.get("note"):
-            said += f", {row['note'].removesuffix(NO_RATE)}"
-    return store.file(row["folder"], THUMBNAIL), row["folder"], said
+            reason += f", {row['note'].removesuffix(NO_RATE)}"
+    return store.file(row["folder"], THUMBNAIL), row["folder"], reason
 
 
 def _reason(row):
@@ -148,15 +148,15 @@ def index_page(store, rows):
 
 
 def _index_row(store, row):
-    said = "; ".join(filter(None, (row["reason"], row["note"], row["warnings"])))
+    remarks = "; ".join(filter(None, (row["reason"], row["note"], row["warnings"])))
     folder = MarkedCell(row["folder"], link=f"{PARTS}/{quote(row['folder'])}/")
     start = (MarkedCell("", picture=_picture(store, row)), folder, MarkedCell(row["config"]))
     if row["status"] != DONE:
-        return (*start, MarkedCell("failed", "failed"), *[MarkedCell("")] * 4, MarkedCell(said, "failed"))
+        return (*start, MarkedCell("failed", "failed"), *[MarkedCell("")] * 4, MarkedCell(remarks, "failed"))
     leaves = row["orientation"] or "-"
     numbers = [_number(row[name]) for name in ("mass_g", "aspects")]
     rates = [_number(row[name]) for name in ("velocity_mm_s", "parts_per_minute")]
-    return (*start, *numbers, MarkedCell(leaves), *rates, MarkedCell(said))
+    return (*start, *numbers, MarkedCell(leaves), *rates, MarkedCell(remarks))
 
 
 def _number(value):

@@ -23,6 +23,7 @@ NEW, CHANGED_FILE, CHANGED_OPTIONS = (
 )  # why one is computed again
 CHANGED_PROGRAM = "another version of the program or a library"
 FAILED_BEFORE, MEDDLED = "failed for want of its file or of memory", "results changed or incomplete"
+PARTS = "parts"  # folder of the results of a batch, one folder a part in it
 THUMBNAIL = "thumbnail.png"  # among the files of a part
 ELSEWHERE = re.compile(r"[,;] or pass `allow_open`[^;]*")  # advice that only a command of one part can take
 
@@ -34,7 +35,7 @@ class Conditions:
     name: str  # the file's stem; 'bowl' for the defaults
     bowl: Bowl
     texts: tuple[tuple[str, str], ...]  # key and value in effect, as text
-    given: bool = False  # whether a bowl file was named
+    has_file: bool = False  # whether a bowl file was named
     warnings: tuple[str, ...] = ()  # what a machine makes of its drive
     tried: Verified | VoidTrial | None = None  # what the file says of its trial
 

@@ -56,23 +56,23 @@ def _results(task):
     request, choices, files = task.request, task.choices, Files()
     part = load(request.source, **dict(request.options), names=request.names, stdin=io.BytesIO(task.data))
     study, tested = _answered(part, task, files)
-    found = study.aspects
+    results = study.aspects
     offers.write(files, aspects.offers(study), pictures=choices.pictures)
     conveying = travel(request.conditions)
     files.write("convey.json", tables.json_text(conveying))
-    rated, rate_warnings = _rate(part, found, task, files)
+    rated, rate_warnings = _rate(part, results, task, files)
     row = {
         "config": request.conditions.name,
         "material": part.material,
         "mass_g": part.mass / columns.GRAM,
-        "aspects": int(found.stable.sum()),
+        "aspects": int(results.stable.sum()),
         "velocity_mm_s": conveying["velocity_mm_s"],
         "regime": conveying["regime"],
         **rated,
         **tested,
     }
     if choices.pictures and part.vertices is not None:
-        files.write(THUMBNAIL, batch.thumbnail(part, found, row.get("aspect")))
+        files.write(THUMBNAIL, batch.thumbnail(part, results, row.get("aspect")))
     return Outcome(
         name=request.name,
         key=task.key,
@@ -85,7 +85,7 @@ def _results(task):
         | {"rule": choices.rule, "drops": choices.drops, "launch": choices.launch or "fed"}
         | ({"names": request.names.source} if request.names else {}),
         warnings=tuple(
-            dict.fromkeys((*part.warnings, *request.conditions.warnings, *found.warnings, *rate_warnings))
+            dict.fromkeys((*part.warnings, *request.conditions.warnings, *results.warnings, *rate_warnings))
         ),
         files=dict(files),  # who takes it need not import this module
     )
@@ -98,22 +98,22 @@ def travel(conditions):
     return convey_output.document(convey(conditions.bowl)) | {"bowl": dict(conditions.texts)}
 
 
-def _rate(part, found, task, files):
+def _rate(part, aspects, task, files):
     """Rate the aspect wanted, else the orientation that leaves most often; what ``feeder rate`` warns of."""
     if part.vertices is None:
         return {"note": "a part card has no outline: no rate"}, _tried(part, task.request, None)
     conditions, rule = task.request.conditions, task.choices.rule
-    study = rate(part, conditions.bowl, task.request.aspect, rule=rule, known=Shares(found))
-    way = study.rate.orientations.lying[study.rate.row].name
-    document = proof.beside(rate_output.document(study), conditions.tried, part, conditions.bowl, way)
+    study = rate(part, conditions.bowl, task.request.aspect, rule=rule, known=Shares(aspects))
+    path = study.rate.orientations.lying[study.rate.row].name
+    document = proof.beside(rate_output.document(study), conditions.tried, part, conditions.bowl, path)
     offers.write(files, rate_output.offers(study))
     wanted = ("aspect", "heading_deg", "pitch_mm", "p_orientation", "passes_devices")
     rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
-    named = {"orientation": way, "rule": rule, "answer": study.answer}
+    named = {"orientation": path, "rule": rule, "answer": study.answer}
     remarks = rate_output.remarks(study)
     why = "; ".join(remarks) if document["parts_per_minute"] <= 0.0 else ""
     noted = {"note": why} if why else {}
-    warnings = (*study.warnings, *remarks, *_tried(part, task.request, way))
+    warnings = (*study.warnings, *remarks, *_tried(part, task.request, path))
     return named | noted | {name: document[name] for name in (*wanted, *rates)}, warnings
 
 
@@ -132,15 +132,15 @@ def _answered(part, task, files):
     choices = task.choices
     if not choices.drops or part.vertices is None:
         bowl = task.request.conditions.bowl
-        known = shares(part, bowl, launch=choices.launch, rule=choices.rule, jobs=1)
-        return AspectsStudy(part, known.aspects), {}
+        fed_shares = shares(part, bowl, launch=choices.launch, rule=choices.rule, jobs=1)
+        return AspectsStudy(part, fed_shares.aspects), {}
     from feederscrew.output import drop as drop_output
     from feederscrew.studies.drop import drop
 
-    found, seed = find(part, launch=choices.launched), int(task.sha256[:SEED_DIGITS], 16)
-    study = drop(part, choices.launched, drops=choices.drops, seed=seed, aspects=found)
+    drops, seed = find(part, launch=choices.launched), int(task.sha256[:SEED_DIGITS], 16)
+    study = drop(part, choices.launched, drops=choices.drops, seed=seed, aspects=drops)
     offers.write(files, drop_output.offers(study), pictures=choices.pictures)
     tally = study.result.tally
     first = int(np.argmax(tally.p))
-    values = {"drops": choices.drops, "drop_aspect": found.names[first], "p_drop": tally.p[first]}
-    return with_drops(found, study, launch_named(choices.launched)), values
+    values = {"drops": choices.drops, "drop_aspect": drops.names[first], "p_drop": tally.p[first]}
+    return with_drops(drops, study, launch_named(choices.launched)), values

@@ -18,7 +18,7 @@ from typing import Any
 from feederscrew import __version__
 from feederscrew.batch.task import Outcome, Task, libraries
 from feederscrew.errors import ArgumentError, FeederError, MissingPackage
-from feederscrew.units import shown
+from feederscrew.units import quantity_text
 
 ATTEMPTS = 3  # of a part whose worker dies under it
 LIFETIME = 200  # parts of one process: what libraries leak goes with it
@@ -65,20 +65,20 @@ class Processes:
         ------
         Outcome
         """
-        again: list[Task] = []
+        retries: list[Task] = []
         crew: list[_Worker] = []
         tasks, failures = iter(tasks), []
         try:
-            while self._busy(crew, tasks, again):
+            while self._busy(crew, tasks, retries):
                 for worker in _ready(crew):
                     task, outcome = worker.take()
                     if outcome is None:
                         failures.append(name := task.request.name)
                         if failures.count(name) < ATTEMPTS:
-                            again.append(task)
+                            retries.append(task)
                             continue
                         outcome = Outcome.failed(task, WORKER_LOST_MESSAGE.format(ATTEMPTS), final=False)
-                    self._busy(crew, tasks, again)  # at work while the outcome is put in place
+                    self._busy(crew, tasks, retries)  # at work while the outcome is put in place
                     yield outcome
         finally:
             for worker in crew:
@@ -102,18 +102,18 @@ class Processes:
         try:
             for item in items:
                 worker.give(item)
-                _, found = worker.take()
-                yield function(item) if worker.dead else found
+                _, results = worker.take()
+                yield function(item) if worker.dead else results
         finally:
             worker.stop()
 
-    def _busy(self, crew, tasks, again):
+    def _busy(self, crew, tasks, retries):
         """Give every process work, as long as there is any; return those at work."""
         for worker in [w for w in crew if w.task is None and (w.dead or w.served >= self.lifetime)]:
             worker.stop()
             crew.remove(worker)
         while len(idle := [w for w in crew if w.task is None]) or len(crew) < self.jobs:
-            task = again.pop() if again else next(tasks, None)
+            task = retries.pop() if retries else next(tasks, None)
             if task is None:
                 break
             worker = idle[0] if idle else _Worker(self.context, self.job)
@@ -239,7 +239,7 @@ class Cluster:
     def _client(self):
         distributed = _distributed()
         if not ADDRESS.fullmatch(self.address):
-            what = f"{shown(self.address)} is not an address of a scheduler"
+            what = f"{quantity_text(self.address)} is not an address of a scheduler"
             raise ArgumentError("scheduler", what, "write it as tcp://host:8786")
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # we tell what is lost, in one line
         try:
@@ -251,12 +251,12 @@ class Cluster:
         """Check that every worker has this very program and libraries, or its bytes would not be ours."""
         try:
             client.wait_for_workers(1, timeout=CLUSTER_TIMEOUT_S)
-            found = client.run(_versions)
+            run = client.run(_versions)
         except OSError as error:
             raise self._fault(f"no worker answers ({_first_line(error)})") from None
         except ImportError as error:
             raise self._fault(f"a worker cannot import this program ({_first_line(error)})") from None
-        for worker, versions in found.items():
+        for worker, versions in run.items():
             odd = [name for name, version in _versions().items() if versions.get(name) != version]
             if odd:
                 raise self._fault(f"{worker} has another version of {', '.join(odd)}")

@@ -32,13 +32,13 @@ def listed(entry: Entry, faults: list[FeederError]) -> tuple[Device, ...]:
     if entry.value.kind != "list":
         faults.append(ConfigError(entry.where, "devices is not a list", "write one '- wiper: 6 mm' a line"))
         return ()
-    found = []
+    devices_read = []
     for item in entry.value.items:
         try:
-            found.append(_device(item))
+            devices_read.append(_device(item))
         except ConfigError as fault:
             faults.append(fault)
-    return tuple(found)
+    return tuple(devices_read)
 
 
 def misplaced(chain: Sequence[Device], width: float) -> list[ConfigError]:
@@ -96,7 +96,7 @@ def _in_grooves(chain: Sequence[Device]) -> list[ConfigError]:
     return faults
 
 
-def strangers(chain: Sequence[Device], aspects: Sequence[str]) -> list[str]:
+def unknown_aspects(chain: Sequence[Device], aspects: Sequence[str]) -> list[str]:
     """Return what is odd in a chain for one part: yields of aspects that it does not have.
 
     Parameters
@@ -110,12 +110,13 @@ def strangers(chain: Sequence[Device], aspects: Sequence[str]) -> list[str]:
     list of str
         One line each; the file may be meant for other parts as well, so it is no fault.
     """
-    known = {name.casefold() for name in aspects}
+    aspect_names = {name.casefold() for name in aspects}
     return [
-        f"{device.where}: {device.kind} names aspect {units.shown(name)}, which this part does not have"
+        f"{device.where}: {device.kind} names aspect {units.quantity_text(name)}, "
+        "which this part does not have"
         for device in chain
         for name, _ in device.shares
-        if name.casefold() not in known
+        if name.casefold() not in aspect_names
     ]
 
 
@@ -153,28 +154,30 @@ def check_written(chain: Iterable[Device], name: str) -> None:
 
 
 def differences(
-    one: object, other: object, unlike: Container[str] = ("where", "text", "assumption")
+    first: object, second: object, unlike: Container[str] = ("where", "text", "assumption")
 ) -> list[str]:
     """Return in what two records of one kind differ by more than a file's digits, an attribute a sentence.
 
     Parameters
     ----------
-    one, other : dataclass
+    first, second : dataclass
     unlike : collection of str
         Attributes that may differ.
     """
-    if type(one) is not type(other):
-        return [f"it is a {type(other).__name__} and not a {type(one).__name__}"]
-    rows = ((field.name, getattr(one, field.name), getattr(other, field.name)) for field in fields(one))  # type: ignore[arg-type]
+    if type(first) is not type(second):
+        return [f"it is a {type(second).__name__} and not a {type(first).__name__}"]
+    rows = ((field.name, getattr(first, field.name), getattr(second, field.name)) for field in fields(first))  # type: ignore[arg-type]
     return [
-        f"{name} is {b!r} and not {a!r}" for name, a, b in rows if name not in unlike and not _alike(a, b)
+        f"{name} is {b!r} and not {a!r}"
+        for name, a, b in rows
+        if name not in unlike and not _same_device(a, b)
     ]
 
 
-def _alike(a: object, b: object) -> bool:
+def _same_device(a: object, b: object) -> bool:
     """Whether two values are equal but for the digits that a file has."""
     if isinstance(a, tuple) and isinstance(b, tuple):
-        return len(a) == len(b) and all(map(_alike, a, b))
+        return len(a) == len(b) and all(map(_same_device, a, b))
     if isinstance(a, float | int) and isinstance(b, float | int):
         return math.isclose(a, b, rel_tol=WRITTEN_SHARE, abs_tol=0.51 * WRITTEN_STEP_M)
     if is_dataclass(a) and is_dataclass(b):
@@ -187,7 +190,7 @@ def _device(item: documents.Node) -> Device:
         raise ConfigError(item.where, "is not a device", "write one '- wiper: 6 mm' a line")
     entry = item.entries[0]
     if entry.key not in KINDS:
-        what = f"unknown device {units.shown(entry.key)}"
+        what = f"unknown device {units.quantity_text(entry.key)}"
         raise ConfigError(entry.where, what, documents.hint(entry.key, list(KINDS)))
     kind = KINDS[entry.key]
     return kind(entry.where, text=written(entry.value), **kind.read(entry))

@@ -40,7 +40,7 @@ def template() -> str:
             lines += ["", *_opening(section)] if section else [""]
         lines.append(_template_line(key))
     lines += ["", f"# {DEVICES_SECTION}:  # along the track, in the order parts meet them"]
-    lines += [f"#   - {kind}: {one.example}  # {one.meaning}" for kind, one in KINDS.items()]
+    lines += [f"#   - {kind}: {key.example}  # {key.meaning}" for kind, key in KINDS.items()]
     return "\n".join(lines) + "\n"
 
 
@@ -114,7 +114,7 @@ def json_schema() -> dict[str, Any]:
         "type": "array",
         "items": {
             "type": "object",
-            "properties": {kind: _device(one) for kind, one in KINDS.items()},
+            "properties": {kind: _device(key) for kind, key in KINDS.items()},
             "additionalProperties": False,
             "minProperties": 1,
             "maxProperties": 1,
@@ -160,7 +160,7 @@ def write_beside(path: str | PathLike[str]) -> Path:
 
 def _section(section: str) -> dict[str, Any]:
     keys = [key for key in BOWL_KEYS if key.section == section]
-    made = {
+    schema_part = {
         "description": SECTION_DESCRIPTIONS.get(section, f"Values of {section}."),
         "type": "object",
         "properties": {key.word: _value(key) for key in keys},
@@ -169,8 +169,8 @@ def _section(section: str) -> dict[str, Any]:
     pairs = ((key, rival(key)) for key in keys)
     rivals = {frozenset((key.word, other.word)) for key, other in pairs if other is not None}
     if rivals:
-        made["allOf"] = [{"not": {"required": sorted(pair)}} for pair in sorted(rivals, key=sorted)]
-    return made
+        schema_part["allOf"] = [{"not": {"required": sorted(pair)}} for pair in sorted(rivals, key=sorted)]
+    return schema_part
 
 
 def _value(key: Key) -> dict[str, Any]:
@@ -180,7 +180,7 @@ def _value(key: Key) -> dict[str, Any]:
         return _word(key)
     follows = key.default in BY_NAME
     left_out = f"Left out: as {key.default}." if follows else f"Default: {key.default}."
-    made = {
+    schema_part = {
         "description": f"{key.meaning}. {bounds} {left_out}",
         **quantity(key.dimension, key.lowest, key.highest),
         "x-dimension": key.dimension,
@@ -188,7 +188,7 @@ def _value(key: Key) -> dict[str, Any]:
         "x-highest": key.highest,
         "x-units": [unit for unit in units.UNITS_BY_DIMENSION[key.dimension] if unit],
     }
-    return made if follows else {**made, "default": _typed(key.default, key.dimension)}
+    return schema_part if follows else {**schema_part, "default": _typed(key.default, key.dimension)}
 
 
 def _word(key: Key) -> dict[str, Any]:

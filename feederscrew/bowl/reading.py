@@ -84,7 +84,7 @@ def adjust(bowl: Bowl, overrides: Iterable[str]) -> Bowl:
         its drive would be is not known.
     """
     if bowl.settings:
-        return record(_overridden({s.key.name: s for s in bowl.settings if s.given}, overrides, []))
+        return record(_overridden({s.key.name: s for s in bowl.settings if s.is_own}, overrides, []))
     faults: list[FeederError] = []
     for setting in _from_overrides(overrides, faults).values():
         section, _, word = setting.key.field.rpartition(".")
@@ -108,24 +108,30 @@ def _overridden(
 ) -> tuple[Setting, ...]:
     """Every value in effect of what is given and of overrides; raises all faults together."""
     typed = _from_overrides(overrides, faults)
-    given = {name: s for name, s in in_file.items() if not replaced(s.key, typed)} | typed
-    found = effective(given)
-    faults += [*_kinetic_above_static(given), *devices.misplaced(chain(found), _width(found))]
+    settings_by_key = {name: s for name, s in in_file.items() if not replaced(s.key, typed)} | typed
+    in_effect = effective(settings_by_key)
+    faults += [
+        *_kinetic_above_static(settings_by_key),
+        *devices.misplaced(chain(in_effect), _width(in_effect)),
+    ]
     documents.raise_all(faults)
-    return found
+    return in_effect
 
 
 def settings_of_text(text: str, name: str) -> tuple[Setting, ...]:
     """Return every value in effect of the text of a bowl file; the rest as for ``settings``."""
-    given, faults = _given(*documents.load(text, name))
-    found = effective(given)
-    faults += [*_kinetic_above_static(given), *devices.misplaced(chain(found), _width(found))]
+    settings_by_key, faults = _settings_of(*documents.load(text, name))
+    in_effect = effective(settings_by_key)
+    faults += [
+        *_kinetic_above_static(settings_by_key),
+        *devices.misplaced(chain(in_effect), _width(in_effect)),
+    ]
     documents.raise_all(faults)
-    return found
+    return in_effect
 
 
-def _width(found: Iterable[Setting]) -> float:
-    return next(s.value for s in found if s.key.name == "track.width")
+def _width(lines: Iterable[Setting]) -> float:
+    return next(s.value for s in lines if s.key.name == "track.width")
 
 
 def checked(
@@ -169,37 +175,37 @@ def checked(
     value = 0.0 if abs(value) < SMALLEST else value
     low, high = (units.quantity(limit, key.dimension) for limit in (key.lowest, key.highest))
     if not low <= value <= high:
-        what = f"{subject}{units.shown(text)} is out of range"
+        what = f"{subject}{units.quantity_text(text)} is out of range"
         raise kind(where, what, f"give {key.lowest} to {key.highest}")
     if key.dimension == "count" and value % 1.0:
-        raise kind(where, f"{subject}{units.shown(text)} is not a whole number", "give 9 or 10")
+        raise kind(where, f"{subject}{units.quantity_text(text)} is not a whole number", "give 9 or 10")
     return Setting(key, " ".join(text.split()), value, where)
 
 
 def _from_file(path: str | PathLike[str]) -> tuple[dict[str, Setting], list[FeederError]]:
-    return _given(*documents.read(path))
+    return _settings_of(*documents.read(path))
 
 
-def _given(root: Node, faults: list[FeederError]) -> tuple[dict[str, Setting], list[FeederError]]:
+def _settings_of(root: Node, faults: list[FeederError]) -> tuple[dict[str, Setting], list[FeederError]]:
     """Settings of the tree of a bowl file by key name, and what is wrong with it."""
     if root.kind != "mapping":
         raise ConfigError(root.where, "no 'key: value' line", "start from 'feeder config init'")
-    given: dict[str, Setting] = {}
+    settings_by_key: dict[str, Setting] = {}
     for entry in root.entries:
         if entry.key in BOWL_SECTIONS:
-            _read_section(entry, given, faults)
+            _read_section(entry, settings_by_key, faults)
         elif entry.key in BY_NAME and not BY_NAME[entry.key].section:
-            _read_value(BY_NAME[entry.key], entry, given, faults)
+            _read_value(BY_NAME[entry.key], entry, settings_by_key, faults)
         elif entry.key == devices.DEVICES_SECTION:
-            given |= {
+            settings_by_key |= {
                 s.key.name: s for s in map(of_device, itertools.count(1), devices.listed(entry, faults))
             }
         elif entry.key != verified.VERIFIED_SECTION:
             faults.append(_unknown(entry, "", TOP_LEVEL))
-    return given, faults
+    return settings_by_key, faults
 
 
-def _read_section(section: Entry, given: dict[str, Setting], faults: list[FeederError]) -> None:
+def _read_section(section: Entry, settings_by_key: dict[str, Setting], faults: list[FeederError]) -> None:
     value = section.value
     if value.kind == "list" or value.text:
         what = f"'{section.key}' is a section, not a value"
@@ -207,20 +213,22 @@ def _read_section(section: Entry, given: dict[str, Setting], faults: list[Feeder
     words = [key.word for key in BOWL_KEYS if key.section == section.key]
     for entry in value.entries:
         if entry.key in words:
-            _read_value(BY_NAME[f"{section.key}.{entry.key}"], entry, given, faults)
+            _read_value(BY_NAME[f"{section.key}.{entry.key}"], entry, settings_by_key, faults)
         else:
             faults.append(_unknown(entry, section.key, words))
 
 
-def _read_value(key: Key, entry: Entry, given: dict[str, Setting], faults: list[FeederError]) -> None:
+def _read_value(
+    key: Key, entry: Entry, settings_by_key: dict[str, Setting], faults: list[FeederError]
+) -> None:
     try:
         setting = _from_node(key, entry.value)
     except ConfigError as fault:
         faults.append(fault)
         return
-    if replaced(key, given):
+    if replaced(key, settings_by_key):
         faults.append(_both(key, rival(key), entry.where))
-    given[key.name] = setting
+    settings_by_key[key.name] = setting
 
 
 def _from_node(key: Key, node: Node) -> Setting:
@@ -233,30 +241,30 @@ def _from_node(key: Key, node: Node) -> Setting:
     return checked(key, node.text, node.where)
 
 
-def _unknown(entry: Entry, section: str, known: Sequence[str]) -> ConfigError:
+def _unknown(entry: Entry, section: str, key_names: Sequence[str]) -> ConfigError:
     """The fault of a key that does not exist here; it may exist elsewhere."""
     elsewhere = next((k for k in BOWL_KEYS if entry.key in (k.word, k.name) and k.section != section), None)
-    mend = documents.hint(entry.key, known)
+    mend = documents.hint(entry.key, key_names)
     if elsewhere is not None:
         mend = f"write {elsewhere.word} " + (
             f"below '{elsewhere.section}:'" if elsewhere.section else "without indent"
         )
-    return ConfigError(entry.where, f"unknown key {units.shown(entry.key)}", mend)
+    return ConfigError(entry.where, f"unknown key {units.quantity_text(entry.key)}", mend)
 
 
 def _from_overrides(overrides: Iterable[str], faults: list[FeederError]) -> dict[str, Setting]:
     """Settings of overrides by key name; what is wrong is added to ``faults``."""
-    given: dict[str, Setting] = {}
+    settings_by_key: dict[str, Setting] = {}
     for override in overrides:
         try:
             setting = _from_override(override)
         except ConfigError as fault:
             faults.append(fault)
             continue
-        if replaced(setting.key, given):
+        if replaced(setting.key, settings_by_key):
             faults.append(_both(setting.key, rival(setting.key), setting.where, ArgumentError))
-        given[setting.key.name] = setting
-    return given
+        settings_by_key[setting.key.name] = setting
+    return settings_by_key
 
 
 def _from_override(override: str) -> Setting:
@@ -294,27 +302,29 @@ def find_key(name: str, where: str) -> Key:
         raise ArgumentError(where, f"'{name}' is a section, not a key", f"write one of its keys, as {first}")
     if name == devices.DEVICES_SECTION:
         raise ArgumentError(where, "devices are a list", "write them in a bowl file")
-    raise ArgumentError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
+    raise ArgumentError(
+        where, f"unknown key {units.quantity_text(name)}", documents.hint(name, list(BY_NAME))
+    )
 
 
 def _both(key: Key, other: Key | None, where: str, kind: type[ConfigError] = ConfigError) -> ConfigError:
-    names = " and ".join(one.name for one in (key, other) if one is not None)
+    names = " and ".join(part.name for part in (key, other) if part is not None)
     return kind(where, f"{names} are both given", "keep one of them")
 
 
-def _kinetic_above_static(given: dict[str, Setting]) -> list[ConfigError]:
+def _kinetic_above_static(settings_by_key: dict[str, Setting]) -> list[ConfigError]:
     """The faults of kinetic coefficients above static ones, each reported at the last word on either."""
-    held = {s.key.name: s for s in effective(given)}
+    held = {s.key.name: s for s in effective(settings_by_key)}
     listed = []
     for suffix in ("", "_backward"):
         static, kinetic = held[f"friction.static{suffix}"], held[f"friction.kinetic{suffix}"]
-        if kinetic.value > static.value and (static.given or kinetic.given):
+        if kinetic.value > static.value and (static.is_own or kinetic.is_own):
             listed.append(_above(static, kinetic))
     return listed
 
 
 def _above(static: Setting, kinetic: Setting) -> ConfigError:
-    static_last = not kinetic.given or (static.overrides and not kinetic.overrides)
+    static_last = not kinetic.is_own or (static.overrides and not kinetic.overrides)
     last, other = (static, kinetic) if static_last else (kinetic, static)
     place = "given as well" if other.overrides else other.where
     what = f"{kinetic.key.name} {kinetic.text} is above {static.key.name} {static.text} ({place})"
@@ -385,7 +395,7 @@ def _amplitude(full: float, entry: str) -> float:
     if not 0.0 <= share <= FULL:
         raise ArgumentError(
             AMPLITUDES_KEY,
-            f"{units.shown(entry)} is out of range",
+            f"{units.quantity_text(entry)} is out of range",
             f"give 0% to {FULL:.0%} of drive.amplitude",
         )
     return share * full
@@ -420,18 +430,20 @@ def key_ranges(texts: Iterable[str]) -> tuple[KeyRange, ...]:
     Faults
         Every fault of every text, one a line; also a field varied twice.
     """
-    found: dict[str, KeyRange] = {}
+    ranges: dict[str, KeyRange] = {}
     faults: list[ConfigError] = []
     for text in texts:
         try:
-            one = _range(text)
-            if one.key.field in found:
-                raise ArgumentError(f"vary {one.key.name}", "is varied twice", "vary two different keys")
-            found[one.key.field] = one
+            key_range = _range(text)
+            if key_range.key.field in ranges:
+                raise ArgumentError(
+                    f"vary {key_range.key.name}", "is varied twice", "vary two different keys"
+                )
+            ranges[key_range.key.field] = key_range
         except ConfigError as fault:
             faults.append(fault)
     documents.raise_all(faults)
-    return tuple(found.values())
+    return tuple(ranges.values())
 
 
 def _range(text: str) -> KeyRange:
@@ -442,7 +454,7 @@ def _range(text: str) -> KeyRange:
         raise ArgumentError(where, "is a word, not a number", f"set it to {key.bounds}")
     ends = span.split(":")
     if len(ends) != 3:
-        what = f"{units.shown(span)} is not a range"
+        what = f"{units.quantity_text(span)} is not a range"
         raise ArgumentError(where, what, f"write FROM:TO:COUNT, as in {name}={_example(key)}")
     low, high = (checked(key, end, where, bare=True, kind=ArgumentError).value for end in ends[:2])
     if low == high:
@@ -455,7 +467,9 @@ def _range_count(text: str, where: str) -> int:
     if text.strip().isascii() and text.strip().isdigit() and 2 <= int(text.strip()[:9]) <= MAX_RANGE_VALUES:
         return int(text.strip())
     raise ArgumentError(
-        where, f"{units.shown(text)} is not a count", f"give a whole number from 2 to {MAX_RANGE_VALUES}"
+        where,
+        f"{units.quantity_text(text)} is not a count",
+        f"give a whole number from 2 to {MAX_RANGE_VALUES}",
     )
 
 

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.tooling.devices.base import Device
 
 MAX_TRACK_WIDTH_SHARE = 0.95  # of the wall's radius: about the axis there is no track
@@ -155,7 +155,7 @@ class Sizing:
 
 
 @dataclass(frozen=True)
-class Bowl(Shown):
+class Bowl(ReadableRecord):
     """Drive, surface, track and devices of one bowl."""
 
     drive: Drive

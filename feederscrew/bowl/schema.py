@@ -52,7 +52,7 @@ class Key:
         words = {_plainly(choice): choice for choice in self.choices}
         word = words.get(_plainly(text))
         if word is None:
-            raise units.QuantityError(f"{units.shown(text)} is not known", f"write {self.bounds}")
+            raise units.QuantityError(f"{units.quantity_text(text)} is not known", f"write {self.bounds}")
         return word
 
     @property
@@ -352,8 +352,8 @@ def _check_inertia(values: Mapping[str, Any]) -> None:
         for word, at in (("inertia_x", x), ("inertia_y", y), ("bowl_inertia", z))
     )
     yz, xz, xy = (
-        values[word] - mass * one * other
-        for word, one, other in zip(PRODUCT_OF_INERTIA_NAMES, (y, x, x), (z, z, y))
+        values[word] - mass * first * other
+        for word, first, other in zip(PRODUCT_OF_INERTIA_NAMES, (y, x, x), (z, z, y))
     )
     whole = xx * yy * zz + 2.0 * xy * xz * yz - xx * yz * yz - yy * xz * xz - zz * xy * xy
     if min(xx, xx * yy - xy * xy, whole) < -UNBALANCE_TOLERANCE * total**2 * max(total, 1.0):
@@ -369,9 +369,9 @@ def unbalance_values(machine: Any) -> dict[str, float]:
     machine : Machine
     """
     own = machine.unbalance
-    moments = [one / machine.bowl_mass for one in own.moment]
-    found = dict(zip(UNBALANCE_NAMES, (*moments, *own.upright, *own.products)))
-    return found if any(found.values()) else {}
+    moments = [value / machine.bowl_mass for value in own.moment]
+    values = dict(zip(UNBALANCE_NAMES, (*moments, *own.upright, *own.products)))
+    return values if any(values.values()) else {}
 
 
 BOWL_KEYS = (

@@ -33,7 +33,7 @@ class Setting:
     text: str  # as typed: '0.5 mm'
     value: Any  # [SI] a number, or an array while the key is varied; a word; a Device
     where: str  # 'bowl.yaml:2:14', 'overrides drive.amplitude', 'default', 'as friction.static'
-    given: bool = True  # by the user
+    is_own: bool = True  # by the user
 
     @property
     def size(self) -> Any:
@@ -43,22 +43,22 @@ class Setting:
     @property
     def overrides(self) -> bool:
         """Whether it goes over the file."""
-        return self.given and self.where == f"{OVERRIDES} {self.key.name}"
+        return self.is_own and self.where == f"{OVERRIDES} {self.key.name}"
 
     @property
     def origin(self) -> str:
         """Where it came from, for people: 'bowl.yaml:2', '--set', 'default'."""
-        if not self.given:
+        if not self.is_own:
             return self.where
         return "--set" if self.overrides else self.where.rpartition(":")[0]
 
 
-def effective(given: Mapping[str, Setting]) -> tuple[Setting, ...]:
+def effective(own_settings: Mapping[str, Setting]) -> tuple[Setting, ...]:
     """Return complete settings.
 
     Parameters
     ----------
-    given : dict of str to Setting
+    own_settings : dict of str to Setting
         What the user gave, by key name; of two keys of one field at most one.
 
     Returns
@@ -66,8 +66,8 @@ def effective(given: Mapping[str, Setting]) -> tuple[Setting, ...]:
     tuple of Setting
         One a key, in the order of ``schema.KEYS``, then one a device.
     """
-    keyed = tuple(_effective(key, given) for key in BOWL_KEYS)
-    return (*keyed, *(s for name, s in given.items() if name not in BY_NAME))
+    keyed = tuple(_effective(key, own_settings) for key in BOWL_KEYS)
+    return (*keyed, *(s for name, s in own_settings.items() if name not in BY_NAME))
 
 
 def of_device(place: int, device: Device) -> Setting:
@@ -89,7 +89,7 @@ def record(settings: Sequence[Setting]) -> Bowl:
     """
     keyed = [s for s in settings if s.key.field != DEVICES_SECTION]
     fields = {s.key.field: s.value if s.key.choices else s.size for s in keyed}
-    fields |= {s.key.field: None for s in keyed if s.key.field in DEPENDENT_KEYS and not s.given}
+    fields |= {s.key.field: None for s in keyed if s.key.field in DEPENDENT_KEYS and not s.is_own}
     sections: dict[str, dict[str, Any]] = {name: {} for name in RECORDS}
     for name, value in fields.items():
         section, _, word = name.rpartition(".")
@@ -121,26 +121,26 @@ def swept(settings: Sequence[Setting], values: Mapping[str, Any]) -> Bowl:
         Varied fields are those arrays.
     """
     varied = {name: Setting(BY_NAME[name], "", value, "varied") for name, value in values.items()}
-    given = {s.key.name: s for s in settings if s.given and not replaced(s.key, varied)}
-    return record(effective(given | varied))
+    own_settings = {s.key.name: s for s in settings if s.is_own and not replaced(s.key, varied)}
+    return record(effective(own_settings | varied))
 
 
 def texts(settings: Sequence[Setting]) -> dict[str, str]:
     """Return the settings by key name as text, for run.json; without an optional section not given."""
-    listed = {s.key.section for s in settings if s.given}
+    listed = {s.key.section for s in settings if s.is_own}
     silent = [name for name in OPTIONAL if name not in listed]
     return {s.key.name: s.text for s in settings if s.key.section not in silent}
 
 
-def has_machine(given: Iterable[str]) -> bool:
+def has_machine(own_settings: Iterable[str]) -> bool:
     """Return whether a key of what moves the bowl is among those given; its bolts do not.
 
     Parameters
     ----------
-    given : dict of str to Setting
+    own_settings : dict of str to Setting
         By key name.
     """
-    return any(name in BY_NAME and BY_NAME[name].field.startswith("machine.") for name in given)
+    return any(name in BY_NAME and BY_NAME[name].field.startswith("machine.") for name in own_settings)
 
 
 def assumptions(settings: Sequence[Setting]) -> tuple[str, ...]:
@@ -159,17 +159,21 @@ def by_machine(settings: Sequence[Setting]) -> tuple[str, ...]:
     As soon as one key of the machine is given, its springs and its supply set the drive: whoever gives
     neither may not expect that.
     """
-    given = {s.key.name for s in settings if s.given}
-    kept = {"drive.frequency": "machine.supply", "drive.vibration_angle": "machine.spring_angle"}
+    own_settings = {s.key.name for s in settings if s.is_own}
+    set_by = {"drive.frequency": "machine.supply", "drive.vibration_angle": "machine.spring_angle"}
     moved = [
         f"{s.key.name} is {s.text} by the machine, not {default(s.key).text}"
         for s in settings
-        if has_machine(given) and s.where.startswith("from machine") and kept.get(s.key.name) not in given
+        if has_machine(own_settings)
+        and s.where.startswith("from machine")
+        and set_by.get(s.key.name) not in own_settings
     ]
     if not moved:
         return ()
-    one = next(name for name in BY_NAME if name in given and has_machine({name}))
-    return (f"{one}: is given, so {' and '.join(moved)} - write drive.frequency and drive.vibration_angle",)
+    first_key = next(name for name in BY_NAME if name in own_settings and has_machine({name}))
+    return (
+        f"{first_key}: is given, so {' and '.join(moved)} - write drive.frequency and drive.vibration_angle",
+    )
 
 
 def default(key: Key) -> Setting:
@@ -177,52 +181,56 @@ def default(key: Key) -> Setting:
     return _effective(key, {})
 
 
-def replaced(key: Key, given: Container[str]) -> bool:
+def replaced(key: Key, own_settings: Container[str]) -> bool:
     """Return whether another key of the same field is given."""
     other = rival(key)
-    return other is not None and other.name in given
+    return other is not None and other.name in own_settings
 
 
-def _effective(key: Key, given: Mapping[str, Setting]) -> Setting:
-    if key.name in given:
-        return given[key.name]
+def _effective(key: Key, own_settings: Mapping[str, Setting]) -> Setting:
+    if key.name in own_settings:
+        return own_settings[key.name]
     other = rival(key)
-    if other is not None and (replaced(key, given) or key.default == other.name):
-        return _converted(key, _effective(other, given))
-    if key.name in OF_THE_MACHINE and has_machine(given):
-        return _of_the_machine(key, given)
-    if key.name == "machine.supply" and "machine.mains" in given:
-        text = f"{given['machine.mains'].text} full wave"
-        return Setting(key, text, key.value(text), "from machine.mains", given=False)
+    if other is not None and (replaced(key, own_settings) or key.default == other.name):
+        return _converted(key, _effective(other, own_settings))
+    if key.name in OF_THE_MACHINE and has_machine(own_settings):
+        return _of_the_machine(key, own_settings)
+    if key.name == "machine.supply" and "machine.mains" in own_settings:
+        text = f"{own_settings['machine.mains'].text} full wave"
+        return Setting(key, text, key.value(text), "from machine.mains", is_own=False)
     if key.default in BY_NAME:
-        source = _effective(BY_NAME[key.default], given)
-        return Setting(key, source.text, source.value, f"as {key.default}", given=False)
-    return Setting(key, key.default, key.value(key.default), "default", given=False)
+        source = _effective(BY_NAME[key.default], own_settings)
+        return Setting(key, source.text, source.value, f"as {key.default}", is_own=False)
+    return Setting(key, key.default, key.value(key.default), "default", is_own=False)
 
 
 def _converted(key: Key, source: Setting) -> Setting:
     """The same field said by its other key."""
     value = source.value * source.key.share / key.share
     text = f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}" if source.text else ""
-    return Setting(key, text, value, f"from {source.key.name}", given=False)
+    return Setting(key, text, value, f"from {source.key.name}", is_own=False)
 
 
-def _of_the_machine(key: Key, given: Mapping[str, Setting]) -> Setting:
+def _of_the_machine(key: Key, own_settings: Mapping[str, Setting]) -> Setting:
     """The value that a machine's springs or its supply give to a key of the drive."""
     if key.name == "drive.frequency":
-        supply = _effective(BY_NAME["machine.supply"], given)
+        supply = _effective(BY_NAME["machine.supply"], own_settings)
         return _derived(key, supply.value, "from machine.supply")
     own = [
-        one
-        for one in BOWL_KEYS
-        if one.field.startswith("machine.") and one.word not in schema.UNBALANCE_NAMES
+        key_of_machine
+        for key_of_machine in BOWL_KEYS
+        if key_of_machine.field.startswith("machine.") and key_of_machine.word not in schema.UNBALANCE_NAMES
     ]
-    names = [one.name for one in own]
-    machine = Machine(**{name.partition(".")[2]: _effective(BY_NAME[name], given).value for name in names})
-    radius, climb = (_effective(BY_NAME[name], given).value for name in ("track.radius", "track.climb"))
+    names = [key_of_machine.name for key_of_machine in own]
+    machine = Machine(
+        **{name.partition(".")[2]: _effective(BY_NAME[name], own_settings).value for name in names}
+    )
+    radius, climb = (
+        _effective(BY_NAME[name], own_settings).value for name in ("track.radius", "track.climb")
+    )
     return _derived(key, vibration_angle(machine, radius, climb), "from machine")
 
 
 def _derived(key: Key, value: Any, where: str) -> Setting:
-    shown = "" if np.ndim(value) else f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}"
-    return Setting(key, shown, value, where, given=False)
+    text = "" if np.ndim(value) else f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}"
+    return Setting(key, text, value, where, is_own=False)

@@ -17,7 +17,7 @@ from feederscrew.part.record import Part
 from feederscrew.tooling.devices.base import Device
 
 VERIFIED_SECTION = "verified"
-SHARED = {one.name for one in fields(Device)}  # what every device has
+SHARED = {field.name for field in fields(Device)}  # what every device has
 HOLDS, FALLS_SHORT = "holds", "falls short"  # what a trial may come to
 RATE_KEPT, PURE, DRAWS_HELD = (
     0.9,
@@ -93,7 +93,7 @@ class Verified:
         if wanted is not None and not self.counts(wanted):
             tried, other = units.one_line(self.wanted), units.one_line(wanted)
             yield f"{tried} was tried, and {other} is another orientation"
-        leaving = HANGING if any(one.hangs for one in bowl.devices) else LYING
+        leaving = HANGING if any(device.hangs for device in bowl.devices) else LYING
         if self.outcome not in ("", leaving):
             yield f"its outcome is {self.outcome}, and parts leave these devices {leaving}"
         if fingerprint(bowl) != self.bowl:
@@ -103,12 +103,12 @@ class Verified:
 
     def counts(self, wanted: str) -> bool:
         """Return whether an aspect, 'A', or an orientation, 'A@2', is what the trial counted."""
-        first, *others = (name.casefold() for name in self.wanted.split(AMONG))
-        up = {*others, *(name.strip().casefold() for name in self.up.split(",") if name.strip())}
+        first, *more = (name.casefold() for name in self.wanted.split(AMONG))
+        up = {*more, *(name.strip().casefold() for name in self.up.split(",") if name.strip())}
         name = wanted.casefold()
         aspect = name.rpartition("@")[0] or name
-        alike = first if "@" in name else first.rpartition("@")[0] or first
-        return name == alike or aspect in up or name in up
+        equal = first if "@" in name else first.rpartition("@")[0] or first
+        return name == equal or aspect in up or name in up
 
     @property
     def sentence(self) -> str:
@@ -136,23 +136,23 @@ def fingerprint(bowl: Bowl) -> str:
     str
         Sixteen digits; the last digits of numbers do not count.
     """
-    listed = [_told(getattr(bowl, name)) for name in ("drive", "friction", "track")]
+    listed = [_number_text(getattr(bowl, name)) for name in ("drive", "friction", "track")]
     listed += [f"{bowl.restitution:.5g}", f"{bowl.gravity:.5g}"]
-    listed += [_device(one) for one in bowl.devices]
+    listed += [_device(device) for device in bowl.devices]
     return hashlib.sha256("\n".join(listed).encode()).hexdigest()[:16]
 
 
-def _told(record: object) -> str:
+def _number_text(record: object) -> str:
     return " ".join("-" if value is None else f"{value:.5g}" for value in vars(record).values())
 
 
-def _device(one: Device) -> str:
-    limit = f"{one.limit:.5g}" if math.isfinite(one.limit) else "-"
-    flat = [end for pair in one.corners for end in pair]
-    others = [end for other in one.also for end in other]
-    numbers = " ".join(f"{end:.5g}" for end in (*one.span, *flat, *one.like[1:], *others[1::2]))
-    own = (_own(getattr(one, each.name)) for each in fields(one) if each.name not in SHARED)
-    return f"{one.kind} {limit} {(*one.like[:1], *others[::2])} {numbers} {' '.join(own)}"
+def _device(device: Device) -> str:
+    limit = f"{device.limit:.5g}" if math.isfinite(device.limit) else "-"
+    flat = [end for pair in device.corners for end in pair]
+    also = [end for other in device.also for end in other]
+    numbers = " ".join(f"{end:.5g}" for end in (*device.span, *flat, *device.like[1:], *also[1::2]))
+    own = (_own(getattr(device, each.name)) for each in fields(device) if each.name not in SHARED)
+    return f"{device.kind} {limit} {(*device.like[:1], *also[::2])} {numbers} {' '.join(own)}"
 
 
 def _own(value: object) -> str:
@@ -203,7 +203,9 @@ def verified(path: str | PathLike[str] | None) -> Verified | VoidTrial | None:
         return None
     if entry.value.kind != "mapping":
         return VoidTrial((f"{VERIFIED_SECTION} is no mapping",))
-    text = {one.key: one.value.text for one in entry.value.entries}  # of a list or a mapping ''
+    text = {
+        entry_of_block.key: entry_of_block.value.text for entry_of_block in entry.value.entries
+    }  # of a list or a mapping ''
     faults = [*_faults_of_fields(text)]
     if faults:
         return VoidTrial(tuple(faults))

@@ -9,7 +9,7 @@ from feederscrew.conveying import law, onset, steady
 from feederscrew.conveying.setting import PHASES, OperatingPoint
 from feederscrew.errors import ConfigError
 from feederscrew.mechanics import limits, wedge
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 
 STILL = 1e-9  # [1] least acceleration ratio computed with: a bowl at rest carries nothing
 REGIMES = (*limits.REGIMES, "no steady state")  # a regime code of a map is a place in this list
@@ -19,7 +19,7 @@ SOURCE = "Sloot and Kruyt 1996"
 
 
 @dataclass(frozen=True, eq=False)
-class Answer(Shown):
+class Answer(ReadableRecord):
     """How a part travels at one operating point."""
 
     setting: OperatingPoint

@@ -120,7 +120,7 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     """
     if study.bowl is None:
         return Built()
-    listed = [s for s in settings if s.given and not s.key.name.startswith("devices")]
+    listed = [s for s in settings if s.is_own and not s.key.name.startswith("devices")]
     given = [f"{s.key.name}={s.text}" for s in listed]
     own = [*_texts("drive", study.bowl.drive, DRIVE), *_texts("track", study.bowl.track, TRACK)]
     words = {line.partition("=")[0] for line in own} | {"drive.amplitude", "drive.peak_to_peak"}

@@ -154,7 +154,7 @@ def design(
     if request.outcome not in OUTCOMES:
         raise ArgumentError("outcome", f"is {request.outcome!r}", f"give {listed(list(OUTCOMES))}")
     plain = arguments.a_bowl(bowls.default() if bowl is None else bowl, overrides, settings)
-    kept_keys = frozenset(given) | {setting.key.name for setting in plain.settings if setting.given}
+    kept_keys = frozenset(given) | {setting.key.name for setting in plain.settings if setting.is_own}
     kept_settings = beside.settings_of(plain, kept_keys)
     if isinstance(part, (list, tuple)) and part:
         parts = [arguments.a_part(one) for one in part]

@@ -7,7 +7,7 @@ from feederscrew.designing.alternatives import merit
 from feederscrew.designing.record import FALLS_SHORT, HOLDS, NONE, NOT_PROVED, DesignStudy
 from feederscrew.designing.searching import Search
 from feederscrew.errors import FeederError
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.studies.aspects import answered
 from feederscrew.tooling.devices.kinds import KINDS
 
@@ -17,7 +17,7 @@ OWN = "family"  # the folder of what is of all parts
 
 
 @dataclass(frozen=True, eq=False)
-class FamilyStudy(Shown):
+class FamilyStudy(ReadableRecord):
     """Designs of several parts that are to run in one bowl."""
 
     members: tuple[DesignStudy, ...]

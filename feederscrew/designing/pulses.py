@@ -35,7 +35,7 @@ def quickened(cut: Cut, every: Sequence[Orientation]) -> Cut:
     if not device.senses:
         return cut
     gone = [DeviceEncounter(one, every) for one in every if one.name in cut.returns]
-    pushes = [device.jet.push(met.one, every) for met in gone]
+    pushes = [device.jet.push(met.orientation, every) for met in gone]
     for steps in range(LEAST, round(device.time / STEP)):
         time = steps * STEP
         if all(met.blown(out, down, time / RESERVE) > 0.0 for met, (out, down) in zip(gone, pushes)):

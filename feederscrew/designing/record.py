@@ -17,7 +17,7 @@ from feederscrew.errors import ArgumentError
 from feederscrew.machine.drive_sizing import DriveMismatch, is_two_axis
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.rules.registry import require_rule
 from feederscrew.running import RunSettings
 from feederscrew.studies.tooling import ToolingStudy, listed
@@ -206,7 +206,7 @@ class NearestDesign:
 
 
 @dataclass(frozen=True, eq=False)
-class DesignStudy(Shown):
+class DesignStudy(ReadableRecord):
     """A bowl for a part and a rate, with everything that was tried on the way."""
 
     part: Part

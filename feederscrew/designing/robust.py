@@ -98,7 +98,7 @@ def _meant(device, named, every):
 
 def opening(device, every):
     """Return the corners (K, 2) [m] of a gate that is given by an orientation and its play."""
-    grown = _meant(device, device.like[:2], every).seen.buffer(device.like[2])
+    grown = _meant(device, device.like[:2], every).view_ahead.buffer(device.like[2])
     return tuple(map(tuple, shapely.get_coordinates(grown.exterior)[:-1].tolist()))
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from feederscrew.dropping.launches import named
 from feederscrew.errors import ArgumentError
-from feederscrew.units import GRAVITY, QuantityError, factor, quantity, shown
+from feederscrew.units import GRAVITY, QuantityError, factor, quantity, quantity_text
 
 KEYS = {  # argument: dimension, what it is divided by, from the part's length and gravity; lowest, highest
     "fall": ("length", lambda length, gravity: length, 0.0, 1000.0),
@@ -84,7 +84,7 @@ def share(text, where):
     value = _read(where, text, "number")
     if not NARROWEST <= value <= WIDEST:
         limits = f"give {NARROWEST:.2%} to {WIDEST:.0%}"
-        raise ArgumentError(where, f"{shown(text)} is out of range", limits)
+        raise ArgumentError(where, f"{quantity_text(text)} is out of range", limits)
     return value
 
 
@@ -94,12 +94,12 @@ def _range(key, text, length, gravity):
     size = unit(length, gravity)
     ends = [_read(key, end, dimension) / size for end in text.split(":")]
     if len(ends) > 2 or ends[0] > ends[-1]:
-        what = f"{shown(text)} is not a range"
+        what = f"{quantity_text(text)} is not a range"
         raise ArgumentError(key, what, "give one value, or the smaller and the larger as a:b")
     if not lowest <= ends[0] <= ends[-1] <= highest:
         limits = f"give {_limit(lowest * size, dimension)} to {_limit(highest * size, dimension)}"
         of_part = "" if dimension == "number" else " for this part"
-        raise ArgumentError(key, f"{shown(text)} is out of range", limits + of_part)
+        raise ArgumentError(key, f"{quantity_text(text)} is out of range", limits + of_part)
     return ends[0], ends[-1]
 
 

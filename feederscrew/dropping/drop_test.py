@@ -12,7 +12,7 @@ from feederscrew.dropping.launches import sample
 from feederscrew.dropping.rigid_body import principal_axes, shape_of_part
 from feederscrew.dropping.traces import DropTrace, follow
 from feederscrew.geometry.compiled import on_disk
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.tumbling.by_class import Ground, ground
 from feederscrew.running import USUAL_RUN
 
@@ -20,7 +20,7 @@ USUAL = 10_000  # drops, where the user names neither a number nor a width
 
 
 @dataclass(frozen=True, eq=False)
-class Result(Shown):
+class Result(ReadableRecord):
     """A drop test and how to repeat it."""
 
     launch: dict  # name and ranges sampled, in the units of the shop

@@ -9,7 +9,7 @@ from feederscrew import check
 from feederscrew.dropping.kernel import one_drop as kernel
 from feederscrew.dropping.launches import sample
 from feederscrew.dropping.pool import gather
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.rules.recommended import launched
 
 BATCH = 250  # drops a core takes at a time
@@ -62,7 +62,7 @@ def drops_of(arrays, most):
 
 
 @dataclass(frozen=True, eq=False)
-class Tally(Shown):
+class Tally(ReadableRecord):
     """Drops counted by class; A classes."""
 
     counts: np.ndarray  # (A,) int

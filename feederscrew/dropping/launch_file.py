@@ -10,7 +10,7 @@ import numpy as np
 from feederscrew import check, documents
 from feederscrew.errors import FeederError
 from feederscrew.resting.counts.count_rows import Few, cells
-from feederscrew.units import QuantityError, decimal, shown
+from feederscrew.units import QuantityError, decimal, quantity_text
 
 POSITION, ATTITUDE = ("x0_m", "y0_m", "z0_m"), ("qw0", "qx0", "qy0", "qz0")
 VELOCITY, SPIN = ("vx0", "vy0", "vz0"), ("wx0", "wy0", "wz0")
@@ -97,11 +97,13 @@ def _checked(header, row, where, few):
     wanted = (*STATE, *(END if set(END) <= set(header) else ()))
     bad = [name for name in wanted if not _is_number(row.get(name, ""))]
     for name in bad:
-        few.add(where, f"{name}: {shown(row.get(name, ''))} is not a number", "give a number in SI units")
+        few.add(
+            where, f"{name}: {quantity_text(row.get(name, ''))} is not a number", "give a number in SI units"
+        )
     if not row["toss"]:
         few.add(where, "the toss has no name", "give each launch a name or number of its own")
     if FACE in header and row.get(FACE, "") not in FACES:
-        what = f"{FACE}: {shown(row.get(FACE, ''))} is not a side of the part"
+        what = f"{FACE}: {quantity_text(row.get(FACE, ''))} is not a side of the part"
         few.add(where, what, f"give one of {', '.join(FACES)}")
     if bad:
         return

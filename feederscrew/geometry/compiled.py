@@ -2,6 +2,7 @@
 
 import functools
 import hashlib
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -44,47 +45,12 @@ def shared(function):
     return _marked(_named(function), cache=True)
 
 
-class CompiledEntry:
-    """A function that Python calls; numba is loaded at its first call.
-
-    What is on disk is loaded as it is. The functions that it calls are made known to numba only where it must
-    be compiled: numba works through all that it knows before it loads anything, a fifth of a second for those
-    of this program.
-    """
-
-    def __init__(self, function: Callable[..., Any], arrays: bool) -> None:
-        functools.update_wrapper(self, _named(function))
-        self.py_func, self.arrays = function, arrays
-        self._dispatcher: Callable[..., Any] | None = None
-
-    @property
-    def dispatcher(self) -> Callable[..., Any]:
-        """The function as numba compiles it, or as it stands where numba is set not to compile."""
-        if self._dispatcher is None:
-            from numba import njit
-
-            keeps = njit(cache=_can_keep(), nogil=True, **_options(self.arrays))
-            self._dispatcher = keeps(self.py_func)
-        return self._dispatcher
-
-    def __call__(self, *arguments: Any) -> Any:
-        """Run it, compiled before if need be."""
-        run = self.dispatcher
-        if not PENDING:
-            return run(*arguments)
-        from numba import TypingError
-
-        try:
-            return run(*arguments)
-        except TypingError:  # not on disk, and it calls what numba has not been told of yet
-            _register()
-            self._dispatcher = None  # numba remembers what it could not compile
-            return self.dispatcher(*arguments)
-
-
 def entry(function, arrays=False):
-    """Mark a function that Python calls; it fills arrays it is handed, and is compiled at its first call."""
-    return CompiledEntry(function, arrays)
+    """Compile a function that Python calls; it fills arrays it is handed."""
+    from numba import njit
+
+    _register()
+    return njit(cache=_can_keep(), nogil=True, **_options(arrays))(_named(function))
 
 
 def fitting(function, half_edges, plain=None):
@@ -97,9 +63,8 @@ def fitting(function, half_edges, plain=None):
 
 def on_disk(function):
     """Whether a compiled function is in the cache already, or numba is set not to compile."""
-    stats = getattr(function.dispatcher, "stats", None)
-    return stats is None or any(
-        Path(stats.cache_path or NOWHERE).glob(f"*{function.__name__}_{_fingerprint()}*.nbi")
+    return not hasattr(function, "stats") or any(
+        Path(function.stats.cache_path or NOWHERE).glob(f"*{function.__name__}_{_fingerprint()}*.nbi")
     )
 
 
@@ -130,6 +95,8 @@ def _nothing():
 def _marked(function, **how):
     """Note how a function is compiled, until numba is asked to."""
     PENDING.append((function, how))
+    if "numba" in sys.modules:  # an entry may stand above what it calls
+        _register()
     return function
 
 

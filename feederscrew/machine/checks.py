@@ -55,19 +55,19 @@ def remarks(sheet: Any) -> tuple[str, ...]:
     -------
     tuple of str
     """
-    found = [*_drive(sheet), *_tuning(sheet), *_banks(sheet), *_stress(sheet), *_stroke(sheet)]
-    found += [*_throw(sheet), *_fill(sheet), *_drift(sheet)]
-    found += [*_rocking(sheet)]
+    faults = [*_drive(sheet), *_tuning(sheet), *_banks(sheet), *_stress(sheet), *_stroke(sheet)]
+    faults += [*_throw(sheet), *_fill(sheet), *_drift(sheet)]
+    faults += [*_rocking(sheet)]
     if sheet.order is not None:
-        found += [*_lowest(sheet), *_size(sheet), *_hand(sheet)]
-    lines = [str(one) for one in found]
+        faults += [*_lowest(sheet), *_size(sheet), *_hand(sheet)]
+    lines = [str(fault) for fault in faults]
     tipping = () if sheet.order is None else sheet.order.tipping
     return (*lines, *tipping, *speed_remark(sheet.answer.velocity, sheet.bowl.sizing))
 
 
 def solid_remarks(sheet: Any) -> tuple[str, ...]:
     """Return the remarks on a machine that its bowl as a solid alone gives, of a MachineSheet with one."""
-    return (*(str(one) for one in _rocking(sheet)), *sheet.solid.remarks)
+    return (*(str(fault) for fault in _rocking(sheet)), *sheet.solid.remarks)
 
 
 def _rocking(sheet: Any) -> Iterator[FeederError]:
@@ -76,7 +76,9 @@ def _rocking(sheet: Any) -> Iterator[FeederError]:
     as_is, balanced = sheet.rocking
     if as_is.greatest - as_is.least > VISIBLE_STROKE_SPREAD:
         weight, angle = sheet.solid.balance
-        low, high, rest = (100.0 * (one - 1.0) for one in (as_is.least, as_is.greatest, balanced.greatest))
+        low, high, rest = (
+            100.0 * (fault - 1.0) for fault in (as_is.least, as_is.greatest, balanced.greatest)
+        )
         what = f"its stroke differs by {low:+.2g} to {high:+.2g} % round the bowl, whose mass lies to a side"
         there = f"{1e3 * weight:.3g} g on the wall at {np.degrees(angle):.0f} deg"
         yield FeederError("the bowl as a solid", what, f"put {there}: at most {rest:.2g} % are left")
@@ -113,8 +115,8 @@ def _tuning(sheet: Any) -> Iterator[FeederError]:
 def _named(sets: Any) -> str:
     """The set of fewest leaves of each of the first thicknesses."""
     first: dict[float, str] = {}
-    for one in sets:
-        first.setdefault(one.thickness, f"{one.leaves} of {one.thickness / MM:g} mm")
+    for leaf_set in sets:
+        first.setdefault(leaf_set.thickness, f"{leaf_set.leaves} of {leaf_set.thickness / MM:g} mm")
     return " or ".join(list(first.values())[:3])
 
 
@@ -129,10 +131,10 @@ def _banks(sheet: Any) -> Iterator[FeederError]:
 
 def _throw(sheet: Any) -> Iterator[FeederError]:
     """Devices that a part meets on the track, where it hops higher than their margin."""
-    over = [one.name for one in sheet.bowl.devices if one.placed and not one.overhead]
-    for said in hop.remark(sheet.bowl) if over else ():
+    over = [device.name for device in sheet.bowl.devices if device.placed and not device.overhead]
+    for remark in hop.remark(sheet.bowl) if over else ():
         names = units.listed(list(dict.fromkeys(over)))
-        what = f"at the throw number {sheet.answer.throw_number:.3g} {said}"
+        what = f"at the throw number {sheet.answer.throw_number:.3g} {remark}"
         mend = f"try the {names} with feeder trial, or take twice the frequency"
         yield FeederError("drive.amplitude", what, mend)
 
@@ -192,10 +194,10 @@ def _drift(sheet: Any) -> Iterator[FeederError]:
     full, empty, rules = speeds_left[0], speeds_left[-1], sheet.bowl.sizing
     mend = "control the amplitude, or hold the level with a hopper"
     if abs(full - empty) > rules.retune * empty:
-        said = [f"{speed / MM:.3g} mm/s" for speed in (full, empty)]
+        drift = [f"{speed / MM:.3g} mm/s" for speed in (full, empty)]
         if sheet.order is not None:
-            said = [f"{60.0 * rate:.3g}/min" for rate in sheet.rates(speeds_left[[0, -1]])]
-        what = f"left alone, {said[0]} of a full bowl become {said[1]} as it empties"
+            drift = [f"{60.0 * rate:.3g}/min" for rate in sheet.rates(speeds_left[[0, -1]])]
+        what = f"left alone, {drift[0]} of a full bowl become {drift[1]} as it empties"
         yield FeederError("sizing.carried", what, mend)
     most = greatest_amplitude(sheet.bowl)
     beyond = sheet.emptying.levels[sheet.emptying.strokes * sheet.bowl.drive.amplitude > most]
@@ -208,7 +210,7 @@ def _drift(sheet: Any) -> Iterator[FeederError]:
 
 def _size(sheet: Any) -> Iterator[FeederError]:
     size = sheet.order.size
-    rule, least = max(size.least.items(), key=lambda one: one[1])
+    rule, least = max(size.least.items(), key=lambda rule_size: rule_size[1])
     if size.diameter < least * (1.0 - 1e-9):
         what = f"{500 * size.diameter:.4g} mm is less than {500 * least:.4g} mm ({rule})"
         yield FeederError("track.radius", what, "give a larger bowl")

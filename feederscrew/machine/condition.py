@@ -55,22 +55,22 @@ def read(text: str) -> dict[str, float]:
     ArgumentError
         If a word is unknown, or a value is not one.
     """
-    found = {}
+    values = {}
     for piece in text.split(","):
-        word, _, value = (one.strip() for one in piece.partition("="))
+        word, _, value = (word_part.strip() for word_part in piece.partition("="))
         if word not in MEASURED_DIMENSIONS:
             mend = f"give some of {', '.join(MEASURED_DIMENSIONS)}: 'stroke=0.3 mm'"
             raise ArgumentError("measured", f"{word!r} is unknown", mend)
         try:
-            found[word] = units.quantity(value, MEASURED_DIMENSIONS[word])
+            values[word] = units.quantity(value, MEASURED_DIMENSIONS[word])
         except units.QuantityError as fault:
             raise ArgumentError(f"measured {word}", fault.what, fault.mend) from fault
         most = 1.0 if word == "fill" else math.inf
-        if not (0.0 < found[word] <= most or (word == "fill" and found[word] == 0.0)):
+        if not (0.0 < values[word] <= most or (word == "fill" and values[word] == 0.0)):
             raise ArgumentError(f"measured {word}", f"{value} is out of range", "give a value above 0")
-    if not set(found) - {"fill"}:
+    if not set(values) - {"fill"}:
         raise ArgumentError("measured", "says nothing but the fill", "add stroke=0.3 mm, or an acceleration")
-    return found
+    return values
 
 
 def diagnose(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
@@ -102,7 +102,7 @@ def diagnose(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
     if frequency is None and acceleration and stroke:
         frequency = math.sqrt(2.0 * acceleration / stroke) / FULL_TURN_RAD
     now = _bowl_now(bowl, acceleration, stroke, frequency)
-    one = MeasuredMachine(
+    machine = MeasuredMachine(
         fill=level,
         acceleration=acceleration,
         stroke=stroke,
@@ -113,7 +113,7 @@ def diagnose(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
         velocity_should=_velocity(_moving(bowl, 0.5 * should["stroke"], should["frequency"])),
         causes=(),
     )
-    return replace(one, causes=tuple(_causes(one, sheet, now)))
+    return replace(machine, causes=tuple(_causes(machine, sheet, now)))
 
 
 def _bowl_now(
@@ -138,60 +138,64 @@ def _velocity(bowl: Bowl) -> float:
     return float(answer.cells(bowl)["velocity"])
 
 
-def _causes(one: MeasuredMachine, sheet: Any, now: Bowl | None) -> Iterator[Any]:
+def _causes(machine: MeasuredMachine, sheet: Any, now: Bowl | None) -> Iterator[Any]:
     """What is likely, the first that would explain the most first."""
-    listed = list(_of_frequency(one, sheet))
+    listed = list(_of_frequency(machine, sheet))
     if now is not None and not listed:
-        listed = list(_of_stroke(one, sheet, 2.0 * now.drive.amplitude / one.should["stroke"]))
+        listed = list(_of_stroke(machine, sheet, 2.0 * now.drive.amplitude / machine.should["stroke"]))
     if not listed:
         listed = [f"the machine does what it should, within {100.0 * STROKE_TOLERANCE:.0f} %"]
     yield from listed
 
 
-def _of_frequency(one: MeasuredMachine, sheet: Any) -> Iterator[Any]:
+def _of_frequency(machine: MeasuredMachine, sheet: Any) -> Iterator[Any]:
     """Causes where acceleration and stroke do not belong together at the frequency of the drive."""
-    if one.frequency is None:
+    if machine.frequency is None:
         return
-    ratio = one.frequency / one.should["frequency"]
+    ratio = machine.frequency / machine.should["frequency"]
     if abs(ratio - 1.0) <= MEASUREMENT_TOLERANCE:
         return
-    if one.acceleration and one.stroke:
-        angle, seen = sheet.stroke.angle, ratio**2
+    if machine.acceleration and machine.stroke:
+        angle, shown_ratio = sheet.stroke.angle, ratio**2
         for part, share in (("horizontally", math.cos(angle)), ("upright", math.sin(angle))):
             if (
-                abs(seen / share - 1.0) <= 2.0 * MEASUREMENT_TOLERANCE
+                abs(shown_ratio / share - 1.0) <= 2.0 * MEASUREMENT_TOLERANCE
                 and abs(share - 1.0) > 2.0 * MEASUREMENT_TOLERANCE
             ):
                 yield (
                     f"the accelerometer stands {part}, not along the motion: there it shows {share:.2f} of "
                     "the acceleration"
                 )
-    for times, said in ((2.0, "both half-waves pull: the controller is set to full wave"),
+    for times, cause in ((2.0, "both half-waves pull: the controller is set to full wave"),
                         (0.5, "only one half-wave pulls: the controller is set to half wave")):  # fmt: skip
         if abs(ratio / times - 1.0) <= 2.0 * MEASUREMENT_TOLERANCE:
-            yield said
-    yield f"the drive runs at {one.frequency:.3g} Hz, not at {one.should['frequency']:.3g} Hz"
+            yield cause
+    yield f"the drive runs at {machine.frequency:.3g} Hz, not at {machine.should['frequency']:.3g} Hz"
 
 
-def _of_stroke(one: MeasuredMachine, sheet: Any, ratio: float) -> list[str]:
+def _of_stroke(machine: MeasuredMachine, sheet: Any, ratio: float) -> list[str]:
     """Causes where the stroke is another one; each after the first is another way to explain it."""
     if abs(ratio - 1.0) <= STROKE_TOLERANCE:
         return []
-    drive, damping, known = one.should["frequency"], sheet.bowl.machine.damping, one.natural_frequency
-    wanted = float(gain(drive, known, damping)) * ratio
+    drive, damping, natural = (
+        machine.should["frequency"],
+        sheet.bowl.machine.damping,
+        machine.natural_frequency,
+    )
+    wanted = float(gain(drive, natural, damping)) * ratio
     sides = [
         (1.0, MAX_RESONANCE_RATIO),
         (1.0 / MAX_RESONANCE_RATIO, 1.0),
     ]  # of the drive's frequency, that of the machine first
-    own, other = (_tuned(wanted, drive, damping, ends) for ends in sides[:: 1 if known >= drive else -1])
-    likely = [_retuned(own, known, drive)] if own else []
+    own, other = (_tuned(wanted, drive, damping, ends) for ends in sides[:: 1 if natural >= drive else -1])
+    likely = [_retuned(own, natural, drive)] if own else []
     if ratio > 1.0:
         return _either(
             [*likely, f"the controller is set {100.0 * (ratio - 1.0):.0f} % too high - turn it down"]
         )
     if other:
         beyond = "below" if other < drive else "above"
-        likely.append(f"at {other:.4g} Hz, {beyond} the drive: {_why(other, known, nearer=False)}")
+        likely.append(f"at {other:.4g} Hz, {beyond} the drive: {_why(other, natural, nearer=False)}")
     weak = f"the controller gives {100.0 * ratio:.0f} % of its setting, or a part touches the frame"
     return _either([*likely, weak])
 
@@ -200,16 +204,16 @@ def _either(causes: list[str]) -> list[str]:
     return [f"or {cause}" if k else cause for k, cause in enumerate(causes)]
 
 
-def _retuned(now: float, known: float, drive: float) -> str:
+def _retuned(now: float, expected: float, drive: float) -> str:
     """What may have moved the natural frequency [Hz] on its side of the drive's."""
-    nearer = abs(now - drive) < abs(known - drive)
-    where = f"natural frequency at {now:.4g} Hz where {known:.4g} Hz is right"
-    return f"{where}{', nearer to the drive' * nearer}: {_why(now, known, nearer)}"
+    nearer = abs(now - drive) < abs(expected - drive)
+    where = f"natural frequency at {now:.4g} Hz where {expected:.4g} Hz is right"
+    return f"{where}{', nearer to the drive' * nearer}: {_why(now, expected, nearer)}"
 
 
-def _why(now: float, known: float, nearer: bool) -> str:
+def _why(now: float, expected: float, nearer: bool) -> str:
     soon = " before the stroke grows by itself" if nearer else ""
-    if now > known:
+    if now > expected:
         return f"too many leaves, or a lighter bowl - take a leaf off{soon}"
     if nearer:
         return f"a leaf is missing, or the bowl is heavier - add a leaf{soon}"

@@ -25,7 +25,7 @@ from feederscrew.units import factor
 RADIUS_STEP_M = 1e-4  # of a springs' circle that is chosen
 
 
-def machine_for(bowl: Bowl, size: Size, given: Any, *, exact: bool = False) -> Machine:
+def machine_for(bowl: Bowl, size: Size, user_words: Any, *, exact: bool = False) -> Machine:
     """Return the machine under a bowl, what the user gave of it kept.
 
     Parameters
@@ -33,7 +33,7 @@ def machine_for(bowl: Bowl, size: Size, given: Any, *, exact: bool = False) -> M
     bowl : Bowl
         Its machine, its rules, and the vibration angle wanted at the track.
     size : Size
-    given : set of str
+    user_words : set of str
         Fields of the machine that the user gave.
     exact : bool
         The vibration angle is given, and the machine shall make it: the springs move outwards, and then stand
@@ -53,25 +53,25 @@ def machine_for(bowl: Bowl, size: Size, given: Any, *, exact: bool = False) -> M
         "base_inertia": rules.base_mass * inertia,
         "spring_radius": rules.spring_radius * radius,
     }
-    made = replace(bowl.machine, **{name: value for name, value in guess.items() if name not in given})
-    if not set(schema.UNBALANCE_NAMES) & set(given):
-        made = replace(made, unbalance=_unbalance(size, made))
+    built = replace(bowl.machine, **{name: value for name, value in guess.items() if name not in user_words})
+    if not set(schema.UNBALANCE_NAMES) & set(user_words):
+        built = replace(built, unbalance=_unbalance(size, built))
     upright = bowl.drive.vibration_angle + size.climb
     if exact:
-        return _exact(made, upright, radius, rules, given)
-    if "spring_angle" in given:
-        return made
-    return replace(made, spring_angle=_spring_angle(upright, radius, made, rules))
+        return _exact(built, upright, radius, rules, user_words)
+    if "spring_angle" in user_words:
+        return built
+    return replace(built, spring_angle=_spring_angle(upright, radius, built, rules))
 
 
-def machine_on(bowl: Bowl, given: Collection[str], *, exact: bool = False) -> Machine:
+def machine_on(bowl: Bowl, user_words: Collection[str], *, exact: bool = False) -> Machine:
     """Return the machine under a bowl of which only the track is known.
 
     Parameters
     ----------
     bowl : Bowl
         Its depth is that of ``sizing``, over the bowl's diameter.
-    given : collection of str
+    user_words : collection of str
         Names of the keys that the user gave, 'machine.bowl_mass'.
     exact : bool
         As for ``machine_for``.
@@ -93,7 +93,7 @@ def machine_on(bowl: Bowl, given: Collection[str], *, exact: bool = False) -> Ma
         turns=depth / pitch if pitch > 0.0 else np.nan,
         pitch=pitch,
     )
-    words = {name.partition(".")[2] for name in given if name.startswith("machine.")}
+    words = {name.partition(".")[2] for name in user_words if name.startswith("machine.")}
     return machine_for(bowl, size, words, exact=exact)
 
 
@@ -111,13 +111,13 @@ def _bowl_mass(radius: float, size: Size, rules: Sizing) -> Any:
     return float(extra * (floor + wall + track)), float(extra * inertia)
 
 
-def _unbalance(size: Size, made: Machine) -> Unbalance:
+def _unbalance(size: Size, machine: Machine) -> Unbalance:
     """How the mass of the solid lies, in the measure of a mass and an inertia that the user gave."""
     if size.mass is None or size.inertia is None:
         return BALANCED
-    heavy, own = made.bowl_mass / size.mass, size.unbalance
+    heavy, own = machine.bowl_mass / size.mass, size.unbalance
     x, y, z = own.moment
-    inert = made.bowl_inertia / size.inertia
+    inert = machine.bowl_inertia / size.inertia
     xx, yy = own.upright
     yz, xz, xy = own.products
     return replace(
@@ -153,15 +153,15 @@ def needed_angle(machine: Machine, radius: float, wanted: float) -> float:
     return float(np.arctan(np.tan(wanted) * radius / machine.spring_radius * turn / rise))
 
 
-def _exact(machine: Machine, wanted: float, radius: float, rules: Sizing, given: Any) -> Machine:
+def _exact(machine: Machine, wanted: float, radius: float, rules: Sizing, user_words: Any) -> Machine:
     """The machine whose springs move the bowl at its track in a wanted direction, as nearly as they can."""
     usual = machine.spring_radius
     farthest = max(min(rules.greatest_spring_radius * radius, radius - 0.5 * machine.leaf_width), usual)
-    if "spring_angle" in given:
-        if "spring_radius" in given:
+    if "spring_angle" in user_words:
+        if "spring_radius" in user_words:
             return machine
         return replace(machine, spring_radius=_circle(machine, wanted, radius, (usual, farthest)))
-    if "spring_radius" in given:
+    if "spring_radius" in user_words:
         tenth = np.radians(np.round(np.degrees(needed_angle(machine, radius, wanted)), 1))
         angle = float(np.clip(tenth, rules.least_spring_angle, rules.steepest_spring_angle))
         return replace(machine, spring_angle=angle)
@@ -227,8 +227,13 @@ class DriveMismatch:
         if self.two_axis:
             reasons.append(f"out of phase by {np.degrees(self.wanted.phase):.4g} deg, {TWO_MAGNETS}")
         if self.other_angle:
-            asked, made = np.degrees(self.wanted.track_angle), np.degrees(self.machine.track_angle)
-            what = f"{asked:.4g} deg as given, and the springs make it {made:.4g} deg at the track"
+            wanted_angle, made_angle = (
+                np.degrees(self.wanted.track_angle),
+                np.degrees(self.machine.track_angle),
+            )
+            what = (
+                f"{wanted_angle:.4g} deg as given, and the springs make it {made_angle:.4g} deg at the track"
+            )
             reasons.append(f"is {what}" if not reasons else f"its angle is {what}")
         if self.second_harmonic:
             reasons.append("springs that are tuned to one frequency do not make its second harmonic")
@@ -307,15 +312,15 @@ class DriveSearch:
 
 def user_keys(settings: Iterable[Setting], section: str = "") -> set[str]:
     """Return the words of the keys of a section that the user gave, a set."""
-    return {s.key.word for s in settings if s.given and s.key.section == section}
+    return {s.key.word for s in settings if s.is_own and s.key.section == section}
 
 
-def bring_target(sought: DriveSearch, flow: Callable[[Bowl | None], sizing.Flow]) -> tuple[Bowl, sizing.Flow]:
+def bring_target(search: DriveSearch, flow: Callable[[Bowl | None], sizing.Flow]) -> tuple[Bowl, sizing.Flow]:
     """Find the bowl whose drive brings the target, without the parts that this drive turns over.
 
     Parameters
     ----------
-    sought : Sought
+    search : Sought
     flow : callable
         From a bowl, or from None for no drive at all, to the Flow along its track.
 
@@ -330,7 +335,7 @@ def bring_target(sought: DriveSearch, flow: Callable[[Bowl | None], sizing.Flow]
     """
     now, tried = flow(None), set()
     while True:
-        driven = _driven(sought, now)
+        driven = _driven(search, now)
         own = flow(driven)
         enough = own.parts >= now.parts * (1.0 - FLOW_TOLERANCE_SHARE)
         if enough and (own.parts <= now.parts * (1.0 + FLOW_TOLERANCE_SHARE) or now.parts in tried):
@@ -339,62 +344,62 @@ def bring_target(sought: DriveSearch, flow: Callable[[Bowl | None], sizing.Flow]
         now = own  # there are only so many orientations to turn over
 
 
-def with_own_drive(sought: DriveSearch) -> Bowl:
+def with_own_drive(search: DriveSearch) -> Bowl:
     """Return the bowl with the drive of its file as it stands, and the machine that is sized for it.
 
     Parameters
     ----------
-    sought : Sought
+    search : Sought
 
     Returns
     -------
     Bowl
         What the user gave of the machine is kept, as for ``brought``.
     """
-    plain, settings = sought.bowl, sought.settings
-    under = machine_for(plain, sought.size, user_keys(settings, "machine"), exact=True)
-    made = replace(plain, machine=replace(under, supply=plain.drive.frequency))
-    return _with_stroke(made, plain.drive.amplitude, settings)
+    plain, settings = search.bowl, search.settings
+    under = machine_for(plain, search.size, user_keys(settings, "machine"), exact=True)
+    built = replace(plain, machine=replace(under, supply=plain.drive.frequency))
+    return _with_stroke(built, plain.drive.amplitude, settings)
 
 
-def _driven(sought: DriveSearch, flow: sizing.Flow) -> Bowl:
+def _driven(search: DriveSearch, flow: sizing.Flow) -> Bowl:
     """The bowl with machine, frequency and the smallest stroke that reaches the target."""
-    plain, settings = sought.bowl, sought.settings
+    plain, settings = search.bowl, search.settings
     angle_given = "vibration_angle" in user_keys(settings, "drive")
     angle = plain.drive.vibration_angle if angle_given else default(BY_NAME["drive.vibration_angle"]).value
     wanted = replace(plain, drive=replace(plain.drive, vibration_angle=angle))
-    under = machine_for(wanted, sought.size, user_keys(settings, "machine"), exact=angle_given)
+    under = machine_for(wanted, search.size, user_keys(settings, "machine"), exact=angle_given)
     if not angle_given:
         angle = float(vibration_angle(under, plain.track.radius, plain.track.climb))
     fastest = []
     for frequency in _frequencies(plain, settings):
         drive = replace(plain.drive, vibration_angle=angle, frequency=frequency)
-        made = replace(plain, drive=drive, machine=replace(under, supply=frequency))
-        found, best = sizing.amplitude_for(made, sought.target / flow.parts)
-        if found is not None:
-            empty = _with_stroke(made, found[0], settings)
+        driven = replace(plain, drive=drive, machine=replace(under, supply=frequency))
+        amplitudes, best = sizing.amplitude_for(driven, search.target / flow.parts)
+        if amplitudes is not None:
+            empty = _with_stroke(driven, amplitudes[0], settings)
             held = (
-                _smallest_stroke(empty, sought, sought.target / flow.parts, way)
-                for way in STROKE_CONTROL_LABELS
+                _smallest_stroke(empty, search, search.target / flow.parts, control)
+                for control in STROKE_CONTROL_LABELS
             )
-            return next((one for one in held if one is not None), empty)
+            return next((candidate for candidate in held if candidate is not None), empty)
         fastest.append(best)
-    raise sizing.unreachable_rate(sought.target, flow.parts, max(fastest))
+    raise sizing.unreachable_rate(search.target, flow.parts, max(fastest))
 
 
-def _smallest_stroke(empty: Bowl, sought: DriveSearch, velocity: float, way: str) -> Bowl | None:
+def _smallest_stroke(empty: Bowl, search: DriveSearch, velocity: float, control: str) -> Bowl | None:
     """The bowl with the smallest stroke whose lowest velocity, from full to empty, is enough, or None."""
-    made, strokes = empty, np.ones(1)  # of the empty bowl
+    bowl, strokes = empty, np.ones(1)  # of the empty bowl
     for _ in range(MAX_DRIVE_ITERATIONS):
-        emptied = sizing.emptying(made, sought.fill)
-        if np.array_equal(getattr(emptied, way), strokes):
-            return made
-        strokes = getattr(emptied, way)
-        found, _ = sizing.amplitude_for(made, velocity, strokes, emptied.angles)
-        if found is None:
+        emptied = sizing.emptying(bowl, search.fill)
+        if np.array_equal(getattr(emptied, control), strokes):
+            return bowl
+        strokes = getattr(emptied, control)
+        amplitudes, _ = sizing.amplitude_for(bowl, velocity, strokes, emptied.angles)
+        if amplitudes is None:
             return None
-        made = _with_stroke(made, found[0], sought.settings)
-    return made
+        bowl = _with_stroke(bowl, amplitudes[0], search.settings)
+    return bowl
 
 
 def _with_stroke(bowl: Bowl, amplitude: float, settings: Iterable[Setting]) -> Bowl:
@@ -405,7 +410,7 @@ def _with_stroke(bowl: Bowl, amplitude: float, settings: Iterable[Setting]) -> B
     return replace(bowl, machine=on_leaves(bowl, user_keys(settings, "machine")))
 
 
-def on_leaves(bowl: Bowl, given: Collection[str]) -> Machine:
+def on_leaves(bowl: Bowl, user_words: Collection[str]) -> Machine:
     """Return the machine of a bowl with the leaves that tune it to its drive at its stroke.
 
     Source: ``tuning.sets``; docs/bowl.md, "1. The part, and the rate".
@@ -414,7 +419,7 @@ def on_leaves(bowl: Bowl, given: Collection[str]) -> Machine:
     ----------
     bowl : Bowl
         With its drive.
-    given : collection of str
+    user_words : collection of str
         Fields of the machine that the user gave, which stay.
 
     Returns
@@ -428,9 +433,9 @@ def on_leaves(bowl: Bowl, given: Collection[str]) -> Machine:
     machine, rules = bowl.machine, bowl.sizing
     rows: list[tuple[Machine, springs.LeafSet]] = []
     for width in (
-        (machine.leaf_width,) if "leaf_width" in given else (machine.leaf_width, *springs.LEAF_WIDTHS_M)
+        (machine.leaf_width,) if "leaf_width" in user_words else (machine.leaf_width, *springs.LEAF_WIDTHS_M)
     ):
-        rows += _leaf_sets(bowl, width, given)
+        rows += _leaf_sets(bowl, width, user_words)
         lasting = [row for row in rows if row[1].stress <= rules.fatigue_stress]
         best = min(lasting, key=partial(_unusual, bowl), default=None)
         if best is not None and not any(_unusual(bowl, best)[:2]):
@@ -441,21 +446,25 @@ def on_leaves(bowl: Bowl, given: Collection[str]) -> Machine:
     return replace(long, leaves=float(leaves.leaves), leaf_thickness=leaves.thickness)
 
 
-def _leaf_sets(bowl: Bowl, width: float, given: Collection[str]) -> Iterator[tuple[Machine, springs.LeafSet]]:
+def _leaf_sets(
+    bowl: Bowl, width: float, user_words: Collection[str]
+) -> Iterator[tuple[Machine, springs.LeafSet]]:
     """Every set of leaves of a width [m] that tunes a bowl, each with the machine that has its length."""
     machine, at_springs = replace(bowl.machine, leaf_width=width), stroke(bowl).springs
     for length in (
-        (machine.leaf_length,) if "leaf_length" in given else (machine.leaf_length, *springs.LEAF_LENGTHS_M)
+        (machine.leaf_length,)
+        if "leaf_length" in user_words
+        else (machine.leaf_length, *springs.LEAF_LENGTHS_M)
     ):
         long = replace(machine, leaf_length=length)
-        for one in tuned_leaf_sets(long, bowl.drive.frequency, at_springs, bowl.sizing):
-            if _fits(one, machine, given):
-                yield long, one
+        for leaves in tuned_leaf_sets(long, bowl.drive.frequency, at_springs, bowl.sizing):
+            if _fits(leaves, machine, user_words):
+                yield long, leaves
 
 
-def _fits(leaves: springs.LeafSet, machine: Machine, given: Collection[str]) -> bool:
+def _fits(leaves: springs.LeafSet, machine: Machine, user_words: Collection[str]) -> bool:
     """Whether a set has the thickness that the user gave, where it was given."""
-    return "leaf_thickness" not in given or leaves.thickness == machine.leaf_thickness
+    return "leaf_thickness" not in user_words or leaves.thickness == machine.leaf_thickness
 
 
 def _stress(row: tuple[Machine, springs.LeafSet]) -> float:
@@ -476,14 +485,14 @@ def _unusual(bowl: Bowl, row: tuple[Machine, springs.LeafSet]) -> tuple[bool, bo
 
 
 @lru_cache(maxsize=4096)
-def drive_shortfall(bowl: Bowl, given: frozenset[str]) -> str:
+def drive_shortfall(bowl: Bowl, user_words: frozenset[str]) -> str:
     """Return why the machine under a bowl does not make its drive; '' where it does.
 
     Parameters
     ----------
     bowl : Bowl
         With its drive, a leaf-spring drive.
-    given : frozenset of str
+    user_words : frozenset of str
         Names of the keys that the user gave, 'machine.leaves': these stay.
 
     Returns
@@ -492,15 +501,15 @@ def drive_shortfall(bowl: Bowl, given: frozenset[str]) -> str:
         Of a machine that is sized from the track alone: the angle of the springs, the tuning of the leaves,
         their stress, or the pull of the magnets.
     """
-    under = machine_on(bowl, given, exact=True)
-    made = replace(bowl, machine=under)
-    other = can_make(made)
+    under = machine_on(bowl, user_words, exact=True)
+    built = replace(bowl, machine=under)
+    other = can_make(built)
     if other is not None:
         return other.text
-    if "machine.leaves" not in given:
-        words = {name.partition(".")[2] for name in given if name.startswith("machine.")}
-        under = on_leaves(made, words)
-    return leaf_shortfall(replace(made, machine=under))
+    if "machine.leaves" not in user_words:
+        words = {name.partition(".")[2] for name in user_words if name.startswith("machine.")}
+        under = on_leaves(built, words)
+    return leaf_shortfall(replace(built, machine=under))
 
 
 def leaf_shortfall(bowl: Bowl) -> str:
@@ -519,8 +528,8 @@ def leaf_shortfall(bowl: Bowl) -> str:
     stress = leaf_stress(machine, moved.springs)
     if stress > rules.fatigue_stress:
         return f"its leaves bend to {stress / MPA:.4g} MPa"
-    kept = gain(moved.frequency, natural, machine.damping)
-    pull = upright_pull(analyse_springs(machine).stiffness * moved.springs / kept, machine)
+    leaf_gain = gain(moved.frequency, natural, machine.damping)
+    pull = upright_pull(analyse_springs(machine).stiffness * moved.springs / leaf_gain, machine)
     if pull > GREATEST_PULL_N:
         return f"its magnets have to pull with {pull:.4g} N"
     return ""

@@ -79,34 +79,36 @@ def unit(name: str) -> DriveUnit:
     ArgumentError
         If there is none.
     """
-    for one in DRIVE_UNITS:
-        if one.name == name.strip().casefold():
-            return one
+    for drive_unit in DRIVE_UNITS:
+        if drive_unit.name == name.strip().casefold():
+            return drive_unit
     raise ArgumentError(
-        f"machine {name!r}", "is not known", f"give {listed([one.name for one in DRIVE_UNITS])}"
+        f"machine {name!r}", "is not known", f"give {listed([drive_unit.name for drive_unit in DRIVE_UNITS])}"
     )
 
 
-def machine_of(one: DriveUnit) -> Machine:
+def machine_of(drive_unit: DriveUnit) -> Machine:
     """Return the machine of a drive unit: masses by rule, leaves that tune it at its greatest stroke.
 
     Parameters
     ----------
-    one : DriveUnit
+    drive_unit : DriveUnit
 
     Returns
     -------
     Machine
     """
-    return _bowl(one).machine
+    return _bowl(drive_unit).machine
 
 
-def _bowl(one: DriveUnit) -> Bowl:
+def _bowl(drive_unit: DriveUnit) -> Bowl:
     """The bowl of a drive unit at its greatest stroke."""
     plain = bowls.default()
-    track = replace(plain.track, radius=0.5 * one.diameter)
+    track = replace(plain.track, radius=0.5 * drive_unit.diameter)
     circle = round(SPRING_CIRCLE * track.radius, 3)
-    under = replace(plain.machine, spring_angle=one.spring_angle, spring_radius=circle, supply=one.frequency)
+    under = replace(
+        plain.machine, spring_angle=drive_unit.spring_angle, spring_radius=circle, supply=drive_unit.frequency
+    )
     plain = replace(plain, track=track, machine=under)
     guess = drive_sizing.machine_on(plain, ("machine.spring_angle", "machine.spring_radius"))
     under = replace(
@@ -118,8 +120,8 @@ def _bowl(one: DriveUnit) -> Bowl:
     )
     drive = replace(
         plain.drive,
-        amplitude=0.5 * one.greatest_stroke,
-        frequency=one.frequency,
+        amplitude=0.5 * drive_unit.greatest_stroke,
+        frequency=drive_unit.frequency,
         vibration_angle=float(vibration_angle(under, track.radius, track.climb)),
     )
     driven = replace(plain, drive=drive, machine=under)
@@ -133,49 +135,50 @@ def _rounded(value: float) -> float:
 
 def lines() -> tuple[str, ...]:
     """Return what ``feeder config init --machine list`` prints: a line for each drive unit."""
-    return tuple(_line(one) for one in DRIVE_UNITS)
+    return tuple(_line(drive_unit) for drive_unit in DRIVE_UNITS)
 
 
-def _line(one: DriveUnit) -> str:
-    bowl = _bowl(one)
-    at_springs, at_track = np.degrees((one.spring_angle, bowl.drive.vibration_angle))
+def _line(drive_unit: DriveUnit) -> str:
+    bowl = _bowl(drive_unit)
+    at_springs, at_track = np.degrees((drive_unit.spring_angle, bowl.drive.vibration_angle))
     angles = f"{at_springs:.0f} deg springs, {at_track:.0f} deg track"
     return (
-        f"{one.name:<11} {1e3 * one.diameter:4.0f} mm  {one.frequency:4.0f} Hz ({one.supply})  {angles}  "
-        f"{1e3 * one.greatest_stroke:.1f} mm p-p  {bowl.machine.bowl_mass:4.1f} kg  {TYPICAL}"
+        f"{drive_unit.name:<11} {1e3 * drive_unit.diameter:4.0f} mm  {drive_unit.frequency:4.0f} Hz "
+        f"({drive_unit.supply})  {angles}  "
+        f"{1e3 * drive_unit.greatest_stroke:.1f} mm p-p  {bowl.machine.bowl_mass:4.1f} kg  {TYPICAL}"
     )
 
 
-def bowl_file(one: DriveUnit) -> str:
+def bowl_file(drive_unit: DriveUnit) -> str:
     """Return a bowl file that describes a drive unit; the amplitude is left to the design.
 
     Parameters
     ----------
-    one : DriveUnit
+    drive_unit : DriveUnit
 
     Returns
     -------
     str
     """
-    bowl = _bowl(one)
+    bowl = _bowl(drive_unit)
     under = bowl.machine
     angle = np.degrees(bowl.drive.vibration_angle)
     return f"""\
 # yaml-language-server: $schema=feeder.schema.json
-# Drive unit {one.name}: {TYPICAL}. Replace what the sheet of your own machine says.
+# Drive unit {drive_unit.name}: {TYPICAL}. Replace what the sheet of your own machine says.
 # Stroke: {STROKE_SOURCE}.
 # Masses: {RULE_SOURCE}.
 # {LEAF_SOURCE}. Angle and circle of the springs: assumption.
-# By the machine below the drive runs at {one.frequency:.0f} Hz and {angle:.3g} deg at the track.
+# By the machine below the drive runs at {drive_unit.frequency:.0f} Hz and {angle:.3g} deg at the track.
 # feeder design looks for the stroke. To keep a stroke of your own, write it:
 # drive:
-#   peak_to_peak: {1e3 * one.greatest_stroke:.1f} mm
+#   peak_to_peak: {1e3 * drive_unit.greatest_stroke:.1f} mm
 track:
-  radius: {5e2 * one.diameter:g} mm
+  radius: {5e2 * drive_unit.diameter:g} mm
 machine:
-  mains: {one.mains:.0f} Hz
+  mains: {drive_unit.mains:.0f} Hz
   controller: mains
-  supply: {one.supply}
+  supply: {drive_unit.supply}
   bowl_mass: {under.bowl_mass:g} kg
   bowl_inertia: {under.bowl_inertia:g} kg m2
   base_mass: {under.base_mass:g} kg
@@ -187,5 +190,5 @@ machine:
   leaf_length: {1e3 * under.leaf_length:g} mm
   leaves: {under.leaves:.0f}
 sizing:
-  greatest_stroke: {1e3 * one.greatest_stroke:g} mm
+  greatest_stroke: {1e3 * drive_unit.greatest_stroke:g} mm
 """

@@ -91,12 +91,16 @@ def find_lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = 
         If the part is a card without an outline.
     """
     stood = [posture(part, aspects, aspects.names[row]) for row in np.flatnonzero(aspects.stable)]
-    found = [headings(one, STRAIGHT_TRACK) for one in stood]
-    rows = [(one.aspect, *row) for one in found for row in zip(one.headings, one.lengths, one.widths)]
+    stable = [headings(posed, STRAIGHT_TRACK) for posed in stood]
+    rows = [
+        (on_aspect.aspect, *row)
+        for on_aspect in stable
+        for row in zip(on_aspect.headings, on_aspect.lengths, on_aspect.widths)
+    ]
     counted = rows if wanted is None else [rows[_place([row[:2] for row in rows], wanted)]]
     return Lying(
         longest=float(max(row[2] for row in rows)),
-        tallest=float(max(np.max(one.corners[:, 2]) for one in stood)),
+        tallest=float(max(np.max(posed.corners[:, 2]) for posed in stood)),
         length=float(max(row[2] for row in counted)),
         width=float(max(row[3] for row in counted)),
     )
@@ -108,15 +112,15 @@ def size_shape(
     """Return the wanted orientation on a track, or else the most frequent heading of the first aspect."""
     name = aspects.names[int(np.flatnonzero(aspects.stable)[0])] if wanted is None else wanted[0]
     stood = posture(part, aspects, name)
-    found = headings(stood, track)
-    row = 0 if wanted is None else _place([(name, heading) for heading in found.headings], wanted)
-    outline = check.frozen(turned(stood.outline, found.headings[row]))
-    return SizedShape(outline, float(found.distances[row]), float(found.lengths[row]))
+    stable = headings(stood, track)
+    row = 0 if wanted is None else _place([(name, heading) for heading in stable.headings], wanted)
+    outline = check.frozen(turned(stood.outline, stable.headings[row]))
+    return SizedShape(outline, float(stable.distances[row]), float(stable.lengths[row]))
 
 
 def size_bowl(
     part: Lying,
-    given: str,
+    drive_text: str,
     rules: Sizing,
     *,
     sorts: bool,
@@ -132,7 +136,7 @@ def size_bowl(
     Parameters
     ----------
     part : Lying
-    given : str
+    drive_text : str
         What a fault names: the part's file.
     rules : Sizing
     sorts : bool
@@ -153,7 +157,7 @@ def size_bowl(
     play = float(np.clip(rules.clearance * part.width, rules.least_clearance, rules.greatest_clearance))
     least = _diameters(part, play, rules, width, sorts)
     across = _rounded_up(max(least.values()), rules.diameter_step) if diameter is None else diameter
-    _check_diameter(across, part, given, rules, fixed=diameter is not None)
+    _check_diameter(across, part, drive_text, rules, fixed=diameter is not None)
     bend = part.length**2 / (2.0 * across)
     wide = part.width + play + bend if width is None else width
     depth = rules.outlet_height if rules.outlet_height > 0.0 else rules.depth * across
@@ -165,16 +169,16 @@ def size_bowl(
 
 def _climb(part: Lying, across: float, wide: float, rules: Sizing) -> float:
     """The least climb [rad]: parts pass below the next turn, or below the slope that leads to it."""
-    rise, way = rules.headroom * part.tallest + rules.sheet, np.pi * across
+    rise, length = rules.headroom * part.tallest + rules.sheet, np.pi * across
     if rules.shape != "cylinder":
         free = [
-            max(rules.headroom * one, one + MIN_WALL_ABOVE_PART_M)
-            for one in (part.tallest, part.hanging)
-            if one > 0.0
+            max(rules.headroom * tall, tall + MIN_WALL_ABOVE_PART_M)
+            for tall in (part.tallest, part.hanging)
+            if tall > 0.0
         ]
         rise = sum(free) + MAX_WALL_SLOPE * wide + 4.0 * rules.sheet
-        way = np.pi * (across - wide)
-    return max(rules.least_climb, np.arctan(rise / way))
+        length = np.pi * (across - wide)
+    return max(rules.least_climb, np.arctan(rise / length))
 
 
 def _diameters(part: Lying, play: float, rules: Sizing, width: float | None, sorts: bool) -> dict[str, float]:
@@ -200,22 +204,22 @@ def _diameters(part: Lying, play: float, rules: Sizing, width: float | None, sor
     return least | {"width of the track": rules.diameter_per_width * wide}
 
 
-def _check_diameter(across: float, part: Lying, given: str, rules: Sizing, *, fixed: bool) -> None:
+def _check_diameter(across: float, part: Lying, drive_text: str, rules: Sizing, *, fixed: bool) -> None:
     if np.isinf(across):
         what = f"needs {1e3 * part.width:.4g} mm of track and its play, more than track.width"
-        raise FeederError(given, what, "widen the track, or leave track.width out")
+        raise FeederError(drive_text, what, "widen the track, or leave track.width out")
     if across > rules.greatest_diameter:
         what = f"needs a bowl of {1e3 * across:.4g} mm, and none is larger than"
         mend = "feed it from a step or belt feeder, or raise sizing.greatest_diameter"
-        raise FeederError(given, f"{what} {1e3 * rules.greatest_diameter:.4g} mm", mend)
+        raise FeederError(drive_text, f"{what} {1e3 * rules.greatest_diameter:.4g} mm", mend)
     if fixed and across < 2.0 * part.longest:
         what = f"{500.0 * across:.4g} mm is too small for a part {1e3 * part.longest:.4g} mm long"
         raise FeederError("track.radius", what, "leave it out, to have the bowl sized")
 
 
-def _place(known: Sequence[tuple[str, float]], wanted: tuple[str, float]) -> int:
+def _place(name: Sequence[tuple[str, float]], wanted: tuple[str, float]) -> int:
     """Which of some aspects and headings [rad] is the wanted one, known from a straight track."""
-    aspects, headings = zip(*known)
+    aspects, headings = zip(*name)
     return nearest(aspects, headings, *wanted)
 
 
@@ -309,10 +313,10 @@ def emptying(bowl: Bowl, fill: Fill) -> Emptying:
     machine, rules, drive = bowl.machine, bowl.sizing, bowl.drive
     levels = np.linspace(1.0, 0.0, FILL_LEVEL_COUNT)
     laden = [loaded_bowl(machine, fill, rules.carried * u) for u in levels]
-    natural = np.array([analyse_springs(one).natural_frequency for one in laden])
+    natural = np.array([analyse_springs(machine_at_level).natural_frequency for machine_at_level in laden])
     gains = gain(drive.frequency, natural, machine.damping)
     relative = gains / gains[-1]
-    rises, turns = np.array([shares(one) for one in laden]).T
+    rises, turns = np.array([shares(machine_at_level) for machine_at_level in laden]).T
     upright = drive.vibration_angle + bowl.track.climb
     along = relative * turns / turns[-1] * np.cos(upright)
     up = relative * rises / rises[-1] * np.sin(upright)
@@ -341,7 +345,7 @@ class Flow:
 
 
 def flow(
-    found: well_oriented.Orientations,
+    queue: well_oriented.Orientations,
     rule: str,
     *,
     target: tuple[str, float] | None = None,
@@ -354,7 +358,7 @@ def flow(
 
     Parameters
     ----------
-    found : Orientations
+    queue : Orientations
         On the track, through the devices.
     rule : str
         Whose probabilities are taken.
@@ -374,20 +378,20 @@ def flow(
         If nothing leaves.
     """
     if target is not None:
-        parts = well_oriented.parts_per_metre(found, target, rule, gap=gap, fill=fill)
-        row = list(zip(found.aspects, found.headings)).index(target)
+        parts = well_oriented.parts_per_metre(queue, target, rule, gap=gap, fill=fill)
+        row = list(zip(queue.aspects, queue.headings)).index(target)
         return Flow(
-            parts, well_oriented.efficiency(found, row, rule), float(well_oriented.fed(found, row).length)
+            parts, well_oriented.efficiency(queue, row, rule), float(well_oriented.fed(queue, row).length)
         )
-    chances = np.nan_to_num(found.rules[rule])
-    leaving = float((chances * found.leaves).sum())
-    if not leaving > 0.0 and float((chances * found.through).sum()) > 0.0:
+    chances = np.nan_to_num(queue.rules[rule])
+    leaving = float((chances * queue.leaves).sum())
+    if not leaving > 0.0 and float((chances * queue.through).sum()) > 0.0:
         raise FeederError(
             "track.climb", f"the part {well_oriented.ROLLS_BACK_REMARK}", well_oriented.HOLD_ADVICE
         )
     if not leaving > 0.0:
         raise FeederError("devices", "let no part pass", "see what each returns in feeder rate")
-    share, length = leaving / float((chances * found.stays).sum()), well_oriented.mean_length(found, rule)
+    share, length = leaving / float((chances * queue.stays).sum()), well_oriented.mean_length(queue, rule)
     return Flow(fill * share / (length + gap), share, length)
 
 
@@ -489,5 +493,5 @@ def _speeds(bowl: Bowl, amplitudes: Any, strokes: Any, angles: Any = None) -> An
     if angles is not None:
         turned: Any = np.broadcast_to(angles, each.shape)
         drive = replace(drive, vibration_angle=turned)
-    found = answer.cells(replace(bowl, drive=drive))["velocity"]
-    return np.where(np.isfinite(found), found, -np.inf).min(axis=-1)
+    velocities = answer.cells(replace(bowl, drive=drive))["velocity"]
+    return np.where(np.isfinite(velocities), velocities, -np.inf).min(axis=-1)

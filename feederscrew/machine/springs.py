@@ -54,8 +54,8 @@ class _Body:
 
 def is_even(machine: Machine) -> bool:
     """Return whether nothing is known of a bowl that would rock it."""
-    known = machine.unbalance
-    return not any((*known.moment[:2], *known.products))
+    unbalance = machine.unbalance
+    return not any((*unbalance.moment[:2], *unbalance.products))
 
 
 def unbalanced_effective_mass(machine: Machine) -> float:
@@ -139,12 +139,12 @@ def _screw(machine: Machine) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _bowl(machine: Machine) -> _Body:
-    known = machine.unbalance
-    yz, xz, xy = known.products
+    unbalance = machine.unbalance
+    yz, xz, xy = unbalance.products
     inertia = np.array(
-        [[known.upright[0], -xy, -xz], [-xy, known.upright[1], -yz], [-xz, -yz, machine.bowl_inertia]]
+        [[unbalance.upright[0], -xy, -xz], [-xy, unbalance.upright[1], -yz], [-xz, -yz, machine.bowl_inertia]]
     )
-    moment = np.array(known.moment)
+    moment = np.array(unbalance.moment)
     if (moment[:2] ** 2).sum() >= machine.bowl_mass * machine.bowl_inertia:
         what = f"{machine.bowl_inertia:.4g} kg m2 is less than the mass of the bowl has off its axis"
         raise FeederError("machine.bowl_inertia", what, "give that of the bowl as it is, or leave it out")
@@ -329,8 +329,8 @@ def in_plane(machine: Machine, offset: float = 0.0) -> float:
     wide, long, angle = machine.leaf_width, machine.leaf_length, machine.spring_angle
     lever = wide * long / (machine.leaf_thickness * machine.spring_radius)
     shear = 2.0 * (1.0 + POISSON) * wide**2 / (SHEAR_SHARE * long**2)
-    apart = 1.0 + 12.0 * offset**2 / (long**2 * (1.0 + shear))
-    return float((lever * np.sin(angle) * np.cos(angle)) ** 2 / 12.0 * apart)
+    half_width = 1.0 + 12.0 * offset**2 / (long**2 * (1.0 + shear))
+    return float((lever * np.sin(angle) * np.cos(angle)) ** 2 / 12.0 * half_width)
 
 
 def effective_mass(machine: Machine) -> float:
@@ -454,7 +454,7 @@ def leaf_set(
     """
     other = replace(machine, leaves=leaves, leaf_thickness=thickness)
     mass = effective_mass(machine) if mass is None else mass
-    stiff, own = (one.leaves * leaf_stiffness(one) * twist(one) for one in (other, machine))
+    stiff, own = (sprung.leaves * leaf_stiffness(sprung) * twist(sprung) for sprung in (other, machine))
     natural = natural_frequency(stiff, mass)
     square = leaves / machine.leaves * (thickness / machine.leaf_thickness) ** 2
     return LeafSet(
@@ -513,9 +513,11 @@ def tuned_leaf_sets(
         Thin leaves first; at most ``MOST_A_BANK`` in each bank. Empty where no whole number of leaves does.
     """
     stocked, mass = sorted({*THICKNESSES, machine.leaf_thickness}), effective_mass(machine)
-    found = (
+    sets = (
         leaf_set(machine, frequency, amplitude, leaves=n, thickness=t, mass=mass)
         for t in stocked
         for n in range(int(rules.banks), MOST_A_BANK * int(rules.banks) + 1, int(rules.banks))
     )
-    return tuple(one for one in found if rules.least_detuning <= one.detuning <= rules.greatest_detuning)
+    return tuple(
+        leaves for leaves in sets if rules.least_detuning <= leaves.detuning <= rules.greatest_detuning
+    )

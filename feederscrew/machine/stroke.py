@@ -68,8 +68,8 @@ def angles(machine: Machine, track: Track) -> tuple[np.ndarray, np.ndarray]:
         From the smaller of the springs' radius and half the track's, outwards.
     """
     evenly = track.radius * np.linspace(INNERMOST, 1.0, RADII)
-    apart = np.abs(evenly - machine.spring_radius) > 1e-9 * track.radius
-    radii = np.sort(np.append(evenly[apart], machine.spring_radius))
+    off_springs = np.abs(evenly - machine.spring_radius) > 1e-9 * track.radius
+    radii = np.sort(np.append(evenly[off_springs], machine.spring_radius))
     return radii, direction(machine, radii)
 
 

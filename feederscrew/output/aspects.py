@@ -12,7 +12,7 @@ from feederscrew.output.columns import G_MM2, MM2, UJ
 from feederscrew.output.heavy import heavy
 from feederscrew.resting import names_file
 from feederscrew.resting.forms import postures
-from feederscrew.units import DEG, MM, shown
+from feederscrew.units import DEG, MM, quantity_text
 
 shading = heavy("feederscrew.output.shading")
 
@@ -91,7 +91,9 @@ def printed(frame, wanted=None):
     names = [name if name in frame else headed.get(name.casefold(), name) for name in names]
     for name in names:
         if name not in frame:
-            raise ArgumentError("columns", f"there is no column {shown(name)}", hint(name, list(frame)))
+            raise ArgumentError(
+                "columns", f"there is no column {quantity_text(name)}", hint(name, list(frame))
+            )
     return frame.only(names)
 
 

@@ -4,7 +4,7 @@ from itertools import zip_longest
 
 from feederscrew import units
 from feederscrew.designing import record
-from feederscrew.output import designs, machine, marking, solidbowl
+from feederscrew.output import designs, machine, marking, solidbowl, solidbowl_views, tooling
 from feederscrew.output import offers as offer
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import (
@@ -19,11 +19,8 @@ from feederscrew.output.page.blocks import (
     Tile,
     Views,
 )
-from feederscrew.output.solidbowl import tables as tables_of_solid
-from feederscrew.output.solidbowl import turnable
 from feederscrew.output.style import png
 from feederscrew.output.tables import frame, text
-from feederscrew.output.tooling import files as tooling_files
 from feederscrew.output.trial import playback
 
 MEASURE = (
@@ -70,7 +67,7 @@ def _sections(study, built):
         yield Chapter(tuple(_proof(study, d)), anchor="proof", title="The proof")
     if built is not None and study.delivers:
         mark = marking.of_trial(designs.trial_of(study))
-        shown = tuple(turnable.blocks(built.drawn and built.drawn.solid, study.part, built.why, mark))
+        shown = tuple(solidbowl_views.blocks(built.drawn and built.drawn.solid, study.part, built.why, mark))
         yield Chapter(shown, anchor="bowl", title="The bowl")
     if not study.delivers:  # nothing to build from, nothing to accept
         return
@@ -223,9 +220,9 @@ def offers(study, settings, built=None):
         found += machine.offers(sheet, tried)
     if drawn is not None:
         found += solidbowl.offers(drawn, tried)
-        found.append(offer.document("bowl_solid.json", tables_of_solid.document, drawn.solid))
+        found.append(offer.document("bowl_solid.json", solidbowl.document, drawn.solid))
     if study.tooling is not None:
-        own = tooling_files.offers(study.tooling, settings, mark=marking.of_trial(tried))
+        own = tooling.offers(study.tooling, settings, mark=marking.of_trial(tried))
         found += [one for one in own if one.name != "tooling.yaml"]  # design.yaml has the devices
     return found
 

@@ -559,7 +559,9 @@ def bowl_file(study, settings, sheet=None):
     own |= {} if sheet is None else {"machine": sheet.bowl.machine, "sizing": sheet.bowl.sizing}
     set_here = {f"{section}.{row[0]}" for section in own for row in OWN[section]} | {"drive.peak_to_peak"}
     set_here |= {f"machine.{word}" for word in schema.UNBALANCE_NAMES if "machine" in own}
-    given = [s for s in settings if s.given and s.key.field != DEVICES_SECTION and s.key.name not in set_here]
+    given = [
+        s for s in settings if s.is_own and s.key.field != DEVICES_SECTION and s.key.name not in set_here
+    ]
     lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
     if study.drive_mismatch is not None:
         lines += [f"# Its drive: {study.drive_mismatch.text}."]

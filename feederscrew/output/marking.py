@@ -1,6 +1,7 @@
 """The mark on every drawing and solid of a bowl whose trial falls short."""
 
 import re
+from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 import numpy as np
@@ -16,6 +17,14 @@ POINTS = 72.0  # of an inch
 NAME_END = "_falls_short"  # of the name of a file that nobody sees a mark on
 STEP_HEAD = re.compile(rb"(FILE_DESCRIPTION\(\('[^']*)'")
 STEP_PRODUCT = re.compile(rb"(PRODUCT\('[^']*)','([^']*)'")  # its number and its name
+
+
+@dataclass(frozen=True)
+class SheetFields:
+    """Fields of the title block that the user gives; '' stays empty: the same input gives the same bytes."""
+
+    date: str = ""
+    revision: str = ""
 
 
 def of_trial(tried, mark=None):

@@ -59,7 +59,7 @@ def _origin(bowl: Any) -> str:
     """Where a bowl is from: 'bowl.yaml, 2 overrides', 'defaults'; 'changed' after it was read."""
     if not bowl.settings:
         return "changed after it was read"
-    own = [setting for setting in bowl.settings if setting.given]
+    own = [setting for setting in bowl.settings if setting.is_own]
     files = list(dict.fromkeys(s.where.rsplit(":", 2)[0] for s in own if not s.overrides))
     overrides = sum(setting.overrides for setting in own)
     return ", ".join([*(files or ["defaults"]), *([counted(overrides, "override")] if overrides else [])])
@@ -101,7 +101,7 @@ def _orientation(one: Any) -> str:
 
 def _tune(study: Any) -> str:
     settings = [
-        f"{one.solution.key.name} {one.solution.shown:.4g} {one.solution.key.unit}".rstrip()
+        f"{one.solution.key.name} {one.solution.number:.4g} {one.solution.key.unit}".rstrip()
         for one in study.settings
     ]
     return f"{study.part.name}: {number(study.target * MINUTE)} parts/min with {' or '.join(settings)}"
@@ -355,7 +355,7 @@ def _view_uri(part):
 
 def _settings(bowl):
     """The keys of a bowl that somebody gave, with where they come from; all of them where none was."""
-    given = [setting for setting in bowl.settings if setting.given] or bowl.settings
+    given = [setting for setting in bowl.settings if setting.is_own] or bowl.settings
     columns = {"key": [s.key.name for s in given], "value": [s.text for s in given]}
     return tables.data_frame(tables.frame(columns | {"from": [s.origin for s in given]}))
 

@@ -64,7 +64,10 @@ def _graph(study):
 MOST_GRAPH_ASPECTS = 12  # aspects a picture can show
 CLEAR = 4.0  # [pt] between an arrow and a disc
 BEND = 0.12  # of an arrow, so that there and back lie apart
-LIFT_SPOTS = (0.36, 0.3, 0.42, 0.24, 0.48, 0.54, 0.6, 0.66, 0.72)  # of the way: where the lift may be written
+LIFT_SPOTS = (  # of the way: where the lift may be written, the first that is free
+    0.3, 0.27, 0.33, 0.24, 0.36, 0.21, 0.39, 0.42, 0.45, 0.48, 0.54, 0.6, 0.66, 0.72,
+)  # fmt: skip
+CROSSED = 2e-3  # of a point of another arrow under a label, as an overlap
 LETTER_SIZE = (0.041, 0.109)  # width and height of one, over the ring's radius
 DISC_SIZE = (0.22, 0.22)  # half a disc, over the ring's radius
 FRAMED = 4200.0  # [pt2] square about the disc behind a drawn aspect
@@ -174,12 +177,14 @@ def _arrows(axes, ways, places, sizes, names):
         if set(pair) <= set(places) and way.lift < between.get(pair, np.inf):
             between[pair] = way.lift
     taken = [(*place, max(DISC_SIZE[0], _half(names[k])[0]), DISC_SIZE[1]) for k, place in places.items()]
+    curves = {pair: _curve(places[pair[0]], places[pair[1]], np.linspace(0.0, 1.0, 60)) for pair in between}
     for (start, end), lift in sorted(between.items(), key=lambda item: -item[1]):  # the easy ones on top
         ends = (places[start], sizes[start]), (places[end], sizes[end])
-        taken.append(arrow(axes, *ends, lift, lift <= EQUAL_LIFT * lowest[start], taken))
+        others = [curve for pair, curve in curves.items() if pair != (start, end)]
+        taken.append(arrow(axes, *ends, lift, lift <= EQUAL_LIFT * lowest[start], taken, others))
 
 
-def arrow(axes, begin, end, lift, easiest, taken=()):
+def arrow(axes, begin, end, lift, easiest, taken=(), others=()):
     """Draw one way between two discs (place, size), bent to leave room for the way back.
 
     Parameters
@@ -192,6 +197,8 @@ def arrow(axes, begin, end, lift, easiest, taken=()):
         Out of that disc.
     taken : sequence of 4 float
         Boxes of discs and labels that are there already: middle, half width, half height.
+    others : sequence of (K, 2) float
+        Points of the other arrows: a number stands where it is none of theirs.
 
     Returns
     -------
@@ -210,13 +217,24 @@ def arrow(axes, begin, end, lift, easiest, taken=()):
     shrunk = {f"shrink{e}": 0.5 * np.sqrt(size) + CLEAR for e, size in (("A", from_size), ("B", to_size))}
     order = {"zorder": 2 if easiest else 1}
     axes.annotate("", end, start, arrowprops={**bent, **shrunk, "color": colour, "linewidth": 1.1}, **order)
-    along = end - start
-    beside = np.array([along[1], -along[0]]) * BEND  # of the middle control point of the arc
-    spots = [start + t * along + 2.0 * t * (1.0 - t) * beside for t in LIFT_SPOTS]
-    hidden = [sum(_overlap((*spot, *_half(text)), other) for other in taken) for spot in spots]
+    spots = _curve(start, end, np.array(LIFT_SPOTS))
+    crossed = np.reshape(np.concatenate([*others, np.zeros((0, 2))]), (-1, 2))
+    half = np.array(_half(text))
+    hidden = [
+        sum(_overlap((*spot, *half), other) for other in taken)
+        + CROSSED * (np.abs(crossed - spot) < half).all(axis=1).sum()
+        for spot in spots
+    ]
     spot = spots[int(np.argmin(hidden))]
     axes.annotate(text, spot, **look)
     return (*spot, *_half(text))
+
+
+def _curve(start, end, shares):
+    """The points (K, 2) of a bent arrow at shares (K,) of its way."""
+    along = end - start
+    beside = np.array([along[1], -along[0]]) * BEND  # of the middle control point of the arc
+    return start + shares[:, None] * along + 2.0 * (shares * (1.0 - shares))[:, None] * beside
 
 
 def _half(text):

@@ -67,7 +67,7 @@ def remarks(study):
 
 def _solution_words(one):
     key = one.solution.key
-    return f"at {key.name} {one.solution.shown:.6g} {key.unit}, {units.listed(one.over)}"
+    return f"at {key.name} {one.solution.number:.6g} {key.unit}, {units.listed(one.over)}"
 
 
 def _margin(value, letters):
@@ -88,7 +88,7 @@ def _row(one, per_minute):
     leap = hop(one.driven)
     return {
         "key": key.name,
-        "value": one.solution.shown,
+        "value": one.solution.number,
         "unit": key.unit,
         "parts_per_minute": one.velocity.value * per_minute,
         "parts_per_minute_low": one.velocity.low * per_minute,

@@ -64,7 +64,7 @@ def _block(root, faults):
         raise ConfigError(root.where, "is not a block of names", EXAMPLE)
     for entry in root.entries:
         if entry.key != "aspects":
-            what = f"unknown key {units.shown(entry.key)}"
+            what = f"unknown key {units.quantity_text(entry.key)}"
             faults.append(ConfigError(entry.where, what, documents.hint(entry.key, ["aspects"])))
     block = root.find("aspects")
     if block is None or block.value.kind != "mapping" or not block.value.entries:
@@ -91,11 +91,11 @@ def _name(entry, known):
     name = entry.key
     shape = rf"[^\W_](?:[\w{re.escape(MARKS)}]{{0,{LONGEST - 2}}}\w)?"
     if not re.fullmatch(shape, name) or name.casefold() in TAKEN:
-        what = f"{units.shown(entry.key)} cannot be the name of an aspect"
+        what = f"{units.quantity_text(entry.key)} cannot be the name of an aspect"
         mend = f"give 1 to {LONGEST} letters, digits, '-', '_' and '.', the first a letter or a digit"
         raise ConfigError(entry.where, what, mend if name.casefold() not in TAKEN else "choose another")
     if name.casefold() in known:
-        what = f"{units.shown(name)} and '{known[name.casefold()][0]}' differ in case only"
+        what = f"{units.quantity_text(name)} and '{known[name.casefold()][0]}' differ in case only"
         raise ConfigError(entry.where, what, "give each its own name")
     return name
 
@@ -103,7 +103,7 @@ def _name(entry, known):
 def _direction(entry):
     """(3,) the unit vector of one line."""
     node, mend = entry.value, "write three numbers, as [0, 0, -1]"
-    what = f"the direction of {units.shown(entry.key)}"
+    what = f"the direction of {units.quantity_text(entry.key)}"
     if node.kind != "list" or len(node.items) != 3 or any(item.kind != "text" for item in node.items):
         raise ConfigError(node.where, f"{what} is not a list of three", mend)
     try:
@@ -121,5 +121,5 @@ def _unlike(entry, down, known):
     """Refuse a direction that another name has."""
     for name, other in known.values():
         if np.abs(np.subtract(down, other)).max() < SAME:
-            what = f"{units.shown(entry.key)} has the direction of '{name}'"
+            what = f"{units.quantity_text(entry.key)} has the direction of '{name}'"
             raise ConfigError(entry.where, what, "keep one of them")

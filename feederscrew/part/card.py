@@ -78,7 +78,7 @@ def _mapping(node, keys, faults):
     values = {}
     for entry in node.entries:
         if entry.key not in known:
-            what = f"unknown key {units.shown(entry.key)}"
+            what = f"unknown key {units.quantity_text(entry.key)}"
             faults.append(ConfigError(entry.where, what, documents.hint(entry.key, list(known))))
             continue
         try:
@@ -107,7 +107,7 @@ def _listed(key, node, shape):
     if node.kind != "text" or not node.text:
         raise ConfigError(node.where, f"{key.word} has no value", f"write {key.example}")
     if key.choices and node.text not in key.choices:
-        what = f"{key.word} is {units.shown(node.text)}"
+        what = f"{key.word} is {units.quantity_text(node.text)}"
         raise ConfigError(node.where, what, f"give {' or '.join(key.choices)}")
     return node.text if key.dimension == "text" else _quantity(key, node)
 
@@ -142,7 +142,7 @@ def _aspects(rows, faults):
         shown = _mapping(row, ASPECT, faults)
         name = shown.get("aspect")
         if name in seen:
-            what = f"aspect {units.shown(name)} is already in line {seen[name].rsplit(':', 2)[1]}"
+            what = f"aspect {units.quantity_text(name)} is already in line {seen[name].rsplit(':', 2)[1]}"
             faults.append(ConfigError(row.where, what, "keep one of them"))
         elif name is not None:
             seen[name] = row.where
@@ -163,7 +163,7 @@ def _strangers(root, printed, aspects):
     return [
         ConfigError(
             root.find(block).value.find("aspect").value.where,
-            f"{block}: the card lists no aspect {units.shown(shown['aspect'])}",
+            f"{block}: the card lists no aspect {units.quantity_text(shown['aspect'])}",
             f"known are {', '.join(map(str, names))}",
         )
         for block, shown in printed.items()

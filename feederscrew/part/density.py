@@ -95,7 +95,7 @@ def density(text=None):
     if material:
         return material.density, material.name
     if not plain or not (plain[0].isdigit() or plain[0] in "+-.\N{MINUS SIGN}"):
-        raise ArgumentError(ARGUMENT, f"no material is called {units.shown(text)}", _nearest(plain))
+        raise ArgumentError(ARGUMENT, f"no material is called {units.quantity_text(text)}", _nearest(plain))
     return _typed(text), " ".join(text.split())
 
 
@@ -119,7 +119,7 @@ def _typed(text):
     except units.QuantityError as error:
         raise ArgumentError(ARGUMENT, error.what, error.mend) from None
     if not LIGHTEST <= value <= HEAVIEST:
-        what = f"{units.shown(text)} is the density of no solid"
+        what = f"{units.quantity_text(text)} is the density of no solid"
         meant = _plausible(number, but=unit)
         mend = f"did you mean {number:g} {meant}?" if meant else "steel has 7.85 g/cm3"
         raise ArgumentError(ARGUMENT, what, mend)

@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.part.aspect_names import AspectNames
 from feederscrew.part.hull import Hull
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +25,7 @@ class CardAspect:
 
 
 @dataclass(frozen=True, eq=False)
-class Part(Shown):
+class Part(ReadableRecord):
     """A solid to be fed: its surface (none for a part card) and its mass properties."""
 
     name: str  # file stem; with the body's number behind it where one of several is taken

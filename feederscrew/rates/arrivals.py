@@ -27,13 +27,13 @@ TOO_LONG = (
 NO_ARRIVALS_MESSAGE = "no part came to lie on the moving floor: the closed form is taken"
 
 
-def arrived(aspects: Aspects, found: "Arrival", seed: int) -> Aspects:
+def arrived(aspects: Aspects, arrival: "Arrival", seed: int) -> Aspects:
     """Return the aspects with what arrives at the track's entry as their recommended answer.
 
     Parameters
     ----------
     aspects : Aspects
-    found : Arrival
+    arrival : Arrival
     seed : int
         Of its launches.
 
@@ -42,15 +42,15 @@ def arrived(aspects: Aspects, found: "Arrival", seed: int) -> Aspects:
     Aspects
         With a warning where the shares are undecided.
     """
-    parts = found.shaken.parts
-    if not np.isfinite(found.p).all():
+    parts = arrival.shaken.parts
+    if not np.isfinite(arrival.p).all():
         return replace(aspects, warnings=(*aspects.warnings, NO_ARRIVALS_MESSAGE))
-    said: tuple[str, ...] = () if found.settled else (UNDECIDED.format(found.reason),)
-    said += (STOPPED.format(parts),) if found.shaken.partial else ()
+    remarks: tuple[str, ...] = () if arrival.settled else (UNDECIDED.format(arrival.reason),)
+    remarks += (STOPPED.format(parts),) if arrival.shaken.partial else ()
     rule = f"fed onto the moving floor, {parts} parts, seed {seed}"
-    low, high = launched(found.p, found.low, found.high, aspects.stable)
-    answer = Recommended(rule, LAUNCH, found.p, check.frozen(low), check.frozen(high))
-    return replace(aspects, recommended=answer, warnings=(*aspects.warnings, *said))
+    low, high = launched(arrival.p, arrival.low, arrival.high, aspects.stable)
+    answer = Recommended(rule, LAUNCH, arrival.p, check.frozen(low), check.frozen(high))
+    return replace(aspects, recommended=answer, warnings=(*aspects.warnings, *remarks))
 
 
 def too_long(aspects: Aspects, bowl: Bowl) -> bool:
@@ -108,12 +108,12 @@ def _only(measured: Measured) -> AspectProfile:
     return measured.profiles[0]
 
 
-def oriented(known: Orientations, measured: Measured | None) -> Orientations:
+def oriented(queue: Orientations, measured: Measured | None) -> Orientations:
     """Return the orientations with the shares that were counted for each of them.
 
     Parameters
     ----------
-    known : Orientations
+    queue : Orientations
     measured : Measured or None
         As it stands where it counts aspects, and where there is none.
 
@@ -127,14 +127,14 @@ def oriented(known: Orientations, measured: Measured | None) -> Orientations:
         If a part was counted in an orientation that the part cannot have on this track.
     """
     if measured is None or measured.by_orientation is None:
-        return known
-    values = np.zeros(len(known.lying))
+        return queue
+    values = np.zeros(len(queue.lying))
     for (aspect, heading), count in zip(measured.lying, measured.by_orientation[:, 0]):
         if count > 0.0:
-            row = place(known.aspects, known.headings, aspect, heading, measured.source, "counts")
+            row = place(queue.aspects, queue.headings, aspect, heading, measured.source, "counts")
             values[row] += count
     shares = values / values.sum()
     low, high = wilson(values, values.sum()) if _only(measured).counted else (shares, shares)
     ends = np.column_stack([np.minimum(low, shares), np.maximum(high, shares)])
-    rules = known.rules | {"recommended": check.frozen(shares)}
-    return replace(known, rules=rules, interval=check.frozen(ends))
+    rules = queue.rules | {"recommended": check.frozen(shares)}
+    return replace(queue, rules=rules, interval=check.frozen(ends))

@@ -50,7 +50,7 @@ class Solution:
     parts_per_metre: float  # [1/m] well-oriented parts on a length of track, with what arrives at that drive
 
     @property
-    def shown(self) -> float:
+    def number(self) -> float:
         """The value in the key's unit, as it is given back."""
         return float(f"{self.value / units.factor(self.key.unit, self.key.dimension):.12g}")
 
@@ -62,9 +62,9 @@ class Solution:
     @property
     def order(self) -> tuple[int, bool, float]:
         """Sorts the gentle ones first: regime, one velocity before several, softest impact."""
-        found = self.answer
-        several = found.high - found.low > answer.COEXIST * found.speed
-        return REGIMES_BY_GENTLENESS.index(found.regime), several, found.hardest_impact
+        order = self.answer
+        several = order.high - order.low > answer.COEXIST * order.speed
+        return REGIMES_BY_GENTLENESS.index(order.regime), several, order.hardest_impact
 
 
 def solutions(
@@ -110,37 +110,41 @@ def solutions(
     if not any(np.isfinite(look.speeds).any() for look in looks):
         raise FeederError("track.climb", "is steeper than friction holds", "lower the climb")
     starts = [(look, value) for look in looks for value in look.starts(target / density(None))]
-    likely, others = _led(starts, target, rough)
-    found, near = [], list[Solution]()
-    for count, (look, value) in enumerate(likely + others):
+    likely, unlikely = _led(starts, target, rough)
+    settings_tried, near = [], list[Solution]()
+    for count, (look, value) in enumerate(likely + unlikely):
         if near and count >= len(likely):
             break
-        found.append(_settled(look, value, target, density, RATE_TOLERANCE if rough is None else DECIDED))
+        settings_tried.append(
+            _settled(look, value, target, density, RATE_TOLERANCE if rough is None else DECIDED)
+        )
         near = [
-            one for one in _apart(found, target) if abs(one.rate - target) <= ACCEPTED_RATE_ERROR * target
+            solution
+            for solution in _separate_solutions(settings_tried, target)
+            if abs(solution.rate - target) <= ACCEPTED_RATE_ERROR * target
         ]
         if progress:
-            progress(count + 1, len(likely + others))
-    beyond = [one for one in _apart(found, target) if one.rate > target]
+            progress(count + 1, len(likely + unlikely))
+    beyond = [solution for solution in _separate_solutions(settings_tried, target) if solution.rate > target]
     if not near and not beyond:
         raise _unreachable(looks, target, density)
-    return sorted(near or beyond, key=lambda one: one.order)
+    return sorted(near or beyond, key=lambda solution: solution.order)
 
 
 def _led(starts: Starts, target: float, rough: Density | None) -> tuple[Starts, Starts]:
     """Where fewer parts lead from each start, none beside another: those LED to the rate, and the others."""
     if rough is None:
         return starts, []
-    likely, others = Starts(), Starts()
+    likely, unlikely = Starts(), Starts()
     for look, value in starts:
         value, rate = _lead(look, value, target, rough)
         if all(
             key != look.key or abs(value - near) > SETTING_TOLERANCE * near
-            for key, near in _places(likely + others)
+            for key, near in _places(likely + unlikely)
         ):
             near = abs(rate - target) <= LED * target
-            (likely if near else others).append((look, value))
-    return likely, others
+            (likely if near else unlikely).append((look, value))
+    return likely, unlikely
 
 
 def _places(starts: Starts) -> list[tuple[Key, float]]:
@@ -152,14 +156,14 @@ def _lead(look: "_Look", value: float, target: float, rough: Density) -> tuple[f
 
     They are too few for more than their mean at some drives near to each other.
     """
-    known = []
+    densities = []
     for _ in range(LEADS):
-        known.append(rough(turned(look.bowl, look.key, look.readable(value))))
-        there = look.crossings(target / float(np.mean(known))) if known[-1] > 0.0 else np.zeros(0)
+        densities.append(rough(turned(look.bowl, look.key, look.readable(value))))
+        there = look.crossings(target / float(np.mean(densities))) if densities[-1] > 0.0 else np.zeros(0)
         if not there.size:
             break
         value = float(there[np.argmin(np.abs(there - value))])
-    return value, look.speed(value) * float(np.mean(known))
+    return value, look.speed(value) * float(np.mean(densities))
 
 
 def _settled(
@@ -170,30 +174,30 @@ def _settled(
     Each step takes the parts that arrived at the step before it, since another drive brings others; they are
     sampled, so after some steps the mean of the last ones leads on.
     """
-    seen, last = [], None
+    steps, last = [], None
     for _ in range(ROUNDS):
         jumps = value == last
-        seen.append(look.solution(value if jumps else look.readable(value), density))
-        if abs(seen[-1].rate - target) <= close * target or jumps or not seen[-1].parts_per_metre > 0.0:
+        steps.append(look.solution(value if jumps else look.readable(value), density))
+        if abs(steps[-1].rate - target) <= close * target or jumps or not steps[-1].parts_per_metre > 0.0:
             break
-        led = seen[-REMEMBERED:] if len(seen) > REMEMBERED else seen[-1:]
-        there = look.crossings(target / float(np.mean([one.parts_per_metre for one in led])))
+        led = steps[-REMEMBERED:] if len(steps) > REMEMBERED else steps[-1:]
+        there = look.crossings(target / float(np.mean([step.parts_per_metre for step in led])))
         if not there.size:
             break
         last, value = value, float(there[np.argmin(np.abs(there - value))])
-    away = [(abs(one.rate - target), one) for one in seen]
+    away = [(abs(step.rate - target), step) for step in steps]
     enough = [pair for pair in away if pair[0] <= ACCEPTED_RATE_ERROR * target or pair[1].rate > target]
     return min(enough or away, key=lambda pair: pair[0])[1]
 
 
-def _apart(found: list[Solution], target: float) -> list[Solution]:
+def _separate_solutions(solutions: list[Solution], target: float) -> list[Solution]:
     """Those of each key that are no other's neighbour, the nearest to the target of such neighbours."""
-    kept: list[Solution] = []
-    for one in sorted(found, key=lambda one: abs(one.rate - target)):
-        others = [other.value for other in kept if other.key == one.key]
-        if all(abs(one.value - other) > SETTING_TOLERANCE * other for other in others):
-            kept.append(one)
-    return kept
+    separate: list[Solution] = []
+    for solution in sorted(solutions, key=lambda solution: abs(solution.rate - target)):
+        values = [other.value for other in separate if other.key == solution.key]
+        if all(abs(solution.value - other) > SETTING_TOLERANCE * other for other in values):
+            separate.append(solution)
+    return separate
 
 
 def turned(bowl: Bowl, key: Key, value: Any) -> Bowl:
@@ -235,8 +239,8 @@ class _Look:
 
     def crossings(self, velocity: float) -> np.ndarray:
         """Where a velocity is passed, (N,): the faster side of it, beyond a jump where it jumps over it."""
-        above, known = self.speeds >= velocity, np.isfinite(self.speeds)
-        k = np.flatnonzero((above[1:] != above[:-1]) & known[1:] & known[:-1])
+        above, finite = self.speeds >= velocity, np.isfinite(self.speeds)
+        k = np.flatnonzero((above[1:] != above[:-1]) & finite[1:] & finite[:-1])
         low, high, rises = self.values[k], self.values[k + 1], above[k + 1]
         for _ in range(KNOB_BISECTIONS):
             middle = 0.5 * (low + high)
@@ -246,8 +250,8 @@ class _Look:
 
     def readable(self, value: float) -> float:
         """The value as it is printed in the key's unit, so that it is the same when it is given back."""
-        shown = value / units.factor(self.key.unit, self.key.dimension)
-        return units.quantity(f"{shown:.{SETTING_DIGITS}g} {self.key.unit}", self.key.dimension)
+        number = value / units.factor(self.key.unit, self.key.dimension)
+        return units.quantity(f"{number:.{SETTING_DIGITS}g} {self.key.unit}", self.key.dimension)
 
     def solution(self, value: float, density: Density) -> Solution:
         """What the bowl does at a value, a Solution."""
@@ -270,15 +274,15 @@ def _speeds(bowl: Bowl, key: Key, values: np.ndarray, worst: bool) -> np.ndarray
     here = answer.cells(there)
     if not worst:
         return here["velocity"]
-    others = sensitivity.surfaces(there, (here["throw_number"] > 1.0).any())[1:]
-    around = [here, *map(answer.cells, others)]
-    return np.min([one["low"] for one in around], axis=0)  # NaN where one friction has no steady state
+    surfaces = sensitivity.surfaces(there, (here["throw_number"] > 1.0).any())[1:]
+    around = [here, *map(answer.cells, surfaces)]
+    return np.min([cells["low"] for cells in around], axis=0)  # NaN where one friction has no steady state
 
 
 def _unreachable(looks: list[_Look], target: float, density: Density) -> ArgumentError:
     """The fault that no setting brings so many parts, and what is the most."""
     bowl = looks[0].bowl
-    peaks = [(speed, one.key, value) for one in looks for speed, value in zip(one.speeds, one.values)]
+    peaks = [(speed, look.key, value) for look in looks for speed, value in zip(look.speeds, look.values)]
     peaks = sorted((peak for peak in peaks if np.isfinite(peak[0])), key=lambda peak: -peak[0])
     per_minute = units.PER_MINUTE
     what = f"no setting reaches {target / per_minute:.6g}/min"

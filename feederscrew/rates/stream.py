@@ -18,7 +18,7 @@ from feederscrew.tooling.fates import at_entry, course
 from feederscrew.tooling.orientations import Orientation, travel_speed
 
 
-def on_stretch(bowl: Bowl, one: Orientation) -> Bowl:
+def on_stretch(bowl: Bowl, orientation: Orientation) -> Bowl:
     """Return a bowl in which parts travel as on the stretch on which an orientation lies.
 
     Source: the balance of forces of a part on both faces of a groove; docs/tooling.md, "A groove".
@@ -26,7 +26,7 @@ def on_stretch(bowl: Bowl, one: Orientation) -> Bowl:
     Parameters
     ----------
     bowl : Bowl
-    one : Orientation
+    orientation : Orientation
         As it is there: its track, and the groove that it lies in.
 
     Returns
@@ -34,18 +34,22 @@ def on_stretch(bowl: Bowl, one: Orientation) -> Bowl:
     Bowl
         In a groove each face carries 1 / (2 cos(angle)) of the weight, so friction acts as mu / cos(angle).
     """
-    if not one.groove:
-        return replace(bowl, track=replace(bowl.track, climb=one.track.climb, bank=one.track.bank))
-    mu, more = bowl.friction, 1.0 / np.cos(one.groove)
-    back, kinetic_back = mu.backward
+    if not orientation.groove:
+        return replace(
+            bowl, track=replace(bowl.track, climb=orientation.track.climb, bank=orientation.track.bank)
+        )
+    mu, more = bowl.friction, 1.0 / np.cos(orientation.groove)
+    static_back, kinetic_back = mu.backward
     friction = replace(
         mu,
         static=mu.static * more,
         kinetic=mu.kinetic * more,
-        static_backward=back * more,
+        static_backward=static_back * more,
         kinetic_backward=kinetic_back * more,
     )
-    return replace(bowl, friction=friction, track=replace(bowl.track, climb=one.track.climb, bank=0.0))
+    return replace(
+        bowl, friction=friction, track=replace(bowl.track, climb=orientation.track.climb, bank=0.0)
+    )
 
 
 def queueing(bowl: Bowl, lying: Sequence[Orientation]) -> Bowl:
@@ -60,8 +64,8 @@ def queueing(bowl: Bowl, lying: Sequence[Orientation]) -> Bowl:
         As they are at its entry: a bank or a groove that is listed first begins there. A steeper stretch
         does not: it is where a queue comes apart.
     """
-    one = lying[0]
-    return on_stretch(bowl, replace(one, track=replace(one.track, climb=bowl.track.climb)))
+    orientation = lying[0]
+    return on_stretch(bowl, replace(orientation, track=replace(orientation.track, climb=bowl.track.climb)))
 
 
 def needed_spacing(chain: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl) -> float:
@@ -84,11 +88,11 @@ def needed_spacing(chain: Sequence[Device], lying: Sequence[Orientation], bowl: 
     """
     here, gap = lying[0], 0.0
     first = travel_speed(queueing(bowl, lying))
-    shortest = min(one.length for one in lying)
+    shortest = min(orientation.length for orientation in lying)
     for device in chain:
         here = device.onward(here)
         now = travel_speed(on_stretch(bowl, here))
-        free = max(device.gap(one, now) for one in lying)
+        free = max(device.gap(orientation, now) for orientation in lying)
         if free > 0.0:
             ratio = now / first if first > 0.0 else np.inf
             gap = max(gap, (free + shortest) / ratio - shortest if ratio > 0.0 else np.inf)
@@ -124,32 +128,32 @@ class Orientations:
     @property
     def aspects(self):
         """(M,) names of the aspects."""
-        return tuple(one.aspect for one in self.lying)
+        return tuple(orientation.aspect for orientation in self.lying)
 
     @property
     def headings(self):
         """(M,) [rad]."""
-        return np.array([one.heading for one in self.lying])
+        return np.array([orientation.heading for orientation in self.lying])
 
     @property
     def heading_shares(self):
         """(M,) of the parts on that aspect; headings equal under a turn of the part are one."""
-        return np.array([one.heading_share for one in self.lying])
+        return np.array([orientation.heading_share for orientation in self.lying])
 
     @property
     def lengths(self):
         """(M,) [m] along the track."""
-        return np.array([one.length for one in self.lying])
+        return np.array([orientation.length for orientation in self.lying])
 
     @property
     def widths(self):
         """(M,) [m] across it."""
-        return np.array([one.width for one in self.lying])
+        return np.array([orientation.width for orientation in self.lying])
 
     @property
     def rolls_back(self):
         """(M,) bool, whether it lies on its round side, not along the track, and rolls down the climb."""
-        return np.array([one.may_roll_back for one in self.lying], dtype=bool)
+        return np.array([orientation.may_roll_back for orientation in self.lying], dtype=bool)
 
     @property
     def stays(self):
@@ -169,7 +173,9 @@ class Orientations:
     @property
     def carried(self):
         """The same orientations, were those that roll back carried as what slides."""
-        return replace(self, lying=tuple(replace(one, may_roll_back=False) for one in self.lying))
+        return replace(
+            self, lying=tuple(replace(orientation, may_roll_back=False) for orientation in self.lying)
+        )
 
     @property
     def through(self):
@@ -183,10 +189,10 @@ class Orientations:
         One that momentum, friction or the wall may undo is none.
         To the devices behind the first that returns it, it does not come as it lies.
         """
-        known = np.where(np.isnan(self.margins), np.inf, self.margins)
-        returns = np.isfinite(known) & (self.passes < 0.5)
-        first = np.take_along_axis(known, returns.argmax(axis=1)[:, None], axis=1)[:, 0]
-        least = np.where(returns.any(axis=1), first, known.min(axis=1))
+        margins = np.where(np.isnan(self.margins), np.inf, self.margins)
+        returns = np.isfinite(margins) & (self.passes < 0.5)
+        first = np.take_along_axis(margins, returns.argmax(axis=1)[:, None], axis=1)[:, 0]
+        least = np.where(returns.any(axis=1), first, margins.min(axis=1))
         return np.where(np.isinf(least) | (np.abs(least) <= UNSURE), np.nan, least)
 
     @property
@@ -198,9 +204,13 @@ class Orientations:
         slip.
         """
         rocks = False if self.tipping is None else self.tipping.tips & ~self.tipping.over
-        level = [one.kind == "rolling" and one.track.bank <= 0.0 for one in self.lying]
-        loose = np.array(level, dtype=bool) | [one.along_a_bank for one in self.lying]
-        tips, yaws = np.array([(one.may_tip, one.may_yaw) for one in self.lying], dtype=bool).T
+        level = [
+            orientation.kind == "rolling" and orientation.track.bank <= 0.0 for orientation in self.lying
+        ]
+        loose = np.array(level, dtype=bool) | [orientation.along_a_bank for orientation in self.lying]
+        tips, yaws = np.array(
+            [(orientation.may_tip, orientation.may_yaw) for orientation in self.lying], dtype=bool
+        ).T
         turns = tips | (yaws & ~self._gone_at_any_heading)
         return self.decided & ~(self.rolls_back | rocks | loose | turns)
 
@@ -208,7 +218,7 @@ class Orientations:
     def _gone_at_any_heading(self):
         """(M,) bool, whether devices return every heading of its aspect by some margin."""
         gone = np.isfinite(self.margin) & (self.through <= 0.0)
-        gone |= np.array([one.returned for one in self.lying], dtype=bool)
+        gone |= np.array([orientation.returned for orientation in self.lying], dtype=bool)
         left = {aspect for aspect, lost in zip(self.aspects, gone) if not lost}
         return np.array([aspect not in left for aspect in self.aspects], dtype=bool)
 
@@ -242,54 +252,54 @@ def along(lying, aspects, chain=(), sigma=0.0, bowl=None, rows=None):
     """Return what becomes of known orientations, or of some rows alone; the rest as for ``orientations``."""
     lying, tips = (lying, None) if bowl is None else marked(lying, bowl)
     lying = at_entry(lying, chain)
-    found = course(chain, lying, sigma, rows)
-    rules = {rule: np.array([one.chances[rule] for one in lying]) for rule in aspects.chances}
+    flow = course(chain, lying, sigma, rows)
+    rules = {rule: np.array([orientation.chances[rule] for orientation in lying]) for rule in aspects.chances}
     return Orientations(
         lying=lying,
         stations=("track", *(device.kind for device in chain)),
-        passes=found.passes,
-        margins=found.margins,
-        states=found.states,
-        leaving=found.leaving,
-        leaves_as=check.frozen(np.array([found.leaves_as(row) for row in range(len(lying))])),
+        passes=flow.passes,
+        margins=flow.margins,
+        states=flow.states,
+        leaving=flow.leaving,
+        leaves_as=check.frozen(np.array([flow.leaves_as(row) for row in range(len(lying))])),
         rules={rule: check.frozen(chance) for rule, chance in rules.items()},
         interval=check.frozen(_interval(aspects, lying)),
-        decided=found.decided,
-        fates=found.fates,
-        stops=found.stops,
-        clearing=check.frozen(_clearing(found, lying, chain, bowl)),
-        doubtful=found.doubtful,
+        decided=flow.decided,
+        fates=flow.fates,
+        stops=flow.stops,
+        clearing=check.frozen(_clearing(flow, lying, chain, bowl)),
+        doubtful=flow.doubtful,
         gap=0.0 if bowl is None else needed_spacing(chain, lying, bowl),
         tipping=tips,
     )
 
 
-def _clearing(found, lying, chain, bowl):
+def _clearing(passes, lying, chain, bowl):
     """Time [s] for which each orientation blocks the track on its way off it, in the mean."""
     times = np.zeros(len(lying))
     for step, device in enumerate(chain if bowl is not None else ()):
-        for row in np.flatnonzero(found.ends[:, 0, 1 + step] > 0.0):
-            times[row] += found.ends[row, 0, 1 + step] * seconds(device, lying[row], bowl)
+        for row in np.flatnonzero(passes.ends[:, 0, 1 + step] > 0.0):
+            times[row] += passes.ends[row, 0, 1 + step] * seconds(device, lying[row], bowl)
     return times
 
 
 def _interval(aspects, lying):
-    known = aspects.recommended
-    if known is None:
+    limits = aspects.recommended
+    if limits is None:
         return np.full((len(lying), 2), np.nan)
-    rows = [aspects.names.index(one.aspect) for one in lying]
-    shares = np.array([one.heading_share for one in lying])
-    return np.column_stack([known.low[rows] * shares, known.high[rows] * shares])
+    rows = [aspects.names.index(orientation.aspect) for orientation in lying]
+    shares = np.array([orientation.heading_share for orientation in lying])
+    return np.column_stack([limits.low[rows] * shares, limits.high[rows] * shares])
 
 
-def counted_stations(known: Orientations, counts: DeviceCounts) -> np.ndarray:
+def counted_stations(queue: Orientations, counts: DeviceCounts) -> np.ndarray:
     """Return the stations of a chain that were counted.
 
     Source: docs/counts.md, "A feeding test, device by device".
 
     Parameters
     ----------
-    known : Orientations
+    queue : Orientations
     counts : DeviceCounts
         Its devices are named as the stations are, 'gap_2', or by a kind that is there once.
 
@@ -302,29 +312,29 @@ def counted_stations(known: Orientations, counts: DeviceCounts) -> np.ndarray:
     FeederError
         If one is not there, or is counted twice.
     """
-    stations = {name: place for place, name in enumerate(known.names)}
-    once = {kind: known.stations.index(kind) for kind in known.stations if known.stations.count(kind) == 1}
-    found: list[int] = []
+    stations = {name: place for place, name in enumerate(queue.names)}
+    once = {kind: queue.stations.index(kind) for kind in queue.stations if queue.stations.count(kind) == 1}
+    counted_stations: list[int] = []
     for line, name in zip(counts.lines, counts.names):
         place, where = (once | stations).get(name), f"{counts.source}:{line}"
         if place is None:
             what = f"the bowl has no device {name[:30]!r}"
             raise FeederError(where, what, hint(name, list(stations)))
-        if place in found:
-            what = f"device {name!r} is that of line {counts.lines[found.index(place)]}"
+        if place in counted_stations:
+            what = f"device {name!r} is that of line {counts.lines[counted_stations.index(place)]}"
             raise FeederError(where, what, "keep one of them")
-        found.append(place)
-    return np.array(found)
+        counted_stations.append(place)
+    return np.array(counted_stations)
 
 
-def station_shares(known: Orientations, names: Sequence[str]) -> np.ndarray:
+def station_shares(queue: Orientations, names: Sequence[str]) -> np.ndarray:
     """Return which share of each aspect's parts comes to each station, and which goes on from it.
 
     Source: own; docs/counts.md, "A feeding test, device by device".
 
     Parameters
     ----------
-    known : Orientations
+    queue : Orientations
     names : sequence of str
         Of the A aspects.
 
@@ -332,10 +342,10 @@ def station_shares(known: Orientations, names: Sequence[str]) -> np.ndarray:
     -------
     (2, stations, A) float [1]
     """
-    on = np.cumprod(known.passes, axis=1)
+    on = np.cumprod(queue.passes, axis=1)
     came = np.column_stack([np.ones(len(on)), on[:, :-1]])
     of = np.zeros((len(on), len(names)))
-    of[np.arange(len(on)), [names.index(name) for name in known.aspects]] = known.heading_shares
+    of[np.arange(len(on)), [names.index(name) for name in queue.aspects]] = queue.heading_shares
     return check.frozen(np.einsum("kms,ma->ksa", np.stack([came, on]), of))
 
 
@@ -386,12 +396,12 @@ def _extremes(came: np.ndarray, on: np.ndarray, low: np.ndarray, high: np.ndarra
     order = np.argsort(each, kind="stable")
     came, on, low, high = came[order], on[order], low[order], high[order]
     above = np.tri(len(came) + 1, len(came), -1, dtype=bool)  # row c: the first c aspects
-    found = []
+    ends = []
     for shares in (np.where(above, high, low), np.where(above, low, high)):
         total = (shares * came).sum(axis=1)
-        found.append(
+        ends.append(
             np.where(total > 0.0, (shares * on).sum(axis=1) / np.where(total > 0.0, total, 1.0), np.nan)
         )
-    if np.isnan(found).all():
+    if np.isnan(ends).all():
         return np.nan, np.nan
-    return float(np.nanmin(found[0])), float(np.nanmax(found[1]))
+    return float(np.nanmin(ends[0])), float(np.nanmax(ends[1]))

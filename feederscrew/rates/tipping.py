@@ -107,15 +107,15 @@ def goes_over(rocker: Rocker, period: float, start: int = 0) -> bool:
         near = rocker.near + rocker.growth * step * (k - start)
         force, offset = rocker.force[k % ROCKING_STEPS], rocker.offset[k % ROCKING_STEPS]
         side = math.copysign(1.0, angle or rate or offset)
-        beside, other = (near, rocker.far) if side > 0.0 else (rocker.far, near)
+        lever, other = (near, rocker.far) if side > 0.0 else (rocker.far, near)
         still = rocker.spread + rocker.height**2
-        turning = force * (offset - side * beside + rocker.height * angle) / (still + beside**2)
+        turning = force * (offset - side * lever + rocker.height * angle) / (still + lever**2)
         if angle == rate == 0.0 and turning * side <= 0.0:
             continue
         rate += step * turning
         after = angle + step * rate
         if after * side <= 0.0:  # it comes down
-            rate *= max((still - beside * other) / (still + other**2), 0.0)
+            rate *= max((still - lever * other) / (still + other**2), 0.0)
             rate, after = (rate if abs(rate) > REST_ANGULAR_SPEED else 0.0), 0.0
         angle = after
         if abs(angle) >= math.atan2(near if angle > 0.0 else rocker.far, rocker.height):
@@ -151,7 +151,7 @@ def _senses(motions: list[balance.TrackMotion], step: float) -> np.ndarray:
     """How the part slides at each instant of a settled period, (INSTANTS,) int: places in ``SENSES``."""
     gains = [step * motion.acceleration[:, 0] for motion in motions]
     loose, speed = motions[0].slides, 0.0
-    found = np.zeros(ROCKING_STEPS, dtype=int)
+    senses = np.zeros(ROCKING_STEPS, dtype=int)
     for k in range(SETTLES * ROCKING_STEPS):
         row = k % ROCKING_STEPS
         if speed == 0.0:
@@ -159,8 +159,8 @@ def _senses(motions: list[balance.TrackMotion], step: float) -> np.ndarray:
         else:
             after = speed + gains[1 if speed > 0.0 else 2][row]
             speed = after if after * speed > 0.0 else 0.0
-        found[row] = 0 if speed == 0.0 else 1 if speed > 0.0 else 2
-    return found
+        senses[row] = 0 if speed == 0.0 else 1 if speed > 0.0 else 2
+    return senses
 
 
 TIPPING_PHASES = 12  # of one period
@@ -198,27 +198,27 @@ STAYS, ROCKS, OVER, BACK, THROWN = "stays on its aspect", "rocks", "turns over",
 class Stands:
     """What the drive does to one orientation on the track: the verdict that the rate reckons with."""
 
-    way: str  # STAYS, ROCKS, OVER, BACK or THROWN
+    verdict: str  # STAYS, ROCKS, OVER, BACK or THROWN
     tilt: float = 0.0  # [rad] that one stroke brings at most
     lean: float = np.inf  # [rad] from which it goes on by itself; infinite where it stays
 
     @property
-    def said(self) -> str:
+    def sentence(self) -> str:
         """The verdict in words, with its angles."""
-        if self.way == ROCKS:
+        if self.verdict == ROCKS:
             tilt, lean = np.degrees(self.tilt), np.degrees(self.lean)
             return f"rocks by {tilt:.2g} deg a stroke; turns over from {lean:.3g} deg on"
         return {OVER: "turns over, goes back into the bowl", BACK: "rolls back down the climb"}.get(
-            self.way, self.way
+            self.verdict, self.verdict
         )
 
 
-def stands(one: Orientation, bowl: Bowl, hops: bool) -> Stands:
+def stands(orientation: Orientation, bowl: Bowl, hops: bool) -> Stands:
     """Return what the drive of a bowl does to an orientation on the bare track.
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
     bowl : Bowl
         Single values.
     hops : bool
@@ -228,13 +228,13 @@ def stands(one: Orientation, bowl: Bowl, hops: bool) -> Stands:
     -------
     Stands
     """
-    (known,), found = marked((one,), bowl)
-    angles = float(found.tilt[0]), float(found.balance[0])
-    if known.turns_over:
+    (lying,), tips = marked((orientation,), bowl)
+    angles = float(tips.tilt[0]), float(tips.balance[0])
+    if lying.turns_over:
         return Stands(OVER, *angles)
-    if known.may_roll_back:
+    if lying.may_roll_back:
         return Stands(BACK)
-    if found.tips[0]:
+    if tips.tips[0]:
         return Stands(ROCKS, *angles)
     return Stands(THROWN if hops else STAYS)
 
@@ -253,22 +253,26 @@ def marked(lying: Sequence[Orientation], bowl: Bowl) -> tuple[tuple[Orientation,
     -------
     tuple of Orientation, TrackTipping
     """
-    found, energy = tipping(lying, bowl), landing_energy(bowl)
-    known = tuple(replace(one, turns_over=bool(turns)) for one, turns in zip(lying, found.over))
+    tips, energy = tipping(lying, bowl), landing_energy(bowl)
+    oriented = tuple(
+        replace(orientation, turns_over=bool(turns)) for orientation, turns in zip(lying, tips.over)
+    )
     if energy > 0.0 or bowl.track.bank > 0.0:  # a bank presses parts to the wall, thrown or not
-        known = tuple(landing(one, bowl, energy) for one in known)
-    return travelling(known, bowl), found
+        oriented = tuple(landing(orientation, bowl, energy) for orientation in oriented)
+    return travelling(oriented, bowl), tips
 
 
 def remark(lying: Sequence[Orientation]) -> tuple[str, ...]:
     """Say what a drive turns over, how parts hop, and which of them may turn as they do: a sentence each."""
-    over = [one.name for one in lying if one.turns_over]
-    said = [f"{listed(over)} can tip over on the track at this drive and count as returned"] if over else []
-    hop, flight = max(((one.hop, one.flight) for one in lying), default=(0.0, 0.0))
+    over = [orientation.name for orientation in lying if orientation.turns_over]
+    remarks = (
+        [f"{listed(over)} can tip over on the track at this drive and count as returned"] if over else []
+    )
+    hop, flight = max(((orientation.hop, orientation.flight) for orientation in lying), default=(0.0, 0.0))
     if hop > 0.0:
-        said.append(HOP_REMARK.format(hop / MM, flight / MM))
-    turning = [one.name for one in lying if one.may_turn and one.hop > 0.0]
-    return (*said, LANDING_REMARK.format(listed(turning))) if turning else tuple(said)
+        remarks.append(HOP_REMARK.format(hop / MM, flight / MM))
+    turning = [orientation.name for orientation in lying if orientation.may_turn and orientation.hop > 0.0]
+    return (*remarks, LANDING_REMARK.format(listed(turning))) if turning else tuple(remarks)
 
 
 def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
@@ -293,8 +297,12 @@ def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
     After the stroke its weight brings it back, by g r / (r^2 + h^2) at most. Where it is then still tilted at
     the next one, or over already, its rocking is followed: ``rocking.goes_over``.
     """
-    found = [_one(one, bowl) for one in lying] if plain_bowl(bowl) else [_NO_TIPPING] * len(lying)
-    return TrackTipping(*(check.frozen(np.array(column)) for column in zip(*found)))
+    states = (
+        [_tips_over(orientation, bowl) for orientation in lying]
+        if plain_bowl(bowl)
+        else [_NO_TIPPING] * len(lying)
+    )
+    return TrackTipping(*(check.frozen(np.array(column)) for column in zip(*states)))
 
 
 def landing_energy(bowl: Bowl) -> float:
@@ -316,27 +324,29 @@ def landing_energy(bowl: Bowl) -> float:
     return float(answer.answer(bowl).hardest_impact ** 2 / (2.0 * bowl.gravity))
 
 
-def landing(one: Orientation, bowl: Bowl, energy: float) -> Orientation:
+def landing(orientation: Orientation, bowl: Bowl, energy: float) -> Orientation:
     """Return an orientation that knows whether a landing may tip it over, or the wall turn it.
 
     Source: own; docs/tooling.md, "Parts that hop".
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
     bowl : Bowl
         Single values.
     energy : float [m]
         From ``landing_energy``: of 0 nothing tips so.
     """
-    if one.falls_off or one.touching is None:
-        return one
-    contact = seat_in_groove(one, bowl.track.bank).contact
-    tips = energy > 0.0 and may_tip(contact, one, bowl, energy)
-    return replace(one, may_tip=tips, may_yaw=may_yaw(one, bowl))
+    if orientation.falls_off or orientation.touching is None:
+        return orientation
+    contact = seat_in_groove(orientation, bowl.track.bank).contact
+    tips = energy > 0.0 and may_tip(contact, orientation, bowl, energy)
+    return replace(orientation, may_tip=tips, may_yaw=may_yaw(orientation, bowl))
 
 
-def may_tip(contact: np.ndarray, one: Orientation, bowl: Bowl, energy: float, margin: float = 0.0) -> bool:
+def may_tip(
+    contact: np.ndarray, orientation: Orientation, bowl: Bowl, energy: float, margin: float = 0.0
+) -> bool:
     """Return whether a landing may tip an orientation over a side of what carries it.
 
     Source: own; moments of an impact about a side with Coulomb's friction, and the energy to rise over it.
@@ -365,22 +375,22 @@ def may_tip(contact: np.ndarray, one: Orientation, bowl: Bowl, energy: float, ma
         return True
     edges = sides(ring)
     outward = np.column_stack([edges[:, 1], -edges[:, 0]]) / np.hypot(*edges.T)[:, None]
-    along, across = np.abs(outward[:, 0]), np.abs(outward[:, 1]) if one.groove else -outward[:, 1]
+    along, across = np.abs(outward[:, 0]), np.abs(outward[:, 1]) if orientation.groove else -outward[:, 1]
     reach = np.maximum((outward * ring).sum(axis=1) - margin, 0.0)
-    height, struck = one.posture.height, 0.25 * (1.0 + bowl.restitution) ** 2
+    height, struck = orientation.posture.height, 0.25 * (1.0 + bowl.restitution) ** 2
     spent = energy * np.where(along > np.abs(outward[:, 1]), 1.0, struck)
     tips = (bowl.friction.static * height * along > reach) | (np.hypot(height, reach) - height < spent)
     return bool((tips & (across < along)).any())
 
 
-def may_yaw(one: Orientation, bowl: Bowl) -> bool:
+def may_yaw(orientation: Orientation, bowl: Bowl) -> bool:
     """Return whether the wall may turn an orientation out of its heading: a shaken track does not hold it.
 
     Source: own; docs/tooling.md, "Parts that hop": the couple of the wall's friction.
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
         That knows where it touches the wall.
     bowl : Bowl
 
@@ -389,12 +399,16 @@ def may_yaw(one: Orientation, bowl: Bowl) -> bool:
     The wall drags the part back with mu N, the distance d beside the centre of mass, and so moves its own
     force N ahead of that by mu d. It keeps its heading while that is within what touches the wall.
     """
-    outline = one.outline
+    outline = orientation.outline
     along = sides(outline)
     nearest = (outline[:, 0] * along[:, 1] - outline[:, 1] * along[:, 0]) / np.hypot(*along.T)
-    if one.groove or nearest.min() > ROUND_OUTLINE_RATIO * np.hypot(*outline.T).max() or one.touching is None:
+    if (
+        orientation.groove
+        or nearest.min() > ROUND_OUTLINE_RATIO * np.hypot(*outline.T).max()
+        or orientation.touching is None
+    ):
         return False
-    return bool(bowl.friction.wall * one.distance > one.touching[1, 0])
+    return bool(bowl.friction.wall * orientation.distance > orientation.touching[1, 0])
 
 
 _NO_TIPPING = (False, 0.0, np.nan, False)
@@ -408,41 +422,47 @@ def plain_bowl(bowl: Bowl) -> bool:
         return False
 
 
-def _one(one: Orientation, bowl: Bowl) -> tuple[bool, float, float, bool]:
+def _tips_over(orientation: Orientation, bowl: Bowl) -> tuple[bool, float, float, bool]:
     """Whether one orientation tips, how far a stroke tilts it, from where it goes on, if it goes over."""
-    if one.falls_off or one.touching is None or (one.kind != FLAT_KIND and rolls_across(one)):
+    if (
+        orientation.falls_off
+        or orientation.touching is None
+        or (orientation.kind != FLAT_KIND and rolls_across(orientation))
+    ):
         return _NO_TIPPING
-    place, phase = seat_in_groove(one, bowl.track.bank), phases(TIPPING_PHASES)
+    place, phase = seat_in_groove(orientation, bowl.track.bank), phases(TIPPING_PHASES)
     rest = balance.motion(place, bowl, phase)
     if (rest.state == HOP).any() or not (rest.state == TIP).any():
         return _NO_TIPPING
     motions = [rest] + [balance.motion(place, bowl, phase, np.full(TIPPING_PHASES, s)) for s in (-1.0, 1.0)]
-    force = np.concatenate([found.normal_force for found in motions])
-    offset = np.concatenate([found.offset for found in motions])
+    force = np.concatenate([motion.normal_force for motion in motions])
+    offset = np.concatenate([motion.offset for motion in motions])
     moment = force * np.maximum(-inset(place.contact, offset), 0.0)
     worst = int(np.nanargmax(moment))
-    beside = _to_side(place.contact, offset[worst])
-    arm = beside**2 + place.height**2
+    lever = _to_side(place.contact, offset[worst])
+    arm = lever**2 + place.height**2
     stroke = 0.5 / bowl.drive.frequency
     rate = moment[worst] / (place.mass * arm) * stroke
-    tilt, back = 0.5 * rate * stroke, bowl.gravity * beside / arm
-    late = rate + np.sqrt(rate**2 + 2.0 * back * tilt) > back * stroke
-    lean = np.arctan2(beside, place.height)
-    over = (late or tilt >= lean) and goes_over(rocker(place, partial(gyration, one), bowl), 2.0 * stroke)
+    tilt, restoring = 0.5 * rate * stroke, bowl.gravity * lever / arm
+    late = rate + np.sqrt(rate**2 + 2.0 * restoring * tilt) > restoring * stroke
+    lean = np.arctan2(lever, place.height)
+    over = (late or tilt >= lean) and goes_over(
+        rocker(place, partial(gyration, orientation), bowl), 2.0 * stroke
+    )
     return True, float(tilt), float(lean), bool(over)
 
 
-def seat_in_groove(one: Orientation, bank: float) -> Seat:
+def seat_in_groove(orientation: Orientation, bank: float) -> Seat:
     """Return how an orientation lies on a track of some bank [rad], a Seat.
 
     One that rolls tips over the ends of its line only, so its contact is wide beside that.
     """
-    place = seat(one.posture, one.heading, one.touching, bank)
-    if one.kind == FLAT_KIND:
+    place = seat(orientation.posture, orientation.heading, orientation.touching, bank)
+    if orientation.kind == FLAT_KIND:
         return place
-    back, ahead = place.contact[:, 0].min(), place.contact[:, 0].max()
+    rear, ahead = place.contact[:, 0].min(), place.contact[:, 0].max()
     side = MAX_FORCE_OFFSET_HEIGHTS * place.height
-    return replace(place, contact=np.array([[back, -side], [ahead, -side], [ahead, side], [back, side]]))
+    return replace(place, contact=np.array([[rear, -side], [ahead, -side], [ahead, side], [rear, side]]))
 
 
 def _to_side(contact: np.ndarray, point: np.ndarray) -> float:
@@ -491,10 +511,14 @@ def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, 
     that hops must not tip it over what a ledge, a canyon or a slot leaves of its foot, less the margin; over
     an edge across the track the verdict itself is less the flight.
     """
-    known, energy = plain_bowl(bowl), landing_energy(bowl)
+    results, energy = plain_bowl(bowl), landing_energy(bowl)
     if energy > 0.0:
-        return np.array([_lands(devices, one, bowl, margin, energy) for one in lying], dtype=bool)
-    return np.array([not known or _steady(devices, one, bowl, margin) for one in lying], dtype=bool)
+        return np.array(
+            [_lands(devices, orientation, bowl, margin, energy) for orientation in lying], dtype=bool
+        )
+    return np.array(
+        [not results or _steady(devices, orientation, bowl, margin) for orientation in lying], dtype=bool
+    )
 
 
 def is_surely_gone(devices: Sequence[Device], lying: Sequence[Orientation], passes: np.ndarray) -> np.ndarray:
@@ -515,49 +539,53 @@ def is_surely_gone(devices: Sequence[Device], lying: Sequence[Orientation], pass
     (M,) bool
         True also of what no device returns.
     """
-    found = np.ones(len(lying), dtype=bool)
-    for row, (one, shares) in enumerate(zip(lying, np.asarray(passes)[:, 1:])):
+    gone = np.ones(len(lying), dtype=bool)
+    for row, (orientation, shares) in enumerate(zip(lying, np.asarray(passes)[:, 1:])):
         first = next((k for k, share in enumerate(shares) if share < 0.5), None)
-        if first is not None and not one.returned:
-            found[row] = surely_gone(devices[first], one)
-    return found
+        if first is not None and not orientation.returned:
+            gone[row] = surely_gone(devices[first], orientation)
+    return gone
 
 
-def _steady(devices: Sequence[Device], one: Orientation, bowl: Bowl, margin: float) -> bool:
+def _steady(devices: Sequence[Device], orientation: Orientation, bowl: Bowl, margin: float) -> bool:
     """Whether one orientation is steady at every device."""
-    if one.returned or one.touching is None:
+    if orientation.returned or orientation.touching is None:
         return True
-    if one.kind != FLAT_KIND and rolls_across(one):
-        return not any(_takes(device, one) for device in _met(devices))
-    place = seat_in_groove(one, bowl.track.bank)
+    if orientation.kind != FLAT_KIND and rolls_across(orientation):
+        return not any(_takes(device, orientation) for device in _touched(devices))
+    place = seat_in_groove(orientation, bowl.track.bank)
     if (balance.motion(place, bowl, phases(STEADINESS_PHASES)).state == HOP).any():
         return True
     force, offset = over_period(place, bowl)
-    for device in _met(devices):
-        span, hole = device.span_on(one.track), device.hole_on(one.track)
-        if span is not None and not _keeps_down(one, span, offset, margin):
+    for device in _touched(devices):
+        span, hole = device.span_on(orientation.track), device.hole_on(orientation.track)
+        if span is not None and not _keeps_down(orientation, span, offset, margin):
             return False
-        if hole is not None and not _keeps_upright(one, hole, place, force, offset, bowl):
+        if hole is not None and not _keeps_upright(orientation, hole, place, force, offset, bowl):
             return False
     return True
 
 
-def _lands(devices: Sequence[Device], one: Orientation, bowl: Bowl, margin: float, energy: float) -> bool:
+def _lands(
+    devices: Sequence[Device], orientation: Orientation, bowl: Bowl, margin: float, energy: float
+) -> bool:
     """Whether no landing may tip an orientation at any device, by a margin [m]."""
-    if one.returned or one.touching is None:
+    if orientation.returned or orientation.touching is None:
         return True
-    if one.kind != FLAT_KIND and rolls_across(one):
-        return not any(_takes(device, one) for device in _met(devices))
-    for device in _met(devices):
-        span = device.span_on(one.track)
-        if span is not None and _takes(device, one):
-            left = footprints.beside(one.foot, span, one.distance, one.track.radius).corners
-            if may_tip(left, one, bowl, energy, margin):
+    if orientation.kind != FLAT_KIND and rolls_across(orientation):
+        return not any(_takes(device, orientation) for device in _touched(devices))
+    for device in _touched(devices):
+        span = device.span_on(orientation.track)
+        if span is not None and _takes(device, orientation):
+            left = footprints.outside_slot(
+                orientation.foot, span, orientation.distance, orientation.track.radius
+            ).corners
+            if may_tip(left, orientation, bowl, energy, margin):
                 return False
     return True
 
 
-def _met(devices: Sequence[Device]) -> Iterator[Device]:
+def _touched(devices: Sequence[Device]) -> Iterator[Device]:
     """Those that leave less of a foot, as far as parts come to them as they lie."""
     for device in devices:
         if device.turns or device.hangs:
@@ -566,48 +594,51 @@ def _met(devices: Sequence[Device]) -> Iterator[Device]:
             yield device
 
 
-def _takes(device: Device, one: Orientation) -> bool:
+def _takes(device: Device, orientation: Orientation) -> bool:
     """Whether a device takes anything from what carries an orientation."""
-    span, hole = device.span_on(one.track), device.hole_on(one.track)
+    span, hole = device.span_on(orientation.track), device.hole_on(orientation.track)
     if span is not None:
-        (first, last), radius = span, one.track.radius
+        (first, last), radius = span, orientation.track.radius
         high = radius - first if first > 0.0 else 2.0 * radius
         return (
-            footprints.over_ring(one.standing, max(radius - last, 0.0), high)
-            <= one.margin - SUPPORT_LOSS_TOLERANCE_M
+            footprints.over_ring(orientation.standing, max(radius - last, 0.0), high)
+            <= orientation.margin - SUPPORT_LOSS_TOLERANCE_M
         )
     return (
-        hole is not None and footprints.least(one.standing, hole)[0] <= one.margin - SUPPORT_LOSS_TOLERANCE_M
+        hole is not None
+        and footprints.least(orientation.standing, hole)[0] <= orientation.margin - SUPPORT_LOSS_TOLERANCE_M
     )
 
 
-def _keeps_down(one: Orientation, span: tuple[float, float], offset: np.ndarray, margin: float) -> bool:
+def _keeps_down(
+    orientation: Orientation, span: tuple[float, float], offset: np.ndarray, margin: float
+) -> bool:
     """Whether the force of the track stays within what is left of a foot beside a hole along the track."""
-    (first, last), radius = span, one.track.radius
+    (first, last), radius = span, orientation.track.radius
     high = radius - first if first > 0.0 else 2.0 * radius
     if (
-        footprints.over_ring(one.standing, max(radius - last, 0.0), high)
-        > one.margin - SUPPORT_LOSS_TOLERANCE_M
+        footprints.over_ring(orientation.standing, max(radius - last, 0.0), high)
+        > orientation.margin - SUPPORT_LOSS_TOLERANCE_M
     ):
         return True
-    left = footprints.beside(one.foot, span, one.distance, radius).corners
+    left = footprints.outside_slot(orientation.foot, span, orientation.distance, radius).corners
     hull = left[convex(left)]
     return len(hull) > 2 and bool(inset(hull, offset).min() >= margin)
 
 
 def _keeps_upright(
-    one: Orientation, hole: Any, place: Seat, force: np.ndarray, offset: np.ndarray, bowl: Bowl
+    orientation: Orientation, hole: Any, place: Seat, force: np.ndarray, offset: np.ndarray, bowl: Bowl
 ) -> bool:
     """Whether a part neither rocks over the edge that it leaves nor back over the one that it comes to."""
-    support, _ = footprints.least(one.standing, hole)
-    if support > one.margin - SUPPORT_LOSS_TOLERANCE_M:
+    support, _ = footprints.least(orientation.standing, hole)
+    if support > orientation.margin - SUPPORT_LOSS_TOLERANCE_M:
         return True
-    reach, period = one.foot.corners[:, 0], 1.0 / bowl.drive.frequency
+    reach, period = orientation.foot.corners[:, 0], 1.0 / bowl.drive.frequency
     leaving = Rocker(
         near=max(support, 0.0),
         far=float(-reach.min()),
         height=place.height,
-        spread=gyration(one, 0.5 * np.pi),
+        spread=gyration(orientation, 0.5 * np.pi),
         force=force,
         offset=offset[:, 0],
     )

@@ -9,53 +9,53 @@ from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.mechanics.wall.stable_headings import headings, stable_row
 from feederscrew.rates.stream import Orientations
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.posture import posture
 from feederscrew.tooling.orientations import Orientation
 
 RECOMMENDED_RULE = "recommended"  # the rule that has an interval of its own
 
 
-def mean_length(found: Orientations, rule: str) -> float:
+def mean_length(queue: Orientations, rule: str) -> float:
     """Return the mean length along the track of the parts that stay on it [m]; NaN where none does.
 
     What falls off at the entry, or is turned over on the track, goes back at once: it is in nobody's way.
 
     Source: docs/conveying.md, "Commands".
     """
-    chance, enters = entering(found, rule)
-    weights = chance * found.stays
-    return float((weights * found.lengths).sum() / enters) if enters > 0.0 else np.nan
+    chance, enters = entering(queue, rule)
+    weights = chance * queue.stays
+    return float((weights * queue.lengths).sum() / enters) if enters > 0.0 else np.nan
 
 
-def entering(found: Orientations, rule: str) -> tuple[np.ndarray, float]:
+def entering(queue: Orientations, rule: str) -> tuple[np.ndarray, float]:
     """Return the chance (M,) [1] of each orientation by a rule, and the share [1] that stays on the track.
 
     Source: docs/conveying.md, "Commands".
     """
-    chance = np.nan_to_num(found.rules[rule])
-    return chance, float((chance * found.stays).sum())
+    chance = np.nan_to_num(queue.rules[rule])
+    return chance, float((chance * queue.stays).sum())
 
 
-def queued(found: Orientations, row: int, rule: str, gap: float, fill: float) -> float:
+def queued(queue: Orientations, row: int, rule: str, gap: float, fill: float) -> float:
     """Return parts on a length of track before the devices [1/m]: all that stay on it.
 
     They come end to end, or as far apart as the devices need.
 
     Source: docs/conveying.md, "Commands"; the gap is that of docs/tooling.md, "1. The method".
     """
-    length = mean_length(found, rule)
-    return float(fill / ((found.lengths[row] if np.isnan(length) else length) + max(gap, found.gap)))
+    length = mean_length(queue, rule)
+    return float(fill / ((queue.lengths[row] if np.isnan(length) else length) + max(gap, queue.gap)))
 
 
-def efficiency(found: Orientations, row: int, rule: str) -> float:
+def efficiency(queue: Orientations, row: int, rule: str) -> float:
     """Return the share of the parts offered, which are on the track, that leave in the orientation of a row.
 
     Source: docs/conveying.md, "Commands".
 
     Parameters
     ----------
-    found : Orientations
+    queue : Orientations
     row : int
     rule : str
 
@@ -63,32 +63,32 @@ def efficiency(found: Orientations, row: int, rule: str) -> float:
     -------
     float [1]
     """
-    chance, enters = entering(found, rule)
-    return float((chance * fed_share(found, row)).sum() / enters) if enters > 0.0 else 0.0
+    chance, enters = entering(queue, rule)
+    return float((chance * fed_share(queue, row)).sum() / enters) if enters > 0.0 else 0.0
 
 
-def efficiency_ends(found: Orientations, row: int, rule: str) -> tuple[float, ...]:
+def efficiency_ends(queue: Orientations, row: int, rule: str) -> tuple[float, ...]:
     """Return the least and the greatest efficiency [1], by the rule's own interval or over all rules."""
-    fed, (_, enters) = fed_share(found, row), entering(found, rule)
+    fed, (_, enters) = fed_share(queue, row), entering(queue, rule)
     if not enters > 0.0:
         return 0.0, 0.0
-    if rule == RECOMMENDED_RULE and not np.isnan(found.interval).any():
-        return tuple(min(float((end * fed).sum()) / enters, 1.0) for end in found.interval.T)
-    all_rules = [efficiency(found, row, one) for one in found.rules]
+    if rule == RECOMMENDED_RULE and not np.isnan(queue.interval).any():
+        return tuple(min(float((end * fed).sum()) / enters, 1.0) for end in queue.interval.T)
+    all_rules = [efficiency(queue, row, rule) for rule in queue.rules]
     return min(all_rules), max(all_rules)
 
 
-def fed(found: Orientations, row: int) -> Orientation:
+def fed(queue: Orientations, row: int) -> Orientation:
     """Return the Orientation in which parts wanted as a row leave: as they lie, or hanging."""
-    return found.states[found.leaves_as[row]]
+    return queue.states[queue.leaves_as[row]]
 
 
-def fed_share(found: Orientations, row: int) -> np.ndarray:
+def fed_share(queue: Orientations, row: int) -> np.ndarray:
     """Return the share (M,) [1] of each orientation that leaves in the state of a wanted row.
 
     Source: docs/conveying.md, "Commands".
     """
-    return np.where(found.rolls_back, 0.0, found.leaving[:, found.leaves_as[row]])
+    return np.where(queue.rolls_back, 0.0, queue.leaving[:, queue.leaves_as[row]])
 
 
 __all__ = [
@@ -123,7 +123,7 @@ class Range:
 
 
 @dataclass(frozen=True, eq=False)
-class Rate(Shown):
+class Rate(ReadableRecord):
     """Well-oriented parts leaving the bowl, and each factor of the chain."""
 
     parts: Range  # [1/s] delivered: offered times efficiency, at most what fits behind the devices
@@ -162,8 +162,8 @@ def wanted(part, aspects, track, name, heading=None):
     (str, float [rad])
     """
     lying = posture(part, aspects, name)
-    found = headings(lying, track)
-    return lying.name, float(found.headings[stable_row(found, heading)])
+    queue = headings(lying, track)
+    return lying.name, float(queue.headings[stable_row(queue, heading)])
 
 
 def velocity(bowl):
@@ -188,21 +188,21 @@ def velocity(bowl):
     if here.status == "no steady state":
         what = "is steeper than friction holds: the part slides down continuously"
         raise FeederError("track.climb", what, "lower the climb or raise the friction")
-    others = sensitivity.surfaces(bowl, here.throw_number > 1.0)[1:]
-    around = [here, *map(answer.answer, others)]
-    low = min(0.0 if np.isnan(one.low) else one.low for one in around)
-    high = max(0.0 if np.isnan(one.high) else one.high for one in around)
+    surfaces = sensitivity.surfaces(bowl, here.throw_number > 1.0)[1:]
+    around = [here, *map(answer.answer, surfaces)]
+    low = min(0.0 if np.isnan(orientation.low) else orientation.low for orientation in around)
+    high = max(0.0 if np.isnan(orientation.high) else orientation.high for orientation in around)
     return Range(*(max(0.0, number) for number in (here.velocity, low, high)))
 
 
-def rate(found, speed, target, rule, *, gap=0.0, fill=1.0):
+def rate(queue, speed, target, rule, *, gap=0.0, fill=1.0):
     """Return well-oriented parts leaving a bowl.
 
     Source: docs/conveying.md, "Commands".
 
     Parameters
     ----------
-    found : Orientations
+    queue : Orientations
     speed : Range [m/s]
         From ``velocity``.
     target : (str, float [rad])
@@ -225,43 +225,43 @@ def rate(found, speed, target, rule, *, gap=0.0, fill=1.0):
     FeederError
         If no such rule has probabilities of this part.
     """
-    made = _rate(found, speed, target, rule, gap, fill)
-    if not found.rolls_back.any():
-        return made
-    most = _rate(found.carried, speed, target, rule, gap, fill).parts
-    parts = Range(made.parts.value, made.parts.low, max(made.parts.high, most.high))
-    return replace(made, parts=parts)
+    delivered = _rate(queue, speed, target, rule, gap, fill)
+    if not queue.rolls_back.any():
+        return delivered
+    most = _rate(queue.carried, speed, target, rule, gap, fill).parts
+    parts = Range(delivered.parts.value, delivered.parts.low, max(delivered.parts.high, most.high))
+    return replace(delivered, parts=parts)
 
 
-def _rate(found, speed, target, rule, gap, fill):
+def _rate(queue, speed, target, rule, gap, fill):
     """The rate of what does not roll back."""
-    row = _row(found, target)
-    _check_rule(found, rule)
-    density, share = queued(found, row, rule, gap, fill), efficiency(found, row, rule)
-    probability = _probability(found, row, rule)
-    blocked, swept = _blocked(found, rule)
-    offered = Range(*(_offered(one * density, blocked) for one in speed.all))
-    most = speed * (1.0 / fed(found, row).length)
-    made = offered * Range(share, *efficiency_ends(found, row, rule))
-    chance, enters = entering(found, rule)
-    alike = np.arange(len(chance)) == row
-    leaves = np.where(alike, found.leaves, found.may_leave)
+    row = _row(queue, target)
+    _check_rule(queue, rule)
+    density, share = queued(queue, row, rule, gap, fill), efficiency(queue, row, rule)
+    probability = _probability(queue, row, rule)
+    blocked, swept = _blocked(queue, rule)
+    offered = Range(*(_offered(orientation * density, blocked) for orientation in speed.all))
+    most = speed * (1.0 / fed(queue, row).length)
+    delivered = offered * Range(share, *efficiency_ends(queue, row, rule))
+    chance, enters = entering(queue, rule)
+    wanted_rows = np.arange(len(chance)) == row
+    leaves = np.where(wanted_rows, queue.leaves, queue.may_leave)
     leaving = float((chance * leaves).sum() / enters) if enters > 0.0 else 0.0
-    through = float(found.through[row])
+    through = float(queue.through[row])
     return Rate(
-        parts=Range(*(min(one, cap) for one, cap in zip(made.all, most.all))),
+        parts=Range(*(min(orientation, cap) for orientation, cap in zip(delivered.all, most.all))),
         offered=offered,
         efficiency=share,
         velocity=speed,
         pitch=fill / density,
-        gap=max(gap, found.gap),
+        gap=max(gap, queue.gap),
         probability=probability,
         through=through,
         fill=fill,
         purity=share / leaving if leaving else np.nan,
         row=row,
-        orientations=found,
-        jams=offered.value * _standing(found, rule),
+        orientations=queue,
+        jams=offered.value * _standing(queue, rule),
         clearing=swept,
     )
 
@@ -271,30 +271,30 @@ def _offered(freely, blocked):
     return 1.0 / (1.0 / freely + blocked) if freely > 0.0 else 0.0
 
 
-def _standing(found, rule):
+def _standing(queue, rule):
     """Share of the parts offered that come to stand before a device."""
-    chance, enters = entering(found, rule)
-    return float((chance * found.stops.sum(axis=1)).sum() / enters) if enters > 0.0 else 0.0
+    chance, enters = entering(queue, rule)
+    return float((chance * queue.stops.sum(axis=1)).sum() / enters) if enters > 0.0 else 0.0
 
 
-def _blocked(found, rule):
+def _blocked(queue, rule):
     """Mean time [s] for which a part that is offered blocks the track, and the same of those that do."""
-    chance, enters = entering(found, rule)
-    does = chance * (found.clearing > 0.0)
-    times = float((chance * found.clearing).sum())
+    chance, enters = entering(queue, rule)
+    does = chance * (queue.clearing > 0.0)
+    times = float((chance * queue.clearing).sum())
     return (times / enters, times / float(does.sum())) if does.sum() > 0.0 else (0.0, 0.0)
 
 
-def _probability(found, row, rule):
+def _probability(queue, row, rule):
     """Probability of a row by a rule, within that rule's own interval or the range of all rules."""
-    value = float(found.rules[rule][row])
-    if rule == RECOMMENDED_RULE and not np.isnan(found.interval[row]).any():
-        return Range(value, *(float(end) for end in found.interval[row]))
-    chances = [chance[row] for chance in found.rules.values() if not np.isnan(chance[row])]
+    value = float(queue.rules[rule][row])
+    if rule == RECOMMENDED_RULE and not np.isnan(queue.interval[row]).any():
+        return Range(value, *(float(end) for end in queue.interval[row]))
+    chances = [chance[row] for chance in queue.rules.values() if not np.isnan(chance[row])]
     return Range(value, float(min(chances)), float(max(chances)))
 
 
-def parts_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
+def parts_per_metre(queue, target, rule, *, gap=0.0, fill=1.0):
     """Return well-oriented parts on a length of track, which velocity turns into a rate.
 
     Source: docs/conveying.md, "Commands".
@@ -313,16 +313,16 @@ def parts_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
     FeederError
         If there are none: the probability is zero, or the track or a device returns them all.
     """
-    parts = leaving_per_metre(found, target, rule, gap=gap, fill=fill)
+    parts = leaving_per_metre(queue, target, rule, gap=gap, fill=fill)
     if not parts > 0.0:
-        holds(found, target)
+        holds(queue, target)
         raise FeederError(_where(target), "never leaves the bowl", "see the devices in feeder rate")
     return parts
 
 
-def holds(found, target):
+def holds(queue, target):
     """Raise a FeederError where a wanted orientation rolls back down the climb."""
-    if found.rolls_back[_row(found, target)]:
+    if queue.rolls_back[_row(queue, target)]:
         raise FeederError(_where(target), ROLLS_BACK_REMARK, HOLD_ADVICE)
 
 
@@ -330,22 +330,22 @@ def _where(target):
     return f"aspect {target[0]}, heading {np.degrees(target[1]):.4g} deg"
 
 
-def leaving_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
+def leaving_per_metre(queue, target, rule, *, gap=0.0, fill=1.0):
     """Return the same [1/m], 0 where no part leaves so."""
-    _check_rule(found, rule)
-    row = _row(found, target)
-    share, density = efficiency(found, row, rule), queued(found, row, rule, gap, fill)
-    speed, (blocked, _) = found.lying[row].speed, _blocked(found, rule)
+    _check_rule(queue, rule)
+    row = _row(queue, target)
+    share, density = efficiency(queue, row, rule), queued(queue, row, rule, gap, fill)
+    speed, (blocked, _) = queue.lying[row].speed, _blocked(queue, rule)
     density = _offered(speed * density, blocked) / speed if blocked > 0.0 and speed > 0.0 else density
-    return min(share * density, 1.0 / float(fed(found, row).length))
+    return min(share * density, 1.0 / float(fed(queue, row).length))
 
 
-def _check_rule(found, rule):
-    if rule not in found.rules:
-        mend = hint(rule, list(found.rules))
+def _check_rule(queue, rule):
+    if rule not in queue.rules:
+        mend = hint(rule, list(queue.rules))
         raise ArgumentError(f"rule {rule}", "has no probabilities of this part", mend)
 
 
-def _row(found, target):
+def _row(queue, target):
     name, heading = target
-    return next(k for k, known in enumerate(found.aspects) if (known, found.headings[k]) == (name, heading))
+    return next(k for k, aspect in enumerate(queue.aspects) if (aspect, queue.headings[k]) == (name, heading))

@@ -19,7 +19,7 @@ from feederscrew.geometry import compiled, vectors
 from feederscrew.geometry.graphs import component_of
 from feederscrew.part.hull import Hull, convex_hull
 from feederscrew.part.moments import Moments
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.basins.landscape import SMOOTH_ANGLE, Landscape, angle, landscape
 from feederscrew.resting.faces import Face, stable_faces, unstable_faces
 from feederscrew.resting.flats import ONE_PLANE
@@ -45,7 +45,7 @@ PUBLISHED_RULES = ("pmi", "csa", "stability")
 
 
 @dataclass(frozen=True, eq=False)
-class Aspects(Shown):
+class Aspects(ReadableRecord):
     """One row a class, the most likely first; A rows."""
 
     names: tuple[str, ...]

@@ -13,7 +13,7 @@ from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import centroid, outline, sides, surrounds
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import Part
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 
 COINCIDE = 1e-5  # of the part's size: a contact centroid nearer to the foot gives no direction
 TOUCHING = 2e-4  # of the part's size: what is lower than that over the floor touches it
@@ -21,7 +21,7 @@ SIDE_TOLERANCE = 1e-6  # of the part's size: sides whose lengths differ by less 
 
 
 @dataclass(frozen=True, eq=False)
-class Posture(Shown):
+class Posture(ReadableRecord):
     """A part on an aspect, not yet turned: x and y in the floor, z up, origin below the centre of mass.
 
     Heading 0 has the body's own direction (the thesis's Z') along x: from the foot of the centre of mass to

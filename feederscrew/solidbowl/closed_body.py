@@ -65,7 +65,7 @@ class BowlSolid:
     @property
     def balanced_at(self):
         """Radius [m] at which that weight is: of the wall's outer face."""
-        return self.plan.way.radius + self.plan.material.wall
+        return self.plan.path.radius + self.plan.material.wall
 
     @property
     def weight(self):
@@ -117,21 +117,21 @@ def body(plan):
     """
     whole, gates = pieces(plan)
     vertices, faces = whole_surface.mesh(facets.placed_as(whole, mirrored=plan.left, turned=plan.turned))
-    found = mass.solid(vertices[faces])
+    solid = mass.solid(vertices[faces])
     extra = tuple(
-        (name, *whole_surface.mesh(facets.placed_as(one, mirrored=plan.left, turned=plan.turned)))
-        for name, one in gates
+        (name, *whole_surface.mesh(facets.placed_as(gate, mirrored=plan.left, turned=plan.turned)))
+        for name, gate in gates
     )
-    total, centre, inertia = _weighed(plan, [found, *(mass.solid(v[f]) for _, v, f in extra)])
-    return BowlSolid(plan, vertices, faces, extra, float(found.volume), total, inertia, centre)
+    total, centre, inertia = _weighed(plan, [solid, *(mass.solid(v[f]) for _, v, f in extra)])
+    return BowlSolid(plan, vertices, faces, extra, float(solid.volume), total, inertia, centre)
 
 
-def screwed(made, weight):
+def screwed(solid, weight):
     """Return a bowl in segments that weighs as much as it does with its lugs and screws.
 
     Parameters
     ----------
-    made : BowlSolid
+    solid : BowlSolid
         With its segments; without screws it stays as it is.
     weight : float [kg]
         Of a screw with its nut.
@@ -140,28 +140,28 @@ def screwed(made, weight):
     -------
     BowlSolid
     """
-    if made.segments.joined is None:
-        return made
-    vertices, faces = made.segments.joined
-    bodies = [mass.solid(v[f]) for v, f in ((vertices, faces), *(one[1:] for one in made.gates))]
-    bare, middle, tensor = _weighed(made.plan, bodies)
-    at = made.segments.screws
+    if solid.segments.joined is None:
+        return solid
+    vertices, faces = solid.segments.joined
+    bodies = [mass.solid(v[f]) for v, f in ((vertices, faces), *(gate[1:] for gate in solid.gates))]
+    bare, middle, tensor = _weighed(solid.plan, bodies)
+    at = solid.segments.screws
     total = bare + weight * len(at)
     centre = (bare * middle + weight * at.sum(axis=0)) / total
     tensor = mass.shifted(tensor, bare, middle - centre)
-    for one in at:
-        tensor = mass.shifted(tensor, weight, one - centre)
-    return replace(made, mass=float(total), centre=centre, tensor=tensor)
+    for item in at:
+        tensor = mass.shifted(tensor, weight, item - centre)
+    return replace(solid, mass=float(total), centre=centre, tensor=tensor)
 
 
 def _weighed(plan, parts):
     """Mass [kg], centre (3,) [m] and inertia (3, 3) [kg m2] about it of a bowl with its gates."""
     density = plan.material.density
-    weights = [density * one.volume for one in parts]
+    weights = [density * part.volume for part in parts]
     total = float(sum(weights))
-    centre = sum(w * one.centre for w, one in zip(weights, parts)) / total
+    centre = sum(w * part.centre for w, part in zip(weights, parts)) / total
     inertia = sum(
-        mass.shifted(density * one.inertia, w, one.centre - centre) for w, one in zip(weights, parts)
+        mass.shifted(density * part.inertia, w, part.centre - centre) for w, part in zip(weights, parts)
     )
     return total, centre, inertia
 
@@ -169,23 +169,23 @@ def _weighed(plan, parts):
 def pieces(plan, kit=facets):
     """Return the bowl as one body [mm] of a kit and its gates (name, body), the outlet at the angle 0."""
     wall, *ends = [_wall(plan, kit)] if plan.stairs is None else stairs.shell(plan, kit)
-    notches = [_notch(plan, kit, one) for one in _gates(plan)]
+    notches = [_notch(plan, kit, gate) for gate in _gates(plan)]
     ring = kit.without(
         wall, [*_opening(plan, kit), *notches, *_bores(plan, kit), *track.groove_wall_cuts(plan, kit)]
     )
     slab = kit.without(track.slab(plan, kit), [_hole(plan, kit, cut) for cut in _holes(plan)])
-    blades = [_plate(plan, kit, one) for one in _blades(plan) if not one.alone]
+    blades = [_plate(plan, kit, blade) for blade in _blades(plan) if not blade.alone]
     added = [*track.sides(plan, kit), *track.yokes(plan, kit), *blades, *track.ledges(plan, kit)]
     added += track.groove_faces(plan, kit)
     whole = kit.united([*_floor(plan, kit), ring, *ends, slab, *added])
     whole = kit.without(whole, [*track.slots(plan, kit), *_drilled(plan, kit)])
-    gates = [(f"gate_{k + 1}", _plate(plan, kit, one)) for k, one in enumerate(_gates(plan))]
+    gates = [(f"gate_{k + 1}", _plate(plan, kit, gate)) for k, gate in enumerate(_gates(plan))]
     return kit.one_piece(whole, "devices"), gates
 
 
 def _floor(plan, kit):
     """Floor with its dome, and the hub below it."""
-    low, inner, outer = plan.underside, plan.ring, plan.way.radius + plan.material.wall
+    low, inner, outer = plan.underside, plan.ring, plan.path.radius + plan.material.wall
     edge = []
     if plan.stairs is not None:
         outer = inner + PIECE_OVERLAP_M
@@ -199,11 +199,11 @@ def _floor(plan, kit):
     shell = [(0.0, plan.dome + low), (inner, low), (outer, low), *top]
     rim, middle = float(plan.floor(plan.hub)) + 0.5 * low, plan.dome + 0.5 * low
     hub = [(0.0, low), (plan.hub, low), (plan.hub, rim), (0.0, middle)]
-    return [kit.united([kit.turned(one, plan.segments) for one in (shell, hub)]), *edge]
+    return [kit.united([kit.turned(item, plan.segments) for item in (shell, hub)]), *edge]
 
 
 def _wall(plan, kit):
-    inner, outer = plan.way.radius, plan.way.radius + plan.material.wall
+    inner, outer = plan.path.radius, plan.path.radius + plan.material.wall
     return kit.turned(
         [
             (inner, plan.underside + PIECE_OVERLAP_M),
@@ -217,10 +217,10 @@ def _wall(plan, kit):
 
 def _opening(plan, kit):
     """Where the outlet passes through the wall."""
-    end, far = plan.way.end, plan.way.end + 2.0 * plan.outlet
+    end, far = plan.path.end, plan.path.end + 2.0 * plan.outlet
     ring = np.array([[end, 0.0], [far, 0.0], [far, plan.width], [end, plan.width]])
-    low, lift = plan.outlet_height - 0.5 * plan.material.plate, plan.width * np.sin(plan.way.bank_at(end))
-    return [kit.over(plan.way, ring, low, plan.top + lift + BEYOND_BOWL_M, plan.chord)]
+    low, lift = plan.outlet_height - 0.5 * plan.material.plate, plan.width * np.sin(plan.path.bank_at(end))
+    return [kit.over(plan.path, ring, low, plan.top + lift + BEYOND_BOWL_M, plan.chord)]
 
 
 def _drilled(plan, kit):
@@ -229,7 +229,7 @@ def _drilled(plan, kit):
     circle = [(0.0, 0.0)] + [
         (0.5 * plan.bolt_circle * np.cos(a), 0.5 * plan.bolt_circle * np.sin(a)) for a in angles
     ]
-    holes = [(one, plan.bolt) for one in circle]
+    holes = [(item, plan.bolt) for item in circle]
     edge = plan.ring + BOLT_CLEARANCE_M - plan.drain
     angles = FULL_TURN * np.arange(plan.drains) / max(plan.drains, 1)
     holes += [((edge * np.cos(a), edge * np.sin(a)), plan.drain) for a in angles]
@@ -241,14 +241,14 @@ def _drilled(plan, kit):
 
 def _bores(plan, kit):
     """Holes of the nozzles through the wall, level and square to it."""
-    made = []
-    for one in () if plan.stretch is None else plan.stretch.bores:
-        s = plan.first + one.place
-        theta = float(plan.way.angle(s))
+    solid = []
+    for item in () if plan.stretch is None else plan.stretch.bores:
+        s = plan.first + item.place
+        theta = float(plan.path.angle(s))
         towards = np.array([np.cos(theta), np.sin(theta), 0.0])
-        near = plan.way.places(s, 0.0) + [0.0, 0.0, one.height] - PIECE_OVERLAP_M * towards
-        made.append(kit.bore(near, towards, one.size, plan.material.wall + 2.0 * PIECE_OVERLAP_M))
-    return made
+        near = plan.path.places(s, 0.0) + [0.0, 0.0, item.height] - PIECE_OVERLAP_M * towards
+        solid.append(kit.bore(near, towards, item.size, plan.material.wall + 2.0 * PIECE_OVERLAP_M))
+    return solid
 
 
 def _holes(plan):
@@ -260,15 +260,15 @@ def _blades(plan):
 
 
 def _gates(plan):
-    return [one for one in _blades(plan) if one.alone]
+    return [blade for blade in _blades(plan) if blade.alone]
 
 
 def _hole(plan, kit, cut):
     """The body that a cut takes out of the track."""
     ring = cut.ring + [plan.first, 0.0]
-    heights = plan.way.height(ring[:, 0], ring[:, 1])
+    heights = plan.path.height(ring[:, 0], ring[:, 1])
     deep = plan.material.plate + track.fillet(plan) + PIECE_OVERLAP_M
-    return kit.over(plan.way, ring, heights.min() - deep, heights.max() + PIECE_OVERLAP_M, 0.2 * plan.chord)
+    return kit.over(plan.path, ring, heights.min() - deep, heights.max() + PIECE_OVERLAP_M, 0.2 * plan.chord)
 
 
 def _plate(plan, kit, blade):
@@ -287,11 +287,11 @@ def _standing(plan, kit, s, thickness, area, lean=0.0):
 
     A swept one leans ahead with the distance; its edge keeps its height over the track at both ends.
     """
-    from_wall, theta = s + thickness, plan.way.angle(s)
-    far = plan.way.places(from_wall + lean * plan.width, plan.width)
-    across = (far - plan.way.places(from_wall, 0.0)) / plan.width
+    from_wall, theta = s + thickness, plan.path.angle(s)
+    far = plan.path.places(from_wall + lean * plan.width, plan.width)
+    across = (far - plan.path.places(from_wall, 0.0)) / plan.width
     ahead, upright = np.array([-np.sin(theta), np.cos(theta), 0.0]), np.array([0.0, 0.0, 1.0])
-    foot = np.array([*plan.way.plan(s, 0.0), float(plan.way.height(from_wall))])
+    foot = np.array([*plan.path.plan(s, 0.0), float(plan.path.height(from_wall))])
     return kit.plank(area, thickness, np.column_stack([across, upright, ahead]), foot)
 
 

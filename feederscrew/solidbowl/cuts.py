@@ -9,7 +9,7 @@ from shapely import affinity
 from feederscrew.tooling.devices.base import room_of
 from feederscrew.tooling.devices.openings import beyond_borders
 from feederscrew.tooling.fates import leading
-from feederscrew.tooling.track_sections import build_section
+from feederscrew.tooling.track_sections import Station, build_section
 
 MAX_EDGE_SLOPE_RAD = np.radians(10.0)  # slope along the track of its free edge, where the bank changes
 RAMP = np.radians(15.0)  # slope on which a ledge comes down to the track beside it
@@ -28,14 +28,14 @@ class TrackLedge:
     ramp: float  # [m] over which it comes down
 
 
-def banked_height(track, devices, every):
+def banked_height(track, devices, orientations):
     """Return the track with the bank that the first devices give it from its entry on.
 
     Parameters
     ----------
     track : Track
     devices : sequence of Device
-    every : sequence of Orientation
+    orientations : sequence of Orientation
         Of the part on that track.
 
     Returns
@@ -43,7 +43,7 @@ def banked_height(track, devices, every):
     Track
     """
     for device in lean_at_entry(devices):
-        for slope in device.standing(track, every).slopes:
+        for slope in device.standing(track, orientations).slopes:
             track = track if slope.bank is None else replace(track, bank=slope.bank)
     return track
 
@@ -53,7 +53,7 @@ def lean_at_entry(devices):
     return leading([device for device in devices if device.placed])
 
 
-def laid_out(track, stations, every):
+def laid_out(track, stations, orientations):
     """Return stations along a solid's track, with room for what leans and drops it.
 
     Parameters
@@ -61,7 +61,7 @@ def laid_out(track, stations, every):
     track : Track
         With the bank of its entry.
     stations : sequence of Station
-    every : sequence of Orientation
+    orientations : sequence of Orientation
 
     Returns
     -------
@@ -74,36 +74,36 @@ def laid_out(track, stations, every):
     more : float [m]
         By which the stretch is longer.
     """
-    entry = len(lean_at_entry([one.device for one in stations]))
+    entry = len(lean_at_entry([station.device for station in stations]))
     moved, leans, ledges, more, bank = [], [], [], 0.0, track.bank
-    for place, one in enumerate(stations):
-        one = _moved(one, more)
-        moved.append(one)
-        end = one.start + one.length
-        for slope in one.device.standing(track, every).slopes if place >= entry else ():
+    for place, station in enumerate(stations):
+        station = _moved(station, more)
+        moved.append(station)
+        end = station.start + station.length
+        for slope in station.device.standing(track, orientations).slopes if place >= entry else ():
             if slope.bank is not None and slope.bank != bank:
-                begin = one.start + slope.begin
-                leans.append((begin, begin + _twist(track, bank, slope.bank, every), slope.bank))
+                begin = station.start + slope.begin
+                leans.append((begin, begin + _twist(track, bank, slope.bank, orientations), slope.bank))
                 bank, more = slope.bank, more + max(leans[-1][1] - end, 0.0)
-        ledge = _ledge(one, every)
+        ledge = _ledge(station, orientations)
         if ledge is not None:
             ledges.append(ledge)
             more += ledge.ramp
-    return moved, tuple(leans), tuple(ledges), _grooves(moved, entry, track, every), more
+    return moved, tuple(leans), tuple(ledges), _grooves(moved, entry, track, orientations), more
 
 
-def _grooves(stations, entry, track, every):
+def _grooves(stations, entry, track, orientations):
     """Where the wall leans back; a groove at the entry is there from the first of the track on."""
-    found: list[tuple[float, ...]] = []
-    opens = max(one.length for one in every)
-    for place, one in enumerate(stations):
-        for slope in one.device.standing(track, every).slopes:
-            at = -np.inf if place < entry else one.start + slope.begin
-            if slope.wall is not None and found and np.isinf(found[-1][1]):
-                found[-1] = found[-1][0], at, *found[-1][2:]
+    grooves: list[tuple[float, ...]] = []
+    opens = max(orientation.length for orientation in orientations)
+    for place, station in enumerate(stations):
+        for slope in station.device.standing(track, orientations).slopes:
+            at = -np.inf if place < entry else station.start + slope.begin
+            if slope.wall is not None and grooves and np.isinf(grooves[-1][1]):
+                grooves[-1] = grooves[-1][0], at, *grooves[-1][2:]
             if slope.wall:
-                found.append((at, np.inf, slope.wall, opens))
-    return tuple(one for one in found if one[1] > one[0])
+                grooves.append((at, np.inf, slope.wall, opens))
+    return tuple(groove for groove in grooves if groove[1] > groove[0])
 
 
 def _moved(station, by):
@@ -116,15 +116,15 @@ def _moved(station, by):
     return replace(station, start=station.start + by, **rings)
 
 
-def _twist(track, before, after, every):
+def _twist(track, before, after, orientations):
     """Length [m] over which one bank becomes another: the free edge rises or falls gently."""
     edge = track.width * abs(np.sin(after) - np.sin(before))
-    return float(max(TWIST * room_of(every), edge / np.tan(MAX_EDGE_SLOPE_RAD)))
+    return float(max(TWIST * room_of(orientations), edge / np.tan(MAX_EDGE_SLOPE_RAD)))
 
 
-def _ledge(station, every):
+def _ledge(station, orientations):
     """The ledge of a station, None without one."""
-    drop, aside = station.device.lower(every) or (0.0, 0.0)
+    drop, aside = station.device.lower(orientations) or (0.0, 0.0)
     if aside <= 0.0:
         return None
     ramp = float(drop / np.tan(RAMP))
@@ -192,6 +192,7 @@ class Stretch:
     grooves: tuple[
         tuple[float, float, float, float], ...
     ] = ()  # from and to s [m], lean of the wall, opens [m]
+    stations: tuple[Station, ...] = ()  # of the devices, in the order parts meet them
 
     @property
     def falls(self):
@@ -199,48 +200,51 @@ class Stretch:
         return max((cut.span[1] for cut in self.cuts), default=None)
 
 
-def stretch(track, devices, every):
+def stretch(track, devices, orientations):
     """Return the tooled stretch of a track.
 
     Parameters
     ----------
     track : Track
     devices : sequence of Device
-    every : sequence of Orientation
+    orientations : sequence of Orientation
         Of the part on that track.
 
     Returns
     -------
     Stretch
     """
-    section = build_section(track, devices, every)
-    stations, leans, ledges, grooves, more = laid_out(track, section.stations, every)
-    beside = {ledge.start for ledge in ledges}
-    cut = [one for one in stations if one.hole is not None and one.start not in beside]
-    drops = [(one.start + 0.5 * one.length, one.drop) for one in stations if one.drop > 0.0]
+    section = build_section(track, devices, orientations)
+    stations, leans, ledges, grooves, more = laid_out(track, section.stations, orientations)
+    aside = {ledge.start for ledge in ledges}
+    cut = [station for station in stations if station.hole is not None and station.start not in aside]
+    drops = [
+        (station.start + 0.5 * station.length, station.drop) for station in stations if station.drop > 0.0
+    ]
     drops += [(ledge.start, ledge.drop) for ledge in ledges]
     return Stretch(
         length=section.length + more,
         tallest=section.tallest,
-        longest=max(one.length for one in every),
-        cuts=tuple(_cut(one, section.width, track.width) for one in cut),
-        blades=tuple(_blade(one, track.width) for one in stations if one.blade is not None),
+        longest=max(orientation.length for orientation in orientations),
+        cuts=tuple(_cut(item, section.width, track.width) for item in cut),
+        blades=tuple(_blade(station, track.width) for station in stations if station.blade is not None),
         drops=tuple(sorted(drops)),
         bends=tuple(
-            (one.start + slope.begin, slope.climb)
-            for one in stations
-            for slope in one.device.standing(track, every).slopes
+            (station.start + slope.begin, slope.climb)
+            for station in stations
+            for slope in station.device.standing(track, orientations).slopes
             if slope.climb is not None
         ),
-        labels=tuple((one.start, one.start + one.length, one.label) for one in stations),
+        labels=tuple((station.start, station.start + station.length, station.label) for station in stations),
         bores=tuple(
-            WallBore(one.label, one.start + jet.at[0], jet.at[2], 2.0 * jet.radius)
-            for one in stations
-            for jet in one.device.standing(track, every).jets
+            WallBore(station.label, station.start + jet.at[0], jet.at[2], 2.0 * jet.radius)
+            for station in stations
+            for jet in station.device.standing(track, orientations).jets
         ),
         leans=leans,
         ledges=ledges,
         grooves=grooves,
+        stations=tuple(stations),
     )
 
 
@@ -255,8 +259,8 @@ def _cut(station, drawn, width):
 def _blade(station, width):
     """The plate of a gate without its opening; it reaches into the wall."""
     free = shapely.union_all([shapely.Polygon(ring) for ring in station.openings])
-    ways = ((0.0, 0.0), (-2.0 * CUT_OVERRUN_M, 0.0), (0.0, -2.0 * CUT_OVERRUN_M))
-    free = shapely.union_all([affinity.translate(free, *by) for by in ways])
+    paths = ((0.0, 0.0), (-2.0 * CUT_OVERRUN_M, 0.0), (0.0, -2.0 * CUT_OVERRUN_M))
+    free = shapely.union_all([affinity.translate(free, *by) for by in paths])
     frame = shapely.box(-CUT_OVERRUN_M, 0.0, width, station.top)
     return TrackBlade(
         label=station.label,

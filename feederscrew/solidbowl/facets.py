@@ -100,9 +100,9 @@ def patch(ring, low, high):
     return prism(shapely.Polygon(ring), low, high)
 
 
-def over(way, ring, low, high, chord):
+def over(path, ring, low, high, chord):
     """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m]."""
-    return prism(way.laid(ring, chord), low, high)
+    return prism(path.ring_in_bowl(ring, chord), low, high)
 
 
 def disc(at, size, low, high):
@@ -184,21 +184,21 @@ def one_piece(body, where):
     FeederError
         If more than a crumb hangs loose.
     """
-    pieces = sorted(body.decompose(), key=lambda one: -one.volume())
-    loose = [one for one in pieces[1:] if one.volume() * MM**3 > MIN_PIECE_VOLUME_M3]
+    pieces = sorted(body.decompose(), key=lambda item: -item.volume())
+    loose = [piece for piece in pieces[1:] if piece.volume() * MM**3 > MIN_PIECE_VOLUME_M3]
     if loose:
         what = f"the cuts leave {len(loose)} loose piece{'s' * (len(loose) > 1)} of the track"
         raise FeederError(where, what, "leave some track on both sides of each cut, or move them apart")
     return pieces[0]
 
 
-def unplaced(made):
+def unplaced(solid):
     """Return a BowlSolid as a Manifold [mm] with its outlet at the angle 0, right-handed, to cast rays at."""
     from manifold3d import Manifold, Mesh64
 
-    whole = Manifold(Mesh64(made.vertices / MM, made.faces.astype(np.uint64)))
-    whole = whole.rotate((0.0, 0.0, -float(np.degrees(made.plan.turned))))
-    return whole.mirror((0.0, 1.0, 0.0)) if made.plan.left else whole
+    whole = Manifold(Mesh64(solid.vertices / MM, solid.faces.astype(np.uint64)))
+    whole = whole.rotate((0.0, 0.0, -float(np.degrees(solid.plan.turned))))
+    return whole.mirror((0.0, 1.0, 0.0)) if solid.plan.left else whole
 
 
 def as_planned(plan, points):
@@ -211,12 +211,12 @@ def as_planned(plan, points):
 
 def below(body, place, deep=10.0):
     """Return the height [m] of the first surface straight below a place (3,) [m]; None if there is none."""
-    return _met(body, place, (0.0, 0.0, -deep))
+    return _ray_hit(body, place, (0.0, 0.0, -deep))
 
 
-def _met(body, place, way):
+def _ray_hit(body, place, direction):
     start = np.asarray(place) / MM
-    hits = body.ray_cast(tuple(start), tuple(start + np.asarray(way) / MM))
+    hits = body.ray_cast(tuple(start), tuple(start + np.asarray(direction) / MM))
     return float(hits[0].position[2]) * MM if hits else None
 
 
@@ -242,23 +242,23 @@ def first_met(body, start, towards):
     """Return the distances [m] of all surfaces on a straight line from a place (3,) to another (3,) [m]."""
     start, towards = np.asarray(start, float), np.asarray(towards, float)
     hits = body.ray_cast(tuple(start / MM), tuple(towards / MM))
-    return [float(np.sqrt(np.sum((np.asarray(one.position) * MM - start) ** 2))) for one in hits]
+    return [float(np.sqrt(np.sum((np.asarray(hit.position) * MM - start) ** 2))) for hit in hits]
 
 
-def placed(made):
+def placed(solid):
     """Return a BowlSolid as a Manifold [mm] as it stands in its files."""
     from manifold3d import Manifold, Mesh64
 
-    return Manifold(Mesh64(made.vertices / MM, made.faces.astype(np.uint64)))
+    return Manifold(Mesh64(solid.vertices / MM, solid.faces.astype(np.uint64)))
 
 
 def rod(axis, middle, size, deep):
     """Return a round rod along an axis (0, 1, 2) about a place (3,) [m], ``deep`` [m] to either side."""
     from manifold3d import Manifold
 
-    made = Manifold.cylinder(2.0 * deep / MM, 0.5 * size / MM, circular_segments=24, center=True)
-    made = (made.rotate((0.0, 90.0, 0.0)), made.rotate((90.0, 0.0, 0.0)), made)[axis]
-    return made.translate(tuple(np.asarray(middle) / MM))
+    solid = Manifold.cylinder(2.0 * deep / MM, 0.5 * size / MM, circular_segments=24, center=True)
+    solid = (solid.rotate((0.0, 90.0, 0.0)), solid.rotate((90.0, 0.0, 0.0)), solid)[axis]
+    return solid.translate(tuple(np.asarray(middle) / MM))
 
 
 def cut_by(body, planes):
@@ -272,7 +272,7 @@ def cut_by(body, planes):
 
 def parts_of(body, least=MIN_PIECE_VOLUME_M3):
     """Return the pieces of a Manifold that hang together, those of less than a volume [m3] left out."""
-    return [one for one in body.decompose() if one.volume() * MM**3 > least]
+    return [item for item in body.decompose() if item.volume() * MM**3 > least]
 
 
 def cut_face(body, axis, at):
@@ -282,5 +282,5 @@ def cut_face(body, axis, at):
     area = shapely.Polygon()
     for ring in rings:
         area = area.symmetric_difference(shapely.Polygon(ring).buffer(0.0))
-    back = ((0.0, 1.0, -1.0, 0.0), (1.0, 0.0, 0.0, -1.0), (1.0, 0.0, 0.0, 1.0))[axis]
-    return affinity.affine_transform(area, (*back, 0.0, 0.0))
+    rearward = ((0.0, 1.0, -1.0, 0.0), (1.0, 0.0, 0.0, -1.0), (1.0, 0.0, 0.0, 1.0))[axis]
+    return affinity.affine_transform(area, (*rearward, 0.0, 0.0))

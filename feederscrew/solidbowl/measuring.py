@@ -29,33 +29,33 @@ class Measures:
     extent: tuple[float, float, float]  # of a box around it
 
 
-def measures(made):
+def measures(solid):
     """Measure a bowl.
 
     Parameters
     ----------
-    made : BowlSolid
+    solid : BowlSolid
 
     Returns
     -------
     Measures
     """
-    plan, body = made.plan, facets.unplaced(made)
-    way, far = plan.way, 3.0 * plan.way.radius
+    plan, body = solid.plan, facets.unplaced(solid)
+    path, far = plan.path, 3.0 * plan.path.radius
     high = plan.top - 1e-3
     at = _rim(plan)
     rim = facets.first_met(body, (0.0, 0.0, high), _towards(at, far, high))
-    r = float(way.wall_radius(way.at(_bare(plan)))) - 1e-3
+    r = float(path.wall_radius(path.at(_bare(plan)))) - 1e-3
     bare = np.array([r * np.cos(_bare(plan)), r * np.sin(_bare(plan))])
     floor = facets.first_met(body, (*bare, 5e-4), (*bare, -far))
-    s = float(way.at(-0.5 * np.pi))
-    outlet = way.end + 0.5 * plan.outlet
-    x, y, z = map(float, np.ptp(made.vertices, axis=0))
+    s = float(path.at(-0.5 * np.pi))
+    outlet = path.end + 0.5 * plan.outlet
+    x, y, z = map(float, np.ptp(solid.vertices, axis=0))
     return Measures(
-        diameter=2.0 * (rim[0] + way.radius - float(way.wall_radius(way.at(at)))),
+        diameter=2.0 * (rim[0] + path.radius - float(path.wall_radius(path.at(at)))),
         wall=rim[1] - rim[0],
         floor=floor[1] - floor[0],
-        height=float(np.ptp(made.vertices[:, 2])),
+        height=float(np.ptp(solid.vertices[:, 2])),
         track_width=track_width(plan, body, s),
         outlet_height=_outlet_height(plan, body, outlet),
         extent=(x, y, z),
@@ -64,17 +64,17 @@ def measures(made):
 
 def _rim(plan):
     """An angle at which the rim is measured: before every groove, where the wall is open."""
-    starts = [float(plan.way.angle(one[0])) - 0.1 for one in track.groove_spans(plan)]
+    starts = [float(plan.path.angle(groove_span[0])) - 0.1 for groove_span in track.groove_spans(plan)]
     return min([RIM_SECTION_RAD, *starts])
 
 
 def _outlet_height(plan, body, outlet):
     """Height [m] of the outlet at the wall, seen where there is metal beside it: rails leave a slot."""
     for across in (1e-3, 5e-4, 0.5 * plan.width, plan.width - 1e-3):
-        found = facets.below(body, plan.way.places(outlet, across) + [0.0, 0.0, 1e-3])
-        if found is not None:
-            return found - across * float(np.sin(plan.way.bank_at(outlet)))
-    return float(plan.way.height(outlet, 0.0))
+        below = facets.below(body, plan.path.places(outlet, across) + [0.0, 0.0, 1e-3])
+        if below is not None:
+            return below - across * float(np.sin(plan.path.bank_at(outlet)))
+    return float(plan.path.height(outlet, 0.0))
 
 
 def track_width(plan, body, s):
@@ -83,25 +83,25 @@ def track_width(plan, body, s):
     Rays from the middle of the track along its surface to the wall, at two heights over it: a wall may lean,
     and is carried on straight to the surface. One from within, below the surface, to the free edge.
     """
-    way = plan.way
-    theta, half, bank = float(way.angle(s)), 0.5 * plan.width, float(way.bank_at(s))
-    outward, middle = np.array([np.cos(theta), np.sin(theta), 0.0]), way.places(s, half)
+    path = plan.path
+    theta, half, bank = float(path.angle(s)), 0.5 * plan.width, float(path.bank_at(s))
+    outward, middle = np.array([np.cos(theta), np.sin(theta), 0.0]), path.places(s, half)
     along = np.cos(bank) * outward - [0.0, 0.0, np.sin(bank)]
     low, high = (
-        facets.first_met(body, start, start + 3.0 * way.radius * along)[0]
+        facets.first_met(body, start, start + 3.0 * path.radius * along)[0]
         for start in (middle + [0.0, 0.0, WALL_RAY_HEIGHT_M], middle + [0.0, 0.0, 2.0 * WALL_RAY_HEIGHT_M])
     )
-    under = float(way.height(s, plan.width)) - SEEN * plan.material.plate
-    to_middle = float(way.wall_radius(s)) - half * float(np.cos(bank))
+    under = float(path.height(s, plan.width)) - SEEN * plan.material.plate
+    to_middle = float(path.wall_radius(s)) - half * float(np.cos(bank))
     start = to_middle - plan.across  # over the floor, of which the dome may rise above the track further in
     near = start * outward + [0.0, 0.0, under]
-    to_edge = start + facets.first_met(body, near, _towards(theta, 3.0 * way.radius, under))[0]
+    to_edge = start + facets.first_met(body, near, _towards(theta, 3.0 * path.radius, under))[0]
     return (2.0 * low - high) + (to_middle - to_edge) / float(np.cos(bank))
 
 
 def track_heights(plan, body, s, y):
     """Return the height [m] of the first surface below a place a little over the track."""
-    place = plan.way.places(s, y)
+    place = plan.path.places(s, y)
     return facets.below(body, place + [0.0, 0.0, 0.5 * plan.headroom])
 
 
@@ -111,7 +111,7 @@ def _towards(theta, far, z):
 
 def _bare(plan):
     """An angle at which the floor lies bare by the wall, or about: opposite to the track's first rise."""
-    return float(plan.way.angle(0.0)) - 0.1
+    return float(plan.path.angle(0.0)) - 0.1
 
 
 CUT_RAYS = 7  # along and across each cut
@@ -122,12 +122,12 @@ FACE_TOLERANCE_M = 5e-4  # [m] from a face: what lies on it
 ON_FLOOR, ON_TURN = "the floor", "the turn of the track before"
 
 
-def ways_down(made):
+def ways_down(solid):
     """Return where what falls through each cut comes to lie.
 
     Parameters
     ----------
-    made : BowlSolid
+    solid : BowlSolid
 
     Returns
     -------
@@ -140,52 +140,52 @@ def ways_down(made):
     FeederError
         If it comes to lie on something else.
     """
-    found: dict[str, str] = {}
-    plan = made.plan
+    ways_down: dict[str, str] = {}
+    plan = solid.plan
     if plan.stretch is None:
-        return found
-    whole = facets.unplaced(made)
+        return ways_down
+    whole = facets.unplaced(solid)
     for cut in plan.stretch.cuts:
         lain = {_lies(plan, whole, cut, s, y) for s, y in _places(cut, plan.width)}
         if lain:
-            found[cut.label] = " or ".join(sorted(lain))
-    return found
+            ways_down[cut.label] = " or ".join(sorted(lain))
+    return ways_down
 
 
 def _lies(plan, whole, cut, s, y):
     """Where what falls at a place of a cut comes to lie."""
-    place = plan.way.places(plan.first + s, y)
-    met = facets.below(whole, place)
-    if met is not None and plan.stairs is not None:
-        place, met = _slid(plan, whole, place, met)
-    if met is not None and met <= float(plan.floor(np.hypot(*place[:2]))) + LEAD_IN_HEIGHT_M:
+    place = plan.path.places(plan.first + s, y)
+    meet = facets.below(whole, place)
+    if meet is not None and plan.stairs is not None:
+        place, meet = _slid(plan, whole, place, meet)
+    if meet is not None and meet <= float(plan.floor(np.hypot(*place[:2]))) + LEAD_IN_HEIGHT_M:
         return ON_FLOOR
-    if met is not None and plan.stairs is not None and _on_the_turn_before(plan, place, met):
+    if meet is not None and plan.stairs is not None and _on_the_turn_before(plan, place, meet):
         return ON_TURN
-    raise _refused(cut, s, met)
+    raise _refused(cut, s, meet)
 
 
-def _slid(plan, whole, place, met):
+def _slid(plan, whole, place, meet):
     """Place and height where a part holds still that slides inwards from a place down steep slopes."""
     r = np.hypot(*place[:2])
     outward, steep = place / r * [1.0, 1.0, 0.0], np.tan(plan.stairs.slope - SURE)
-    place = np.array([*place[:2], met])
+    place = np.array([*place[:2], meet])
     while r > SLOPE_STEP_M:
         r -= SLOPE_STEP_M
-        over = r * outward + [0.0, 0.0, met + 0.2 * SLOPE_STEP_M]
+        over = r * outward + [0.0, 0.0, meet + 0.2 * SLOPE_STEP_M]
         lower = facets.below(whole, over)
-        if lower is None or lower > met - steep * SLOPE_STEP_M:
+        if lower is None or lower > meet - steep * SLOPE_STEP_M:
             break
-        place, met = over, lower
-    return place, met
+        place, meet = over, lower
+    return place, meet
 
 
-def _on_the_turn_before(plan, place, met):
+def _on_the_turn_before(plan, place, meet):
     """Whether a place lies on the track a turn before, and that before the first device."""
-    way = plan.way
-    s = float(way.at(np.arctan2(place[1], place[0]) % -STAIRS_TURN - STAIRS_TURN))
-    y = (float(way.wall_radius(s)) - np.hypot(*place[:2])) / float(np.cos(way.bank_at(s)))
-    off = met - float(way.height(s, y))
+    path = plan.path
+    s = float(path.at(np.arctan2(place[1], place[0]) % -STAIRS_TURN - STAIRS_TURN))
+    y = (float(path.wall_radius(s)) - np.hypot(*place[:2])) / float(np.cos(path.bank_at(s)))
+    off = meet - float(path.height(s, y))
     return (
         -FACE_TOLERANCE_M < y < plan.width + FACE_TOLERANCE_M
         and abs(off) < FACE_TOLERANCE_M + plan.material.plate
@@ -193,8 +193,8 @@ def _on_the_turn_before(plan, place, met):
     )
 
 
-def _refused(cut, s, met):
-    there = "nothing" if met is None else f"the track at {1e3 * met:.3g} mm"
+def _refused(cut, s, meet):
+    there = "nothing" if meet is None else f"the track at {1e3 * meet:.3g} mm"
     what = f"what falls through it {1e3 * s:.3g} mm behind the start of the devices meets {there}"
     mend = "give a lower sizing.outlet_height, sizing.shape: stepped, or fewer devices"
     return FeederError(f"devices: {cut.label}", what, mend)
@@ -211,4 +211,4 @@ def _places(cut, width):
     low_s, low_y, high_s, high_y = area.bounds
     s, y = np.meshgrid(np.linspace(low_s, high_s, CUT_RAYS), np.linspace(low_y, high_y, CUT_RAYS))
     grid = shapely.points(s.ravel(), y.ravel())
-    return [(one.x, one.y) for one in grid[shapely.intersects(area, grid)]]
+    return [(item.x, item.y) for item in grid[shapely.intersects(area, grid)]]

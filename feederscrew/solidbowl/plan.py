@@ -29,7 +29,7 @@ PRINTED_MATERIALS = (
     BowlMaterial("pla", 4e-3, 5e-3, 4e-3, 1240.0, supported=False, flat=True),
     BowlMaterial("pa12", 3e-3, 4e-3, 3e-3, 1010.0, supported=True, flat=False),
 )
-NAMES = (*(one.name for one in PRINTED_MATERIALS), STEEL_NAME)
+NAMES = (*(item.name for item in PRINTED_MATERIALS), STEEL_NAME)
 
 
 def material(name, rules):
@@ -49,26 +49,26 @@ def material(name, rules):
     if name == STEEL_NAME:
         sheet = rules.sheet
         return BowlMaterial(STEEL_NAME, sheet, sheet, sheet, rules.sheet_density, supported=True, flat=False)
-    return next(one for one in PRINTED_MATERIALS if one.name == name)
+    return next(item for item in PRINTED_MATERIALS if item.name == name)
 
 
 BOLT_CLEARANCE_M = 1e-3  # [m] of level floor beside the track
 WEB = 0.5  # of a hole's diameter: metal between two of them, at least
 
 
-def bolt_circle(track, asked, radius):
+def bolt_circle(track, options, radius):
     """Return the diameter [m] of the circle of bolts: as given, or by the rule as far as there is room.
 
     Parameters
     ----------
     track : Track
-    asked : Asked
+    options : Asked
     radius : float [m]
         Of the floor, out to the wall.
     """
-    most = 2.0 * (_room(track, radius) - 2.0 * asked.bolt)
-    ruled = asked.bolt_share * 2.0 * track.radius
-    return asked.bolt_circle or (min(ruled, most) if most > 0.0 else ruled)
+    most = 2.0 * (_room(track, radius) - 2.0 * options.bolt)
+    ruled = options.bolt_share * 2.0 * track.radius
+    return options.bolt_circle or (min(ruled, most) if most > 0.0 else ruled)
 
 
 def _room(track, radius):
@@ -76,18 +76,18 @@ def _room(track, radius):
     return radius - track.width - 2.0 * BOLT_CLEARANCE_M
 
 
-def bolt_hub(track, asked, radius):
+def bolt_hub(track, options, radius):
     """Return the radius [m] of the hub below the floor."""
-    return 0.5 * bolt_circle(track, asked, radius) + 2.0 * asked.bolt
+    return 0.5 * bolt_circle(track, options, radius) + 2.0 * options.bolt
 
 
-def check_bolts(track, asked, extents, radius):
+def check_bolts(track, options, extents, radius):
     """Raise the fault of holes that the floor has no room for.
 
     Parameters
     ----------
     track : Track
-    asked : Asked
+    options : Asked
     extents : (3,) float [m]
         Of the part along its axes.
     radius : float [m]
@@ -98,25 +98,25 @@ def check_bolts(track, asked, extents, radius):
     FeederError
         If the bolts lie under the track or run into each other, or parts fall through a drain hole.
     """
-    room, across = _room(track, radius), bolt_circle(track, asked, radius)
-    if bolt_hub(track, asked, radius) > room + 1e-9:
+    room, across = _room(track, radius), bolt_circle(track, options, radius)
+    if bolt_hub(track, options, radius) > room + 1e-9:
         what = f"{1e3 * across:.4g} mm lies under the track of a bowl this small"
-        most = 2e3 * (room - 2.0 * asked.bolt)
+        most = 2e3 * (room - 2.0 * options.bolt)
         mend = f"give at most {most:.4g} mm, or smaller bolts"
         if most <= 0.0:
             mend = "give a smaller machine.bolt_hole, or a larger bowl"
         raise FeederError("machine.bolt_circle", what, mend)
-    if _apart(asked.bolts, 0.5 * across) < (1.0 + WEB) * asked.bolt - 1e-9:
-        what = f"{asked.bolts} and one in the middle, of {1e3 * asked.bolt:.4g} mm,"
+    if _too_near(options.bolts, 0.5 * across) < (1.0 + WEB) * options.bolt - 1e-9:
+        what = f"{options.bolts} and one in the middle, of {1e3 * options.bolt:.4g} mm,"
         what += f" leave no metal between them on a circle of {1e3 * across:.4g} mm"
         raise FeederError("machine.bolts", what, "take fewer, a smaller machine.bolt_hole, or a larger bowl")
     least = float(min(extents))
-    if asked.drains and asked.drain >= least:
-        what = f"{1e3 * asked.drain:.4g} mm may let parts through that are {1e3 * least:.4g} mm thick"
+    if options.drains and options.drain >= least:
+        what = f"{1e3 * options.drain:.4g} mm may let parts through that are {1e3 * least:.4g} mm thick"
         raise FeederError("sizing.drain_hole", what, f"give less than {1e3 * least:.4g} mm")
 
 
-def _apart(bolts, radius):
+def _too_near(bolts, radius):
     """Least distance [m] between the middles of two holes, one of them that in the middle."""
     if bolts == 0:
         return np.inf
@@ -124,7 +124,7 @@ def _apart(bolts, radius):
 
 
 @dataclass(frozen=True, eq=False)
-class Way:
+class TrackPath:
     """The foot of the wall as a line in space, and the track inwards of it.
 
     Lengths s [m] run along the wall from where the track leaves the floor, distances y [m] from the wall
@@ -160,10 +160,10 @@ class Way:
     def bank_at(self, s):
         """Return the bank [rad] at lengths s."""
         banks = [self.bank, *(bank for _, _, bank in self.leans)]
-        found = np.full(np.shape(s), float(self.bank))
+        bank_at = np.full(np.shape(s), float(self.bank))
         for (start, end, bank), before in zip(self.leans, banks):
-            found = found + (bank - before) * np.clip((s - start) / (end - start), 0.0, 1.0)
-        return found
+            bank_at = bank_at + (bank - before) * np.clip((s - start) / (end - start), 0.0, 1.0)
+        return bank_at
 
     @property
     def least_bank(self):
@@ -193,10 +193,10 @@ class Way:
     def risen(self, s):
         """Return by how much [m] the track climbs up to lengths s, its steps down left out."""
         climbs = [self.climb, *(climb for _, climb in self.bends)]
-        found = np.tan(self.climb) * s
+        risen = np.tan(self.climb) * s
         for (at, climb), before in zip(self.bends, climbs):
-            found = found + (np.tan(climb) - np.tan(before)) * np.maximum(s - at, 0.0)
-        return found
+            risen = risen + (np.tan(climb) - np.tan(before)) * np.maximum(s - at, 0.0)
+        return risen
 
     @property
     def highest(self):
@@ -215,7 +215,7 @@ class Way:
         z = np.broadcast_to(self.height(s, y), flat.shape[:-1])
         return np.concatenate([flat, z[..., None]], axis=-1)
 
-    def laid(self, ring, chord):
+    def ring_in_bowl(self, ring, chord):
         """Return a ring (K, 2) [m] of lengths and distances as a polygon seen from above.
 
         Parameters
@@ -268,7 +268,7 @@ class TrackTooLow(FeederError):
 class BowlPlan:
     """A bowl in lengths [m] and angles [rad]; heights over the floor's edge."""
 
-    way: Way
+    path: TrackPath
     width: float  # of the track, along its surface
     material: BowlMaterial
     stretch: Stretch | None  # None without devices
@@ -291,36 +291,38 @@ class BowlPlan:
     @property
     def across(self):
         """Width of the track, seen from above, where it is widest."""
-        return self.width * float(np.cos(self.way.least_bank))
+        return self.width * float(np.cos(self.path.least_bank))
 
     @property
     def segments(self):
         """How many facets a full turn has; where the track is steep across, more."""
-        banks = self.way.bank, *(bank for _, _, bank in self.way.leans)
+        banks = self.path.bank, *(bank for _, _, bank in self.path.leans)
         chord = self.chord / max(1.0, *(BANK_DROP_FACTOR * float(np.tan(bank)) for bank in banks))
-        return int(np.ceil(FULL_TURN / (2.0 * np.arccos(1.0 - chord / self.way.radius)) / 4.0)) * 4
+        return int(np.ceil(FULL_TURN / (2.0 * np.arccos(1.0 - chord / self.path.radius)) / 4.0)) * 4
 
     @property
     def outlet_height(self):
         """Height of the outlet's surface by the wall."""
-        return float(self.way.height(self.way.end))
+        return float(self.path.height(self.path.end))
 
     @property
     def turns(self):
         """Turns of the track from the floor to the outlet."""
-        return -float(self.way.angle(0.0)) / FULL_TURN
+        return -float(self.path.angle(0.0)) / FULL_TURN
 
     @property
     def room(self):
         """Radius of a cylinder that holds as much as the lowest third of the bowl's rise."""
-        return float(self.way.wall_radius(self.way.end / 6.0))
+        return float(self.path.wall_radius(self.path.end / 6.0))
 
     @property
     def ring(self):
         """Radius up to which the floor is level, a little more than the track covers; the dome is within."""
-        lowest = self.way.rises(self.width) - DIP * self.way.radius if self.stairs else 0.0
+        lowest = self.path.rises(self.width) - DIP * self.path.radius if self.stairs else 0.0
         return (
-            float(self.way.wall_radius(lowest)) - self.width * float(np.cos(self.way.bank)) - BOLT_CLEARANCE_M
+            float(self.path.wall_radius(lowest))
+            - self.width * float(np.cos(self.path.bank))
+            - BOLT_CLEARANCE_M
         )
 
     @property
@@ -360,7 +362,7 @@ class SolidOptions:
     joint: str = "dowels"  # of ``segments.JOINTS``: what holds its segments together
 
 
-def plan(size, track, made_of, tooled, asked, *, extents):
+def plan(size, track, made_of, tooled, options, *, extents):
     """Return the measures of a bowl as a solid.
 
     Parameters
@@ -370,7 +372,7 @@ def plan(size, track, made_of, tooled, asked, *, extents):
         Of that size.
     made_of : BowlMaterial
     tooled : Stretch or None
-    asked : Asked
+    options : Asked
     extents : (3,) float [m]
         Of the part along its axes.
 
@@ -385,19 +387,19 @@ def plan(size, track, made_of, tooled, asked, *, extents):
         through them would not reach the floor.
     """
     _check(size, track)
-    stepped = stairs(track, made_of, tooled, asked, extents)
-    way, first = _way(size, track, made_of, tooled, asked, stepped)
-    lowest = float(way.wall_radius(0.0))
-    check_bolts(track, asked, extents, lowest)
-    across = track.width * np.cos(way.least_bank)
+    stepped = stairs(track, made_of, tooled, options, extents)
+    path, first = _track_path(size, track, made_of, tooled, options, stepped)
+    lowest = float(path.wall_radius(0.0))
+    check_bolts(track, options, extents, lowest)
+    across = track.width * np.cos(path.least_bank)
     outer = track.radius + made_of.wall
     outlet = np.sqrt(outer**2 - (track.radius - across) ** 2) + OUTLET
     greatest = float(max(extents))
     tallest = greatest if tooled is None else tooled.tallest
-    gates = [one.area.bounds[3] for one in tooled.blades] if tooled else []
+    gates = [blade.area.bounds[3] for blade in tooled.blades] if tooled else []
     hangs = tooled is not None and any(cut.hangs for cut in tooled.cuts)
     return BowlPlan(
-        way=way,
+        path=path,
         width=track.width,
         material=made_of,
         stretch=tooled,
@@ -405,16 +407,16 @@ def plan(size, track, made_of, tooled, asked, *, extents):
         outlet=float(outlet),
         hanging=greatest + RAIL_CLEARANCE_M if hangs else 0.0,
         headroom=tallest,
-        top=way.highest + max([tallest + WALL_ABOVE_PART_M, *gates]),
-        hub=bolt_hub(track, asked, lowest),
-        bolts=asked.bolts,
-        bolt=asked.bolt,
-        bolt_circle=bolt_circle(track, asked, lowest),
-        drains=asked.drains,
-        drain=asked.drain,
-        turned=asked.outlet_angle,
-        left=asked.left,
-        chord=asked.chord,
+        top=path.highest + max([tallest + WALL_ABOVE_PART_M, *gates]),
+        hub=bolt_hub(track, options, lowest),
+        bolts=options.bolts,
+        bolt=options.bolt,
+        bolt_circle=bolt_circle(track, options, lowest),
+        drains=options.drains,
+        drain=options.drain,
+        turned=options.outlet_angle,
+        left=options.left,
+        chord=options.chord,
         stairs=stepped,
     )
 
@@ -431,7 +433,7 @@ def _check(size, track):
         raise FeederError("track.climb", what, "give a climb, as 3.5 deg, or leave it out")
 
 
-def _way(size, track, made_of, tooled, asked, stepped):
+def _track_path(size, track, made_of, tooled, options, stepped):
     """The way of the track, and where on it the tooled stretch begins."""
     needed = 0.0 if tooled is None else tooled.length + OUTLET_LEAD_M
     drops = () if tooled is None else tooled.drops
@@ -441,24 +443,24 @@ def _way(size, track, made_of, tooled, asked, stepped):
     falls = None if tooled is None or stepped is not None else tooled.falls
     most = np.inf if falls is None else free + needed - falls
     end = min(size.depth / rise, most, np.inf if stepped is None else stepped.most)
-    if asked.outlet_height > 0.0:
-        end = needed + (asked.outlet_height - gained) / rise
-        _check_height(asked.outlet_height, end, most, rise * (most - needed) + gained)
+    if options.outlet_height > 0.0:
+        end = needed + (options.outlet_height - gained) / rise
+        _check_height(options.outlet_height, end, most, rise * (most - needed) + gained)
         _check_floor(end, stepped, rise)
     over = SEEN * made_of.plate + track.width * np.tan(DOME) + CLEARED
     first, quarter = end - needed, track.radius * _quarter(stepped) + over / rise
     if first < 0.0:
-        raise _too_short(asked.outlet_height, end, needed, gained + rise * max(quarter - needed, 0.0))
-    _check_long(asked.outlet_height, end, quarter, gained - rise * needed, rise)
-    way = Way(
+        raise _too_short(options.outlet_height, end, needed, gained + rise * max(quarter - needed, 0.0))
+    _check_long(options.outlet_height, end, quarter, gained - rise * needed, rise)
+    path = TrackPath(
         radius=track.radius, climb=track.climb, bank=track.bank, end=float(end),
         drops=tuple((first + at, drop) for at, drop in drops),
         bends=() if tooled is None else tuple((first + at, climb) for at, climb in tooled.bends),
         flare=0.0 if stepped is None else stepped.flare,
         leans=() if tooled is None else tuple((first + a, first + b, bank) for a, b, bank in tooled.leans),
     )  # fmt: skip
-    _check_bends(way, stepped, round_once, 0.0 if tooled is None else tooled.tallest)
-    return way, float(first)
+    _check_bends(path, stepped, round_once, 0.0 if tooled is None else tooled.tallest)
+    return path, float(first)
 
 
 def _quarter(stepped):
@@ -481,28 +483,28 @@ def _gained(track, tooled, needed):
     """Height [m] by which the track's end lies over the begin of the tooled stretch."""
     if tooled is None:
         return 0.0
-    stretch = Way(track.radius, track.climb, track.bank, needed, tooled.drops, tooled.bends)
+    stretch = TrackPath(track.radius, track.climb, track.bank, needed, tooled.drops, tooled.bends)
     return float(stretch.height(needed))
 
 
-def _check_bends(way, stepped, round_once, tallest):
-    if way.bends and way.lowest < MIN_TRACK_HEIGHT_M:
-        what = f"a device leads the track down to {1e3 * way.lowest:.3g} mm over the floor"
-        least = 1e3 * (float(way.height(way.end)) + MIN_TRACK_HEIGHT_M - way.lowest)
+def _check_bends(path, stepped, round_once, tallest):
+    if path.bends and path.lowest < MIN_TRACK_HEIGHT_M:
+        what = f"a device leads the track down to {1e3 * path.lowest:.3g} mm over the floor"
+        least = 1e3 * (float(path.height(path.end)) + MIN_TRACK_HEIGHT_M - path.lowest)
         raise TrackTooLow("devices", what, f"give a sizing.outlet_height of at least {least:.4g} mm")
-    if way.bends and stepped is not None:
-        _check_beside(way, stepped)
+    if path.bends and stepped is not None:
+        _check_beside(path, stepped)
         return
-    free = way.lowest - float(way.risen(way.end - round_once))
-    if way.bends and way.end > round_once and free < tallest + WALL_ABOVE_PART_M:
+    free = path.lowest - float(path.risen(path.end - round_once))
+    if path.bends and path.end > round_once and free < tallest + WALL_ABOVE_PART_M:
         what = f"a device leads the track down to {1e3 * free:.3g} mm over the turn below"
         raise TrackTooLow("devices", what, "give a lower sizing.outlet_height")
 
 
-def _check_beside(way, stepped):
+def _check_beside(path, stepped):
     """Raise the fault of a track that goes down too near to the turn before, beside which it lies."""
-    last = np.array([*(at for at, _ in way.bends), way.end])
-    free = float((way.risen(last) - way.risen(way.at(way.angle(last) - FULL_TURN))).min())
+    last = np.array([*(at for at, _ in path.bends), path.end])
+    free = float((path.risen(last) - path.risen(path.at(path.angle(last) - FULL_TURN))).min())
     if free < stepped.needed:
         what = f"a device leads the track down to {1e3 * free:.4g} mm over the turn before"
         mend = (

@@ -14,13 +14,13 @@ RIDER_CONTACT_M = 5e-6  # [m]
 BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs, and does not touch the wall
 
 
-def laid(plan, one, vertices, s):
+def place_rider(plan, orientation, vertices, s):
     """Return a part on the track of a bowl, its side at the wall; one that hangs as it hangs.
 
     Parameters
     ----------
     plan : BowlPlan
-    one : Orientation
+    orientation : Orientation
         The part's, on the track of that bowl.
     vertices : (V, 3) float [m]
         Of the part, in its file's axes, about its centre of mass.
@@ -32,21 +32,21 @@ def laid(plan, one, vertices, s):
     (V, 3) float [m]
         In the bowl's axes as its files have them.
     """
-    points, y = product(vertices, one.axes.T), one.distance
-    points[:, 2] += one.posture.height
+    points, y = product(vertices, orientation.axes.T), orientation.distance
+    points[:, 2] += orientation.posture.height
     hangs = points[:, 2].min() < -BELOW
     for _ in range(0 if hangs else MAX_SETTLING_STEPS):
         beyond, over = clearances(plan, _set(plan, points, s, y), s)
         if max(abs(beyond), abs(over)) < RIDER_CONTACT_M:
             break
-        y += beyond / float(np.cos(plan.way.bank_at(s)))
+        y += beyond / float(np.cos(plan.path.bank_at(s)))
         points[:, 2] -= over
     return as_filed(plan, _set(plan, points, s, y))
 
 
 def _set(plan, points, s, y):
     """Points (V, 3) in the track's axes, set down at a place."""
-    return plan.way.places(s, y) + product(points, np.stack(frame(plan, s, y)))
+    return plan.path.places(s, y) + product(points, np.stack(frame(plan, s, y)))
 
 
 def clearances(plan, points, near):
@@ -63,35 +63,37 @@ def clearances(plan, points, near):
     near : float [m]
         Length along the wall about which they lie.
     """
-    way, (x, y, z) = plan.way, points.T
+    path, (x, y, z) = plan.path, points.T
     theta = np.arctan2(y, x)
-    theta = theta + FULL_TURN * np.round((float(way.angle(near)) - theta) / FULL_TURN)
+    theta = theta + FULL_TURN * np.round((float(path.angle(near)) - theta) / FULL_TURN)
     straight = theta > 0.0
-    s = np.where(straight, way.end + y, way.at(theta))
-    out = np.where(straight, x, np.hypot(x, y)) - way.wall_radius(s)
-    beyond = out - np.maximum(z - way.height(s), 0.0) * leaning(plan, s)
-    inward = -out / np.cos(way.bank_at(s))
-    over = np.where(inward < plan.width, z - way.height(s, np.maximum(inward, 0.0)), np.inf)
+    s = np.where(straight, path.end + y, path.at(theta))
+    out = np.where(straight, x, np.hypot(x, y)) - path.wall_radius(s)
+    beyond = out - np.maximum(z - path.height(s), 0.0) * leaning(plan, s)
+    inward = -out / np.cos(path.bank_at(s))
+    over = np.where(inward < plan.width, z - path.height(s, np.maximum(inward, 0.0)), np.inf)
     return float(beyond.max()), float(over.min()) if np.isfinite(over).any() else 0.0
 
 
 def leaning(plan, s):
     """Return how far the wall leans outwards over its height [1], at lengths along it."""
     if plan.stairs is not None and plan.stairs.shape == CONICAL:
-        return np.where(plan.way.angle(s) < -FULL_TURN, 1.0 / np.tan(plan.stairs.slope), 0.0)  # upright above
-    found = np.zeros(np.shape(s))
+        return np.where(
+            plan.path.angle(s) < -FULL_TURN, 1.0 / np.tan(plan.stairs.slope), 0.0
+        )  # upright above
+    leaning = np.zeros(np.shape(s))
     for groove in track.groove_spans(plan):
         start, end, _, opens = groove
         there = (s >= start) & (s <= end + opens)
-        found = np.where(there, np.tan(track.lean_at(groove, s)), found)
-    return found
+        leaning = np.where(there, np.tan(track.lean_at(groove, s)), leaning)
+    return leaning
 
 
 def frame(plan, s, y):
     """Return the track's axes at a place, outlet at the angle 0: ahead, inwards and off its surface."""
-    way, d = plan.way, 1e-5
-    ahead = way.places(s + d, y) - way.places(s - d, y)
-    inward = way.places(s, y + d) - way.places(s, y - d)
+    path, d = plan.path, 1e-5
+    ahead = path.places(s + d, y) - path.places(s - d, y)
+    inward = path.places(s, y + d) - path.places(s, y - d)
     up = np.cross(ahead, inward)
     ahead, up = ahead / np.sqrt((ahead**2).sum()), up / np.sqrt((up**2).sum())
     return ahead, np.cross(up, ahead), up
@@ -105,13 +107,13 @@ def as_filed(plan, points):
     return np.column_stack([c * x - s * y, s * x + c * y, z])
 
 
-def riders(plan, one, hung):
+def riders(plan, orientation, hung):
     """Return parts along the track of a bowl, one behind the other.
 
     Parameters
     ----------
     plan : BowlPlan
-    one : Orientation
+    orientation : Orientation
         In which they come along.
     hung : Orientation or None
         In which they hang from the last rails on; None where there are none.
@@ -121,10 +123,10 @@ def riders(plan, one, hung):
     list of (Orientation, float [m])
         With the length along the wall of each centre of mass.
     """
-    step = SPACED * one.length
-    last = plan.first if plan.stretch is not None else plan.way.end - one.length
-    found = [(one, s) for s in np.arange(FIRST_RIDER_POSITION * plan.way.end, last, step)]
-    behind = one if hung is None else hung
+    step = SPACED * orientation.length
+    last = plan.first if plan.stretch is not None else plan.path.end - orientation.length
+    riders = [(orientation, s) for s in np.arange(FIRST_RIDER_POSITION * plan.path.end, last, step)]
+    behind = orientation if hung is None else hung
     start = last if plan.stretch is None else plan.first + plan.stretch.length
-    end = plan.way.end + plan.outlet - 0.5 * behind.length
-    return found + [(behind, s) for s in np.arange(start, end, SPACED * behind.length)]
+    end = plan.path.end + plan.outlet - 0.5 * behind.length
+    return riders + [(behind, s) for s in np.arange(start, end, SPACED * behind.length)]

@@ -62,7 +62,7 @@ def _regular(corners, across):
     return shapely.Polygon(size * np.column_stack([np.cos(turns), np.sin(turns)]))
 
 
-def place_lugs(body, planes, kept, extents):
+def place_lugs(body, planes, tooled_area, extents):
     """Return the lugs along the seams of a bowl, none near its devices or its outlet.
 
     Parameters
@@ -71,7 +71,7 @@ def place_lugs(body, planes, kept, extents):
         The bowl, turned as its seams are.
     planes : list of (int, float [m])
         Axis and place of each seam.
-    kept : shapely geometry [m]
+    tooled_area : shapely geometry [m]
         Seen from above: devices and outlet, in those axes.
     extents : (3, 2) float [m]
         Of the bowl in those axes.
@@ -84,17 +84,17 @@ def place_lugs(body, planes, kept, extents):
     ends : int
         Of seams: two of an upright one; a level one goes round and counts once.
     """
-    found: list[Lug] = []
-    with_one, every = set(), set()
+    lugs: list[Lug] = []
+    with_one, seam_points = set(), set()
     for axis, at in planes:
         for frame in _upright(at, axis, extents) if axis < 2 else _level(at, extents):
             end = axis, at, *(frame[2] if axis < 2 else ())
-            every.add(end)
-            made = _lug(body, frame, axis == 2, extents[2, 0])
-            if made is not None and _is_lug_clear(made, kept, found, planes) and _outside(made, body):
-                found.append(made)
+            seam_points.add(end)
+            lug = _lug(body, frame, axis == 2, extents[2, 0])
+            if lug is not None and _is_lug_clear(lug, tooled_area, lugs, planes) and _outside(lug, body):
+                lugs.append(lug)
                 with_one.add(end)
-    return found, len(every - with_one), len(every)
+    return lugs, len(seam_points - with_one), len(seam_points)
 
 
 def lug_remarks(bare, ends):
@@ -151,23 +151,23 @@ def _lug(body, frame, level, low):
 
 def _wall(body, place, out):
     """How far out [m] the outer face of the wall lies from a place; not a number without one."""
-    found = facets.first_met(body, place + BEYOND_LUGS_M * out, place)
-    return BEYOND_LUGS_M - found[0] if found else np.nan
+    first_met = facets.first_met(body, place + BEYOND_LUGS_M * out, place)
+    return BEYOND_LUGS_M - first_met[0] if first_met else np.nan
 
 
-def _is_lug_clear(made, kept, others, planes):
+def _is_lug_clear(lug, tooled_area, lugs, planes):
     """Whether a lug lies apart from devices, from other lugs and from other seams."""
-    if kept.distance(shapely.Point(made.middle[:2])) < LUG_CLEARANCE_M:
+    if tooled_area.distance(shapely.Point(lug.middle[:2])) < LUG_CLEARANCE_M:
         return False
-    if any(np.sum((made.middle - one.middle) ** 2) < (2.0 * SCREW_LENGTH_M) ** 2 for one in others):
+    if any(np.sum((lug.middle - lug.middle) ** 2) < (2.0 * SCREW_LENGTH_M) ** 2 for lug in lugs):
         return False
-    own = int(np.argmax(np.abs(made.along)))
-    return all(axis == own or abs(made.middle[axis] - at) > SCREW_LENGTH_M for axis, at in planes)
+    own = int(np.argmax(np.abs(lug.along)))
+    return all(axis == own or abs(lug.middle[axis] - at) > SCREW_LENGTH_M for axis, at in planes)
 
 
-def _outside(made, body):
+def _outside(lug, body):
     """Whether a lug does not come out of the wall on its inner side."""
-    return len(facets.parts_of(facets.without(made.body, [body]), POKE)) == 1
+    return len(facets.parts_of(facets.without(lug.body, [body]), POKE)) == 1
 
 
 MAX_SEGMENTS = 6  # segments in one direction
@@ -233,23 +233,27 @@ def bed(text):
     unit = sides[-1].lstrip(" 0123456789.+-")
     try:
         if len(sides) != 3:
-            raise units.QuantityError(f"{units.shown(text)} is not three lengths", "write 220x220x250mm")
+            raise units.QuantityError(
+                f"{units.quantity_text(text)} is not three lengths", "write 220x220x250mm"
+            )
         for side in sides:
             has_unit = side.strip().lstrip("0123456789.+-")
             size.append(units.quantity(side if has_unit else f"{side}{unit}", "length"))
     except units.QuantityError as fault:
         raise ArgumentError("bed", fault.what, fault.mend) from None
     if min(size) <= 0.0:
-        raise ArgumentError("bed", f"{units.shown(text)} has a side of 0 or less", "write 220x220x250mm")
+        raise ArgumentError(
+            "bed", f"{units.quantity_text(text)} has a side of 0 or less", "write 220x220x250mm"
+        )
     return tuple(size)
 
 
-def segments(made, size, joint=DOWELS):
+def segments(solid, size, joint=DOWELS):
     """Return a bowl in pieces that fit a bed, whole where it fits as it is.
 
     Parameters
     ----------
-    made : BowlSolid
+    solid : BowlSolid
     size : (float, float, float) [m]
         Of the bed, and of the height that is printed.
     joint : str
@@ -264,50 +268,50 @@ def segments(made, size, joint=DOWELS):
     FeederError
         If it takes more than six segments in one direction, or no lug for a screw has room.
     """
-    counts, turn, extents = _seams(made, size, joint == SCREWS)
-    body = facets.placed(made).rotate((0.0, 0.0, -float(np.degrees(turn))))
+    counts, turn, extents = _seams(solid, size, joint == SCREWS)
+    body = facets.placed(solid).rotate((0.0, 0.0, -float(np.degrees(turn))))
     planes = [
         (axis, low + (high - low) * k / count)
         for axis, (count, (low, high)) in enumerate(zip(counts, extents))
         for k in range(1, count)
     ]
-    dowel = SHARE * min(made.plan.material.wall, made.plan.material.floor)
-    holes = [one for plane in planes for one in _dowels(made, body, turn, plane, dowel)]
-    joints, bare, of = _lugs(made, body, turn, planes) if joint == SCREWS else ([], 0, 0)
+    dowel = SHARE * min(solid.plan.material.wall, solid.plan.material.floor)
+    holes = [item for plane in planes for item in _dowels(solid, body, turn, plane, dowel)]
+    joints, bare, of = _lugs(solid, body, turn, planes) if joint == SCREWS else ([], 0, 0)
     body, joined = _joined(body, joints, turn)
     body = facets.without(
         body, [facets.rod(axis, middle, dowel, DOWEL_HOLE_DEPTH_M) for axis, middle in holes]
     )
     cells = facets.cut_by(body, planes)
-    found = sorted(
-        (piece for cell in cells for piece in facets.parts_of(cell)), key=lambda one: one.bounding_box()
+    segments = sorted(
+        (piece for cell in cells for piece in facets.parts_of(cell)), key=lambda item: item.bounding_box()
     )
-    pieces = tuple(_piece(f"segment_{k}", one) for k, one in enumerate(found, start=1))
+    pieces = tuple(_piece(f"segment_{k}", segment) for k, segment in enumerate(segments, start=1))
     places = np.array([middle for _, middle in holes]).reshape(-1, 3)
-    screwed = np.array([(one.middle, one.along, one.out) for one in joints]).reshape(-1, 3, 3)
+    screwed = np.array([(joint.middle, joint.along, joint.out) for joint in joints]).reshape(-1, 3, 3)
     return Segments(
         pieces, places, dowel, 2.0 * DOWEL_HOLE_DEPTH_M, turn, _turned(screwed, turn), joined, (bare, of)
     )
 
 
-def _lugs(made, body, turn, planes):
+def _lugs(solid, body, turn, planes):
     """The lugs for the screws of all seams, and how many ends of seams have none, of how many."""
-    plan = made.plan
-    s = np.linspace(_tooled(plan)[0], plan.way.end + plan.outlet, 120)
-    edges = [_filed(plan, plan.way.plan(s, y)) for y in (-plan.material.wall, plan.width)]
-    kept = shapely.MultiLineString([_turned(one, -turn) for one in edges])
-    found = place_lugs(body, planes, kept, _box(made.vertices, turn))
-    if planes and not found[0]:
+    plan = solid.plan
+    s = np.linspace(_tooled(plan)[0], plan.path.end + plan.outlet, 120)
+    edges = [_filed(plan, plan.path.plan(s, y)) for y in (-plan.material.wall, plan.width)]
+    tooled_lines = shapely.MultiLineString([_turned(edge, -turn) for edge in edges])
+    placed_lugs = place_lugs(body, planes, tooled_lines, _box(solid.vertices, turn))
+    if planes and not placed_lugs[0]:
         raise FeederError("join", "no lug for a screw has room at the seams", "take dowels")
-    return found
+    return placed_lugs
 
 
 def _joined(body, joints, turn):
     """The bowl with its lugs, and its surface in the bowl's own axes."""
     if not joints:
         return body, None
-    whole = facets.united([body, *(one.body for one in joints)])
-    whole = facets.without(whole, [hole for one in joints for hole in one.holes])
+    whole = facets.united([body, *(joint.body for joint in joints)])
+    whole = facets.without(whole, [hole for joint in joints for hole in joint.holes])
     return whole, whole_surface.mesh(whole.rotate((0.0, 0.0, float(np.degrees(turn)))))
 
 
@@ -325,22 +329,22 @@ def _piece(name, body):
     return Segment(name, vertices, faces, (x, y, z), body.volume() * MM**3)
 
 
-def _seams(made, size, screwed):
+def _seams(solid, size, screwed):
     """Segments along each axis, the turn of the seams, and the box (3, 2) [m] of the bowl turned back by it.
 
     The box has room for the lugs of screws.
     Of the turns with fewest segments the one whose seams keep farthest from the devices.
     """
-    found = []
+    seams = []
     for turn in 0.5 * np.pi * np.arange(SEAM_POSITIONS) / SEAM_POSITIONS:
-        extents = _box(made.vertices, turn)
+        extents = _box(solid.vertices, turn)
         counts = _counts(extents, size)
         if screwed and max(counts) > 1:
             extents = extents + STANDS * np.array([[-1.0, 1.0], [-1.0, 1.0], [0.0, 0.0]])
             counts = _counts(extents, size)
-        rank = np.prod(counts), -round(_seam_clearance(made, turn, counts, extents), 9), float(turn)
-        found.append((rank, counts, float(turn), extents))
-    _, counts, turn, extents = min(found, key=lambda one: one[0])
+        rank = np.prod(counts), -round(_seam_clearance(solid, turn, counts, extents), 9), float(turn)
+        seams.append((rank, counts, float(turn), extents))
+    _, counts, turn, extents = min(seams, key=lambda item: item[0])
     if max(counts) > MAX_SEGMENTS:
         least = " x ".join(f"{1e3 * (high - low) / MAX_SEGMENTS:.4g}" for low, high in extents)
         sentence = " x ".join(f"{1e3 * side:.4g}" for side in size)
@@ -351,7 +355,7 @@ def _seams(made, size, screwed):
 
 def _counts(extents, size):
     room = extents[:, 1] - extents[:, 0]
-    return tuple(int(np.ceil(one / side - 1e-9)) for one, side in zip(room, size))
+    return tuple(int(np.ceil(item / side - 1e-9)) for item, side in zip(room, size))
 
 
 def _box(vertices, turn):
@@ -359,37 +363,37 @@ def _box(vertices, turn):
     return np.column_stack([points.min(axis=0), points.max(axis=0)])
 
 
-def _seam_clearance(made, turn, counts, extents):
+def _seam_clearance(solid, turn, counts, extents):
     """Least distance [m] from an upright seam to the tooled stretch."""
-    corners = _box_points(made, turn)
-    found = [1.0]
+    corners = _box_points(solid, turn)
+    seam_clearance = [1.0]
     for axis in (0, 1):
         low, high = extents[axis]
         for k in range(1, counts[axis]):
             offset = corners[:, axis] - (low + (high - low) * k / counts[axis])
             crossed = offset.min() < 0.0 < offset.max()
-            found.append(0.0 if crossed else float(np.abs(offset).min()))
-    return min(found)
+            seam_clearance.append(0.0 if crossed else float(np.abs(offset).min()))
+    return min(seam_clearance)
 
 
-def _box_points(made, turn):
+def _box_points(solid, turn):
     """Places (N, 2) [m] along the devices, in the axes of the seams."""
-    plan = made.plan
+    plan = solid.plan
     first, last = _tooled(plan)
     s, y = np.meshgrid(np.linspace(first, last, 30), [0.0, plan.width])
-    return _turned(_filed(plan, plan.way.plan(s.ravel(), y.ravel())), -turn)
+    return _turned(_filed(plan, plan.path.plan(s.ravel(), y.ravel())), -turn)
 
 
 def _tooled(plan):
     """From and to [m] along the wall where no dowel and, if it can be, no seam shall be."""
-    return (plan.first, plan.way.end) if plan.stretch is not None else (plan.way.end - 1e-3, plan.way.end)
+    return (plan.first, plan.path.end) if plan.stretch is not None else (plan.path.end - 1e-3, plan.path.end)
 
 
 def _filed(plan, flat):
     return _turned(flat * [1.0, -1.0] if plan.left else flat, plan.turned)
 
 
-def _dowels(made, body, turn, plane, size):
+def _dowels(solid, body, turn, plane, size):
     """Places (axis, middle (3,) [m]) of dowels across a seam: in solid, apart, and none below a cut."""
     axis, at = plane
     areas = [
@@ -406,58 +410,58 @@ def _dowels(made, body, turn, plane, size):
     )
     places = np.column_stack([u.ravel(), v.ravel()])
     places = places[shapely.contains_xy(area, *places.T)]
-    ring = shapely.MultiPoint(_box_points(made, turn)).convex_hull.buffer(2.0 * size)
-    kept: list[tuple[int, np.ndarray]] = []
+    ring = shapely.MultiPoint(_box_points(solid, turn)).convex_hull.buffer(2.0 * size)
+    dowels: list[tuple[int, np.ndarray]] = []
     for place in places:
         middle = np.insert(place, axis, at)
         if shapely.contains_xy(ring, *middle[:2]):
             continue
-        if all(np.sum((middle - other) ** 2) > DOWEL_SPACING_M**2 for _, other in kept):
-            kept.append((axis, middle))
-    return kept
+        if all(np.sum((middle - other) ** 2) > DOWEL_SPACING_M**2 for _, other in dowels):
+            dowels.append((axis, middle))
+    return dowels
 
 
-def overhangs(made):
+def overhangs(solid):
     """Return what hangs over by more than 45 deg, printed as the bowl stands.
 
     Parameters
     ----------
-    made : BowlSolid
+    solid : BowlSolid
 
     Returns
     -------
     dict of str to float [m2]
         Area by what it belongs to; nothing of less than a square centimetre.
     """
-    plan, corners = made.plan, made.vertices[made.faces]
+    plan, corners = solid.plan, solid.vertices[solid.faces]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = 0.5 * np.sqrt((across**2).sum(axis=1))
     down = -across[:, 2] > (np.sqrt(0.5) + 1e-6) * 2.0 * area
-    high = corners[..., 2].max(axis=1) > made.vertices[:, 2].min() + 1e-4
+    high = corners[..., 2].max(axis=1) > solid.vertices[:, 2].min() + 1e-4
     where = _where(plan, facets.as_planned(plan, corners.mean(axis=1)))
-    found = {name: float(area[down & high & (where == name)].sum()) for name in OVERHANG_PLACES}
-    return {name: one for name, one in found.items() if one > 1e-4}
+    overhangs = {name: float(area[down & high & (where == name)].sum()) for name in OVERHANG_PLACES}
+    return {name: overhang for name, overhang in overhangs.items() if overhang > 1e-4}
 
 
 def _by_the_outlet(plan, places):
     """Whether places (N, 3) [m] belong to what is straight beyond the end of the track: (N,) bool."""
-    (x, y, z), far = places.T, plan.way.radius - plan.across - plan.material.wall
+    (x, y, z), far = places.T, plan.path.radius - plan.across - plan.material.wall
     high = z > plan.outlet_height - 2.0 * plan.material.plate - fillet(plan) - plan.hanging
     return (y > -SURFACE_DISTANCE_M) & (x > far - SURFACE_DISTANCE_M) & high
 
 
 def _where(plan, places):
     """What of a bowl places (N, 3) [m] belong to, outlet at the angle 0: words (N,)."""
-    way, (x, y, z) = plan.way, places.T
+    path, (x, y, z) = plan.path, places.T
     r, theta = np.hypot(x, y), np.arctan2(y, x)
     behind = theta - FULL_TURN * (theta > 0.0) - FULL_TURN * np.arange(int(plan.turns) + 2)[:, None]
-    s = way.at(behind)  # of each turn of the track that is there
-    inwards = (way.wall_radius(s) - r) / np.cos(way.bank_at(s))
-    above = z - way.height(s, inwards)
+    s = path.at(behind)  # of each turn of the track that is there
+    inwards = (path.wall_radius(s) - r) / np.cos(path.bank_at(s))
+    above = z - path.height(s, inwards)
     deep = -(plan.material.plate + plan.across + plan.hanging)
-    beside = (inwards > -SURFACE_DISTANCE_M) & (inwards < plan.width + SURFACE_DISTANCE_M)
-    on_track = (beside & (above > deep) & (above < SURFACE_DISTANCE_M)).any(axis=0)
-    lowest = float(way.wall_radius(way.rises(plan.width)))
+    aside = (inwards > -SURFACE_DISTANCE_M) & (inwards < plan.width + SURFACE_DISTANCE_M)
+    on_track = (aside & (above > deep) & (above < SURFACE_DISTANCE_M)).any(axis=0)
+    lowest = float(path.wall_radius(path.rises(plan.width)))
     kinds = [
         _by_the_outlet(plan, places),
         on_track,

@@ -41,23 +41,23 @@ class Stairs:
         """Least rise of a turn [m]: upright wall over the turn before, slope, upright wall below."""
         return self.upright + self.step * float(np.tan(self.slope)) + self.below
 
-    def sections(self, way, theta, low):
+    def sections(self, path, theta, low):
         """Return the corners (M, K, 2) [m] of the wall's inner side: radius and height, from below upwards.
 
         Parameters
         ----------
-        way : Way
+        path : Way
         theta : (M,) float [rad]
             From a turn before the outlet to the outlet.
         low : float [m]
             Height below which no wall is needed.
         """
-        last = way.at(-STAIRS_TURN * np.arange(1, 100))
-        turns = int(np.argmax(way.risen(last) < low)) + 1
+        last = path.at(-STAIRS_TURN * np.arange(1, 100))
+        turns = int(np.argmax(path.risen(last) < low)) + 1
         rows: list[np.ndarray] = []
         for k in range(turns, -1, -1):
-            s = way.at(np.asarray(theta) - STAIRS_TURN * k)
-            lower = np.column_stack([way.wall_radius(s), way.risen(s)])
+            s = path.at(np.asarray(theta) - STAIRS_TURN * k)
+            lower = np.column_stack([path.wall_radius(s), path.risen(s)])
             rows.append(lower)
         corners = []
         for foot, above in itertools.pairwise(rows):
@@ -70,7 +70,7 @@ class Stairs:
         return np.stack([*corners, rows[-1]], axis=1)
 
 
-def stairs(track, made_of, tooled, asked, extents):
+def stairs(track, made_of, tooled, options, extents):
     """Return the steps of a wall; None of a cylinder.
 
     Parameters
@@ -78,7 +78,7 @@ def stairs(track, made_of, tooled, asked, extents):
     track : Track
     made_of : Material
     tooled : Stretch or None
-    asked : Asked
+    options : Asked
     extents : (3,) float [m]
         Of the part along its axes.
 
@@ -91,9 +91,9 @@ def stairs(track, made_of, tooled, asked, extents):
     FeederError
         If the track does not rise enough for them, or devices are to stand on a wall that leans.
     """
-    if asked.shape == CYLINDER:
+    if options.shape == CYLINDER:
         return None
-    if asked.shape == CONICAL and tooled is not None:
+    if options.shape == CONICAL and tooled is not None:
         what = "conical leans outwards, and devices are computed by an upright wall"
         raise FeederError("sizing.shape", what, "take stepped")
     least = min([track.bank, *(bank for _, _, bank in tooled.leans)]) if tooled else track.bank
@@ -102,17 +102,17 @@ def stairs(track, made_of, tooled, asked, extents):
     tallest = float(max(extents)) if tooled is None else tooled.tallest
     hangs = tooled is not None and any(cut.hangs for cut in tooled.cuts)
     slope = max(
-        SLOPE if made_of.supported else UNSUPPORTED_SLOPE_RAD, float(np.arctan(asked.friction)) + SURE
+        SLOPE if made_of.supported else UNSUPPORTED_SLOPE_RAD, float(np.arctan(options.friction)) + SURE
     )
     pitch = np.tan(track.climb) * step / flare
     below = 3.0 * made_of.plate + (float(max(extents)) + MIN_WALL_ABOVE_PART_M if hangs else 0.0)
-    if asked.shape == CONICAL:
+    if options.shape == CONICAL:
         slope, below, upright = float(np.arctan2(pitch, step)), 0.0, 0.0
     else:
         upright = tallest + MIN_WALL_ABOVE_PART_M
         _check(pitch, upright + step * np.tan(slope) + below, step / flare)
     return Stairs(
-        asked.shape,
+        options.shape,
         float(step),
         float(flare),
         slope,
@@ -145,20 +145,20 @@ def shell(plan, kit):
     quarters = -STAIRS_TURN, -0.75 * STAIRS_TURN, -0.5 * STAIRS_TURN, -0.25 * STAIRS_TURN, 0.0
     legs = [_leg(plan, kit, start, end) for start, end in itertools.pairwise(quarters)]
     halves = [kit.swept(legs[:2]), kit.swept(legs[2:])]
-    return [kit.above(one, plan.underside + WALL_LIFT_M) for one in (kit.united(halves), _end(plan, kit))]
+    return [kit.above(item, plan.underside + WALL_LIFT_M) for item in (kit.united(halves), _end(plan, kit))]
 
 
 def _leg(plan, kit, start, end):
     """Sections and frames of a quarter of the wall."""
     theta = np.linspace(start, end, (QUARTER_TURN_POINTS if kit.HAS_EXACT_CURVES else plan.segments // 4) + 1)
-    inner = plan.stairs.sections(plan.way, theta, plan.underside - 2e-3)
+    inner = plan.stairs.sections(plan.path, theta, plan.underside - 2e-3)
     inner = np.concatenate([inner, inner[:, -1:]], axis=1)
     inner[:, -1, 1] = plan.top
     outer = inner + [plan.material.wall, 0.0]
     outer[:, 1:-2, 1] -= plan.material.wall
     outer[:, 0::3, 1] = np.where(np.arange(outer.shape[1])[0::3] > 0, outer[:, 0::3, 1], inner[:, 0::3, 1])
-    kept = _corners(plan.stairs, inner.shape[1])
-    sections = np.concatenate([outer[:, kept], inner[:, kept[::-1]]], axis=1)
+    corners = _corners(plan.stairs, inner.shape[1])
+    sections = np.concatenate([outer[:, corners], inner[:, corners[::-1]]], axis=1)
     sine = np.where(theta == -STAIRS_TURN, 0.0, np.sin(theta))  # the two ends meet there
     towards = np.stack([np.cos(theta), sine], axis=-1)
     return sections, np.stack([np.zeros_like(towards), towards], axis=1)
@@ -174,7 +174,7 @@ def _corners(steps, count):
 
 def _end(plan, kit):
     """The plate that closes the wall where its last turn ends, below the outlet."""
-    inner = plan.stairs.sections(plan.way, np.zeros(1), plan.underside - 2e-3)[0]
+    inner = plan.stairs.sections(plan.path, np.zeros(1), plan.underside - 2e-3)[0]
     low, rest = inner[-4], inner[-4:]
     under = plan.outlet_height - 0.5 * plan.material.plate
     half = 0.5 * plan.material.wall
@@ -190,6 +190,6 @@ def _end(plan, kit):
 def floor_edge(plan, kit):
     """Return the edge (K, 2) [m] of the floor, within the wall, seen from above."""
     theta = np.linspace(-STAIRS_TURN, 0.0, (64 if kit.HAS_EXACT_CURVES else plan.segments) + 1)[:-1]
-    inner = plan.stairs.sections(plan.way, theta, plan.underside - 2e-3)
-    r = np.array([np.interp(0.0, one[:, 1], one[:, 0]) for one in inner]) + 0.3 * plan.material.wall
+    inner = plan.stairs.sections(plan.path, theta, plan.underside - 2e-3)
+    r = np.array([np.interp(0.0, item[:, 1], item[:, 0]) for item in inner]) + 0.3 * plan.material.wall
     return np.column_stack([r * np.cos(theta), r * np.sin(theta)])

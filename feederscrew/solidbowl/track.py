@@ -39,16 +39,20 @@ def slab(plan, kit):
     -------
     body of that kit [mm]
     """
-    runs, way = [], plan.way
-    borders = [way.rises(plan.width) - DIP * way.radius, *(at for at, _ in way.drops), way.end + plan.outlet]
+    runs, path = [], plan.path
+    borders = [
+        path.rises(plan.width) - DIP * path.radius,
+        *(at for at, _ in path.drops),
+        path.end + plan.outlet,
+    ]
     for start, end in itertools.pairwise(borders):
-        turned = way.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
-        changes = *(at for at, _ in way.bends), *(at for lean in way.leans for at in lean[:2])
-        breaks = sorted(at for at in {*changes, way.end, *turned} if start < at < end)
+        turned = path.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
+        changes = *(at for at, _ in path.bends), *(at for lean in path.leans for at in lean[:2])
+        breaks = sorted(at for at in {*changes, path.end, *turned} if start < at < end)
         legs = [start, *breaks, end]
         runs.append(kit.swept([_leg(plan, kit, leg, (start, end)) for leg in itertools.pairwise(legs)]))
     joined = runs[:1]
-    for (at, drop), run in zip(way.drops, runs[1:]):
+    for (at, drop), run in zip(path.drops, runs[1:]):
         joined += [_riser(plan, kit, at, drop), run]  # in this order: what is apart cannot be united exactly
     whole = kit.united(joined) if len(runs) > 1 else runs[0]
     return kit.above(whole, plan.underside + 0.5 * TRACK_PIECE_OVERLAP_M)
@@ -59,7 +63,7 @@ def _leg(plan, kit, leg, run):
     s = steps(plan, kit, *leg)
     inside = np.clip(s, run[0] + 1e-9, run[1] - 1e-9)
     strips = 1 if kit.HAS_EXACT_CURVES else _strips(plan)
-    return _sections(plan, s, plan.way.height(inside), strips), frames(plan, s)
+    return _sections(plan, s, plan.path.height(inside), strips), frames(plan, s)
 
 
 def steps(plan, kit, start, end):
@@ -71,49 +75,49 @@ def _smooth_steps(plan, start, end):
     """Lengths along the wall through which a curve is led; the two ends of what is straight."""
     count = (
         2
-        if start >= plan.way.end
-        else max(int((end - start) / plan.way.radius / TRACK_CURVE_STEP_RAD), 3) + 1
+        if start >= plan.path.end
+        else max(int((end - start) / plan.path.radius / TRACK_CURVE_STEP_RAD), 3) + 1
     )
     return np.linspace(start, end, count)
 
 
 def frames(plan, s):
     """Return place and outward direction (M, 2, 2) of the wall's foot at lengths s, seen from above."""
-    theta = plan.way.angle(s)
+    theta = plan.path.angle(s)
     outward = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
-    return np.stack([plan.way.plan(s, 0.0), outward], axis=1)
+    return np.stack([plan.path.plan(s, 0.0), outward], axis=1)
 
 
 def _steps(plan, start, end):
     """Lengths along the wall from facet to facet: those of the wall's own facets, and both ends."""
-    way, step = plan.way, plan.way.radius * 2.0 * np.pi / plan.segments
-    first = np.ceil(float(way.angle(start)) / (2.0 * np.pi / plan.segments))
-    inner = way.at(2.0 * np.pi / plan.segments * np.arange(first, 1.0))
+    path, step = plan.path, plan.path.radius * 2.0 * np.pi / plan.segments
+    first = np.ceil(float(path.angle(start)) / (2.0 * np.pi / plan.segments))
+    inner = path.at(2.0 * np.pi / plan.segments * np.arange(first, 1.0))
     inner = inner[(inner > start + 0.01 * step) & (inner < end - 0.01 * step)]
-    found = np.unique(np.concatenate([[start], inner, [way.end] if start < way.end < end else [], [end]]))
-    if not any(low < 0.5 * (start + end) < high for low, high, _ in way.leans):
-        return found
-    places = np.arange(TWISTED * (len(found) - 1) + 1) / TWISTED
-    return np.interp(places, np.arange(len(found)), found)
+    unique = np.unique(np.concatenate([[start], inner, [path.end] if start < path.end < end else [], [end]]))
+    if not any(low < 0.5 * (start + end) < high for low, high, _ in path.leans):
+        return unique
+    places = np.arange(TWISTED * (len(unique) - 1) + 1) / TWISTED
+    return np.interp(places, np.arange(len(unique)), unique)
 
 
 def _strips(plan):
     """Into how many strips the track is divided across, so that its twist stays within the chord."""
-    way, inner = plan.way, plan.way.radius - plan.across
-    steepest = max(abs(climb) for climb in (way.climb, *(climb for _, climb in way.bends)))
-    twist = way.radius * np.tan(steepest) * np.pi / plan.segments * plan.across / (way.radius + inner)
-    banks = [way.bank, *(bank for _, _, bank in way.leans)]
+    path, inner = plan.path, plan.path.radius - plan.across
+    steepest = max(abs(climb) for climb in (path.climb, *(climb for _, climb in path.bends)))
+    twist = path.radius * np.tan(steepest) * np.pi / plan.segments * plan.across / (path.radius + inner)
+    banks = [path.bank, *(bank for _, _, bank in path.leans)]
     fastest = max(
-        [0.0, *(abs(b - a) / (lean[1] - lean[0]) for a, b, lean in zip(banks, banks[1:], way.leans))]
+        [0.0, *(abs(b - a) / (lean[1] - lean[0]) for a, b, lean in zip(banks, banks[1:], path.leans))]
     )
-    step = FULL_TURN * way.radius / plan.segments / TWISTED
+    step = FULL_TURN * path.radius / plan.segments / TWISTED
     twist = max(twist, 0.25 * fastest * step * plan.across)
     return int(np.ceil(twist / (0.3 * plan.chord))) + 1
 
 
 def _sections(plan, s, heights, strips):
     """Sections (M, K, 2) of the plate with a fillet below it, by the wall."""
-    plate, bank = plan.material.plate, plan.way.bank_at(s)
+    plate, bank = plan.material.plate, plan.path.bank_at(s)
     r = fillet(plan)
     inward = np.arange(strips + 1) / strips * np.ones((len(s), 1)) * (plan.width * np.cos(bank))[:, None]
     edge = inward[:, -1:].copy()
@@ -138,9 +142,9 @@ def _within_wall(plan, sections, above):
     under = sections[0, above:]  # no device changes the bank of a conical bowl
     most = TRACK_PIECE_OVERLAP_M + under[:, 1] / np.tan(plan.stairs.slope)
     last = int(np.argmax(under[:, 0] > most))  # the first corner that is deep enough in the wall
-    kept = sections[:, : above + last + 1].copy()
-    kept[:, -1, 0] = most[last]
-    return kept
+    within_wall = sections[:, : above + last + 1].copy()
+    within_wall[:, -1, 0] = most[last]
+    return within_wall
 
 
 def _riser(plan, kit, at, drop):
@@ -155,8 +159,8 @@ def _riser(plan, kit, at, drop):
             [s[0], plan.width],
         ]
     )
-    low = float(plan.way.height(at))
-    return kit.over(plan.way, ring, low - plate, low + drop - 0.5 * plate, plan.chord)
+    low = float(plan.path.height(at))
+    return kit.over(plan.path, ring, low - plate, low + drop - 0.5 * plate, plan.chord)
 
 
 def ledges(plan, kit):
@@ -171,7 +175,7 @@ def ledges(plan, kit):
     -------
     list of bodies [mm]
     """
-    return [_ledge(plan, kit, one) for one in (() if plan.stretch is None else plan.stretch.ledges)]
+    return [_ledge(plan, kit, item) for item in (() if plan.stretch is None else plan.stretch.ledges)]
 
 
 def _ledge(plan, kit, ledge):
@@ -179,22 +183,22 @@ def _ledge(plan, kit, ledge):
     at, half = plan.first + ledge.start, 0.5 * plan.material.plate
     end = plan.first + ledge.end
     breaks = [at - half, at, end, end + ledge.ramp * (1.0 + 0.8 * half / ledge.drop)]
-    turned = plan.way.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
-    legs = sorted({*breaks, *(one for one in turned if breaks[0] < one < breaks[-1])})
+    turned = plan.path.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
+    legs = sorted({*breaks, *(item for item in turned if breaks[0] < item < breaks[-1])})
     return kit.swept([_ledge_leg(plan, kit, ledge, leg) for leg in itertools.pairwise(legs)])
 
 
 def _ledge_leg(plan, kit, ledge, leg):
     """Sections and frames of a piece of a ledge."""
-    way, half = plan.way, 0.5 * plan.material.plate
+    path, half = plan.path, 0.5 * plan.material.plate
     at, end = plan.first + ledge.start, plan.first + ledge.end
     s = steps(plan, kit, *leg)
-    low = way.height(s) - ledge.drop * (s < at)
+    low = path.height(s) - ledge.drop * (s < at)
     high = low + ledge.drop * (1.0 - np.maximum((s - end) / ledge.ramp, 0.0)) - PLATE_OVERLAP_M
     strips = 1 if kit.HAS_EXACT_CURVES else _strips(plan)
-    inward = ledge.width * np.cos(way.bank_at(s))[:, None] * np.arange(strips + 1) / strips
+    inward = ledge.width * np.cos(path.bank_at(s))[:, None] * np.arange(strips + 1) / strips
     inward[:, 0] = -TRACK_PIECE_OVERLAP_M
-    rise = inward * np.tan(way.bank_at(s))[:, None]
+    rise = inward * np.tan(path.bank_at(s))[:, None]
     top = np.stack([-inward, high[:, None] + rise], axis=-1)
     under = np.stack([-inward, low[:, None] - half + rise], axis=-1)[:, [-1, 0]]
     return np.concatenate([top, under], axis=1), frames(plan, s)
@@ -202,24 +206,24 @@ def _ledge_leg(plan, kit, ledge, leg):
 
 def sides(plan, kit):
     """Return the walls of the outlet: one carries on the bowl's wall, one keeps parts on the outlet."""
-    way, wall = plan.way, plan.material.wall
-    end = way.end + plan.outlet
+    path, wall = plan.path, plan.material.wall
+    end = path.end + plan.outlet
     height = plan.outlet_height
     low, top = height - plan.material.plate - fillet(plan), height + plan.headroom
-    lift = plan.width * np.sin(way.bank_at(way.end))
-    outer = np.array([[way.end + 2e-3, -wall], [end, -wall], [end, 0.0], [way.end + 2e-3, 0.0]])
+    lift = plan.width * np.sin(path.bank_at(path.end))
+    outer = np.array([[path.end + 2e-3, -wall], [end, -wall], [end, 0.0], [path.end + 2e-3, 0.0]])
     y = plan.width - PLATE_OVERLAP_M
-    inner = np.array([[way.end, y], [end, y], [end, y + wall], [way.end, y + wall]])
+    inner = np.array([[path.end, y], [end, y], [end, y + wall], [path.end, y + wall]])
     inside = kit.drum(
-        float(way.wall_radius(way.at(-2.0 * np.pi)) if plan.stairs else way.radius) + 0.4 * wall,
+        float(path.wall_radius(path.at(-2.0 * np.pi)) if plan.stairs else path.radius) + 0.4 * wall,
         low + lift - TRACK_PIECE_OVERLAP_M,
         top + lift + TRACK_PIECE_OVERLAP_M,
         plan.segments,
     )
-    open_there = plan.stretch is not None and any(np.isinf(one[1]) for one in plan.stretch.grooves)
-    made = [] if open_there else [kit.over(way, outer, low, max(top, height + plan.headroom), plan.chord)]
-    made.append(kit.without(kit.over(way, inner, low + lift, top + lift, plan.chord), [inside]))
-    return made
+    open_there = plan.stretch is not None and any(np.isinf(groove[1]) for groove in plan.stretch.grooves)
+    solid = [] if open_there else [kit.over(path, outer, low, max(top, height + plan.headroom), plan.chord)]
+    solid.append(kit.without(kit.over(path, inner, low + lift, top + lift, plan.chord), [inside]))
+    return solid
 
 
 def _rails(plan):
@@ -238,14 +242,14 @@ def slots(plan, kit):
     -------
     list of bodies [mm]
     """
-    made = []
+    solid = []
     for cut in _rails(plan):
         ring = cut.ring + [plan.first, 0.0]
-        ring[cut.ring[:, 0] >= cut.span[1] - 1e-9, 0] = plan.way.end + plan.outlet + 5e-3
-        heights = plan.way.height(ring[:, 0], ring[:, 1])
+        ring[cut.ring[:, 0] >= cut.span[1] - 1e-9, 0] = plan.path.end + plan.outlet + 5e-3
+        heights = plan.path.height(ring[:, 0], ring[:, 1])
         deep = heights.min() - plan.material.plate - plan.hanging
-        made.append(kit.over(plan.way, ring, deep, heights.max() + TRACK_PIECE_OVERLAP_M, 0.2 * plan.chord))
-    return made
+        solid.append(kit.over(plan.path, ring, deep, heights.max() + TRACK_PIECE_OVERLAP_M, 0.2 * plan.chord))
+    return solid
 
 
 def yokes(plan, kit):
@@ -260,17 +264,21 @@ def yokes(plan, kit):
     -------
     list of bodies [mm]
     """
+    return [_yoke(plan, kit, s) for s in yoke_places(plan)]
+
+
+def yoke_places(plan) -> tuple[float, ...]:
+    """Return where along the way each yoke begins [m], YOKE thick; none without rails."""
     if not _rails(plan):
-        return []
+        return ()
     behind = plan.first + max(cut.span[1] for cut in _rails(plan))
-    end = plan.way.end + plan.outlet
-    return [_yoke(plan, kit, s) for s in (behind, end - YOKE)]
+    return behind, plan.path.end + plan.outlet - YOKE
 
 
 def _yoke(plan, kit, s):
     """A bracket below the track, deep enough that parts hang free over it."""
     ends, plate = np.array([s, s + YOKE]), plan.material.plate
-    foot, bank = plan.way.height(ends), plan.way.bank_at(ends)
+    foot, bank = plan.path.height(ends), plan.path.bank_at(ends)
     across, low = plan.width * np.cos(bank), foot[0] - plate - plan.hanging - YOKE
     out = np.stack(
         [
@@ -334,7 +342,7 @@ def groove_spans(plan):
 
     They lie in the last turn: above them there is no other.
     """
-    earliest, last = float(plan.way.at(-MAX_GROOVE_WALL_RAD)), plan.way.end + plan.outlet
+    earliest, last = float(plan.path.at(-MAX_GROOVE_WALL_RAD)), plan.path.end + plan.outlet
     grooves = () if plan.stretch is None else plan.stretch.grooves
     return [
         (max(plan.first + start, earliest, GROOVE_CUT_MARGIN_M), min(plan.first + end, last), lean, opens)
@@ -351,25 +359,25 @@ def lean_at(groove, s):
 
 def _swept(plan, kit, groove, section):
     """A body along a groove, of sections that its lean makes."""
-    way, last = plan.way, plan.way.end + plan.outlet
+    path, last = plan.path, plan.path.end + plan.outlet
     start, end, _, opens = groove
     stop = min(end + opens, last)
-    turned = way.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
-    inner = {start + opens, end, way.end, *turned}
-    legs = [start, *sorted(one for one in inner if start < one < stop), stop]
-    made = []
+    turned = path.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
+    inner = {start + opens, end, path.end, *turned}
+    legs = [start, *sorted(item for item in inner if start < item < stop), stop]
+    solid = []
     for low, high in itertools.pairwise(legs):
         s = steps(plan, kit, low, high)
         if min(start + opens, high) > low or low >= end:
             s = np.linspace(low, high, max(len(s), int(np.ceil(OPENING * (high - low) / opens)) + 1))
-        made.append(
+        solid.append(
             (
                 section(plan, lean_at(groove, s), 1 if kit.HAS_EXACT_CURVES else STRIPS)
-                + way.height(s)[:, None, None] * [0.0, 1.0],
+                + path.height(s)[:, None, None] * [0.0, 1.0],
                 frames(plan, s),
             )
         )
-    return kit.swept(made)
+    return kit.swept(solid)
 
 
 def _sloping(plan, lean):
@@ -380,9 +388,9 @@ def _sloping(plan, lean):
 
 def _face(plan, lean, strips):
     """Sections (M, K, 2) of the wall: outwards and up from the track's foot."""
-    up, back, wide = _sloping(plan, lean)
+    up, rearward, wide = _sloping(plan, lean)
     along = np.linspace(-GROOVE_WALL_FOOT_M, wide, strips + 1)[:, None]
-    outer = plan.material.wall * back[:, None] + along * up[:, None]
+    outer = plan.material.wall * rearward[:, None] + along * up[:, None]
     return np.concatenate([outer, along[::-1] * up[:, None]], axis=1)
 
 
@@ -397,4 +405,6 @@ def _cut(plan, lean, strips):
     corners = [
         (top[:, 0] + out, top[:, 1]), (top[:, 0] + out, far), (foot[:, 0], far),
     ]  # fmt: skip
-    return np.concatenate([sloping, np.stack([np.column_stack(one) for one in corners], axis=1)], axis=1)
+    return np.concatenate(
+        [sloping, np.stack([np.column_stack(corner) for corner in corners], axis=1)], axis=1
+    )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from feederscrew.part.record import Part
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
@@ -26,7 +26,7 @@ NOTHING = "none of {} drops came to rest: the closed form is taken"
 
 
 @dataclass(frozen=True, eq=False)
-class AspectsStudy(Shown):
+class AspectsStudy(ReadableRecord):
     """The resting aspects of one part, with a drop test of it where one was asked for or needed."""
 
     part: Part

@@ -33,7 +33,7 @@ from feederscrew.part.smallness import small_part_remarks
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import remark
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.plan import SolidOptions, TrackTooLow
@@ -57,7 +57,7 @@ SAME_STROKE = 1e-3  # [1] strokes that are nearer than this are one
 
 
 @dataclass(frozen=True, eq=False)
-class Order(Shown):
+class Order(ReadableRecord):
     """The part, what is wanted of it, and the bowl for it."""
 
     part: Part
@@ -87,7 +87,7 @@ class Lowest:
 
 
 @dataclass(frozen=True, eq=False)
-class MachineSheet(Shown):
+class MachineSheet(ReadableRecord):
     """A machine and what it does; with an order, that of the sized bowl."""
 
     bowl: Bowl
@@ -425,7 +425,7 @@ def _sheet(
     force = float(made.stiffness * moved.springs / magnified)
     return MachineSheet(
         bowl=bowl,
-        has_machine=has_machine({s.key.name for s in settings if s.given}),
+        has_machine=has_machine({s.key.name for s in settings if s.is_own}),
         springs=made,
         stroke=moved,
         answer=answer.answer(bowl),

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from os import PathLike
 
 from feederscrew.part.record import Part
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.counts import count_rows, passed, profiles
 from feederscrew.resting.counts.calibration import Fit, fit_counts, fit_passes
@@ -12,7 +12,7 @@ from feederscrew.studies import arguments, passages
 
 
 @dataclass(frozen=True, eq=False)
-class CalibrateStudy(Shown):
+class CalibrateStudy(ReadableRecord):
     """An exponent for every column of counts of one part, or for its feeding test."""
 
     part: Part

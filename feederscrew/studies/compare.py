@@ -8,7 +8,7 @@ from pathlib import Path
 from feederscrew.errors import Faults, FeederError
 from feederscrew.part import load
 from feederscrew.part.record import Part
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import count_rows, deviation, passed, profiles
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
@@ -20,7 +20,7 @@ MOST = 500  # files of one comparison
 
 
 @dataclass(frozen=True, eq=False)
-class CompareStudy(Shown):
+class CompareStudy(ReadableRecord):
     """Profiles of one part, measured and by rule, and how far every two of them are apart."""
 
     part: Part
@@ -46,7 +46,7 @@ class CompareStudy(Shown):
 
 
 @dataclass(frozen=True, eq=False)
-class SetStudy(Shown):
+class SetStudy(ReadableRecord):
     """One measured profile and every answer for its part."""
 
     part: Part
@@ -79,7 +79,7 @@ class SetStudy(Shown):
 
 
 @dataclass(frozen=True, eq=False)
-class SetsStudy(Shown):
+class SetsStudy(ReadableRecord):
     """Many measured profiles, each against every answer for its part, and feeding tests."""
 
     sets: tuple[SetStudy, ...]

@@ -17,14 +17,14 @@ from feederscrew.conveying import answer, phase, radius, sensitivity, trace
 from feederscrew.conveying.steady import STATUSES
 from feederscrew.geometry import grids
 from feederscrew.machine import checks
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, with_settings
 from feederscrew.units import DEG, MM
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyStudy(Shown):
+class ConveyStudy(ReadableRecord):
     """One operating point of a bowl, and its neighbours."""
 
     bowl: Bowl
@@ -61,7 +61,7 @@ class ConveyStudy(Shown):
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyCurve(Shown):
+class ConveyCurve(ReadableRecord):
     """What a part does along one quantity of the bowl; N points."""
 
     kind: str  # 'curve' over a key, or 'radius'
@@ -82,7 +82,7 @@ class ConveyCurve(Shown):
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyPhase(Shown):
+class ConveyPhase(ReadableRecord):
     """What the phase of an elliptical drive does for a bowl."""
 
     best: phase.BestPhase
@@ -95,7 +95,7 @@ class ConveyPhase(Shown):
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyMap(Shown):
+class ConveyMap(ReadableRecord):
     """What a part does over two keys of the bowl."""
 
     ranges: tuple[KeyRange, KeyRange]

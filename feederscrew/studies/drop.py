@@ -9,7 +9,7 @@ from feederscrew import check
 from feederscrew.dropping import drop_test, traces
 from feederscrew.dropping.ensemble import Drops, Tally
 from feederscrew.part.record import Part
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import launch_named
 from feederscrew.running import RunSettings
@@ -20,7 +20,7 @@ BESIDE = ("csa", "surface")  # rules that the drops are shown with
 
 
 @dataclass(frozen=True, eq=False)
-class DropStudy(Shown):
+class DropStudy(ReadableRecord):
     """How often one part came to rest on each of its aspects."""
 
     part: Part

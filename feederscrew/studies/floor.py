@@ -13,7 +13,7 @@ from feederscrew.mechanics.cycle import Cycle
 from feederscrew.mechanics.floor import balance, cells
 from feederscrew.mechanics.standing import standing
 from feederscrew.part.record import Part
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.posture import Posture
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
@@ -25,7 +25,7 @@ ROOM = 1.25  # a map reaches at least so far beyond the bowl's own point
 
 
 @dataclass(frozen=True, eq=False)
-class FloorStudy(Shown):
+class FloorStudy(ReadableRecord):
     """What the part does at the upper reversal and over a cycle; maps on request."""
 
     part: Part

@@ -8,7 +8,7 @@ from typing import Unpack
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.mechanics.wall import stable_headings as wall
 from feederscrew.part.record import Part
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.studies import arguments
@@ -17,7 +17,7 @@ from feederscrew.studies.rate import arriving
 
 
 @dataclass(frozen=True, eq=False)
-class HeadingsStudy(Shown):
+class HeadingsStudy(ReadableRecord):
     """The stable headings of a part on one or more aspects."""
 
     part: Part

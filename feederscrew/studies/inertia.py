@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 from feederscrew.part.mass_balance import Balance, balance
 from feederscrew.part.record import Part
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.studies import arguments
 
 
 @dataclass(frozen=True, eq=False)
-class InertiaStudy(Shown):
+class InertiaStudy(ReadableRecord):
     """A part, and what follows from its volume, mass and inertia."""
 
     part: Part

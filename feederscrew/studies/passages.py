@@ -15,7 +15,7 @@ from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.rates.tipping import marked
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts.passed import DeviceCounts
 from feederscrew.studies.rate import shares
@@ -25,7 +25,7 @@ from feederscrew.tooling.track_sections import Passage, until_returned
 
 
 @dataclass(frozen=True, eq=False)
-class PassagesStudy(Shown):
+class PassagesStudy(ReadableRecord):
     """Each orientation at the worst place of each device that it meets; M orientations."""
 
     devices: tuple[Device, ...]  # without measured yields
@@ -77,7 +77,7 @@ def passages(part: Part, bowl: Bowl, aspects: Aspects, rule: str) -> PassagesStu
 
 
 @dataclass(frozen=True, eq=False)
-class FeedingStudy(Shown):
+class FeedingStudy(ReadableRecord):
     """A feeding test of one part in one bowl; D devices that were counted."""
 
     part: Part

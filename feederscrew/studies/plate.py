@@ -7,7 +7,7 @@ from typing import Unpack
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.plate import bowl_test
 from feederscrew.part.record import Part
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import launch_named
 from feederscrew.running import RunSettings
@@ -19,7 +19,7 @@ LEAST = 1e-6  # [s]
 
 
 @dataclass(frozen=True, eq=False)
-class PlateStudy(Shown):
+class PlateStudy(ReadableRecord):
     """How one part lay and travelled on the plates of one or several bowls."""
 
     part: Part

@@ -8,7 +8,7 @@ from typing import Any, Unpack, cast
 import numpy as np
 
 from feederscrew import check
-from feederscrew.bowl.devices import strangers
+from feederscrew.bowl.devices import unknown_aspects
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import hop
 from feederscrew.conveying.answer import conveying
@@ -18,7 +18,7 @@ from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.rates import arrivals, stream, well_oriented
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH, launch_named
@@ -40,7 +40,7 @@ SEED = 1  # of the parts that are fed onto the moving floor
 
 
 @dataclass(frozen=True, eq=False)
-class Shares(Shown):
+class Shares(ReadableRecord):
     """The aspects of a part with the one answer that is taken for their shares."""
 
     aspects: Aspects  # their ``recommended`` is that answer
@@ -187,7 +187,7 @@ def _on_the_floor(part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed:
 
 
 @dataclass(frozen=True, eq=False)
-class RateStudy(Shown):
+class RateStudy(ReadableRecord):
     """The rate of one orientation, and the chain of factors behind it."""
 
     part: Part
@@ -222,7 +222,7 @@ class RateStudy(Shown):
         odd = checks.speed_remark(self.rate.velocity.value, self.bowl.sizing)
         other = () if self.measured is None else self.measured.warnings(self.part)
         return (
-            *strangers(self.devices, self.aspects.names),
+            *unknown_aspects(self.devices, self.aspects.names),
             *self.aspects.warnings,
             *self.of_size,
             *other,

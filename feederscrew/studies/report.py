@@ -13,7 +13,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting, has_machine
 from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.posture import posture
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.studies import arguments, convey, solidbowl
@@ -46,7 +46,7 @@ ROOM = 2.5  # and to so many times the bowl's own stroke
 
 
 @dataclass(frozen=True, eq=False)
-class ReportStudy(Shown):
+class ReportStudy(ReadableRecord):
     """A part, the aspect wanted of it, and a bowl, checked; every chapter's study when it is asked for."""
 
     resting: AspectsStudy
@@ -137,7 +137,7 @@ class ReportStudy(Shown):
                 aspect=self.counted, heading=heading, rule=self.rule, gap=self.gap, fill=self.fill,
                 known=self.resting.aspects, as_tried=self.as_tried,
             )  # fmt: skip
-        given = has_machine({s.key.name for s in self.settings if s.given})
+        given = has_machine({s.key.name for s in self.settings if s.is_own})
         return machines.machine(self.settings) if given else None
 
     @cached_property

@@ -12,7 +12,7 @@ from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.geometry.grids import Grid, GridAxis, evaluate
 from feederscrew.mechanics import limits, wedge
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
 
@@ -28,7 +28,7 @@ NOISE = 12  # decimals of a limit; cos(90 deg) leaves 6e-17
 
 
 @dataclass(frozen=True, eq=False)
-class SlideMap(Shown):
+class SlideMap(ReadableRecord):
     """What slips over (alpha - theta, G) at one vibration angle."""
 
     beta: float  # [rad]
@@ -68,7 +68,7 @@ class SlideMap(Shown):
 
 
 @dataclass(frozen=True, eq=False)
-class SlideStudy(Shown):
+class SlideStudy(ReadableRecord):
     """The sliding maps of one bowl, one for each vibration angle."""
 
     bowl: Bowl

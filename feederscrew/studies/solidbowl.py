@@ -76,7 +76,7 @@ def asked(
     rules = bowls.record(settings).sizing
     if step:
         exact_body.check()
-    given = {s.key.name for s in settings if s.given}
+    given = {s.key.name for s in settings if s.is_own}
     return SolidOptions(
         chord=chord,
         material=material,

@@ -18,7 +18,7 @@ from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.rates.tipping import marked, remark, steady
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
@@ -32,7 +32,7 @@ from feederscrew.tooling.isolating.design import MARGIN_M, PLAY_M, TOLERANCE_M, 
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Design, Goal
 from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations, travel_speed
-from feederscrew.units import shown
+from feederscrew.units import quantity_text
 
 SEARCH_SECONDS = 600.0  # [s] the last resort: a search that it ends may differ from machine to machine
 OUTCOMES = ("lying", "hanging", "any")
@@ -67,7 +67,7 @@ def may_be_left_out(without: str | Sequence[str]) -> tuple[str, ...]:
     kinds = listed(without)
     for kind in kinds:
         if kind not in KINDS:
-            raise ArgumentError("without", f"unknown device {shown(kind)}", hint(kind, list(KINDS)))
+            raise ArgumentError("without", f"unknown device {quantity_text(kind)}", hint(kind, list(KINDS)))
     return kinds
 
 
@@ -77,7 +77,7 @@ def may_be_up(part: Part, found: Aspects, up: str | Sequence[str]) -> tuple[str,
     for name in listed(up):
         if name.casefold() not in known:
             mend = f"choose one of {', '.join(found.names)}"
-            raise ArgumentError("up", f"{part.name} has no aspect {shown(name)}", mend)
+            raise ArgumentError("up", f"{part.name} has no aspect {quantity_text(name)}", mend)
     return listed(up)
 
 
@@ -95,7 +95,7 @@ LATE = "the search stopped at the time limit: another machine may find more - ra
 
 
 @dataclass(frozen=True, eq=False)
-class ToolingStudy(Shown):
+class ToolingStudy(ReadableRecord):
     """Every orientation of a part on a track, and what isolates it behind the bowl's devices; M of them."""
 
     part: Part

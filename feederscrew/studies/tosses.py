@@ -10,7 +10,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.dropping.launch_file import FACES, LaunchFile
 from feederscrew.dropping.rigid_body import shape_of_part
 from feederscrew.part.record import Part
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.tumbling.by_class import ground
 from feederscrew.studies.drop import check_run
@@ -19,7 +19,7 @@ SURE = 0.95  # [1] from here on an answer is called sure
 
 
 @dataclass(frozen=True, eq=False)
-class Agreement(Shown):
+class Agreement(ReadableRecord):
     """What was computed of measured tosses, beside what happened."""
 
     tosses: int  # with an answer
@@ -34,7 +34,7 @@ class Agreement(Shown):
 
 
 @dataclass(frozen=True, eq=False)
-class TossStudy(Shown):
+class TossStudy(ReadableRecord):
     """Where each launch of a file leads."""
 
     part: Part

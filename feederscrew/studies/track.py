@@ -22,7 +22,7 @@ from feederscrew.mechanics.track.opening import Opening, first_to_open
 from feederscrew.mechanics.wall.stable_headings import Headings
 from feederscrew.part.record import Part
 from feederscrew.rates import tipping
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.posture import Posture
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
@@ -33,7 +33,7 @@ USUAL = ("track.bank=0deg:30deg:41", "track.climb=0deg:8deg:41")  # of a map
 
 
 @dataclass(frozen=True, eq=False)
-class TrackStudy(Shown):
+class TrackStudy(ReadableRecord):
     """What acts on the part at the upper reversal and over a cycle; maps on request."""
 
     part: Part

@@ -7,7 +7,7 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from feederscrew.bowl.devices import strangers
+from feederscrew.bowl.devices import unknown_aspects
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.documents import hint
@@ -17,7 +17,7 @@ from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.rates import arrivals, stream
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH
@@ -41,7 +41,7 @@ PARTS, FEW = 200, 60  # parts one at a time; fewer where they only tell what a q
 
 
 @dataclass(frozen=True, eq=False)
-class TrialStudy(Shown):
+class TrialStudy(ReadableRecord):
     """Parts of one kind on the tracks of one bowl at one or several amplitudes."""
 
     part: Part
@@ -85,7 +85,7 @@ class TrialStudy(Shown):
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
         first = self.runs[0]
-        listed = [*strangers(first.bowl.devices, self.aspects.names), *self.aspects.warnings]
+        listed = [*unknown_aspects(first.bowl.devices, self.aspects.names), *self.aspects.warnings]
         listed += small_part_remarks(self.part, {"play at the wall": PLAY}, first.bowl.track.width)
         listed += () if self.measured is None else self.measured.warnings(self.part)
         several = len(self.runs) > 1

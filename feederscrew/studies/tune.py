@@ -6,14 +6,14 @@ from functools import cache, partial
 from typing import Any, Unpack
 
 from feederscrew import check
-from feederscrew.bowl.devices import strangers
+from feederscrew.bowl.devices import unknown_aspects
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.part.record import Part
 from feederscrew.rates import arrivals, well_oriented
 from feederscrew.rates import drive_settings as knobs
 from feederscrew.rates.stream import along
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Path, Quantity, with_settings
@@ -25,7 +25,7 @@ FEW = 200  # parts that lead to a setting; as many as `rate` feeds decide on it
 
 
 @dataclass(frozen=True, eq=False)
-class Tuned(Shown):
+class Tuned(ReadableRecord):
     """One setting that gives the rate, with what it gives."""
 
     solution: knobs.Solution
@@ -36,7 +36,7 @@ class Tuned(Shown):
 
 
 @dataclass(frozen=True, eq=False)
-class TuneStudy(Shown):
+class TuneStudy(ReadableRecord):
     """Every setting of one key of the drive that gives a rate, the recommended one first."""
 
     part: Part
@@ -50,7 +50,7 @@ class TuneStudy(Shown):
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each: of the devices, then of the aspects."""
-        return (*strangers(self.devices, self.aspects.names), *self.aspects.warnings)
+        return (*unknown_aspects(self.devices, self.aspects.names), *self.aspects.warnings)
 
 
 @with_settings

@@ -12,7 +12,7 @@ from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Chapter, Heading, Links, MarkedCell, Matrix, Page, Picture, Text
 from feederscrew.output.tables import Frame, data_frame, frame, text
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.thesis import drawing
 from feederscrew.thesis.figures import FIGURE_OF, THESIS_FIGURES, Claim
 from feederscrew.thesis.findings import FINDING_OF, FINDINGS, Finding
@@ -122,7 +122,7 @@ class Item:
 
 
 @dataclass(frozen=True, eq=False)
-class Reproduction(Shown):
+class Reproduction(ReadableRecord):
     """Every table of the thesis, then every figure."""
 
     items: tuple[Item, ...]

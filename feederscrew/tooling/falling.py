@@ -516,7 +516,7 @@ def _over_the_edge(device, track):
 def _slips(orientation, span):
     """Whether no tilt of a part rests on both sides of a hole along the track, over which it slides on."""
     silhouette = shapely.affinity.translate(
-        orientation.seen, -orientation.distance, -orientation.posture.height
+        orientation.view_ahead, -orientation.distance, -orientation.posture.height
     )
     near = max(span[0], 0.0)
     return not may_rest(silhouette, span[1] - near, 0.0, span[0] <= 0.0)

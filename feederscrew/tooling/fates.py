@@ -167,7 +167,7 @@ def course(devices, orientations, sigma=0.0, rows=None):
             for k, orientation in enumerate(here)
         ]
         transitions.append([
-            _way(device, k, orientation, outcome, states) if outcome else ()
+            _transitions(device, k, orientation, outcome, states) if outcome else ()
             for k, (orientation, outcome) in enumerate(zip(here, listed))
         ])  # fmt: skip
         verdicts.append(listed)
@@ -212,7 +212,7 @@ def leading(devices):
     return tuple(first_devices)
 
 
-def _way(device, place, orientation, outcome, states):
+def _transitions(device, place, orientation, outcome, states):
     """Where a state goes on from a device: (place, share) of what passes; new hanging states are added."""
     if outcome.onto:
         return [(onto, share) for onto, share in outcome.onto if not states[onto].returned]
@@ -238,7 +238,7 @@ def astride(orientation, span):
     """Return an orientation over the rails' slot, which goes on: lying, it stands on what is beside it."""
     if isinstance(orientation, Hanging) or orientation.falls_off:
         return orientation
-    foot = footprints.beside(orientation.foot, span, orientation.distance, orientation.track.radius)
+    foot = footprints.outside_slot(orientation.foot, span, orientation.distance, orientation.track.radius)
     if not len(foot.corners):  # it fell
         return orientation
     over = replace(orientation)

@@ -371,7 +371,7 @@ def ring(span, distance, radius, reach):
     return shapely.Polygon(np.vstack([sides[0], sides[1][::-1]]))
 
 
-def beside(foot, span, distance, radius):
+def outside_slot(foot, span, distance, radius):
     """Return what of a footprint rests beside a slot between two distances from the wall.
 
     Source: own; docs/tooling.md, "1. The method".

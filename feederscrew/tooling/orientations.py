@@ -137,7 +137,7 @@ class Orientation:
         return silhouette(self.posture, self.heading, self.distance, self.track.radius)
 
     @cached_property
-    def seen(self):
+    def view_ahead(self):
         """Its silhouette as a shapely geometry."""
         return shapely.union_all([shapely.Polygon(ring) for ring in self.silhouette])
 
@@ -452,7 +452,11 @@ class _Lying:
     """An orientation, equal to any other of the same solid that is turned alike, on whatever track."""
 
     def __init__(self, orientation):
-        self.one, self.solid, self.axes = orientation, orientation.posture.solid, orientation.axes.tobytes()
+        self.orientation, self.solid, self.axes = (
+            orientation,
+            orientation.posture.solid,
+            orientation.axes.tobytes(),
+        )
 
     def __eq__(self, other):
         return self.solid is other.solid and self.axes == other.axes
@@ -463,7 +467,7 @@ class _Lying:
 
 @lru_cache(maxsize=512)
 def _neck(lying):
-    orientation = lying.one
+    orientation = lying.orientation
     axis = _axis(orientation)
     if abs(axis[2]) > np.sin(MAX_SHANK_ANGLE_RAD) or abs(axis[1]) > np.sin(MAX_SHANK_ANGLE_RAD) * np.hypot(
         axis[0], axis[1]
@@ -589,7 +593,7 @@ def shoulders(orientation, width):
 @lru_cache(maxsize=512)
 def _shoulders(lying, height, radius, distance, width):
     """Shoulders of what lies so on a track of some radius at some distance from its wall [m]."""
-    orientation = lying.one
+    orientation = lying.orientation
     solid = orientation.posture.solid
     points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
     points = points + [0.0, 0.0, height]

@@ -53,7 +53,7 @@ def _difference(orientation, other, sees):
     wanted = _outline(other, sees)
     if sees == "outline":
         return fitted(_outline(orientation, sees), wanted)
-    return min(apart(_outline(orientation, sees, by), wanted) for by in VIEW_TURNS_RAD)
+    return min(outline_distance(_outline(orientation, sees, by), wanted) for by in VIEW_TURNS_RAD)
 
 
 def askew(orientation, sees):
@@ -65,7 +65,7 @@ def askew(orientation, sees):
 
 @functools.lru_cache(maxsize=512)
 def _askew(lies, sees):
-    return max(apart(_outline(lies, sees, by), _outline(lies, sees)) for by in VIEW_TURNS_RAD)
+    return max(outline_distance(_outline(lies, sees, by), _outline(lies, sees)) for by in VIEW_TURNS_RAD)
 
 
 def _lies(orientation, line, sees):
@@ -82,7 +82,7 @@ def fitted(view, wanted, enough=0.0):
     def off(turn):
         other = shapely.affinity.rotate(view, turn, (0.0, 0.0), use_radians=True) if turn else view
         _, low, front, _ = other.bounds
-        return apart(shapely.affinity.translate(other, -front, -low), wanted)
+        return outline_distance(shapely.affinity.translate(other, -front, -low), wanted)
 
     best = off(0.0)
     if best <= enough:
@@ -117,7 +117,7 @@ def _between(view, step):
     return float((1.0 + np.sqrt(2.0)) * far * 0.5 * step)
 
 
-def apart(first, second):
+def outline_distance(first, second):
     """Return the greatest distance [m] from a place of either area's border to the other's."""
     return max(_reach(first, second), _reach(second, first))
 

@@ -1,7 +1,7 @@
 """A stretch of track with devices on it, as it is drawn and made, and parts where their margin is least."""
 
 import itertools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import reduce
 
 import numpy as np
@@ -9,7 +9,7 @@ import shapely
 
 from feederscrew.bowl.record import Track
 from feederscrew.tooling import footprints
-from feederscrew.tooling.devices.base import BLADE, GATE_FRAME_M, Device, Verdict, room_of
+from feederscrew.tooling.devices.base import BLADE, GATE_FRAME_M, Device, Standing, Verdict, room_of
 from feederscrew.tooling.devices.openings import through_the_wall
 from feederscrew.tooling.fates import astride, leading
 from feederscrew.tooling.orientations import Orientation, hang
@@ -37,6 +37,7 @@ class Station:
     wall: float | None = (
         None  # [rad] by which the wall leans back over the track from there on; None: as before
     )
+    standing: Standing = field(default_factory=Standing)  # nozzles, a sensor, slopes, from its start on
 
     @property
     def label(self):
@@ -73,7 +74,7 @@ class TrackSection:
         """
         return bend_ring(ring, self.track.radius)
 
-    def laid(self, outline, place):
+    def outline_in_bowl(self, outline, place):
         """Return an outline (K, 2) [m] from the wall as it lies in the bowl at a length along it."""
         c, s = np.cos(place / self.track.radius), np.sin(place / self.track.radius)
         x, up = outline[:, 0], self.track.radius - outline[:, 1]
@@ -161,6 +162,7 @@ def _station(device, start, length, section, orientations):
         drop=lower[0] if lower is not None and lower[1] <= 0.0 else 0.0,
         edge=device.edge(start, length, section.width),
         wall=_wall_lean(device, section.track, orientations),
+        standing=device.standing(section.track, orientations),
     )
 
 

@@ -134,7 +134,7 @@ class Turn:
 
     angle: float  # [rad] at which the centre of mass stands over its barrier
     lift: float  # [m] by which it is then higher than lying
-    back: float  # [m] the same over the side behind it
+    rear_lift: float  # [m] the same over the side behind it
     sure: float  # [m] drop of the track from which the part turns over without any momentum
     holds: float  # [m] drop from which its momentum may carry it further; infinite where none does
     onto: int  # place of the orientation it lands in
@@ -186,7 +186,9 @@ def over_step(orientation, orientations, height):
     turn = pitch_over(orientation, orientations)
     room = turn.sure - turn.lift
     share = (height - turn.lift) / room if room > 0.0 else float(height >= turn.lift)
-    stays = min(turn.lift - height, turn.back - _rear(orientation, height), _skew_lift(orientation) - height)
+    stays = min(
+        turn.lift - height, turn.rear_lift - _rear(orientation, height), _skew_lift(orientation) - height
+    )
     margin = max(stays, _certain(orientation, orientations, turn, height))
     return _turned(turn, min(max(share, 0.0), 1.0), height), margin
 
@@ -319,7 +321,7 @@ def _turn(orientation, orientations, inwards):
     return Turn(
         angle=angle,
         lift=lift,
-        back=max(behind - orientation.posture.height, 0.0),
+        rear_lift=max(behind - orientation.posture.height, 0.0),
         sure=max(long * math.sin(min(angle, 0.5 * math.pi)), lift),
         holds=_holds(hull, orientation, landed),
         onto=_landed(orientation, hull, _axes(landed, inwards), orientations),
@@ -442,33 +444,33 @@ class DeviceEncounter:
     """One orientation at a device: what a device asks of it, and how it says what becomes of it."""
 
     def __init__(self, orientation, orientations=(), sigma=0.0):
-        self.one, self.every, self.sigma = orientation, tuple(orientations), sigma
+        self.orientation, self.orientations, self.sigma = orientation, tuple(orientations), sigma
 
     @property
     def size(self):
         """Its greatest length [m] in the plane of the track or across it."""
-        return float(np.hypot(self.one.length, max(self.one.width, self.one.height)))
+        return float(np.hypot(self.orientation.length, max(self.orientation.width, self.orientation.height)))
 
     @property
     def grip(self):
         """Friction [1] of the track: of one that is only placed, that of a bowl of the defaults."""
-        return self.one.grip if self.one.grip > 0.0 else GRIP
+        return self.orientation.grip if self.orientation.grip > 0.0 else GRIP
 
     def falls_through(self, cut):
         """Return whether a hole (K, 2) [m] that does not carry it lets it through."""
-        return falls_through(self.one, cut)
+        return falls_through(self.orientation, cut)
 
     def differs(self, other, sees):
         """Return by how much [m] a sensor sees it differ from another orientation."""
-        return sensor_views.difference(self.one, other, sees)
+        return sensor_views.difference(self.orientation, other, sees)
 
     def askew(self, sees):
         """Return by how much [m] a sensor may see it differ from itself, as it comes askew."""
-        return sensor_views.askew(self.one, sees)
+        return sensor_views.askew(self.orientation, sees)
 
     def force_to_clear(self, wide, height):
         """Return the least force [N] over a way along the track that takes it off it, at a height [m]."""
-        return force_to_clear(self.one, wide, height)
+        return force_to_clear(self.orientation, wide, height)
 
     def blown(self, force, down, seconds):
         """Return how far [m] a force [N] for some time [s] carries it over a track that stands still.
@@ -477,26 +479,26 @@ class DeviceEncounter:
         it stays, as what hangs between rails does.
         """
         if self.hanging:
-            return self.one.distance - self.one.track.width
-        gravity = self.one.gravity
-        weight = self.one.posture.mass * gravity
+            return self.orientation.distance - self.orientation.track.width
+        gravity = self.orientation.gravity
+        weight = self.orientation.posture.mass * gravity
         left = force - self.grip * max(weight + down, 0.0)
         if left <= 0.0:
-            return self.one.distance - self.one.track.width
-        speed = left * seconds / self.one.posture.mass
+            return self.orientation.distance - self.orientation.track.width
+        speed = left * seconds / self.orientation.posture.mass
         distance = 0.5 * speed * seconds + speed**2 / (2.0 * gravity * self.grip)
-        return float(distance - (self.one.track.width - self.one.distance))
+        return float(distance - (self.orientation.track.width - self.orientation.distance))
 
     @property
     def hanging(self):
         """Whether it comes hanging between rails."""
-        return isinstance(self.one, Hanging)
+        return isinstance(self.orientation, Hanging)
 
     @property
     def place(self):
         """Its place among the orientations, also where the track leans otherwise by now."""
-        orientation = self.one
-        for k, other in enumerate(self.every):
+        orientation = self.orientation
+        for k, other in enumerate(self.orientations):
             if other is orientation or (
                 other.posture is orientation.posture and other.heading == orientation.heading
             ):
@@ -523,9 +525,9 @@ class DeviceEncounter:
 
     def over_span(self, span):
         """Return its margin [m] on a track without what lies between two distances off the wall."""
-        radius, (first, last) = self.one.track.radius, span
+        radius, (first, last) = self.orientation.track.radius, span
         high = radius - first if first > 0.0 else 2.0 * radius
-        return footprints.over_ring(self.one.standing, max(radius - last, 0.0), high)
+        return footprints.over_ring(self.orientation.standing, max(radius - last, 0.0), high)
 
     def over_slot(self, span):
         """Return the same, unless it may ride over the hole on its sides: it is then not sure."""
@@ -534,19 +536,19 @@ class DeviceEncounter:
 
     def over_hole(self, hole):
         """Return its least margin [m] over the passage of HoleEdges, and the shift [rad] where it is."""
-        return footprints.least(self.one.standing, hole)
+        return footprints.least(self.orientation.standing, hole)
 
     def unheld(self, hole):
         """Return the longest way [m] over which HoleEdges leave it without support."""
-        return footprints.unheld(self.one.standing, hole)
+        return footprints.unheld(self.orientation.standing, hole)
 
     def leans(self, width):
         """Return by how much [m] a strip along the wall may be wider than it passes, as it leans there."""
-        return wall_holds(self.one, width)
+        return wall_holds(self.orientation, width)
 
     def rides(self, width, length):
         """Return whether it rides on its round sides over a hole of a width and a length [m]."""
-        return rides_over(self.one, width, length)
+        return rides_over(self.orientation, width, length)
 
     def widest(self, corners):
         """Return the greatest width [m] across the track of a hole with some corners (K, 2) [m]."""
@@ -557,56 +559,60 @@ class DeviceEncounter:
 
         A face with a ``sweep`` [rad] to the direction of travel may do so to the side as well.
         """
-        if not margin < 0.0 < self.one.grip:
+        if not margin < 0.0 < self.orientation.grip:
             return margin
-        over = may_lay_over(self.one, low) or (sweep > 0.0 and may_lay_aside(self.one, low, sweep))
+        over = may_lay_over(self.orientation, low) or (
+            sweep > 0.0 and may_lay_aside(self.orientation, low, sweep)
+        )
         return max(margin, -UNSURE) if over else margin
 
     def through(self, opening):
         """Return its margin [m] in an opening: ``gate_margin``."""
-        return gate_margin(opening, self.one)
+        return gate_margin(opening, self.orientation)
 
     def held_by_head(self, width, widest=None):
         """Return by how much [m] a slot of some width, at its widest, holds its head and not its shank."""
-        return hanging_margin(self.one, width, widest)
+        return hanging_margin(self.orientation, width, widest)
 
     def held_by_shoulders(self, span):
         """Return by how much [m] its shoulders hold it in a slot, its stem down; -inf if not."""
-        return shoulder_margin(self.one, span)
+        return shoulder_margin(self.orientation, span)
 
     def wedges(self, span):
         """Return whether its head, which comes first, may stick between rails as a wedge."""
-        return self.one.grip > 0.0 and head_first(self.one) and may_wedge(self.one, span)
+        return (
+            self.orientation.grip > 0.0 and head_first(self.orientation) and may_wedge(self.orientation, span)
+        )
 
     def hangs_free(self, span):
         """Return whether its weight turns its shank down, and its head then stays off the wall."""
-        return self.one.grip <= 0.0 or hangs_free(self.one, span)
+        return self.orientation.grip <= 0.0 or hangs_free(self.orientation, span)
 
     def goes_down(self, near):
         """Return whether the tip of its shank goes down beside a rail that ends ``near`` [m] the wall."""
-        return self.one.grip <= 0.0 or tip_goes_down(self.one, near)
+        return self.orientation.grip <= 0.0 or tip_goes_down(self.orientation, near)
 
     def pitched(self):
         """Return how it turns over its leading edge: a Turn."""
-        return pitch_over(self.one, self.every)
+        return pitch_over(self.orientation, self.orientations)
 
     def pitched_over(self, height):
         """Return what a step of some height [m] turns it into, and the margin [m]."""
-        return over_step(self.one, self.every, height)
+        return over_step(self.orientation, self.orientations, height)
 
     def laid_in_groove(self, angle):
         """Return the verdict of a groove, of two faces at an angle [rad]: what it lies in as it came passes.
 
         What turns there, or comes to lie as none of the known does, is not sure.
         """
-        here, landed = self.place, becomes(self.one, self.every, angle)
+        here, landed = self.place, becomes(self.orientation, self.orientations, angle)
         if landed == ((here, 1.0),):
             return self.passing()
         return Verdict(1.0, -UNSURE, onto=tuple((here if k < 0 else k, part) for k, part in landed))
 
     def rolled_over(self, width):
         """Return what a ledge of some width [m] turns it into if its weight lies beyond, and the margin."""
-        return beyond_ledge(self.one, self.every, width)
+        return beyond_ledge(self.orientation, self.orientations, width)
 
 
 def gate_margin(opening, orientation):
@@ -630,7 +636,7 @@ def opening_margin(opening, orientation):
     orientation : Orientation
         What of it is beyond the track's free edge meets no gate.
     """
-    silhouette = orientation.seen.intersection(
+    silhouette = orientation.view_ahead.intersection(
         shapely.box(-BEYOND_OPENING_M, -BEYOND_OPENING_M, orientation.track.width, BEYOND_OPENING_M)
     )
     inside = silhouette.distance(_gate_area(opening, orientation.track.width))
@@ -648,4 +654,4 @@ def _gate_area(opening, width):
 
 def _beside_opening(opening, orientation):
     """What is seen of an orientation beside an opening."""
-    return orientation.seen.intersection(_gate_area(opening, orientation.track.width))
+    return orientation.view_ahead.intersection(_gate_area(opening, orientation.track.width))

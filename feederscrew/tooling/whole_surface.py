@@ -100,7 +100,7 @@ def closed(points, faces):
         coincident = np.union1d(_sharing_a_place(points, faces), stuck).astype(int)
         if not len(coincident):
             return points, faces
-        points = _apart(points, faces, coincident)
+        points = _separate(points, faces, coincident)
     what = f"{len(coincident)} corners of its surface lie on others"
     raise FeederError("the body", what, "move its cuts apart, or take other sizes")
 
@@ -125,7 +125,7 @@ def _sharing_a_place(points, faces):
     return used[np.unique(cKDTree(points[used]).query_pairs(MERGE_DISTANCE_MM, output_type="ndarray"))]
 
 
-def _apart(points, faces, coincident):
+def _separate(points, faces, coincident):
     """The points, those given moved towards the middle of their neighbours."""
     moved = points.copy()
     for orientation in coincident:

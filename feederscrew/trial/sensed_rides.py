@@ -44,7 +44,7 @@ def blows_off(sensor, known, states, level=0.0):
         wanted = sensor_views.outline(one, sensor.sees, one.distance)
         if sensor.sees == "outline":
             return sensor_views.fitted(seen, wanted, sensor.play)
-        return sensor_views.apart(seen, wanted)
+        return sensor_views.outline_distance(seen, wanted)
 
     return all(differs(one) > sensor.play for one in sensor.wanted)
 

@@ -254,7 +254,7 @@ def test_resume_repeats_only_what_is_missing_or_changed(tmp_path, three):
         ran(three, out, workers=Here(stop_after=2))
     assert statuses(out / "summary.csv") == {"a": "done", "b": "done", "c": "not computed"}
     second, third, fourth = Here(), Here(), Here()
-    assert ran(three, out, workers=second, resume=True).kept == 2
+    assert ran(three, out, workers=second, resume=True).reused == 2
     assert second.done == ["c"]
     whole = tree(out)
     block(three[1].source, 1.0, 2.0, 3.0)
@@ -365,7 +365,7 @@ def test_results_that_a_killed_run_had_moved_away_are_put_back(tmp_path, three):
     left.mkdir(parents=True)
     (out / "parts/a").rename(left / "a")
     crew = Here()
-    assert ran(three[:2], out, workers=crew, resume=True).kept == 2
+    assert ran(three[:2], out, workers=crew, resume=True).reused == 2
     assert tree(out) == before and crew.done == []
 
 

@@ -14,12 +14,12 @@ from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy, Fi
 from feederscrew.designing.searching import Search
 from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.isolating.chain import Cut
 
 PART = shapes.part(shapes.box(10, 10, 10))
-GAP = made("gap", "test", limit=9e-3, text="9 mm")
-SORTER = made("sorter", "test", like=("A", 0.0, 1e-3), text="{of: A@0, play: 1 mm}")
+GAP = make_device("gap", "test", limit=9e-3, text="9 mm")
+SORTER = make_device("sorter", "test", like=("A", 0.0, 1e-3), text="{of: A@0, play: 1 mm}")
 
 
 def study(*devices, right=45, left=45, returned=5, jams=0, **more):
@@ -89,7 +89,7 @@ def searching(monkeypatch):
 
     def proposed(search, track, row, way):
         asked.append((round(np.degrees(track.made.bowl.track.bank)), row, way))
-        device = made("gap", "test", limit=5e-3 + 1e-3 * len(asked), text=f"{5 + len(asked)} mm")
+        device = make_device("gap", "test", limit=5e-3 + 1e-3 * len(asked), text=f"{5 + len(asked)} mm")
         return proposals.Proposal(row, (), (device,), "test")
 
     def tried_out(search, made_bowl, proposal, weights):
@@ -133,10 +133,10 @@ def test_the_same_chain_is_not_tried_twice_nor_one_that_differs_by_a_hair():
     def key(*devices):
         return exploring.chain_key(track, proposals.Proposal(0, (), devices, "test"), lying)
 
-    first = made("sorter", "test", like=("A", 0.0, 1e-3), also=(("B", 1.0),)).rewritten()
-    other = made("sorter", "test", like=("B", 1.0, 1e-3), also=(("A", 0.0),)).rewritten()
+    first = make_device("sorter", "test", like=("A", 0.0, 1e-3), also=(("B", 1.0),)).rewritten()
+    other = make_device("sorter", "test", like=("B", 1.0, 1e-3), also=(("A", 0.0),)).rewritten()
     assert first.text != other.text and key(first) == key(other)
-    near, far = (made("gap", "test", limit=limit).rewritten() for limit in (9.05e-3, 9.5e-3))
+    near, far = (make_device("gap", "test", limit=limit).rewritten() for limit in (9.05e-3, 9.5e-3))
     assert exploring._is_alike(key(GAP), key(near)) and not exploring._is_alike(key(GAP), key(far))
     assert not exploring._is_alike(key(GAP), key(GAP, GAP))
 

@@ -16,7 +16,7 @@ from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling import sensor_views
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.isolating.chain import Cut
 from feederscrew.tooling.verdicts import verdict
 
@@ -140,7 +140,7 @@ def test_as_many_parts_of_each_are_sent_as_is_said(block):
 def test_a_sensor_is_drawn_with_other_play_and_the_drawn_part_s_name(block):
     _, ways, names = block
     one = ways.lying[names["A@0"]]
-    sorter = made("sorter", "test", like=(one.aspect, one.heading, 1e-3), text="test")
+    sorter = make_device("sorter", "test", like=(one.aspect, one.heading, 1e-3), text="test")
     rng = np.random.default_rng(1)
     drawn = robust.drawn_bowl(replace(bowls.default(), devices=(sorter,)), ways.lying, rng).devices[0]
     assert drawn.like[:2] == sorter.like[:2] and 0.0 < abs(drawn.like[2] - 1e-3) <= robust.CUT
@@ -156,8 +156,8 @@ def test_a_drawn_bowl_bounces_parts_as_filmed_impacts_scatter(block):
 
 
 def test_a_chain_costs_what_its_dearest_device_does():
-    gap = made("gap", "test", limit=9e-3, text="9 mm")
-    jet, sorter = made("jet", "test", text="test"), made("sorter", "test", text="test")
+    gap = make_device("gap", "test", limit=9e-3, text="9 mm")
+    jet, sorter = make_device("jet", "test", text="test"), make_device("sorter", "test", text="test")
     costs = [
         proposals.Proposal(0, (), chain, "test").cost_class
         for chain in ((), (gap,), (gap, jet), (sorter, gap))
@@ -186,7 +186,7 @@ def test_no_way_is_left_of_a_class_whose_devices_are_not_to_be_used():
 def test_a_blade_at_which_parts_stay_is_swept_otherwise(block):
     _, ways, names = block
     wanted, others = names["A@0"], names["C@0"]
-    wiper = made("wiper", "test", limit=8e-3, sweep=np.radians(30.0)).rewritten()
+    wiper = make_device("wiper", "test", limit=8e-3, sweep=np.radians(30.0)).rewritten()
     cut = Cut(wiper, 1e-3, 1e-3, wiper, wiper, ())
     proposal = proposals.Proposal(wanted, (cut,), (), "test")
     seen = tried(ways, {wanted}, (), {others}, wanted)
@@ -241,8 +241,8 @@ def test_what_comes_back_of_several_wanted_ones_is_no_fault_while_another_leaves
 
 
 def test_what_is_tried_is_told_with_headings_in_whole_degrees():
-    sorter = made("sorter", "test", text="{of: A@178.007, play: 3.65 mm, sees: outline}")
-    gap = made("gap", "test", limit=9e-3, text="9 mm")
+    sorter = make_device("sorter", "test", text="{of: A@178.007, play: 3.65 mm, sees: outline}")
+    gap = make_device("gap", "test", limit=9e-3, text="9 mm")
     said = proposals.Proposal(0, (), (gap, sorter), "test").told
     assert said == "gap: 9 mm, sorter: {of: A@178, play: 3.65 mm, sees: outline}"
     assert proposals.Proposal(0, (), (), "test").told == "no device"
@@ -272,7 +272,7 @@ def test_of_a_drawn_part_only_what_is_tried_is_judged(monkeypatch, block):
     part, ways, names = block
     one = ways.lying[names["A@0"]]
     like = {"like": (one.aspect, one.heading, 1e-3), "text": "test"}
-    chain = (made("gap", "test", limit=7e-3, text="7 mm"), made("sorter", "test", **like))
+    chain = (make_device("gap", "test", limit=7e-3, text="7 mm"), make_device("sorter", "test", **like))
     own = {"aspects": find(part), "chain": chain, "bowl": bowls.default()}
     whole, judged = stream.along(ways.lying, **own), []
     monkeypatch.setattr(

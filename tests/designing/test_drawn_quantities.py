@@ -18,7 +18,7 @@ from feederscrew.designing import exploring, proposals, robust, trying
 from feederscrew.designing.record import Attempt, DesignRequest
 from feederscrew.designing.searching import Search
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 
 DRAWS = 1500
 MM = 1e-3
@@ -52,10 +52,10 @@ def bowl(block):
     _, ways = block
     one = ways.lying[0]
     devices = (
-        made("gap", "test", limit=9.5 * MM, text="test"),
-        made("slot", "test", span=(2.0 * MM, 5.0 * MM), text="test"),
-        made("cut_out", "test", corners=tuple(map(tuple, HOLE)), text="test"),
-        made("sorter", "test", like=(one.aspect, one.heading, 1.2 * MM), text="test"),
+        make_device("gap", "test", limit=9.5 * MM, text="test"),
+        make_device("slot", "test", span=(2.0 * MM, 5.0 * MM), text="test"),
+        make_device("cut_out", "test", corners=tuple(map(tuple, HOLE)), text="test"),
+        make_device("sorter", "test", like=(one.aspect, one.heading, 1.2 * MM), text="test"),
     )
     plain = bowls.read(None, ["drive.amplitude=0.2 mm", "restitution=0.3"])
     return replace(plain, devices=devices, friction=Friction(**FRICTION))

@@ -11,7 +11,7 @@ from feederscrew.designing import families
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
 from feederscrew.errors import FeederError
 from feederscrew.output import design_pages
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.isolating.chain import Cut
 
 SMALL, LARGE = shapes.part(shapes.box(10, 8, 4), "small"), shapes.part(shapes.box(14, 11, 6), "large")
@@ -21,7 +21,7 @@ BOWL = bowls.default()
 def cut(kind, value, low, high):
     """A device of a design whose value [mm] may lie between two others."""
     first, least, most = (
-        made(kind, "design", limit=1e-3 * one, text=f"{one:g} mm") for one in (value, low, high)
+        make_device(kind, "design", limit=1e-3 * one, text=f"{one:g} mm") for one in (value, low, high)
     )
     return Cut(first, 5e-4, 5e-4, least, most, ())
 
@@ -51,7 +51,7 @@ def test_a_value_suits_all_where_their_windows_meet(windows, common):
 
 
 def test_what_has_no_number_is_common_only_where_it_is_the_same():
-    first, second = (made("separation", "design", text=f"{{climb: {deg} deg}}") for deg in (-6, -9))
+    first, second = (make_device("separation", "design", text=f"{{climb: {deg} deg}}") for deg in (-6, -9))
     one, other = (Cut(device, 0.0, 0.0, device, device, ()) for device in (first, second))
     assert families.common_limits([[one], [one]]) == [None]
     assert families.common_limits([[one], [other]]) is None
@@ -110,7 +110,7 @@ def test_the_widest_is_designed_first_and_its_kinds_are_offered_to_the_others(mo
     monkeypatch.setattr(families.loop, "design", loop)
     monkeypatch.setattr(families, "again", again)
     monkeypatch.setattr(families.proposals, "moved", lambda one, limit, every, row: replace(
-        one, device=made("gap", "design", limit=limit, text=f"{1e3 * limit:g} mm")))  # fmt: skip
+        one, device=make_device("gap", "design", limit=limit, text=f"{1e3 * limit:g} mm")))  # fmt: skip
     study = families.family([SMALL, LARGE], BOWL, {"drive.phase"}, DesignRequest(0.5, without=("wiper",)))
     (first, common, given, _), (second, track, more, without) = loop.asked
     assert (first, second) == ("large", "small") and given == {"drive.phase", "track.radius", "track.width"}

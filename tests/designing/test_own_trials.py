@@ -9,9 +9,9 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import own_trial
-from feederscrew.output.tooling import bowl_file, tables
+from feederscrew.output import tooling_tables as tables
 from feederscrew.studies.tooling import tooling, tooling_without
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 
 PART = shapes.part(shapes.box(20, 12, 5))
 
@@ -66,7 +66,7 @@ def test_what_the_trial_denies_is_not_isolated_and_the_next_best_are_tried(monke
     denied, agreed = tables.trials(found)
     assert len(denied) == len(found.trials) - 1 and not agreed
     assert all(text.startswith("tried as well, ") for text in denied)
-    assert "# DENIED by its trial: nothing leaves as wanted." in bowl_file.bowl_file(found, ())
+    assert "# DENIED by its trial: nothing leaves as wanted." in tables.bowl_file(found, ())
 
 
 def test_the_next_best_that_holds_is_taken(monkeypatch, study):
@@ -88,7 +88,7 @@ def test_of_those_that_hold_the_most_efficient_is_taken(monkeypatch, study):
         if share is None:
             return replace(found, designs=tuple(replace(one, isolated=False) for one in found.designs))
         asked.append(kinds)
-        wiper = replace(made("wiper", "here", limit=1e-3), text=f"{len(asked)} mm")
+        wiper = replace(make_device("wiper", "here", limit=1e-3), text=f"{len(asked)} mm")
         cut = replace(found.design.cuts[0], device=wiper)
         less = replace(found.design, cuts=(cut,), isolated=True, efficiency=share * study.design.efficiency)
         return replace(found, designs=tuple(less for _ in found.designs))
@@ -114,7 +114,7 @@ def test_the_search_for_another_chain_has_an_end(monkeypatch, study, limit, trie
     def again(kinds):
         asked.append(kinds)
         found = tooling_without(kinds[:1], PART, study.bowl, "A", rule="csa", verdicts=1)
-        wiper = replace(made("wiper", "here", limit=1e-3), text=f"{len(asked)} mm")
+        wiper = replace(make_device("wiper", "here", limit=1e-3), text=f"{len(asked)} mm")
         cut = replace(study.design.cuts[0], device=wiper)
         other = replace(study.design, cuts=(cut,), isolated=True)
         return replace(found, designs=tuple(other for _ in found.designs))
@@ -130,4 +130,4 @@ def test_without_a_trial_the_static_rule_is_named(study):
     assert tables.document(study)["status"] == "static"
     none = replace(study, designs=tuple(SimpleNamespace(isolated=False) for _ in study.designs))
     assert tables.status(none, 0) == "none"
-    assert "# By the static rule, not tried: see feeder trial." in bowl_file.bowl_file(study, ())
+    assert "# By the static rule, not tried: see feeder trial." in tables.bowl_file(study, ())

@@ -17,14 +17,20 @@ from feederscrew.designing import beside, loop
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
 from feederscrew.errors import FeederError
-from feederscrew.output import design_pages, designs, marking, solidbowl, style
+from feederscrew.output import (
+    design_pages,
+    designs,
+    machine_figures,
+    machine_sheet,
+    marking,
+    solidbowl,
+    solidbowl_views,
+    style,
+    tooling_drawing,
+)
 from feederscrew.output import report as report_page
-from feederscrew.output.machine import figures
-from feederscrew.output.machine import sheet as sheets
 from feederscrew.output.page import as_html
 from feederscrew.output.page.blocks import Chapter, Page
-from feederscrew.output.solidbowl import turnable
-from feederscrew.output.tooling import drawing
 from feederscrew.part import load
 from feederscrew.tooling.track_sections import build_section
 
@@ -151,16 +157,16 @@ def test_drawings_of_cuts_bear_a_mark_on_a_layer_of_its_own(sensing):
     gap = replace(sensing, devices=sensing.devices[1:])
     every = beside.machines.orientations(PART, loop.find(PART), gap.track)
     made = build_section(gap.track, gap.devices, every)
-    read = ezdxf.read(io.StringIO(drawing.dxf(made, mark=marking.MARK).decode()))
+    read = ezdxf.read(io.StringIO(tooling_drawing.dxf(made, mark=marking.MARK).decode()))
     across = [one for one in read.modelspace() if one.dxf.layer == "MARK"]
     assert [one.dxftype() for one in across] == ["TEXT"] and SHORT in across[0].dxf.text
     assert 0.0 < across[0].dxf.rotation < 90.0
     notes = [one.dxf.text for one in read.modelspace() if one.dxf.layer == "TEXT"]
     assert marking.MARK in notes
-    assert "rotate(-" in drawing.svg(made, mark=marking.MARK) and SHORT in drawing.svg(
+    assert "rotate(-" in tooling_drawing.svg(made, mark=marking.MARK) and SHORT in tooling_drawing.svg(
         made, mark=marking.MARK
     )
-    assert SHORT not in drawing.svg(made) and b"MARK" not in drawing.dxf(made)
+    assert SHORT not in tooling_drawing.svg(made) and b"MARK" not in tooling_drawing.dxf(made)
 
 
 def test_what_delivers_nothing_leaves_no_papers(built):
@@ -197,9 +203,9 @@ def test_the_trial_that_papers_have_is_that_of_the_bowl_file(built, tmp_path):
         assert getattr(read, name) == getattr(own, name), name
     for name in ("target", "delivered", "low", "high", "purity", "queue_seconds"):
         assert getattr(read, name) == pytest.approx(getattr(own, name), rel=1e-3), name
-    assert "falls short" in sheets.rate_of_trial(own)
+    assert "falls short" in machine_sheet.rate_of_trial(own)
     assert designs.trial_of(study(queues=())) is None
-    assert figures.bowl(machine.sheet, own) is not None
+    assert machine_figures.bowl(machine.sheet, own) is not None
 
 
 def test_a_stopped_design_leaves_the_files_of_an_earlier_one(run, tmp_path, monkeypatch):
@@ -340,12 +346,12 @@ def test_solids_of_what_falls_short_say_so_in_their_names_heads_and_bodies():
 
 
 def test_the_bowl_on_the_page_of_what_falls_short_bears_a_mark(monkeypatch):
-    monkeypatch.setattr(turnable, "scene", lambda *_: {})
+    monkeypatch.setattr(solidbowl_views, "scene", lambda *_: {})
     way = SimpleNamespace(radius=0.15)
     plan = SimpleNamespace(way=way, material=SimpleNamespace(name="steel"))
     solid = SimpleNamespace(plan=plan, mass=3.0)
     for mark in ("", marking.MARK):
         page = as_html.html(
-            Page("box", "", (Chapter(tuple(turnable.blocks(solid, PART, mark=mark))),), kind="design")
+            Page("box", "", (Chapter(tuple(solidbowl_views.blocks(solid, PART, mark=mark))),), kind="design")
         )
         assert (f'<p class="across"><span>{marking.MARK}' in page) is bool(mark)

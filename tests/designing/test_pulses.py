@@ -9,7 +9,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.designing import proposals, pulses, trying
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.devices.pneumatics import PULSE
 from feederscrew.tooling.isolating.chain import judge_cut
 from feederscrew.tooling.verdicts import DeviceEncounter
@@ -34,7 +34,7 @@ def wedge():
     ways = proposals.known_through(part, find(part), bowl)
     one = ways.lying[0]
     like = {"like": (one.aspect, one.heading, 1e-3), "text": "{of: A@0, play: 1 mm, sees: outline}"}
-    device = made("sorter", "test", **like)
+    device = make_device("sorter", "test", **like)
     must = np.arange(len(ways.lying)) > 0
     return ways, judge_cut(ways.lying, 0, device, must, device, device)
 
@@ -42,7 +42,7 @@ def wedge():
 def reserve(cut, every, time):
     """The least way [m] beyond the edge over which a share of a pulse carries what the cut returns."""
     gone = [DeviceEncounter(one, every) for one in every if one.name in cut.returns]
-    return min(met.blown(*cut.device.jet.push(met.one, every), time / pulses.RESERVE) for met in gone)
+    return min(met.blown(*cut.device.jet.push(met.orientation, every), time / pulses.RESERVE) for met in gone)
 
 
 def weighing(every, times):

@@ -7,7 +7,6 @@ import awkward
 import numpy as np
 import pytest
 import shapes
-from matplotlib.text import Text
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.reading import settings_of_text
@@ -18,10 +17,8 @@ from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue
 from feederscrew.machine import drive_sizing, drive_units, sizing, springs
 from feederscrew.machine.springs import analyse_springs, leaf_stress
 from feederscrew.machine.stroke import stroke
-from feederscrew.output import design_pages, designs
-from feederscrew.output.machine import figures
-from feederscrew.output.machine import tables as machine_tables
-from feederscrew.output.solidbowl import drawing_sheet
+from feederscrew.output import bowl_sheet, design_pages, designs, machine_figures
+from feederscrew.output import machine as machine_output
 from feederscrew.resting.aspects import find
 from feederscrew.studies import bowl as machines
 
@@ -91,9 +88,9 @@ def test_springs_too_near_make_less_and_both_drives_are_told():
     plain = replace(bowl, drive=replace(bowl.drive, vibration_angle=np.radians(15.61)))
     assert other.machine.velocity == pytest.approx(answer.answer(plain).velocity, rel=0.01)
     sheet = machines.machine(settings)
-    first = machine_tables.summary(sheet)["value"][:2]
+    first = machine_output.summary(sheet)["value"][:2]
     assert "42" in first[0] and "15.6" in first[1]
-    document = machine_tables.document(sheet)
+    document = machine_output.document(sheet)
     assert "15.6 deg to the track" in document["warnings"][0]
     assert not document["springs_make_this_drive"]
     assert document["drive_of_the_springs"]["throw_number"] == pytest.approx(other.machine.throw_number)
@@ -124,18 +121,17 @@ def two_axis():
 def test_a_drive_out_of_phase_stands_first_in_every_output(two_axis, tmp_path):
     found, built = two_axis
     sheet = built.sheet
-    rows = machine_tables.summary(sheet)
+    rows = machine_output.summary(sheet)
     assert rows["quantity"][0] == "drive" and "-60 deg" in rows["value"][0]
     assert "two magnets" in rows["value"][0]
     table = designs.summary(found)
     assert table["quantity"][1] == "drive" and "phase -60 deg" in table["value"][1]
-    document = machine_tables.document(sheet)
+    document = machine_output.document(sheet)
     assert (document["drive_kind"], document["phase_deg"]) == ("two-axis drive", pytest.approx(-60.0))
     assert designs.document(found)["bowl"]["phase_deg"] == pytest.approx(-60.0)
-    assert any("phase" in text.get_text() for text in figures.bowl(sheet).texts)
+    assert any("phase" in text.get_text() for text in machine_figures.bowl(sheet).texts)
     assert any("two magnets" in line for line in designs.document(found)["warnings"])
-    drawn = drawing_sheet.sheet(built.drawn).figure.findobj(Text)
-    assert any("two magnets" in text.get_text() for text in drawn)
+    assert any("two magnets" in text for text in bowl_sheet.draw_sheets(built.drawn).texts(0))
     assert "two magnets" in design_pages.page(found, built).partition("leaves as")[0]
     assert "two magnets" in designs.bowl_file(found, (), sheet).splitlines()[1]
 
@@ -146,7 +142,7 @@ def test_a_design_warns_of_what_feeder_bowl_warns_of_for_its_file(two_axis, run,
     path.write_text(designs.bowl_file(found, (), built.sheet))
     alone = json.loads(run("bowl", "--config", str(path), "--format", "json").stdout)
     assert alone["warnings"] and set(alone["warnings"]) <= set(found.warnings)
-    own = machine_tables.document(built.sheet)
+    own = machine_output.document(built.sheet)
     for name in ("natural_frequency_hz", "leaf_stress_mpa", "drive_force_n", "phase_deg", "turns"):
         assert alone[name] == pytest.approx(own[name], rel=1e-6), name
     assert alone["full_bowl"]["mass_kg"] == pytest.approx(own["full_bowl"]["mass_kg"], rel=1e-6)
@@ -177,7 +173,7 @@ def test_a_bowl_without_a_part_says_what_it_assumes():
     ):
         sheet = machines.machine(bowls.settings(None, (*ONE, *texts)))
         assert sheet.fill.mass / sheet.fill.volume == pytest.approx(0.5 * density)
-        rows = machine_tables.summary(sheet)
+        rows = machine_output.summary(sheet)
         assert said in dict(zip(rows["quantity"], rows["value"]))["full bowl [kg]"]
 
 
@@ -218,7 +214,7 @@ def test_the_machine_that_is_drawn_makes_the_drive_that_is_chosen(name):
     """Angle, tuning, stress and pull with the mass of the solid; the leaves of an owned machine are kept."""
     text = None if name is None else drive_units.bowl_file(drive_units.unit(name))
     settings = bowls.settings(None) if text is None else settings_of_text(text, "machine.yaml")
-    given = frozenset(one.key.name for one in settings if one.given)
+    given = frozenset(one.key.name for one in settings if one.is_own)
     plain = calm_drive.section(PART, find(PART), bowls.record(settings), given)
     bowl = calm_drive.driven(plain, 0.08)
     queue = FilledQueue("normal", 0.2, 12, 200.0, 200.0, 200.0, 200, 200, 0, 0, 0)

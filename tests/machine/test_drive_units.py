@@ -37,7 +37,7 @@ def test_the_bowl_file_of_a_drive_unit_is_a_tuned_machine(unit):
 def owned(name, *overrides):
     """A bowl on a drive unit, and which keys its file gives."""
     listed = settings_of_text(drive_units.bowl_file(drive_units.unit(name)), "bowl.yaml")
-    given = {one.key.name for one in listed if one.given}
+    given = {one.key.name for one in listed if one.is_own}
     bowl = bowls.adjust(bowls.record(listed), overrides) if overrides else bowls.record(listed)
     return calm_drive.PlainBowl(bowl, frozenset(given), None)
 

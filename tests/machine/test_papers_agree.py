@@ -13,11 +13,7 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl import reading
 from feederscrew.designing import beside
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
-from feederscrew.output import design_pages, designs
-from feederscrew.output.machine import figures
-from feederscrew.output.machine import tables as machine_tables
-from feederscrew.output.solidbowl import drawing_sheet
-from feederscrew.output.tooling import drawing
+from feederscrew.output import bowl_sheet, design_pages, designs, machine, machine_figures, tooling_drawing
 from feederscrew.studies import bowl as machines
 from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
 
@@ -54,11 +50,11 @@ def papers(tmp_path_factory):
         "summary": rows(designs.summary(study)),
         "acceptance": offered["acceptance.csv"].view(),
         "bowl": json.loads(offered["bowl.json"].make()),
-        "sheet": rows(machine_tables.summary(built.sheet)),
+        "sheet": rows(machine.summary(built.sheet)),
         "solid": json.loads(offered["bowl_solid.json"].make()),
-        "quotation": rows(machine_tables.summary(built.drawn)),
-        "picture": words(figures.bowl(built.sheet)),
-        "drawing": words(drawing_sheet.sheet(built.drawn).figure),
+        "quotation": rows(machine.summary(built.drawn)),
+        "picture": words(machine_figures.bowl(built.sheet)),
+        "drawing": drawn_words(built.drawn),
         "file": bowls.read(path.parent / "design.yaml"),
         "path": path.parent / "design.yaml",
     }
@@ -70,6 +66,11 @@ def rows(frame):
 
 def words(figure):
     return "\n".join(one.get_text() for one in figure.findobj(Text))
+
+
+def drawn_words(study, tried=None):
+    drawing = bowl_sheet.draw_sheets(study, tried)
+    return "\n".join(text for sheet in range(len(drawing.sheets)) for text in drawing.texts(sheet))
 
 
 def number(pattern, text):
@@ -88,7 +89,7 @@ def said(p):
     """Each quantity as every paper says it."""
     design, bowl, solid, file = p["design"]["bowl"], p["bowl"], p["solid"], p["file"]
     sheet, long, picture, drawing = p["sheet"], p["quotation"], p["picture"], p["drawing"]
-    drive, track, machine, mm = file.drive, file.track, file.machine, 1e3
+    drive, track, made, mm = file.drive, file.track, file.machine, 1e3
     yield "diameter", (
         design["diameter_mm"], solid["diameter_mm"], 2.0 * mm * track.radius, float(number("D #", picture)),
         number("Ø#", drawing), number("#", long["bowl diameter [mm]"]),
@@ -129,7 +130,7 @@ def said(p):
     )  # fmt: skip
     yield "angle at the springs", (
         design["vibration_angle_at_the_springs_deg"], bowl["spring_angle_deg"],
-        np.degrees(machine.spring_angle),
+        np.degrees(made.spring_angle),
         number("motion there # deg", sheet["springs"]), number("#° at the springs", picture),
         number("#° at the springs", drawing), accepted(p, "vibration angle at the springs"),
     )  # fmt: skip
@@ -138,22 +139,22 @@ def said(p):
         number("#", p["summary"]["throw number"]),
     )  # fmt: skip
     yield "radius of the springs", (
-        bowl["spring_radius_mm"], mm * machine.spring_radius, number("springs on\nradius #", picture),
+        bowl["spring_radius_mm"], mm * made.spring_radius, number("springs on\nradius #", picture),
         number("radius # mm", sheet["springs"]),
     )  # fmt: skip
     yield "leaves", (
-        bowl["leaves"], machine.leaves, number("# leaves", picture), number("# of", sheet["leaves"]),
+        bowl["leaves"], made.leaves, number("# leaves", picture), number("# of", sheet["leaves"]),
     )  # fmt: skip
     yield "natural frequency", (
         bowl["natural_frequency_hz"], number("#", sheet["natural frequency [Hz]"]),
         number("natural frequency\n# Hz", drawing),
     )  # fmt: skip
     yield "mass of the bowl", (
-        bowl["bowl_mass_kg"], solid["solid_mass_kg"], machine.bowl_mass, number("bowl # kg", picture),
+        bowl["bowl_mass_kg"], solid["solid_mass_kg"], made.bowl_mass, number("bowl # kg", picture),
         number("steel, # kg", drawing), number("#", sheet["on the springs, empty"]),
     )  # fmt: skip
     yield "inertia of the bowl", (
-        bowl["bowl_inertia_kg_m2"], solid["solid_inertia_kg_m2"], machine.bowl_inertia,
+        bowl["bowl_inertia_kg_m2"], solid["solid_inertia_kg_m2"], made.bowl_inertia,
         number("kg, # kg m²", picture), number("# kg m²", drawing),
     )  # fmt: skip
     yield "fill", (
@@ -175,7 +176,8 @@ def test_every_paper_of_a_design_says_one_number(papers):
 
 def test_edges_are_broken_as_they_were_tried_in_sheet_and_dxf(papers):
     said_of_edges = {
-        re.search(r"edges broken at most ([\d.]+) mm", text)[1] for text in (papers["drawing"], drawing.SHOP)
+        re.search(r"edges broken at most ([\d.]+) mm", text)[1]
+        for text in (papers["drawing"], tooling_drawing.SHOP)
     }
     assert said_of_edges == {f"{1e3 * CUT_BORDER_RADIUS_M:g}"}
 
@@ -214,8 +216,8 @@ def test_a_design_warns_of_what_feeder_bowl_warns_of_for_its_part_and_rate(paper
 
 def test_the_title_block_has_orientation_and_rate_of_the_trial(papers):
     tried = designs.trial_of(papers["study"])
-    drawn = words(drawing_sheet.sheet(papers["built"].drawn, tried).figure)
+    drawn = drawn_words(papers["built"].drawn, tried)
     assert re.search(r"orientation\nA@0\n", drawn) and re.search(r"rate of its trial\n60/min", drawn)
     assert "all that pass" not in drawn and "FALLS SHORT" not in drawn
-    short = words(drawing_sheet.sheet(papers["built"].drawn, replace(tried, status="falls short")).figure)
+    short = drawn_words(papers["built"].drawn, replace(tried, status="falls short"))
     assert "FALLS SHORT - not for manufacture" in short

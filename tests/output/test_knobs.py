@@ -51,7 +51,7 @@ MOVED = """<script>
 
 @pytest.fixture(scope="module")
 def chapter():
-    own = report(shapes.part(shapes.box(20, 12, 5)), None, (), launch="drop")
+    own = report(shapes.part(shapes.box(20, 12, 5)), launch="drop")
     return own, Chapter(tuple(knobs(own, own.rate.rate)))
 
 

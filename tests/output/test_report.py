@@ -40,13 +40,13 @@ def bracket():
 @pytest.fixture(scope="module")
 def case(bracket):
     """What a report of the bracket is made of."""
-    return report(bracket, None, ())
+    return report(bracket)
 
 
 @pytest.fixture(scope="module")
 def light(bracket):
     """A report of the bracket without what takes long."""
-    return page(report(bracket, None, (), command="feeder report x.stl"), chapters=LIGHT)
+    return page(report(bracket, command="feeder report x.stl"), chapters=LIGHT)
 
 
 def decoded(text, kind):
@@ -120,7 +120,7 @@ def test_a_small_mesh_is_left_alone():
 
 def test_a_simplified_view_says_so(bracket, monkeypatch):
     monkeypatch.setattr("feederscrew.output.shading.reduced_mesh", lambda v, f: (v, f[:-2]))
-    made = page(report(bracket, None, ()), chapters=LIGHT[:1])
+    made = page(report(bracket), chapters=LIGHT[:1])
     count = len(bracket.faces)
     assert f"a coarser surface of {count - 2} facets; every number is of all {count}" in html(made)
 
@@ -163,7 +163,7 @@ def test_markdown_has_every_chapter_and_no_script(light):
 
 def test_a_chapter_that_cannot_be_computed_says_why(bracket):
     made = page(
-        report(bracket, None, ["track.radius=10 mm"]),
+        report(bracket, overrides=["track.radius=10 mm"]),
         chapters=[c for c in CHAPTERS if c[0] in ("track", "rate")],
     )
     for section in made.sections:
@@ -178,18 +178,18 @@ def test_our_own_bug_is_not_hidden(bracket):
         raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
-        page(report(bracket, None, ()), chapters=[("x", "X", bug)])
+        page(report(bracket), chapters=[("x", "X", bug)])
 
 
 def test_markup_in_names_is_text(bracket):
-    case = report(replace(bracket, name="<b>|*x*", source="a`<i>.stl"), None, ())
+    case = report(replace(bracket, name="<b>|*x*", source="a`<i>.stl"))
     made = page(case, chapters=[c for c in CHAPTERS if c[0] == "part"])
     assert "<h1>&lt;b&gt;|*x*</h1>" in html(made) and "<i>" not in html(made)
     assert markdown(made).startswith("# \\<b>\\|\\*x\\*\n")
 
 
 def test_a_part_card_has_no_views():
-    made = page(report(load(str(PARTS / "magnet.yaml")), None, ()), chapters=LIGHT)
+    made = page(report(load(str(PARTS / "magnet.yaml"))), chapters=LIGHT)
     text = html(made)
     assert "without a shape: there is nothing to draw or to turn" in text
     assert "<canvas" not in text and "THREE" not in text
@@ -208,7 +208,7 @@ def test_a_part_card_has_no_views():
 )
 def test_a_wrong_wish_is_a_fault_of_the_whole_report(bracket, given, line):
     with pytest.raises(FeederError) as fault:
-        report(bracket, None, (), **given)
+        report(bracket, **given)
     assert str(fault.value) == line
 
 
@@ -254,7 +254,7 @@ def test_numbers_keep_three_digits(value, shown):
 
 def test_a_bowl_too_steep_to_travel_is_told(bracket):
     wanted = [chapter for chapter in CHAPTERS if chapter[0] in ("velocity", "rate")]
-    velocity, rate = page(report(bracket, None, ["track.climb=40 deg"]), chapters=wanted).sections
+    velocity, rate = page(report(bracket, overrides=["track.climb=40 deg"]), chapters=wanted).sections
     assert "no steady state" in velocity.warnings[0]
     assert velocity.tiles == (blocks.Tile("travels", "–", "no steady state"),)
     assert velocity.blocks[-1].text.startswith("No drive of 5 to 60 deg")
@@ -279,7 +279,7 @@ def test_a_part_with_a_shape_has_the_recommended_answer(case, light):
 
 
 def test_the_likeliest_aspect_is_wanted_unless_another_is():
-    case = report(load(str(PARTS / "magnet.yaml")), None, ())
+    case = report(load(str(PARTS / "magnet.yaml")))
     assert case.aspect == "3"  # of a card in the order of its source, 11, 14 and 75 % by CSA
     (tile,) = page(case, chapters=LIGHT[:1]).tiles
     assert tile == blocks.Tile("rests most often on", "aspect 3", "42.8 to 74.7 % of drops, by 3 rules")
@@ -297,7 +297,7 @@ def test_one_drive_has_one_velocity(bracket, monkeypatch):
     """The chapters of velocity, rate, bowl and track: what is called alike is equal."""
     monkeypatch.setattr(style, "png", lambda figure: b"")  # numbers are looked at
     wanted = [chapter for chapter in CHAPTERS if chapter[0] in ("velocity", "rate", "bowl", "track")]
-    case = report(bracket, None, (), target=1.0)
+    case = report(bracket, target=1.0)
     made = page(case, chapters=wanted)
     text = markdown(made, BESIDE)
     found, plain = velocities(text), "velocity [mm/s]"

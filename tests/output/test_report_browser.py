@@ -15,19 +15,18 @@ import shapes
 from PIL import Image
 
 from feederscrew import bowl as bowls
-from feederscrew.output import aspects, style, tables
+from feederscrew.output import aspects, style, tables, tooling_views
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture, Table, Views
 from feederscrew.output.report import page
 from feederscrew.output.report.chapters import CHAPTERS
 from feederscrew.output.report.scene import over_cuts
-from feederscrew.output.tooling import relief
 from feederscrew.output.trial import playback
 from feederscrew.part import load
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import report
 from feederscrew.studies.trial import trial
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
 
 LOOKED_AT = True
@@ -78,7 +77,7 @@ pytestmark = pytest.mark.needs("chromium")
 
 @pytest.fixture(scope="module")
 def case():
-    return report(load(str(BRACKET)), None, (), command="feeder report x.stl")
+    return report(load(str(BRACKET)), command="feeder report x.stl")
 
 
 @pytest.fixture(scope="module")
@@ -232,7 +231,7 @@ def test_names_with_values_are_set_in_two_halves():
 
 def test_the_part_turns_over_the_cut(visit, case):
     every = orientations(case.part, case.resting.aspects, case.bowl.track)
-    shown = relief.poses([made("gap", "test", limit=9e-3)], every, [0.1] * len(every), 0)
+    shown = tooling_views.poses([make_device("gap", "test", limit=9e-3)], every, [0.1] * len(every), 0)
     views = Views(
         over_cuts(case.part, [met for met, _ in shown], every),
         tuple((met.orientation.name, told, ()) for met, told in shown), "cuts", "Orientation",

@@ -18,26 +18,22 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
 from feederscrew.errors import FeederError
-from feederscrew.output import designs, shading
-from feederscrew.output.tooling import (
-    bowl_file,
-    drawing,
-    figures,
-    files,
-    ink,
-    leaving,
-    relief,
-    tables,
-    written_step,
-    written_stl,
+from feederscrew.output import (
+    designs,
+    shading,
+    solid_files,
+    tooling_drawing,
+    tooling_figures,
+    tooling_tables,
+    tooling_views,
 )
-from feederscrew.output.tooling import tables as tooling_tables
+from feederscrew.output import tooling as files
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling import solid, track_sections
 from feederscrew.tooling.devices.base import UNSURE, Verdict
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.track_sections import bend_ring, build_section
 from feederscrew.tooling.verdicts import verdict
@@ -77,8 +73,9 @@ def drawn(lying):
 
 
 def test_the_drawing_opens_in_millimetres_with_closed_polylines(drawn):
-    file = ezdxf.read(io.StringIO(drawing.dxf(drawn, [(np.eye(3, 2), 0.01)]).decode()))
-    lines = file.modelspace().query("LWPOLYLINE")
+    file = ezdxf.read(io.StringIO(tooling_drawing.dxf(drawn, [(np.eye(3, 2), 0.01)]).decode()))
+    others = ("TABLE", "CENTRE", "OUTLINE")
+    lines = [one for one in file.modelspace().query("LWPOLYLINE") if one.dxf.layer not in others]
     assert file.units == 4
     assert all(line.closed for line in lines)
     layers = {line.dxf.layer for line in lines}
@@ -89,15 +86,18 @@ def test_the_drawing_opens_in_millimetres_with_closed_polylines(drawn):
 
 
 def test_the_drawing_is_the_same_bytes_in_another_process(tmp_path):
-    code = "from feederscrew.dxf import Layer, written; import sys; sys.stdout.buffer.write(" \
-        "written([Layer('CUT', 1, rings=[[(0, 0), (1, 0), (0, 1)]], texts=(('a', (0, 0)),))]))"  # fmt: skip
+    code = "\n".join([
+        "from feederscrew.output.drafting import Drawing; import sys; made = Drawing()",
+        "made.hatched([[(0, 0), (9, 0), (0, 9)]]); made.text(0, 0, 'a'); made.length((0, 0), (9, 0), (0, 5))",
+        "sys.stdout.buffer.write(made.dxf() + made.pdf('a') + made.svg((0, 0), (9, 9)).encode())",
+    ])  # fmt: skip
     seeds = [{**os.environ, "PYTHONHASHSEED": seed} for seed in "12"]
     one, two = (subprocess.run([sys.executable, "-c", code], capture_output=True, env=env) for env in seeds)
     assert one.stdout == two.stdout != b""
 
 
 def test_each_cut_read_back_from_the_drawing_gives_the_verdicts_again(lying, drawn, tmp_path):
-    (tmp_path / "tooling.dxf").write_bytes(drawing.dxf(drawn))
+    (tmp_path / "tooling.dxf").write_bytes(tooling_drawing.dxf(drawn))
     cuts = [station.device for station in drawn.stations if station.hole is not None]
     names = ["CUT", *(f"CUT_{k}" for k in range(2, CUTS + 1))]
     lines = [f"  - cut_out: {{dxf: tooling.dxf, layer: {name}}}" for name in names]
@@ -110,10 +110,10 @@ def test_each_cut_read_back_from_the_drawing_gives_the_verdicts_again(lying, dra
 
 
 def test_the_section_to_print_is_one_closed_body(drawn):
-    mesh = trimesh.load(io.BytesIO(written_stl.stl(drawn)), file_type="stl")
+    mesh = trimesh.load(io.BytesIO(solid_files.section_stl(drawn)), file_type="stl")
     assert mesh.is_watertight
     assert mesh.body_count == 1
-    assert written_stl.stl(drawn) == written_stl.stl(drawn)
+    assert solid_files.section_stl(drawn) == solid_files.section_stl(drawn)
     vertices, faces = solid.solid(drawn)
     assert len(faces) == len(mesh.faces) and vertices[faces].min() == pytest.approx(
         1e-3 * mesh.bounds[0].min()
@@ -152,7 +152,7 @@ def isolated():
 def test_the_bowl_file_gives_the_promised_efficiency_and_purity(isolated, tmp_path):
     study, settings = isolated
     path = tmp_path / "tooling.yaml"
-    path.write_text(bowl_file.bowl_file(study, settings))
+    path.write_text(tooling_tables.bowl_file(study, settings))
     bowl = bowls.read(path)
     assert bowl.track == study.bowl.track
     found = rate(study.part, bowl, "A", heading=1.5 * np.pi).rate
@@ -165,13 +165,13 @@ def test_files(isolated):
     names = {f"tooling.{kind}" for kind in ("csv", "json", "png", "yaml", "dxf", "svg", "stl")}
     assert set(offered) == names | {"tooling_3d.png"}
     assert offered["tooling.svg"].startswith("<svg ")
-    assert offered["tooling.svg"].count('class="CUT"') == 1
+    assert offered["tooling.svg"].count('id="CUT"') == 1
 
 
 def test_texts_of_the_pictures_do_not_meet(lying, isolated):
     bowl, every = lying
     shares = np.full(len(every), 1.0 / len(every))
-    pictures = [figures.chain(bowl.devices, every, shares), figures.limits(isolated[0])]
+    pictures = [tooling_figures.chain(bowl.devices, every, shares), tooling_figures.limits(isolated[0])]
     for figure in pictures:
         renderer = figure.canvas.get_renderer()
         boxes = [text.get_window_extent(renderer) for text in figure.texts if text.get_text()]
@@ -183,7 +183,7 @@ def test_texts_of_the_pictures_do_not_meet(lying, isolated):
 def test_what_the_bare_track_returns_has_a_picture_too(lying):
     bowl, every = lying
     off = [replace(one, falls_off=True) for one in every]
-    page = figures.chain(bowl.devices, off, np.full(len(off), 1.0 / len(off)))
+    page = tooling_figures.chain(bowl.devices, off, np.full(len(off), 1.0 / len(off)))
     assert len(page.axes) == len(off)
     assert sum(text.get_text() == "meets no device" for text in page.texts) == len(off)
 
@@ -195,8 +195,8 @@ def test_a_part_that_a_gate_stops_is_drawn_in_front_of_it(lying):
     stopped = [one for one in met if one.verdict.passes <= 0.0]
     assert {met.device.kind for met in stopped} == {"wiper", "profile"}
     for met in stopped:
-        (station,) = relief.station_of(met, every).stations
-        x, y, _ = relief.placed(met, station).T
+        (station,) = tooling_views.station_of(met, every).stations
+        x, y, _ = tooling_views.part_on_section(met, station).T
         ahead = bowl.track.radius * np.arctan2(x, bowl.track.radius - y)
         assert ahead.max() == pytest.approx(station.blade[:, 0].min(), abs=1e-6)
 
@@ -205,21 +205,23 @@ def test_no_gate_hides_the_part_that_is_drawn_at_it(lying):
     bowl, every = lying
     gates = [device for device in bowl.devices if device.kind in ("wiper", "profile")]
     for met in (track_sections.worst_passage(device, one, every) for device in gates for one in every):
-        section = relief.station_of(met, every)
-        body = relief.placed(met, section.stations[0]), met.orientation.posture.solid.faces
+        section = tooling_views.station_of(met, every)
+        body = tooling_views.part_on_section(met, section.stations[0]), met.orientation.posture.solid.faces
         centre = 0.5 * (body[0].min(axis=0) + body[0].max(axis=0))
         angle, half = met.angle(section.stations[0]), np.ptp(body[0], axis=0).max()
         track = solid.solid(section)
-        (view,) = relief.clearest([track], [body], [centre], [angle], half)
+        (view,) = tooling_views.clearest([track], [body], [centre], [angle], half)
         share = shading.shown_share(track, body, centre, view, half)
-        former = shading.shown_share(track, body, centre, relief.camera_at(angle), half)
+        former = shading.shown_share(track, body, centre, tooling_views.camera_at(angle), half)
         assert share >= max(former, 0.6)
 
 
 def test_a_picture_of_one_device_is_no_wider_than_what_it_shows(lying):
     bowl, every = lying
-    few, shares = every[: figures.LONG], np.full(len(every), 1.0 / len(every))
-    wide = [figures.chain(bowl.devices[:count], few, shares).get_size_inches()[0] for count in (1, 2, 3)]
+    few, shares = every[: tooling_figures.LONG], np.full(len(every), 1.0 / len(every))
+    wide = [
+        tooling_figures.chain(bowl.devices[:count], few, shares).get_size_inches()[0] for count in (1, 2, 3)
+    ]
     assert wide[0] < wide[1] <= wide[2]
 
 
@@ -228,18 +230,18 @@ def test_a_picture_of_one_device_is_no_wider_than_what_it_shows(lying):
 )
 def test_a_scale_bar_is_1_2_or_5_of_a_power_of_ten_and_fits(size, long):
     """120 pixels at most, at so many millimetres a pixel."""
-    assert leaving.bar(size) == pytest.approx(long)
+    assert tooling_figures.scale_bar_length(size) == pytest.approx(long)
 
 
 def test_what_leaves_is_drawn_as_it_leaves(lying):
     """Behind two devices that let it pass, seen along the track: the wall at 0, its foot at height 0."""
     _, every = lying
-    narrow = [made("narrowed_track", "here", limit=limit) for limit in (0.03, 0.029)]
-    page = figures.chain(narrow, every[:1], np.ones(1))
+    narrow = [make_device("narrowed_track", "here", limit=limit) for limit in (0.03, 0.029)]
+    page = tooling_figures.chain(narrow, every[:1], np.ones(1))
     last = page.axes[-1]
     assert len(page.axes) == 3 and last.get_xlim()[0] < 0.0 < last.get_ylim()[1]
     (area,) = [patch.get_path().get_extents() for patch in last.patches]
-    seen = np.array(every[0].seen.bounds) * 1e3
+    seen = np.array(every[0].view_ahead.bounds) * 1e3
     assert [area.x0, area.y0, area.x1, area.y1] == pytest.approx(seen, abs=1e-6)
 
 
@@ -247,9 +249,9 @@ def test_rails_are_cut_across_under_what_hangs():
     screw = parts.load(Path(__file__).parents[2] / "docs/tutorial/countersunk_m4x12.stl")
     bowl = bowls.read(None, ["track.width=15 mm"])
     every = travelling(orientations(screw, find(screw), bowl.track), bowl)
-    rails = made("rails", "here", span=(2.1e-3, 6.6e-3))
+    rails = make_device("rails", "here", span=(2.1e-3, 6.6e-3))
     along = next(one for one in every if one.length > 0.011 and one.height < 0.009)
-    page = figures.chain([rails], [along], np.ones(1))
+    page = tooling_figures.chain([rails], [along], np.ones(1))
     near, far, part = (patch.get_path().get_extents() for patch in page.axes[-1].patches)
     assert (near.x0, near.x1, near.y1) == pytest.approx((0.0, 2.1, 0.0)) and far.x0 == pytest.approx(6.6)
     assert part.y0 < -9.0 < 0.0 < part.y1 < 3.0  # its shank below the rails, its head over them
@@ -258,8 +260,8 @@ def test_rails_are_cut_across_under_what_hangs():
 def test_many_orientations_stand_in_two_panels(lying):
     """A page of one column of them was three times as high as wide."""
     bowl, every = lying
-    assert len(every) > figures.LONG
-    page = figures.chain(bowl.devices[:1], every, np.full(len(every), 1.0 / len(every)))
+    assert len(every) > tooling_figures.LONG
+    page = tooling_figures.chain(bowl.devices[:1], every, np.full(len(every), 1.0 / len(every)))
     named = {text.get_text(): text.get_position() for text in page.texts}
     places = {round(named[one.name][0], 3) for one in every}
     assert len(places) == 2 and min(y for _, y in named.values()) > 0.0
@@ -268,7 +270,7 @@ def test_many_orientations_stand_in_two_panels(lying):
 
 
 def test_a_design_names_its_devices_as_the_trade_does():
-    sorter = made("sorter", "here", like=("A", np.radians(359.7), 2.35e-3), sees="side").rewritten()
+    sorter = make_device("sorter", "here", like=("A", np.radians(359.7), 2.35e-3), sees="side").rewritten()
     rates = "target delivered worst_friction static".split()
     found = {"status": "holds", "wanted": "A@0"} | {f"{name}_per_minute": 1.0 for name in rates}
     found |= {"delivered_low": 1.0, "delivered_high": 1.0, "purity": None, "jams": 0, "queue_seconds": 0.0}
@@ -281,12 +283,12 @@ def test_a_design_names_its_devices_as_the_trade_does():
 
 
 def test_a_device_without_a_margin_is_drawn_so():
-    assert ink.margin(Verdict(margin=np.nan, passes=1.0)) == "no margin"
-    assert ink.margin(Verdict(margin=2.8e-3, passes=1.0)) == "margin +2.80 mm"
+    assert tooling_figures.margin_words(Verdict(margin=np.nan, passes=1.0)) == "no margin"
+    assert tooling_figures.margin_words(Verdict(margin=2.8e-3, passes=1.0)) == "margin +2.80 mm"
 
 
 def test_a_table_of_polygons_fits_a_page():
-    hole = made("cut_out", "here", corners=((0.0, 0.0), (12e-3, 3e-3), (14e-3, 9e-3), (2e-3, 11e-3)))
+    hole = make_device("cut_out", "here", corners=((0.0, 0.0), (12e-3, 3e-3), (14e-3, 9e-3), (2e-3, 11e-3)))
     assert hole.value_words == "polygon of 4 corners"
     names = " ".join(f"A@{k}" for k in range(100, 120))
     assert tooling_tables._few(names, 34) == "A@100 A@101 A@102 A@103 A@104 and 15 more"
@@ -296,21 +298,21 @@ def test_a_table_of_polygons_fits_a_page():
 @pytest.mark.needs("OCP")
 def test_step_where_opencascade_is(lying):
     short = build_section(lying[0].track, lying[0].devices[1:3], lying[1])
-    made = written_step.step(short)
-    assert made == written_step.step(short)
+    made = solid_files.section_step(short)
+    assert made == solid_files.section_step(short)
     assert made.startswith(b"ISO-10303-21;") and b"track section" in made
 
 
 def test_step_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "OCP.STEPControl", None)
     with pytest.raises(FeederError, match=r"^step: needs OpenCASCADE, which is not installed - pip"):
-        written_step.check()
+        solid_files.check_opencascade()
 
 
 def test_a_margin_that_is_none_is_not_printed_as_a_number():
-    assert ink.margin(Verdict(1.0, 1.234e-3)) == "margin +1.23 mm"
-    assert ink.margin(Verdict(0.0, -2e-3)) == "margin -2.00 mm"
-    assert ink.margin(Verdict(0.0, -UNSURE)) == "not sure"
+    assert tooling_figures.margin_words(Verdict(1.0, 1.234e-3)) == "margin +1.23 mm"
+    assert tooling_figures.margin_words(Verdict(0.0, -2e-3)) == "margin -2.00 mm"
+    assert tooling_figures.margin_words(Verdict(0.0, -UNSURE)) == "not sure"
 
 
 def test_a_verdict_that_is_not_sure_has_no_margin_on_the_page():
@@ -321,7 +323,7 @@ def test_a_verdict_that_is_not_sure_has_no_margin_on_the_page():
         for margin in (-2e-3, -UNSURE)
     ]
     orientations = [SimpleNamespace(name=name) for name in ("E@0", "E@90")]
-    table = tables.passages(
+    table = tooling_tables.passages(
         SimpleNamespace(orientations=orientations, passages=met, shares=[0.5, 0.5], devices=[wiper])
     )
     assert table["wiper 1_mm"][0] == pytest.approx(-2.0) and not table["wiper 1_mm"][1] < np.inf

@@ -100,8 +100,8 @@ def test_what_arrives_at_a_setting_counts_there():
 
 def test_values_are_the_same_when_they_are_given_back():
     for one in drive_settings.solutions(BOWL, 0.05, per_metre):
-        assert one.value == units.quantity(f"{one.shown} {one.key.unit}", one.key.dimension)
-        assert len(f"{one.shown}".replace(".", "").lstrip("0")) <= drive_settings.SETTING_DIGITS
+        assert one.value == units.quantity(f"{one.number} {one.key.unit}", one.key.dimension)
+        assert len(f"{one.number}".replace(".", "").lstrip("0")) <= drive_settings.SETTING_DIGITS
 
 
 def test_the_worst_friction_meets_the_target():

@@ -10,7 +10,7 @@ import pytest
 from feederscrew.mechanics.track.frame import seat
 from feederscrew.rates import stream, tipping, well_oriented
 from feederscrew.rates.well_oriented import Range
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 
 SPEED = Range(0.04, 0.03, 0.05)
 
@@ -21,7 +21,7 @@ def known():
     part, aspects = awkward.part()
     bowl = awkward.bowl()
     return stream.follow_orientations(
-        part, aspects, bowl.track, [made("wiper", "test", limit=14e-3)], bowl=bowl
+        part, aspects, bowl.track, [make_device("wiper", "test", limit=14e-3)], bowl=bowl
     )
 
 

@@ -13,7 +13,7 @@ from feederscrew.mechanics.track.frame import seat
 from feederscrew.rates import stream, tipping
 from feederscrew.rates.tipping import ROCKING_STEPS, Rocker, goes_over
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 
 GRAVITY = 9.81
 
@@ -130,7 +130,7 @@ def followed(monkeypatch, one, bowl, limit):
     """What is asked of rocking for a part over a gap, answered by never: (Rocker, start) in their order."""
     asked = []
     monkeypatch.setattr(tipping, "goes_over", lambda *args: asked.append(args) or False)
-    tipping.steady([made("gap", "test", limit=limit)], [one], bowl, 2.5e-4)
+    tipping.steady([make_device("gap", "test", limit=limit)], [one], bowl, 2.5e-4)
     return asked
 
 

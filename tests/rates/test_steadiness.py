@@ -11,7 +11,7 @@ from feederscrew.mechanics.track.frame import seat
 from feederscrew.rates import stream, tipping
 from feederscrew.rates.tipping import over_period, steady
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
 
 BOWL = bowls.read(None, ["track.radius=100 m"])
@@ -26,7 +26,7 @@ def upright():
 
 
 def is_steady(one, kind, limit, bowl=BOWL, margin=CLEAR):
-    (found,) = steady([made(kind, "test", limit=limit)], [one], bowl, margin)
+    (found,) = steady([make_device(kind, "test", limit=limit)], [one], bowl, margin)
     return found
 
 
@@ -48,7 +48,7 @@ def test_over_a_gap_a_part_rocks_over_where_little_carries_it(upright):
 def test_a_hole_across_the_track_is_judged_as_the_gap_it_is(upright):
     for limit in (upright.gap - 0.05e-3, upright.gap - 2e-3):
         corners = ((0.0, 0.0), (limit, 0.0), (limit, 0.1), (0.0, 0.1))
-        (hole,) = steady([made("cut_out", "test", corners=corners)], [upright], BOWL, CLEAR)
+        (hole,) = steady([make_device("cut_out", "test", corners=corners)], [upright], BOWL, CLEAR)
         assert hole == is_steady(upright, "gap", limit)
 
 
@@ -64,7 +64,7 @@ def test_beside_an_edge_along_the_track_the_force_stays_within_what_is_left(upri
 
 def test_nothing_is_said_behind_rails_or_of_a_drive_that_is_not_followed(upright):
     limit = upright.gap - 0.01e-3
-    rails, gap = made("rails", "test", span=(0.1, 0.11)), made("gap", "test", limit=limit)
+    rails, gap = make_device("rails", "test", span=(0.1, 0.11)), make_device("gap", "test", limit=limit)
     assert steady([rails, gap], [upright], BOWL, CLEAR).all()
     assert not steady([gap, rails], [upright], BOWL, CLEAR).any()
     assert is_steady(replace(upright, touching=None), "gap", limit)
@@ -89,7 +89,7 @@ def test_what_is_round_is_sure_of_nothing_without_a_bank():
 
     def said(bank):
         bowl = bowls.read(None, ["track.width=30 mm", f"track.bank={bank} deg"])
-        sorter = made("sorter", "test", like=("A", 0.0, 2e-3), sees="height")
+        sorter = make_device("sorter", "test", like=("A", 0.0, 2e-3), sees="height")
         found = stream.follow_orientations(pin, aspects, bowl.track, [sorter], bowl=bowl)
         row = next(k for k, one in enumerate(found.lying) if one.kind == "rolling" and one.length > 0.019)
         return found.sure[row]
@@ -107,4 +107,4 @@ def test_what_is_round_is_sure_of_nothing_without_a_bank():
     ],
 )
 def test_a_blade_takes_nothing_from_under_a_part_and_a_gap_what_it_is_wide(upright, kind, limit, takes):
-    assert bool(tipping._takes(made(kind, "test", limit=limit), upright)) == takes
+    assert bool(tipping._takes(make_device(kind, "test", limit=limit), upright)) == takes

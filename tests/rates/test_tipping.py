@@ -12,7 +12,7 @@ from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
 from feederscrew.mechanics.floor.balance import TIP
 from feederscrew.output import rate as rate_output
-from feederscrew.output.tooling.tables import passages as passage_table
+from feederscrew.output.tooling_tables import passages as passage_table
 from feederscrew.rates import drive_settings as knobs
 from feederscrew.rates.stream import follow_orientations
 from feederscrew.rates.tipping import OVER, ROCKS, STAYS, tipping
@@ -203,11 +203,11 @@ def test_the_track_says_what_the_rate_reckons_with(size, aspect, way):
     stands = track(part, BOWL, aspect).stands
     known, tips = tilts(size)
     row = known.aspects.index(aspect)
-    assert stands.way == way
+    assert stands.verdict == way
     assert (stands.tilt > 0.0) == bool(tips.tips[row])
     if way == ROCKS:
         assert stands.tilt == pytest.approx(tips.tilt[row], rel=1e-9)
-        assert f"rocks by {np.degrees(stands.tilt):.2g} deg a stroke" in stands.said
+        assert f"rocks by {np.degrees(stands.tilt):.2g} deg a stroke" in stands.sentence
 
 
 def test_a_skew_body_goes_on_by_itself_from_where_its_weight_is_over_a_side_of_its_face():

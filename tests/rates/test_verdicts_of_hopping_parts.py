@@ -15,7 +15,7 @@ from feederscrew.rates import stream, tipping
 from feederscrew.rates.tipping import steady
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.base import UNSURE
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.isolating.chain import candidates
 from feederscrew.tooling.verdicts import verdict
 
@@ -48,16 +48,16 @@ def test_a_margin_is_less_the_hop_or_the_flight_to_either_side():
     assert (one.hop, one.flight) == (known.height, known.flight) and 0.0 < one.hop < one.flight
     still = replace(one, hop=0.0, flight=0.0)
     for device, less in (
-        (made("gap", "", limit=8e-3), one.flight),
-        (made("gap", "", limit=18e-3), one.flight),
-        (made("wiper", "", limit=6e-3), one.hop),
-        (made("wiper", "", limit=4e-3), one.hop),
-        (made("height_bar", "", limit=6e-3), one.hop),
-        (made("narrowed_track", "", limit=10e-3), one.hop),
-        (made("narrowed_track", "", limit=4e-3), one.hop),
-        (made("sorter", "", like=(one.aspect, one.heading, 2e-3), sees="side"), one.hop),
-        (made("sorter", "", like=(one.aspect, one.heading, 2e-3)), 0.0),
-        (made("rails", "", span=(4e-3, 8e-3)), 0.0),
+        (make_device("gap", "", limit=8e-3), one.flight),
+        (make_device("gap", "", limit=18e-3), one.flight),
+        (make_device("wiper", "", limit=6e-3), one.hop),
+        (make_device("wiper", "", limit=4e-3), one.hop),
+        (make_device("height_bar", "", limit=6e-3), one.hop),
+        (make_device("narrowed_track", "", limit=10e-3), one.hop),
+        (make_device("narrowed_track", "", limit=4e-3), one.hop),
+        (make_device("sorter", "", like=(one.aspect, one.heading, 2e-3), sees="side"), one.hop),
+        (make_device("sorter", "", like=(one.aspect, one.heading, 2e-3)), 0.0),
+        (make_device("rails", "", span=(4e-3, 8e-3)), 0.0),
     ):
         found, before = verdict(device, one, (one,)), verdict(device, still, (still,))
         assert abs(before.margin) > 2.0 * less, device.kind
@@ -68,10 +68,10 @@ def test_a_margin_is_less_the_hop_or_the_flight_to_either_side():
 def test_within_that_nothing_is_sure_either_way():
     one = one_of(thrown(2.4), 20, 12, 5, length=20)
     for limit, passes in ((5e-3 + 0.9 * one.hop, 1.0), (5e-3 - 0.9 * one.hop, 0.0)):
-        found = verdict(made("wiper", "", limit=limit), one)
+        found = verdict(make_device("wiper", "", limit=limit), one)
         assert found.passes == passes and not found.sure and abs(found.margin) <= UNSURE
     for limit in (5e-3 + 1.1 * one.hop, 5e-3 - 1.1 * one.hop):
-        assert verdict(made("wiper", "", limit=limit), one).sure
+        assert verdict(make_device("wiper", "", limit=limit), one).sure
 
 
 def test_a_drive_that_does_not_throw_changes_nothing():
@@ -144,7 +144,7 @@ def test_no_verdict_of_what_may_turn_is_sure_unless_every_heading_is_returned():
     flat = known.lying[0].aspect
     yaws = np.array([one.may_yaw and not one.may_tip for one in known.lying])
     assert yaws[[one.aspect == flat for one in known.lying]].any()
-    high = lying(bowl, 20, 10, 4, chain=(made("narrowed_track", "", limit=1e-3),))
+    high = lying(bowl, 20, 10, 4, chain=(make_device("narrowed_track", "", limit=1e-3),))
     rows = np.array([one.aspect == flat for one in high.lying])
     assert high.sure[rows].all() and (high.through[rows] == 0.0).all()
 
@@ -154,6 +154,6 @@ def test_a_ledge_that_leaves_little_of_a_foot_does_not_hold_what_lands_on_it():
     bowl = thrown(2.4)
     one = one_of(bowl, 30, 12, 10, length=30)
     for limit, holds in ((7.3e-3, False), (11.9e-3, True)):
-        device = made("narrowed_track", "", limit=limit)
+        device = make_device("narrowed_track", "", limit=limit)
         assert verdict(device, one).passes == 1.0
         assert steady((device,), [one], bowl, 2.5e-4).tolist() == [holds]

@@ -99,7 +99,7 @@ def _slope(plan, body, device, slope):
 
 def _leaning(plan, device):
     """Lengths (M,) [m] along the wall where the track leans as a device says, or its groove is open."""
-    way, stretch = plan.way, plan.stretch
+    way, stretch = plan.path, plan.stretch
     if device.kind == "separation":
         starts = [at for at, climb in way.bends if climb == device.angle]
     else:
@@ -118,7 +118,7 @@ def _tilt(plan, body, s):
     """Bank and climb [rad] of the mesh at lengths along the wall, where there is metal."""
     y = np.array([0.25, 0.75]) * plan.width
     seen = np.array([[measuring.track_heights(plan, body, one, at) or np.nan for at in y] for one in s])
-    there = np.abs(seen - plan.way.height(s[:, None], y)).max(axis=1) < 1e-3
+    there = np.abs(seen - plan.path.height(s[:, None], y)).max(axis=1) < 1e-3
     s, seen = s[there], seen[there]
     bank = np.arcsin(np.mean(seen[:, 1] - seen[:, 0]) / (y[1] - y[0]))
     return float(bank), float(np.arctan(np.polyfit(s, seen[:, 0], 1)[0]))
@@ -126,21 +126,21 @@ def _tilt(plan, body, s):
 
 def _wall_lean(plan, body, s):
     """By how much [rad] the wall of the mesh leans back beside the track."""
-    theta, start = float(plan.way.angle(s)), float(plan.way.wall_radius(s)) - 1e-3
+    theta, start = float(plan.path.angle(s)), float(plan.path.wall_radius(s)) - 1e-3
     towards = np.array([np.cos(theta), np.sin(theta), 0.0])
     met = []
     for over in (8e-4, 2.2e-3):
-        place = start * towards + [0.0, 0.0, float(plan.way.height(s)) + over]
+        place = start * towards + [0.0, 0.0, float(plan.path.height(s)) + over]
         met.append(facets.first_met(body, place, place + 0.1 * towards)[0])
     return float(np.arctan((met[1] - met[0]) / 1.4e-3))
 
 
 def _lower(plan, flat, body, own):
     """How much lower [m] the track goes on at a step or beside a ledge, and how wide the ledge is."""
-    at = next(at for at, drop in plan.way.drops if abs(drop - own.drop) < 1e-9)
+    at = next(at for at, drop in plan.path.drops if abs(drop - own.drop) < 1e-9)
     y = 0.5 * (own.aside + plan.width)
     before, behind = (measuring.track_heights(plan, body, s, y) for s in (at - 3e-4, at + 3e-4))
-    drop = float(before - behind + np.tan(plan.way.climb) * 6e-4)
+    drop = float(before - behind + np.tan(plan.path.climb) * 6e-4)
     if own.aside == 0.0:
         return drop, 0.0
     seen = _section(flat, 0.5 * drop).intersection(shapely.box(at + 2e-3, 1e-4, at + 1e-2, plan.width))
@@ -164,8 +164,8 @@ def _track(plan, body, track):
 
 def _to_wall(plan, body, s, over):
     """Distance [m] of the wall from the axis at a height over its foot, met from above the track."""
-    theta, z = float(plan.way.angle(s)), float(plan.way.height(s)) + over
-    start = float(plan.way.wall_radius(s)) - 1e-3
+    theta, z = float(plan.path.angle(s)), float(plan.path.height(s)) + over
+    start = float(plan.path.wall_radius(s)) - 1e-3
     towards = np.array([np.cos(theta), np.sin(theta), 0.0])
     place = start * towards + [0.0, 0.0, z]
     return start + facets.first_met(body, place, place + 0.1 * towards)[0]
@@ -173,7 +173,7 @@ def _to_wall(plan, body, s, over):
 
 def _unrolled(plan, body):
     """The tooled stretch of the mesh as a Manifold [mm] of lengths along the wall, distances, heights."""
-    way, wall = plan.way, plan.material.wall
+    way, wall = plan.path, plan.material.wall
     ends = max(plan.first - BEFORE, 0.0), way.end + plan.outlet - 1e-3
     ring = [[ends[0], -0.5 * wall], [ends[1], -0.5 * wall], [ends[1], 1.2 * plan.width],
             [ends[0], 1.2 * plan.width]]  # fmt: skip
@@ -198,7 +198,7 @@ def _section(flat, height):
 
 def _holes(plan, flat, start, own, width):
     """The holes of a device: what is not there of the plate, as far as the device goes."""
-    far = min(max(hole.outline[:, 0].max() for hole in own.holes), plan.way.end + plan.outlet - 2e-3 - start)
+    far = min(max(hole.outline[:, 0].max() for hole in own.holes), plan.path.end + plan.outlet - 2e-3 - start)
     near = min(hole.outline[:, 0].min() for hole in own.holes)
     room = shapely.box(start + near - CRUMB, 0.0, start + far + CRUMB, width)
     missing = room.difference(_section(flat, -UNDER).buffer(0.5 * CRUMB, join_style="mitre"))

@@ -10,7 +10,7 @@ from test_solid import TRACK, closed, planned
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.plan import SolidOptions
 from feederscrew.tooling import whole_surface
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 
 
 class Surface:
@@ -60,7 +60,7 @@ def test_rails_behind_a_narrowed_track_of_the_same_edge(seed):
     rng = np.random.default_rng(seed)
     radius, width = float(rng.uniform(0.13, 0.17)), round(float(rng.uniform(24e-3, 28e-3)), 4)
     limit, left = round(0.4 * width, 4), bool(rng.integers(2))
-    rails = made("rails", "b", span=(round(0.1 * width, 4), limit))
+    rails = make_device("rails", "b", span=(round(0.1 * width, 4), limit))
     track = replace(TRACK, radius=radius, width=width)
-    chain = (made("narrowed_track", "b", limit=limit, text="x"), rails)
+    chain = (make_device("narrowed_track", "b", limit=limit, text="x"), rails)
     assert closed(body(planned(chain, track=track, asked=SolidOptions(left=left)))) > 0.0

@@ -1,14 +1,24 @@
-"""The drawing sheet: its dimensions are those of the solid, and nothing lies beyond its frame."""
+"""The drawing sheets: their dimensions are those of the solid, and nothing lies beyond its frame."""
 
+import io
+import itertools
+import re
+import zlib
 from types import SimpleNamespace
 
+import ezdxf
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
 from test_solid import CHAINS, TRACK, planned
 from test_stepped import STEEP, STEPPED
 
+from feederscrew import bowl as bowls
 from feederscrew.bowl.settings import effective, record
-from feederscrew.output.solidbowl import drawing_sheet
+from feederscrew.output import bowl_sheet
+from feederscrew.output.drafting import FRAME
+from feederscrew.output.marking import SheetFields
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.plan import SolidOptions
 
@@ -34,17 +44,96 @@ def study(solid):
 def test_dimensions_are_those_of_the_solid_and_all_is_within_the_frame(name):
     devices, track, asked = CASES[name]
     solid = body(planned(devices, track=track, asked=asked, turns=1.8))
-    paper = drawing_sheet.sheet(study(solid))
-    told = [one.get_text() for one in paper.axes.texts]
+    drawing = bowl_sheet.draw_sheets(study(solid))
+    told = drawing.texts(0)
     low, high = solid.vertices[:, 2].min(), solid.vertices[:, 2].max()
-    assert f"{1e3 * (high - low):.4g}" in told
-    assert f"{1e3 * solid.plan.outlet_height:.4g}" in told
+    assert f"{1e3 * (high - low):.2f}".rstrip("0").rstrip(".") in told
+    assert f"{1e3 * solid.plan.outlet_height:.2f}".rstrip("0").rstrip(".") in told
     assert ("R150 at the outlet" if name == "stepped" else "Ø300") in told
     assert "track 20" in told and f"{solid.mass:.4g} kg, {1e9 * solid.volume:.6g} mm³" in told
-    left, bottom, right, top = drawing_sheet.FRAME
-    for some in paper.axes.collections:
-        places = np.concatenate([path.vertices for path in some.get_paths()])
-        assert (places >= np.array([left, bottom]) - 0.1).all()
-        assert (places <= np.array([right, top]) + 0.1).all()
-    places = np.concatenate([patch.get_path().vertices for patch in paper.axes.patches])
-    assert (places[:, 1] <= top + 0.1).all()
+    within_the_frame(drawing)
+
+
+def within_the_frame(drawing):
+    left, bottom, right, top = FRAME
+    for number in range(len(drawing.sheets)):
+        (axes,) = drawing.figure(number).axes
+        drawn = [path.vertices for some in axes.collections for path in some.get_paths()]
+        drawn += [patch.get_path().vertices for patch in axes.patches]
+        places = np.concatenate(drawn)
+        assert (places >= np.array([left, bottom]) - 0.1).all(), number
+        assert (places <= np.array([right, top]) + 0.1).all(), number
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_no_letters_of_a_sheet_lie_on_others(name):
+    devices, track, asked = CASES[name]
+    solid = body(planned(devices, track=track, asked=asked, turns=1.8))
+    drawing = bowl_sheet.draw_sheets(study(solid))
+    for number in range(len(drawing.sheets)):
+        assert not overlapping(drawing.figure(number))
+
+
+def overlapping(figure):
+    """Pairs of texts whose boxes overlap by more than a tenth of a millimetre, and texts off the page."""
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    texts = [text for text in figure.findobj(Text) if text.get_text()]
+    boxes = [text.get_window_extent(renderer) for text in texts]
+    slack, (wide, high) = 0.1 * figure.dpi / 25.4, figure.canvas.get_width_height()
+    found = [text.get_text() for text, box in zip(texts, boxes)
+             if box.x0 < 0 or box.y0 < 0 or box.x1 > wide or box.y1 > high]  # fmt: skip
+    for (one, a), (other, b) in itertools.combinations(zip(texts, boxes), 2):
+        across = min(a.x1, b.x1) - max(a.x0, b.x0)
+        upright = min(a.y1, b.y1) - max(a.y0, b.y0)
+        if min(across, upright) > slack:
+            found.append((one.get_text(), other.get_text()))
+    return found
+
+
+RAILS = """\
+track: {radius: 150 mm, width: 20 mm, climb: 4 deg}
+devices:
+  - rails: {from: 4.4 mm, to: 11.45 mm, lead_in: {from: 2.9 mm, to: 12.7 mm, length: 47.7 mm, taper: 31.8 mm}}
+"""
+
+
+def test_the_rails_are_read_back_from_dxf_and_pdf_as_the_bowl_file_has_them(tmp_path):
+    (tmp_path / "bowl.yaml").write_text(RAILS)
+    bowl = bowls.read(tmp_path / "bowl.yaml")
+    drawing = bowl_sheet.draw_sheets(
+        study(body(planned(bowl.devices, track=bowl.track, turns=1.2))),
+        fields=SheetFields("2026-11-26", "rev C"),
+    )
+    (rails,) = bowl.devices
+    near, far, long, taper = (1e3 * size for size in rails.lead)
+    low, high = (1e3 * end for end in rails.span)
+    across = {low, high, near, far}
+    measured = {"x": set(), "y": set(), "along": set()}
+    for one in ezdxf.read(io.StringIO(drawing.dxf().decode())).modelspace().query("DIMENSION"):
+        factor, value = one.get_dim_style().dxf.dimlfac, one.get_measurement()
+        if one.dimtype == 6:  # an ordinate, from the wall or from the datum
+            upright = not one.dxf.dimtype & 64
+            measured["y" if upright else "x"].add(round(factor * (value.y if upright else value.x), 6))
+        elif one.dimtype in (0, 1):
+            measured["along"].add(round(factor * value, 6))
+    assert across <= measured["y"] and {long, taper} <= measured["along"]
+    start = min(x for x in measured["x"] if x > 0.0)
+    assert {round(start + long, 6), round(start + long + taper, 6)} <= measured["x"]
+    words = pdf_words(drawing.pdf("rails"))
+    for size in (*across, long, taper):
+        assert f"{size:g}" in words, size
+    assert {"2026-11-26", "rev C", "date", "rev"} <= set(words) and any("1:2" in word for word in words)
+
+
+def pdf_words(data):
+    """The texts of a PDF of matplotlib, in its order."""
+    words = []
+    for stream in re.findall(rb"stream\r?\n(.*?)\r?\nendstream", data, re.S):
+        try:
+            content = zlib.decompress(stream)
+        except zlib.error:
+            continue
+        for written in re.findall(rb"BT\n(.*?)ET", content, re.S):
+            pieces = re.findall(rb"\(((?:\\.|[^\\()])*)\)", written)
+            words.append(b"".join(pieces).decode("latin-1"))
+    return words

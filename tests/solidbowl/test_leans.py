@@ -4,24 +4,25 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_drawing import study
-from test_solid import CHAINS, GAP, NEAR, RAILS, TRACK, One, closed, made, planned
+from test_drawing import study, within_the_frame
+from test_solid import CHAINS, GAP, NEAR, RAILS, TRACK, One, closed, planned
 from test_stepped import STEPPED
 
-from feederscrew.output.solidbowl import drawing_sheet, unrolled_strip
+from feederscrew.output import bowl_sheet
 from feederscrew.solidbowl import cuts, facets, track
 from feederscrew.solidbowl.closed_body import body, pieces
 from feederscrew.solidbowl.exact import exact_body
 from feederscrew.solidbowl.measuring import measures, track_heights, track_width, ways_down
 from feederscrew.solidbowl.plan import SolidOptions
+from feederscrew.tooling.devices.kinds import make_device as device_of
 
 STEEP = replace(TRACK, climb=np.radians(6.5))
-TIP = made("tip", "b", limit=6e-3, text="6 mm")
+TIP = device_of("tip", "b", limit=6e-3, text="6 mm")
 SHAPES = {"cylinder": (TRACK, SolidOptions()), "stepped": (STEEP, replace(STEPPED, left=True))}
 
 
 def bank(degrees):
-    return made("bank", "b", angle=np.radians(degrees), text=f"{degrees} deg")
+    return device_of("bank", "b", angle=np.radians(degrees), text=f"{degrees} deg")
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -30,15 +31,15 @@ def test_a_bank_further_on_twists_the_track(shape, rng):
     solid = body(planned((GAP, bank(20.0)), track=own, asked=asked))
     assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
     plan, whole = solid.plan, facets.unplaced(solid)
-    ((start, end, angle),) = plan.way.leans
-    assert angle == np.radians(20.0) and plan.first < start < end < plan.way.end
+    ((start, end, angle),) = plan.path.leans
+    assert angle == np.radians(20.0) and plan.first < start < end < plan.path.end
     edge = TRACK.width * np.sin(angle) / (end - start)
     assert edge == pytest.approx(np.tan(np.radians(10.0)), rel=1e-9)  # its free edge rises gently
-    for s, y in zip(rng.uniform(start - 2e-3, plan.way.end, 120), rng.uniform(2e-4, 19.7e-3, 120)):
+    for s, y in zip(rng.uniform(start - 2e-3, plan.path.end, 120), rng.uniform(2e-4, 19.7e-3, 120)):
         tilt = np.radians(20.0) * min(max((s - start) / (end - start), 0.0), 1.0)
-        place = plan.way.wall_radius(s) - y * np.cos(tilt), plan.way.angle(s)
+        place = plan.path.wall_radius(s) - y * np.cos(tilt), plan.path.angle(s)
         flat = place[0] * np.array([np.cos(place[1]), np.sin(place[1])])
-        np.testing.assert_allclose(plan.way.plan(s, y), flat, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(plan.path.plan(s, y), flat, rtol=0, atol=1e-12)
         formula = np.tan(own.climb) * s + y * np.sin(tilt)
         assert track_heights(plan, whole, s, y) == pytest.approx(formula, abs=NEAR)
     for s in (start - 1e-3, *(start + (end - start) * np.array([0.3, 0.7])), end + 2e-3):
@@ -54,7 +55,7 @@ def test_the_inner_side_of_the_outlet_hangs_on_a_track_that_leans():
     assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
     plan = solid.plan
     whole, lift = facets.unplaced(solid), plan.width * np.sin(np.radians(43.0))
-    place = plan.way.places(plan.way.end + 0.5 * plan.outlet, plan.width + 0.5e-3)  # on the side's top
+    place = plan.path.places(plan.path.end + 0.5 * plan.outlet, plan.width + 0.5e-3)  # on the side's top
     met = facets.below(whole, [*place[:2], 1.0])
     assert met == pytest.approx(plan.outlet_height + lift + plan.headroom, abs=NEAR)
 
@@ -67,10 +68,10 @@ def test_the_outlet_is_whole_up_to_its_side(degrees, rng):
     made_of, (whole, _) = body(plan), pieces(plan)
     assert made_of.volume * 1e9 == pytest.approx(whole.volume(), rel=1e-6)
     assert facets.unplaced(made_of).volume() == pytest.approx(whole.volume(), rel=1e-6)
-    for s in rng.uniform(plan.way.end + 1e-3, plan.way.end + plan.outlet - 1e-3, 40):
+    for s in rng.uniform(plan.path.end + 1e-3, plan.path.end + plan.outlet - 1e-3, 40):
         y = rng.uniform(16e-3, plan.width - 1e-4)
         met = track_heights(plan, facets.unplaced(made_of), s, y)
-        assert met == pytest.approx(float(plan.way.height(s, y)), abs=NEAR)
+        assert met == pytest.approx(float(plan.path.height(s, y)), abs=NEAR)
 
 
 def test_banks_listed_first_are_those_of_the_whole_track():
@@ -78,8 +79,8 @@ def test_banks_listed_first_are_those_of_the_whole_track():
     assert cuts.banked_height(TRACK, (bank(3.0), bank(6.0), GAP, bank(9.0)), [one]).bank == np.radians(6.0)
     chain = (bank(6.0), GAP, bank(6.0))
     own = cuts.banked_height(TRACK, chain, [one])
-    assert planned(chain, track=own).way.leans == ()
-    ((start, end, angle),) = planned((bank(3.0), GAP, bank(0.0)), track=replace(own, bank=0.05)).way.leans
+    assert planned(chain, track=own).path.leans == ()
+    ((start, end, angle),) = planned((bank(3.0), GAP, bank(0.0)), track=replace(own, bank=0.05)).path.leans
     assert angle == 0.0 and end - start == pytest.approx(0.65 * 18e-3)  # half a room, and gentle enough
 
 
@@ -95,7 +96,7 @@ def test_a_tip_is_a_ledge_beside_a_lower_track(shape):
     ramp = 9e-3 / np.tan(np.radians(15.0))
 
     def found(s, y):
-        place = [*plan.way.plan(s, y), np.tan(own.climb) * s + 4e-3]
+        place = [*plan.path.plan(s, y), np.tan(own.climb) * s + 4e-3]
         return facets.below(whole, place) - np.tan(own.climb) * s
 
     for s in np.linspace(start - 8e-3, end + ramp + 5e-3, 60):
@@ -106,7 +107,7 @@ def test_a_tip_is_a_ledge_beside_a_lower_track(shape):
             assert found(s, y) == pytest.approx(0.0 if s < start else -9e-3, abs=NEAR)
     gap = plan.stretch.cuts[0]
     assert [one.kind for one in plan.stretch.cuts] == ["gap"] and gap.span[0] > ledge.end + ramp
-    assert plan.way.drops == ((start, 9e-3),)
+    assert plan.path.drops == ((start, 9e-3),)
     ways_down(solid)
 
 
@@ -130,21 +131,17 @@ def test_a_yoke_of_banked_rails_lies_below_their_surface():
 
 
 def test_the_sheet_has_what_leans_and_what_drops():
-    chain = (TIP, made("step", "b", limit=4e-3), *CHAINS["blades"], *CHAINS["jets"], bank(12.0))
+    chain = (TIP, device_of("step", "b", limit=4e-3), *CHAINS["blades"], *CHAINS["jets"], bank(12.0))
     solid = body(planned(chain, track=STEEP, asked=STEPPED))
-    paper = drawing_sheet.sheet(study(solid))
-    told = [one.get_text() for one in paper.axes.texts]
-    listed = unrolled_strip.numbered(solid.plan.stretch)
-    assert [row[1] for row in listed][-3:] == [
+    drawing = bowl_sheet.draw_sheets(study(solid))
+    told = drawing.texts(1)
+    listed = bowl_sheet.number_devices(solid.plan)
+    assert [words for words, _, _ in listed] == [
         "step 4 mm down", "ledge 6 wide, track 9 lower; to 35.1 level", "twists to a bank of 12°",
     ]  # fmt: skip
-    for number, (_, words, start, end) in enumerate(listed, start=1):
-        assert told.count(str(number)) >= 2 and words in told  # in the table and on the strip
-        assert f"{1e3 * start:.5g}" in told and f"{1e3 * end:.5g}" in told
-    assert "6.5°, 0° to 12°" in told
-    left, bottom, right, top = drawing_sheet.FRAME
-    for some in paper.axes.collections:
-        places = np.concatenate([path.vertices for path in some.get_paths()])
-        assert (places >= np.array([left, bottom]) - 0.1).all() and (
-            places <= np.array([right, top]) + 0.1
-        ).all()
+    for words, start, end in listed:
+        assert words in told and f"{1e3 * start:.5g}" in told and f"{1e3 * end:.5g}" in told
+    for number in range(1, len(chain) + 1):
+        assert str(number) in told
+    assert "6.5°, 0° to 12°" in drawing.texts(0)
+    within_the_frame(drawing)

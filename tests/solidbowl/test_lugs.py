@@ -12,7 +12,7 @@ from test_solid import CHAINS, TRACK, closed, planned
 from test_stepped import STEEP, STEPPED
 
 from feederscrew.errors import FeederError
-from feederscrew.output.solidbowl import drawing_sheet, tables, views
+from feederscrew.output import bowl_sheet, solidbowl, solidbowl_views
 from feederscrew.part import mass
 from feederscrew.solidbowl import facets, segments
 from feederscrew.solidbowl.closed_body import body, screwed
@@ -83,8 +83,8 @@ def test_lugs_stand_outside_the_wall_and_off_the_devices(name):
                 found_now, before = (facets.first_met(each, *ends)[:1] for each in (whole, old))
                 assert found_now == pytest.approx(before, abs=1e-7) or found_now[0] > 0.043
     if plan.stretch is not None:
-        s = np.linspace(plan.first, plan.way.end + plan.outlet, 200)
-        line = shapely.LineString(plan.way.plan(s, -plan.material.wall))
+        s = np.linspace(plan.first, plan.path.end + plan.outlet, 200)
+        line = shapely.LineString(plan.path.plan(s, -plan.material.wall))
         there = facets.as_planned(plan, found.screws)[:, :2]
         assert line.distance(shapely.points(there)).min() > 0.012
 
@@ -108,14 +108,14 @@ def test_a_bowl_weighs_what_it_does_with_its_lugs_and_screws():
 def test_screws_are_on_the_parts_list_and_in_the_document():
     solid, found, _ = cut("cylinder")
     solid = replace(solid, segments=found)
-    told = tables.document(solid)
+    told = solidbowl.document(solid)
     assert told["screws"] == len(found.screws) > 0 and told["screw"] == "M3 x 16"
-    words = [one.get_text() for one in drawing_sheet.sheet(study(solid)).axes.texts]
+    words = bowl_sheet.draw_sheets(study(solid)).texts(0)
     assert "screws ISO 4762 M3 x 16 with nuts ISO 4032, in lugs of the segments; floor: dowels" in words
     whole = mass.solid(found.joined[0][found.joined[1]])
     assert any(f"{1e9 * whole.volume:.6g} mm³" in one for one in words)
     assert whole.volume > 1.005 * solid.volume
-    plain = tables.document(replace(solid, segments=segments.segments(solid, BED)))
+    plain = solidbowl.document(replace(solid, segments=segments.segments(solid, BED)))
     assert plain["screws"] == 0 and plain["screw"] is None
 
 
@@ -123,17 +123,23 @@ def test_the_views_of_the_sheet_have_the_lugs():
     """From above they stand out of the wall, where nothing was drawn."""
     solid, found, _ = cut("cylinder")
     solid = replace(solid, segments=found)
-    plan, far = solid.plan, 1e3 * (solid.plan.way.radius + solid.plan.material.wall)
-    drawn = views.lines(solid.with_lugs.vertices, solid.with_lugs.faces, views.camera(-90.0, 90.0)) * 1e3
+    plan, far = solid.plan, 1e3 * (solid.plan.path.radius + solid.plan.material.wall)
+    drawn = (
+        solidbowl_views.lines(
+            solid.with_lugs.vertices, solid.with_lugs.faces, solidbowl_views.camera(-90.0, 90.0)
+        )
+        * 1e3
+    )
     at = 1e3 * found.screws[:, :2] + 4.0 * found.lugs[:, 2, :2]
     reach = np.sqrt((drawn**2).sum(axis=-1)).ravel()
     for one in at:
         near = np.sqrt(((drawn.reshape(-1, 2) - one) ** 2).sum(axis=1)) < 6.0
         assert (near & (reach > far + 8.0)).any()
-    paper = drawing_sheet.sheet(study(solid))
-    lines = [one for one in paper.axes.collections if len(one.get_segments()) > len(drawn) // 2]
-    bare = views.lines(solid.vertices, solid.faces, views.camera(-90.0, 90.0))
-    assert any(len(one.get_segments()) == len(drawn) != len(bare) for one in lines) and plan.left
+    edges = [
+        sum(layer == "EDGE" for layer, *_ in bowl_sheet.draw_sheets(study(one)).sheets[0])
+        for one in (solid, replace(solid, segments=None))
+    ]
+    assert edges[0] > edges[1] and plan.left
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -143,7 +149,7 @@ def test_ends_of_seams_without_a_screw_are_said(name):
             ((key(one, along), out) for one, along, out in turned_back(found))}  # fmt: skip
     bare, ends = found.ends
     assert len(seen) == ends - bare
-    told = tables.document(replace(solid, segments=found))
+    told = solidbowl.document(replace(solid, segments=found))
     assert (told["seam_ends"], told["seam_ends_without_screw"]) == (ends, bare)
     said = replace(solid, segments=found).remarks
     assert bool(bare) == any(one.startswith(f"join: {bare} of {ends} ends of seams") for one in said)

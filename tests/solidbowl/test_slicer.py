@@ -8,7 +8,7 @@ import pytest
 from test_solid import CHAINS, planned
 from test_stepped import STEEP
 
-from feederscrew.output.solidbowl import printing
+from feederscrew.output import solid_files
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.plan import SolidOptions
 
@@ -23,7 +23,7 @@ COARSE = ["--layer-height", "1", "--first-layer-height", "1", "--nozzle-diameter
 @pytest.mark.needs("prusa-slicer")
 def test_a_slicer_takes_it_without_repair(tmp_path):
     solid = body(planned(CHAINS["narrowed and rails"], name="pla"))
-    files = {"bowl.stl": printing.stl(solid), "bowl.3mf": printing.threemf(solid, "bowl")}
+    files = {"bowl.stl": solid_files.bowl_stl(solid), "bowl.3mf": solid_files.bowl_3mf(solid, "bowl")}
     for name, content in files.items():
         (tmp_path / name).write_bytes(content)
         told = subprocess.run([SLICER, "--info", name], cwd=tmp_path, capture_output=True, text=True).stdout
@@ -36,7 +36,10 @@ def test_a_slicer_takes_it_without_repair(tmp_path):
 @pytest.mark.needs("prusa-slicer")
 def test_a_slicer_slices_both_files(tmp_path):
     solid = body(planned(CHAINS["gap"], asked=FLAT, track=STEEP, name="pla"))
-    for name, content in (("bowl.stl", printing.stl(solid)), ("bowl.3mf", printing.threemf(solid, "bowl"))):
+    for name, content in (
+        ("bowl.stl", solid_files.bowl_stl(solid)),
+        ("bowl.3mf", solid_files.bowl_3mf(solid, "bowl")),
+    ):
         (tmp_path / name).write_bytes(content)
         done = subprocess.run(
             [SLICER, "--export-gcode", *COARSE, "-o", "bowl.gcode", name],

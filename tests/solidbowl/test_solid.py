@@ -16,29 +16,28 @@ from feederscrew.errors import FeederError
 from feederscrew.machine.drive_sizing import machine_for
 from feederscrew.machine.sizing import Size
 from feederscrew.machine.springs import analyse_springs, centred_mass, rocking
-from feederscrew.output.solidbowl import printing
+from feederscrew.output import solid_files
 from feederscrew.solidbowl import cuts, facets, riding, segments
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.measuring import measures, track_heights, track_width, ways_down
 from feederscrew.solidbowl.plan import SolidOptions, material, plan
-from feederscrew.tooling.devices.kinds import made
-from feederscrew.tooling.devices.kinds import made as device_of
+from feederscrew.tooling.devices.kinds import make_device as device_of
 
 RULES = record(effective({})).sizing
 TRACK = Track(climb=np.radians(3.5), bank=0.0, radius=0.15, width=0.02)
 NEAR = 5e-5  # [m]
-RAILS = made("rails", "b", span=(3e-3, 7e-3))
-GAP = made("gap", "b", limit=9e-3)
+RAILS = device_of("rails", "b", span=(3e-3, 7e-3))
+GAP = device_of("gap", "b", limit=9e-3)
 CHAINS = {
     "none": (),
-    "narrowed and rails": (made("narrowed_track", "b", limit=9e-3, text="9 mm"), RAILS),
+    "narrowed and rails": (device_of("narrowed_track", "b", limit=9e-3, text="9 mm"), RAILS),
     "gap": (GAP,),
-    "canyon, slot": (made("canyon", "b", limit=6e-3), made("slot", "b", span=(8e-3, 12e-3))),
-    "cut out": (made("cut_out", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 8e-3))),),
-    "blades": (made("wiper", "b", limit=6e-3), made("hold_down", "b", limit=8e-3)),
-    "gate": (made("profile", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 5e-3), (0.0, 7e-3))),),
-    "jets": (*(made("jet", "b", nozzle=2e-3, pressure=2e4, height=z) for z in (1e-3, 8e-3)), GAP),
-    "step": (made("step", "b", limit=4e-3), made("gap", "b", limit=5e-3)),
+    "canyon, slot": (device_of("canyon", "b", limit=6e-3), device_of("slot", "b", span=(8e-3, 12e-3))),
+    "cut out": (device_of("cut_out", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 8e-3))),),
+    "blades": (device_of("wiper", "b", limit=6e-3), device_of("hold_down", "b", limit=8e-3)),
+    "gate": (device_of("profile", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 5e-3), (0.0, 7e-3))),),
+    "jets": (*(device_of("jet", "b", nozzle=2e-3, pressure=2e4, height=z) for z in (1e-3, 8e-3)), GAP),
+    "step": (device_of("step", "b", limit=4e-3), device_of("gap", "b", limit=5e-3)),
 }
 
 
@@ -91,26 +90,26 @@ def test_of_other_material(name):
 def test_height_and_width_of_the_track_are_those_of_the_formula(bank, rng):
     solid = body(planned(track=replace(TRACK, bank=np.radians(bank), climb=np.radians(4.0))))
     made, whole = solid.plan, facets.unplaced(solid)
-    s = rng.uniform(0.02, made.way.end, 200)
+    s = rng.uniform(0.02, made.path.end, 200)
     y = rng.uniform(2e-4, TRACK.width - 3e-4, 200)
     found = np.array([track_heights(made, whole, *one) for one in zip(s, y)])
-    formula = np.tan(made.way.climb) * s + y * np.sin(made.way.bank)
+    formula = np.tan(made.path.climb) * s + y * np.sin(made.path.bank)
     np.testing.assert_allclose(found, formula, rtol=0, atol=NEAR)
-    np.testing.assert_allclose(made.way.height(s, y), formula, rtol=0, atol=1e-12)
-    within = s[(s > 0.1) & (s < made.way.end - 0.05)]
+    np.testing.assert_allclose(made.path.height(s, y), formula, rtol=0, atol=1e-12)
+    within = s[(s > 0.1) & (s < made.path.end - 0.05)]
     widths = np.array([track_width(made, whole, one) for one in within])
     np.testing.assert_allclose(widths, TRACK.width, rtol=0, atol=NEAR)
 
 
 def test_a_separation_leads_the_track_down_from_its_place_on():
-    chain = (made("separation", "b", angle=np.radians(-5.0), text="{climb: -5 deg}"), *CHAINS["gap"])
+    chain = (device_of("separation", "b", angle=np.radians(-5.0), text="{climb: -5 deg}"), *CHAINS["gap"])
     solid = body(planned(chain))
     assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
     plan, whole = solid.plan, facets.unplaced(solid)
-    ((bend, climb),) = plan.way.bends
+    ((bend, climb),) = plan.path.bends
     top = np.tan(TRACK.climb) * bend
-    assert plan.first < bend < plan.way.end and climb == np.radians(-5.0)
-    for s in np.linspace(0.3 * bend, plan.way.end - 2e-3, 60):
+    assert plan.first < bend < plan.path.end and climb == np.radians(-5.0)
+    for s in np.linspace(0.3 * bend, plan.path.end - 2e-3, 60):
         formula = np.tan(TRACK.climb) * s if s < bend else top - np.tan(np.radians(5.0)) * (s - bend)
         found = track_heights(plan, whole, s, 15e-3)
         in_gap = any(a - 1e-3 < s - plan.first < b + 1e-3 for a, b in (cut.span for cut in plan.stretch.cuts))
@@ -135,7 +134,7 @@ def test_what_is_measured_is_what_was_planned():
 def test_arcs_keep_within_the_chord():
     for chord in (2e-4, 5e-5, 1e-5):
         made = planned(asked=SolidOptions(chord=chord))
-        assert made.way.radius * (1.0 - np.cos(np.pi / made.segments)) <= chord
+        assert made.path.radius * (1.0 - np.cos(np.pi / made.segments)) <= chord
 
 
 def test_a_cut_is_as_large_as_its_device_says():
@@ -144,7 +143,7 @@ def test_a_cut_is_as_large_as_its_device_says():
         s = made.first + 0.5 * sum(cut.span)
         for y in np.linspace(3e-4, TRACK.width - 3e-4, 60):
             if min(abs(y - low), abs(y - high)) > NEAR:
-                on_track = track_heights(made, whole, s, y) > made.way.height(s, y) - 1e-3
+                on_track = track_heights(made, whole, s, y) > made.path.height(s, y) - 1e-3
                 assert on_track == (not low < y < high)
 
 
@@ -215,7 +214,7 @@ def test_blades_leave_the_clearance_free():
     made = planned((device_of("wiper", "b", limit=6e-3),))
     whole, blade = facets.unplaced(body(made)), made.stretch.blades[0]
     s = made.first + blade.start + 0.5 * blade.thickness
-    at = made.way.places(s, 5e-3)
+    at = made.path.places(s, 5e-3)
     hits = facets.first_met(whole, at + [0, 0, 1e-3], at + [0, 0, 0.05])
     assert hits[0] + 1e-3 == pytest.approx(6e-3, abs=0.1e-3)
 
@@ -226,7 +225,7 @@ def test_a_swept_blade_leans_ahead_and_keeps_its_clearance():
     assert closed(solid) > 0.0
     assert blade.lean == pytest.approx(1.0 / np.tan(np.radians(50.0)), rel=1e-6)
     for y in (2e-3, 18e-3):
-        at = made.way.places(made.first + blade.start + blade.lean * y + 0.5 * blade.thickness, y)
+        at = made.path.places(made.first + blade.start + blade.lean * y + 0.5 * blade.thickness, y)
         hits = facets.first_met(facets.unplaced(solid), at + [0, 0, 1e-3], at + [0, 0, 0.05])
         assert hits[0] + 1e-3 == pytest.approx(6e-3, abs=0.25e-3)
 
@@ -238,20 +237,20 @@ def test_a_nozzle_is_a_hole_through_the_wall(shape):
     plan, whole = solid.plan, facets.unplaced(solid)
     assert [bore.height for bore in plan.stretch.bores] == [1e-3, 8e-3]
     s = plan.first + plan.stretch.bores[1].place
-    theta, turns = float(plan.way.angle(s)), np.linspace(0.1, 2.0 * np.pi, 12)
+    theta, turns = float(plan.path.angle(s)), np.linspace(0.1, 2.0 * np.pi, 12)
     out, ahead = np.array([np.cos(theta), np.sin(theta), 0.0]), np.array([-np.sin(theta), np.cos(theta), 0.0])
     for off, walls in ((0.9e-3, 0), (1.1e-3, 2)):
         for turn in turns:
             beside = off * (np.cos(turn) * ahead + [0.0, 0.0, np.sin(turn)])
-            start = plan.way.places(s, 2e-3) + [0.0, 0.0, 8e-3] + beside
+            start = plan.path.places(s, 2e-3) + [0.0, 0.0, 8e-3] + beside
             assert len(facets.first_met(whole, start, start + 0.02 * out)) == walls
 
 
 def test_rails_are_open_at_their_end():
     made = planned((RAILS,))
     whole = facets.unplaced(body(made))
-    for s in np.linspace(made.first + made.stretch.cuts[0].span[0] + 1e-3, made.way.end + made.outlet, 40):
-        place = made.way.places(s, 5e-3)
+    for s in np.linspace(made.first + made.stretch.cuts[0].span[0] + 1e-3, made.path.end + made.outlet, 40):
+        place = made.path.places(s, 5e-3)
         met = facets.below(whole, place)
         assert met is None or met < place[2] - made.material.plate - made.hanging + 1e-9
 
@@ -263,8 +262,8 @@ def test_a_part_on_the_track_has_its_foot_on_it_and_its_side_on_the_wall(rng):
     corners = half * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     middle = TRACK.radius - np.sqrt(TRACK.radius**2 - half[0] ** 2) + half[1]
     box = SimpleNamespace(axes=np.eye(3), distance=middle, posture=SimpleNamespace(height=half[2]))
-    for s in rng.uniform(0.05, made.way.end - 0.02, 50):
-        points = riding.laid(made, box, corners, s)
+    for s in rng.uniform(0.05, made.path.end - 0.02, 50):
+        points = riding.place_rider(made, box, corners, s)
         to_wall = TRACK.radius - np.hypot(*points[:, :2].T)
         assert -6e-5 < to_wall.min() < 1.2e-4
         feet = points[points[:, 2].argsort()[:4]] * [0.998, 0.998, 1.0]  # not into the wall
@@ -284,9 +283,9 @@ def test_a_part_touches_the_wall_where_the_track_is_banked_or_the_wall_leans(ban
         turn = np.linspace(0.0, 2.0 * np.pi, 49)[:-1]
         corners = 5e-3 * np.array([[x, np.cos(t), np.sin(t)] for x in (-1.4, 1.4) for t in turn])
     box = SimpleNamespace(axes=np.eye(3), distance=4.1e-3, posture=SimpleNamespace(height=half[2]))
-    for s in rng.uniform(0.06, made.way.end - 0.02, 12):
+    for s in rng.uniform(0.06, made.path.end - 0.02, 12):
         off = []
-        for one in facets.as_planned(made, riding.laid(made, box, corners, s)):
+        for one in facets.as_planned(made, riding.place_rider(made, box, corners, s)):
             out = np.array([*one[:2], 0.0]) / np.hypot(*one[:2])
             start = one - 5e-4 * out + [0.0, 0.0, 3e-4]  # not along the track
             off.append(facets.first_met(whole, start, start + 0.1 * out)[0] - 5e-4)
@@ -297,17 +296,17 @@ def test_a_part_touches_the_wall_where_the_track_is_banked_or_the_wall_leans(ban
 def test_a_part_that_hangs_stays_where_its_rails_hold_it():
     made, half = planned((RAILS,)), np.array([3e-3, 2e-3, 9e-3])
     box = SimpleNamespace(axes=np.eye(3), distance=5e-3, posture=SimpleNamespace(height=-4e-3))
-    s = made.way.end - 0.03
-    (middle,) = riding.laid(made, box, np.zeros((1, 3)), s)
-    foot = made.way.places(s, 5e-3)
+    s = made.path.end - 0.03
+    (middle,) = riding.place_rider(made, box, np.zeros((1, 3)), s)
+    foot = made.path.places(s, 5e-3)
     assert np.hypot(*(middle - foot)[:2]) < 4e-4 and half[0] > 0.0
     assert middle[2] - foot[2] == pytest.approx(-4e-3, abs=2e-5)
 
 
 def test_the_same_bytes_twice():
     one, other = (body(planned(CHAINS["narrowed and rails"])) for _ in range(2))
-    assert printing.stl(one) == printing.stl(other)
-    assert printing.threemf(one, "a & b") == printing.threemf(other, "a & b")
+    assert solid_files.bowl_stl(one) == solid_files.bowl_stl(other)
+    assert solid_files.bowl_3mf(one, "a & b") == solid_files.bowl_3mf(other, "a & b")
 
 
 def test_gates_are_parts_of_their_own():
@@ -315,7 +314,7 @@ def test_gates_are_parts_of_their_own():
     assert [name for name, _, _ in solid.gates] == ["gate_1"]
     gate = facets.placed(SimpleNamespace(vertices=solid.gates[0][1], faces=solid.gates[0][2]))
     assert (gate ^ facets.placed(solid)).volume() < 20.0  # [mm3] it stands on the track and in its notch
-    assert b"gate_1" in model_of(printing.threemf(solid, "bowl"))
+    assert b"gate_1" in model_of(solid_files.bowl_3mf(solid, "bowl"))
 
 
 @pytest.mark.parametrize(
@@ -338,7 +337,7 @@ def test_no_dowel_lies_below_a_cut():
     solid = body(planned(CHAINS["gap"], name="pla"))
     found, made = segments.segments(solid, (0.09, 0.09, 0.25)), solid.plan
     ring = np.array(made.stretch.cuts[0].ring) + [made.first, 0.0]
-    cut = made.way.laid(ring, made.chord)
+    cut = made.path.ring_in_bowl(ring, made.chord)
     c, s = np.cos(found.turned), np.sin(found.turned)
     x, y = found.places[:, 0], found.places[:, 1]
     there = shapely.points(np.column_stack([c * x - s * y, s * x + c * y]))
@@ -451,7 +450,7 @@ def test_the_lowest_outlet_that_is_told_has_a_width_to_measure(shape, climb, lea
 
 def test_a_turn_below_a_cut_is_found():
     made = planned(CHAINS["gap"])
-    longer = replace(made, way=replace(made.way, end=made.way.end + 0.3), first=made.first + 0.3)
+    longer = replace(made, way=replace(made.path, end=made.path.end + 0.3), first=made.first + 0.3)
     with pytest.raises(FeederError, match="meets the track at"):
         ways_down(body(longer))
 

@@ -7,22 +7,23 @@ import numpy as np
 import pytest
 from test_drawing import study
 from test_leans import STEEP, bank
-from test_solid import GAP, NEAR, TRACK, One, closed, made, planned
+from test_solid import GAP, NEAR, TRACK, One, closed, planned
 from test_stepped import STEPPED
 
-from feederscrew.output.solidbowl import drawing_sheet
+from feederscrew.output import bowl_sheet
 from feederscrew.solidbowl import cuts, facets, riding, track
 from feederscrew.solidbowl.closed_body import _wall, body
 from feederscrew.solidbowl.exact import exact_body
 from feederscrew.solidbowl.measuring import measures, track_heights, ways_down
 from feederscrew.solidbowl.plan import SolidOptions
+from feederscrew.tooling.devices.kinds import make_device as device_of
 
 LEFT = replace(STEPPED, left=True)
 CYLINDER = replace(TRACK, climb=np.radians(4.5))
 
 
 def groove(degrees):
-    return made("groove", "b", angle=np.radians(degrees), text=f"{{angle: {degrees} deg}}")
+    return device_of("groove", "b", angle=np.radians(degrees), text=f"{{angle: {degrees} deg}}")
 
 
 CASES = {
@@ -47,9 +48,11 @@ def test_both_faces_rise_from_the_foot_by_its_angle(name, rng):
     plan, whole = solid.plan, facets.unplaced(solid)
     ((start, end, lean, opens),) = track.groove_spans(plan)
     assert lean == pytest.approx(0.5 * np.pi - angle) and opens == 18e-3
-    twisted = max([start, *(stop for _, stop, tilt in plan.way.leans if tilt == angle)])
-    for s in rng.uniform(max(start + opens, twisted) + 1e-3, min(end, plan.way.end + plan.outlet) - 1e-3, 40):
-        theta, foot = float(plan.way.angle(s)), plan.way.places(s, 0.0)
+    twisted = max([start, *(stop for _, stop, tilt in plan.path.leans if tilt == angle)])
+    for s in rng.uniform(
+        max(start + opens, twisted) + 1e-3, min(end, plan.path.end + plan.outlet) - 1e-3, 40
+    ):
+        theta, foot = float(plan.path.angle(s)), plan.path.places(s, 0.0)
         out = np.array([np.cos(theta), np.sin(theta), 0.0])
         for along in (1e-3, 9e-3, 16e-3):  # up the wall's face, 17 mm wide
             place = foot + along * (np.cos(angle) * out + [0.0, 0.0, np.sin(angle)])
@@ -95,18 +98,21 @@ def test_a_part_lies_in_the_groove_at_both_faces(name, degrees):
     box = SimpleNamespace(axes=np.eye(3), distance=5e-3, posture=SimpleNamespace(height=half[2]))
     start, end, _, opens = track.groove_spans(plan)[0]
     assert angle == np.radians(degrees)
-    for s in np.linspace(start + opens + 8e-3, min(end, plan.way.end) - 8e-3, 5):
+    for s in np.linspace(start + opens + 8e-3, min(end, plan.path.end) - 8e-3, 5):
         off = []
-        for one in facets.as_planned(plan, riding.laid(plan, box, corners, s)):
+        for one in facets.as_planned(plan, riding.place_rider(plan, box, corners, s)):
             out = np.array([*one[:2], 0.0]) / np.hypot(*one[:2])
             start = one - 3e-4 * out + [0.0, 0.0, 3e-4]  # not along the track
             met = facets.first_met(whole, start, start + 0.1 * out)  # nothing above the face
             off += [met[0] - 3e-4] if met else []
         assert min(off) == pytest.approx(3e-4 / np.tan(angle), abs=1.2e-4)
-        assert track_heights(plan, whole, s, 8e-3) == pytest.approx(float(plan.way.height(s, 8e-3)), abs=NEAR)
+        assert track_heights(plan, whole, s, 8e-3) == pytest.approx(
+            float(plan.path.height(s, 8e-3)), abs=NEAR
+        )
 
 
 def test_the_sheet_has_the_groove():
     solid = grooved("before a bank")[0]
-    told = [one.get_text() for one in drawing_sheet.sheet(study(solid)).axes.texts]
+    drawing = bowl_sheet.draw_sheets(study(solid))
+    told = [*drawing.texts(0), *drawing.texts(1)]
     assert "groove: the wall leans back by 50°" in told and "6.5°, 0° to 40° to 0°" in told

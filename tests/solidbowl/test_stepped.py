@@ -13,7 +13,7 @@ from feederscrew.solidbowl.measuring import measures, track_heights, track_width
 from feederscrew.solidbowl.plan import SolidOptions
 from feederscrew.solidbowl.segments import overhangs
 from feederscrew.solidbowl.track import fillet
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 
 STEEP = replace(TRACK, climb=np.radians(4.5))
 STEPPED = SolidOptions(shape="stepped")
@@ -50,7 +50,7 @@ def test_height_width_and_wall_are_those_of_the_formula(stepped, rng):
 
 
 def test_each_turn_lies_beside_the_one_before(stepped):
-    way = stepped.plan.way
+    way = stepped.plan.path
     for theta in (0.0, -0.5, -1.0):
         inner, outer = (float(way.wall_radius(way.at(theta - turn))) for turn in (2.0 * np.pi, 0.0))
         assert outer - TRACK.width * np.exp(way.flare * theta) > inner
@@ -130,23 +130,26 @@ def test_faults(track, asked, devices, line):
 
 
 def down(angle):
-    return (made("separation", "b", angle=np.radians(angle), text=f"{{climb: {angle} deg}}"), *CHAINS["gap"])
+    return (
+        make_device("separation", "b", angle=np.radians(angle), text=f"{{climb: {angle} deg}}"),
+        *CHAINS["gap"],
+    )
 
 
 def test_the_wall_goes_down_with_the_track_behind_a_separation():
     solid = body(planned(down(-4.0), track=replace(TRACK, climb=np.radians(5.5)), asked=STEPPED, turns=1.8))
     assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
     plan, whole = solid.plan, facets.unplaced(solid)
-    ((bend, _),) = plan.way.bends
+    ((bend, _),) = plan.path.bends
     for s in np.linspace(bend - 0.05, plan.first + plan.stretch.cuts[0].span[0] - 1e-3, 30):
         after = max(s - bend, 0.0)
         formula = np.tan(np.radians(5.5)) * (s - after) - np.tan(np.radians(4.0)) * after
         assert track_heights(plan, whole, s, 5e-3) == pytest.approx(formula, abs=NEAR)
-        place, theta = plan.way.places(s, 5e-3) + [0.0, 0.0, 2e-3], plan.way.angle(s)
+        place, theta = plan.path.places(s, 5e-3) + [0.0, 0.0, 2e-3], plan.path.angle(s)
         met = facets.first_met(whole, place, place + 0.1 * np.array([np.cos(theta), np.sin(theta), 0.0]))
         assert met[0] == pytest.approx(5e-3, abs=NEAR)
-        foot = plan.stairs.sections(plan.way, [theta], plan.underside)[0, -1]
-        assert foot == pytest.approx([plan.way.wall_radius(s), formula], abs=1e-9)
+        foot = plan.stairs.sections(plan.path, [theta], plan.underside)[0, -1]
+        assert foot == pytest.approx([plan.path.wall_radius(s), formula], abs=1e-9)
     assert set(ways_down(solid).values()) == {"the turn of the track before"}
 
 
@@ -172,7 +175,7 @@ def test_a_printed_slope_needs_no_support():
 
 def test_the_track_hangs_over_from_its_chamfer_to_its_edge():
     solid = body(planned(name="pla"))
-    plan, way = solid.plan, solid.plan.way
+    plan, way = solid.plan, solid.plan.path
     inner, outer = way.radius - plan.across, way.radius - fillet(plan)
     from_floor = way.end - plan.material.plate / np.tan(way.climb)  # before, its underside is in the floor
     area = 0.5 * (outer**2 - inner**2) * from_floor / way.radius

@@ -1,11 +1,15 @@
 """The study of the rate: which orientation it is of, where none is asked for."""
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from feederscrew import load, read_bowl
+from feederscrew.resting.aspects import find
+from feederscrew.studies import rate as rates
 from feederscrew.studies.rate import most_frequent, rate
 
 PARTS = Path(__file__).parents[2] / "parts"
@@ -30,3 +34,21 @@ def test_no_other_orientation_has_a_higher_rate():
     across = rate(part, bowl, "A", heading=np.pi / 2.0).rate
     assert chosen.orientations.aspects[chosen.row] == "A"
     assert chosen.efficiency > 1.5 * across.efficiency
+
+
+@pytest.mark.parametrize(("first", "fed"), [(0.45, [400]), (0.36, [400, None])])
+def test_few_parts_show_the_likeliest_aspect_where_its_share_is_clear(monkeypatch, first, fed):
+    """Intervals of 400 parts reach 0.05 to either side (Wilson): 0.45 is clear of 0.33, 0.36 is not."""
+    part, counts = load(PARTS / "lbracket_30x20x15.stl"), []
+    at_rest = find(part)
+    p = np.zeros(len(at_rest.names))
+    p[:3] = first, 0.33, 0.67 - first
+    answer = replace(at_rest, recommended=replace(at_rest.recommended, p=p))
+
+    def shares(part, bowl, *, fed=None, **_):
+        counts.append(fed)
+        return rates.Shares(answer, fed=True)
+
+    monkeypatch.setattr(rates, "shares", shares)
+    assert rates.likeliest(part, read_bowl()).likeliest == at_rest.names[0]
+    assert counts == fed

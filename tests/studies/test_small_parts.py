@@ -11,7 +11,7 @@ from feederscrew import bowl as bowls
 from feederscrew.designing.record import DesignRequest, DesignStudy
 from feederscrew.output import headings as headings_output
 from feederscrew.output import rate as rate_output
-from feederscrew.output.tooling import tables as tooling_tables
+from feederscrew.output import tooling_tables
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.studies.headings import headings
 from feederscrew.studies.rate import rate

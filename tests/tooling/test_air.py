@@ -21,7 +21,7 @@ from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.studies import tooling as tooling_study
 from feederscrew.tooling import sensor_views, verdicts
-from feederscrew.tooling.devices.kinds import KINDS, made
+from feederscrew.tooling.devices.kinds import KINDS, make_device
 from feederscrew.tooling.devices.pneumatics import Nozzles
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.orientations import orientations, travel_speed, travelling
@@ -51,7 +51,7 @@ def test_what_friction_cannot_hold_does_not_drift_but_slides():
 
 
 def test_a_jet_over_what_lies_flat_blows_off_what_stands():
-    jet = made("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
+    jet = make_device("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
     assert verdict(jet, FLAT, EVERY).passes == 1.0 and verdict(jet, FLAT, EVERY).sure
     assert verdict(jet, TALL, EVERY).passes == 0.0 and jet.factor(DeviceEncounter(TALL, EVERY)) > 2.0
     high = replace(jet, height=0.015)  # a longer lever tips it sooner
@@ -87,11 +87,11 @@ def test_the_force_that_tips_is_weight_times_foot_over_height():
 
 
 def test_a_sorter_needs_room_that_a_steeper_way_makes():
-    sorter = made("sorter", "here", like=(FLAT.aspect, FLAT.heading, 5e-4))
+    sorter = make_device("sorter", "here", like=(FLAT.aspect, FLAT.heading, 5e-4))
     alone = stream.needed_spacing([sorter], EVERY, BOWL)
     widest = max(one.width for one in EVERY)
     assert alone == pytest.approx(2e-3 + 2 * math.tan(math.radians(11)) * widest + travel_speed(BOWL) * 0.05)
-    steep = made("separation", "here", angle=math.radians(-6.0))
+    steep = make_device("separation", "here", angle=math.radians(-6.0))
     faster = travel_speed(replace(BOWL, track=replace(BOWL.track, climb=math.radians(-6.0))))
     behind = stream.needed_spacing([steep, sorter], EVERY, BOWL)
     shortest = min(one.length for one in EVERY)
@@ -105,14 +105,14 @@ def test_a_sorter_needs_room_that_a_steeper_way_makes():
 
 def test_a_bank_that_comes_first_begins_at_the_entry_and_holds_what_rolls():
     ball = replace(FLAT, may_roll_back=True)
-    bank = made("bank", "here", angle=math.radians(8.0))
+    bank = make_device("bank", "here", angle=math.radians(8.0))
     (held,) = at_entry([ball], [bank])
     assert not held.may_roll_back and held.shift == pytest.approx(
         ball.posture.height * math.tan(math.radians(8))
     )
     (low,) = at_entry([ball], [replace(bank, angle=math.radians(0.5))])
     assert low.may_roll_back
-    jet = made("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
+    jet = make_device("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
     assert at_entry([ball], [jet, bank]) == (ball,)
 
 
@@ -204,7 +204,7 @@ def test_a_laser_over_the_middle_tells_an_open_end_from_a_closed_one():
     met = DeviceEncounter(ends[0], every)
     assert met.differs(ends[1], "outline") < 1e-6 and met.differs(ends[1], "side") < 1e-6
     assert met.differs(ends[1], "relief") > 4e-3 and met.differs(ends[0], "relief") == 0.0
-    sorter = made("sorter", "here", like=(ends[0].aspect, ends[0].heading, 5e-4), sees="relief")
+    sorter = make_device("sorter", "here", like=(ends[0].aspect, ends[0].heading, 5e-4), sees="relief")
     assert [verdict(sorter, one, every).passes for one in ends] == [1.0, 0.0]
 
 
@@ -223,7 +223,7 @@ def test_the_relief_of_a_wedge_is_that_of_its_section():
     turn = np.array([[1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 2.0]]) / 2.0
     askew = wedge @ turn.T  # the line grazes its rearmost edge, over less than a micrometre
     grazed = sensor_views.area(askew, faces, "relief", line=float(askew[:, 1].min()) + 1e-7)
-    assert 0.0 < grazed.area < 1e-8 and sensor_views.apart(grazed, seen) > 1e-3
+    assert 0.0 < grazed.area < 1e-8 and sensor_views.outline_distance(grazed, seen) > 1e-3
 
 
 def test_an_outline_is_turned_until_it_fits_and_no_further():
@@ -236,8 +236,8 @@ def test_an_outline_is_turned_until_it_fits_and_no_further():
 
     for degrees in (-9.0, -2.2, 0.0, 3.4, 9.9):
         assert sensor_views.fitted(askew(degrees), bar) < 3e-5
-    assert sensor_views.apart(askew(3.4), bar) > 1e-3  # what it was without
-    left = sensor_views.apart(askew(5.0), bar)
+    assert sensor_views.outline_distance(askew(3.4), bar) > 1e-3  # what it was without
+    left = sensor_views.outline_distance(askew(5.0), bar)
     assert sensor_views.fitted(askew(15.0), bar) == pytest.approx(left, abs=2e-4)
     other = shapely.box(-0.023, 0.0, 0.0, 0.007)
     assert sensor_views.fitted(askew(3.0), other) == pytest.approx(1e-3, abs=5e-5)
@@ -245,8 +245,8 @@ def test_an_outline_is_turned_until_it_fits_and_no_further():
 
 def test_what_fits_at_no_turn_is_not_turned_any_further(monkeypatch):
     """Bent bars of several sizes: the answer is that of the whole search, and most need a third of it."""
-    calls, apart = [], sensor_views.apart
-    monkeypatch.setattr(sensor_views, "apart", lambda *both: calls.append(both) or apart(*both))
+    calls, apart = [], sensor_views.outline_distance
+    monkeypatch.setattr(sensor_views, "outline_distance", lambda *both: calls.append(both) or apart(*both))
     bent = shapely.Polygon(
         [(0, 0), (-0.023, 0), (-0.023, 0.014), (-0.019, 0.014), (-0.019, 0.006), (0, 0.006)]
     )
@@ -275,7 +275,7 @@ def test_what_is_seen_from_the_side_may_come_askew():
     longer = one.length * (np.cos(turn) - 1.0) + one.width * np.sin(turn)
     assert DeviceEncounter(one).askew("side") == pytest.approx(longer, abs=4e-5)
     assert DeviceEncounter(one).askew("outline") == DeviceEncounter(one).askew("height") == 0.0
-    sorter = made("sorter", "here", like=(one.aspect, one.heading, 2e-3), sees="side")
+    sorter = make_device("sorter", "here", like=(one.aspect, one.heading, 2e-3), sees="side")
     assert verdict(sorter, one, EVERY).margin == pytest.approx(2e-3 - longer - 1e-4, abs=5e-5)
     assert verdict(sorter, replace(one, carry=1e-3), EVERY).margin == verdict(sorter, one, EVERY).margin
     (_, side, _, _) = type(sorter).around(DeviceEncounter(one, EVERY), 2.5e-4, "here")

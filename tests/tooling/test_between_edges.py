@@ -14,7 +14,7 @@ from feederscrew.part import load
 from feederscrew.rates.tipping import is_surely_gone
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.base import UNSURE
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.falling import _at, _spans, fits_as_it_lies, lets_go, may_rest, surely_gone
 from feederscrew.tooling.fates import course
 from feederscrew.tooling.isolating.chain import margin_at
@@ -84,7 +84,7 @@ def test_what_is_hollow_may_catch_an_edge():
     ],
 )
 def test_a_gap_shorter_than_the_part_may_hold_it(block, kind, limit, goes):
-    device = made(kind, "test", limit=limit)
+    device = make_device(kind, "test", limit=limit)
     assert lets_go(device, block) == goes
     assert is_surely_gone([device], [block], [[1.0, 0.0]]) == [goes]
     assert is_surely_gone([device], [block], [[1.0, 1.0]]) == [True]  # it passes
@@ -102,16 +102,16 @@ def test_a_part_fits_through_a_hole_as_it_lies_with_room_all_round(block, length
 def test_a_tall_part_does_not_drop_through_a_hole_as_long_as_it_is(block):
     """It tips ahead as it comes, and its diagonal is longer than the hole."""
     corners = ((0.0, 0.0), (20.55e-3, 0.0), (20.55e-3, 13e-3), (0.0, 13e-3))
-    hole = made("cut_out", "test", corners=corners)
+    hole = make_device("cut_out", "test", corners=corners)
     assert fits_as_it_lies(block, np.array(corners))
     assert not lets_go(hole, replace(block, grip=1.5))
-    wide = made("cut_out", "test", corners=tuple((1.1 * x, y) for x, y in corners))
+    wide = make_device("cut_out", "test", corners=tuple((1.1 * x, y) for x, y in corners))
     assert lets_go(wide, block)
 
 
 def test_a_blade_with_a_sweep_may_lay_over_what_turns_along_it(block):
     """At mu = 0.6 over the side 6 mm beside the weight, from 10 mm on."""
-    low, high = (made("wiper", "test", limit=limit, sweep=0.5) for limit in (9.9e-3, 10.1e-3))
+    low, high = (make_device("wiper", "test", limit=limit, sweep=0.5) for limit in (9.9e-3, 10.1e-3))
     assert is_surely_gone([low], [block], [[1.0, 0.0]]) == [True]
     assert is_surely_gone([high], [block], [[1.0, 0.0]]) == [False]
     assert is_surely_gone([replace(high, sweep=0.5 * np.pi)], [block], [[1.0, 0.0]]) == [
@@ -124,7 +124,7 @@ def test_a_design_does_not_count_on_what_may_catch_the_edge_of_a_canyon():
     bracket, bowl = load("parts/lbracket_30x20x15.stl"), bowls.read(None, [])
     every = travelling(orientations(bracket, find(bracket), bowl.track), bowl)
     legs, alone = (next(one for one in every if one.name == name) for name in ("A@90", "A@270"))
-    canyon = made("canyon", "c", limit=18.85e-3)
+    canyon = make_device("canyon", "c", limit=18.85e-3)
     assert verdict(canyon, legs, every).margin < -3e-3 and not surely_gone(canyon, legs)
     assert margin_at(canyon, legs, every) == -UNSURE and margin_at(canyon, alone, every) > 1e-3
     assert margin_at(canyon, replace(legs, grip=0.0), every) < -3e-3  # placed, not travelling

@@ -18,7 +18,7 @@ from feederscrew.studies.rate import rate, shares
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling import clearing, falling, footprints, sensor_views
 from feederscrew.tooling.devices import openings
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.devices.pneumatics import Nozzles
 from feederscrew.tooling.falling import falls_through, may_lay_aside
 from feederscrew.tooling.fates import course
@@ -54,10 +54,10 @@ def test_only_what_a_face_sweeps_blocks_the_track():
     class One:
         track, distance = replace(BOWL.track, width=0.02), 0.005
 
-    swept = made("wiper", "here", limit=6e-3, sweep=math.radians(30.0), friction=0.3)
+    swept = make_device("wiper", "here", limit=6e-3, sweep=math.radians(30.0), friction=0.3)
     speed = clearing.along_blade(BOWL, math.radians(30.0), 0.3)
     assert clearing.seconds(swept, One, BOWL) == pytest.approx(0.015 / speed)
-    assert clearing.seconds(made("gap", "here", limit=6e-3), One, BOWL) == 0.0
+    assert clearing.seconds(make_device("gap", "here", limit=6e-3), One, BOWL) == 0.0
 
 
 class Slab:
@@ -162,12 +162,12 @@ def test_a_sorter_blows_off_what_looks_other_than_its_own_by_more_than_its_play(
     every = orientations(part, find(part), replace(BOWL.track, width=0.04))
     along, across = (next(one for one in every if abs(one.length - size) < 1e-6) for size in (0.02, 0.012))
     own = {"like": (along.aspect, along.heading, 5e-4)}
-    sorter = made("sorter", "here", **own)
+    sorter = make_device("sorter", "here", **own)
     assert verdict(sorter, along, every).margin == pytest.approx(4e-4)  # its play without the blur
     assert verdict(sorter, across, every).margin == pytest.approx(5e-4 - 8e-3 + 1e-4, abs=2e-4)
-    weak = made("sorter", "here", **own, time=1e-4)
+    weak = make_device("sorter", "here", **own, time=1e-4)
     assert verdict(weak, across, every).passes == 1.0 and not verdict(weak, across, every).sure
-    blind = made("sorter", "here", **own, sees="height")
+    blind = make_device("sorter", "here", **own, sees="height")
     assert verdict(blind, across, every).passes == verdict(blind, along, every).passes == 1.0
 
 
@@ -208,7 +208,9 @@ def test_a_cutter_leaves_round_corners_and_a_smaller_hole():
         next(k for k, one in enumerate(every) if abs(one.length - size) < 1e-6 and one.height < 0.006)
         for size in (0.02, 0.012)
     )
-    square = made("cut_out", "here", corners=((0.0, 0.0), (0.013, 0.0), (0.013, 0.0115), (0.0, 0.0115)))
+    square = make_device(
+        "cut_out", "here", corners=((0.0, 0.0), (0.013, 0.0), (0.013, 0.0115), (0.0, 0.0115))
+    )
     given = design_task(every, np.ones(len(every)) / len(every), along, 2.5e-4, 1.0, ())
     cut = chain.judge_cut(every, along, square, np.arange(len(every)) == across, square, square)
     assert min(cut.margin_pass, cut.margin_reject) > 2.5e-4
@@ -224,7 +226,9 @@ def test_a_swept_face_may_lay_what_is_slender_across_the_track_over_to_the_side(
     part = shapes.part(shapes.box(20, 12, 4))
     every = travelling(orientations(part, find(part), BOWL.track), BOWL)
     plate = next(one for one in every if one.length > 0.0199 and abs(one.height - 0.012) < 1e-6)
-    square, swept = (made("wiper", "here", limit=6e-3, **own) for own in ({}, {"sweep": math.radians(30.0)}))
+    square, swept = (
+        make_device("wiper", "here", limit=6e-3, **own) for own in ({}, {"sweep": math.radians(30.0)})
+    )
     assert verdict(square, plate, every).sure and not verdict(swept, plate, every).sure
     least = 2e-3 / math.cos(math.radians(30.0)) / 0.6
     assert may_lay_aside(plate, 1.01 * least, math.radians(30.0))
@@ -268,7 +272,7 @@ def test_what_is_not_sure_to_be_returned_counts_against_a_chain():
     part, bowl = shapes.part(shapes.box(6, 6, 20)), bowls.read(None, ["track.width=30 mm"])
     every = travelling(orientations(part, find(part), bowl.track), bowl)
     tall = np.array([one.height > 0.019 for one in every])
-    low, high = made("wiper", "w", limit=10e-3), made("gap", "g", limit=22e-3)
+    low, high = make_device("wiper", "w", limit=10e-3), make_device("gap", "g", limit=22e-3)
     flow = course([low], every)
     np.testing.assert_array_equal(flow.doubtful, np.where(tall, flow.starts, 0.0))
     assert not course([low, high], every).doubtful[tall].any()  # the gap is sure of it
@@ -297,5 +301,5 @@ def test_what_rolls_along_a_bank_may_miss_every_device():
     every = travelling(orientations(part, find(part), bowl.track), bowl)
     across = np.array([one.along_a_bank for one in every])
     assert across.any() and not across.all()
-    flow = course([made("gap", "g", limit=2e-3)], every)
+    flow = course([make_device("gap", "g", limit=2e-3)], every)
     np.testing.assert_allclose(flow.doubtful[across], flow.starts[across] - flow.leaving.sum(axis=1)[across])

@@ -7,13 +7,13 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
-from feederscrew.output.tooling import bowl_file, tables
+from feederscrew.output import tooling_tables as tables
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import steady
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling.devices.kinds import made as device_of
+from feederscrew.tooling.devices.kinds import make_device as device_of
 from feederscrew.tooling.isolating import chain, hole_search, proposal
 from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.isolating.design import design, place
@@ -166,7 +166,7 @@ def test_a_headed_pin_is_fed_hanging():
     assert study.design.efficiency == pytest.approx(study.shares[lying].sum() / study.shares.sum())
     assert study.design.hopeful == pytest.approx(1.0) and study.design.purity_is_least
     assert study.design.reasons == ("no verdict is sure to return A@90: the purity counts it as leaving",)
-    assert ", purity at least 81.86 %, by " in bowl_file.bowl_file(study, ())
+    assert ", purity at least 81.86 %, by " in tables.bowl_file(study, ())
     assert "leave so, at least 81.86 % of what leaves" in tables.remarks(study)[0]
     leaves, across = (
         study.shares[lying].sum(),
@@ -266,7 +266,7 @@ def test_the_design_is_found_behind_the_devices_of_the_bowl(bracket, tmp_path):
     path = tmp_path / "bowl.yaml"
     path.write_text("track: {radius: 150 mm, width: 200 mm}\ndevices:\n  - wiper: 19 mm\n")
     study = tooling(part, bowls.read(path), every[low].aspect, heading=every[low].heading, verdicts=500)
-    text = bowl_file.bowl_file(study, bowls.settings(path))
+    text = tables.bowl_file(study, bowls.settings(path))
     assert text.count("wiper: 19 mm") == 1
     path.write_text(text)
     made = rate(part, bowls.read(path), every[low].aspect, heading=every[low].heading).rate

@@ -13,7 +13,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.tooling import track_sections
 from feederscrew.tooling.devices.base import UNSURE
 from feederscrew.tooling.devices.blades import SQUARE_FACE_RAD
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.isolating import chain
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
@@ -40,7 +40,9 @@ def still(mesh, height):
 )
 def test_a_swept_blade_leans_ahead_from_the_wall_to_the_free_edge(sweep, along, ahead):
     """Its face is 20 mm / sin(sweep) long and ends 20 mm / tan(sweep) farther ahead than it begins."""
-    wiper = made("wiper", "test", limit=6e-3, sweep=np.radians(sweep), contour=((0.0, 6e-3), (9e-3, 4e-3)))
+    wiper = make_device(
+        "wiper", "test", limit=6e-3, sweep=np.radians(sweep), contour=((0.0, 6e-3), (9e-3, 4e-3))
+    )
     every = awkward.lying()
     standing = wiper.standing(NARROW, every)
     (blade,) = standing.blades
@@ -59,7 +61,7 @@ def test_a_swept_blade_leans_ahead_from_the_wall_to_the_free_edge(sweep, along, 
 
 @pytest.mark.parametrize(("sweep", "ahead"), [(30.0, 1.732051), (50.0, 0.839100), (90.0, 0.0)])
 def test_a_swept_blade_covers_a_leaning_strip_of_the_track(sweep, ahead):
-    wiper = made("wiper", "test", limit=6e-3, sweep=np.radians(sweep))
+    wiper = make_device("wiper", "test", limit=6e-3, sweep=np.radians(sweep))
     corners = [(70e-3, 0.0), (71.5e-3, 0.0), (71.5e-3 + 20e-3 * ahead, 20e-3), (70e-3 + 20e-3 * ahead, 20e-3)]
     np.testing.assert_allclose(wiper.footprint(70e-3, 20e-3, 1.5e-3), corners, rtol=1e-6)
 
@@ -68,12 +70,13 @@ def test_of_a_very_wide_track_five_millimetres_beside_parts_and_cuts_are_drawn()
     track, every = replace(BOWL.track, radius=0.15, width=1.0), awkward.lying()
     widest = max(one.width for one in every)
     drawn = [
-        track_sections.build_section(track, [made("slot", "test", span=(2e-3, reach))], every).width
+        track_sections.build_section(track, [make_device("slot", "test", span=(2e-3, reach))], every).width
         for reach in (0.5 * widest, 2.0 * widest)
     ]
     assert drawn == pytest.approx([widest + 5e-3, 2.0 * widest + 5e-3])
     assert (
-        track_sections.build_section(NARROW, [made("slot", "test", span=(2e-3, 3e-3))], every).width == 20e-3
+        track_sections.build_section(NARROW, [make_device("slot", "test", span=(2e-3, 3e-3))], every).width
+        == 20e-3
     )
 
 
@@ -88,7 +91,7 @@ def test_a_jet_is_felt_as_long_as_it_meets_the_tall_end_of_a_part(pressure, leas
     """
     steps = [(0, 0), (16, 0), (16, 4), (4, 4), (4, 20), (0, 20)]
     lying = [one for one in still(shapes.prism(steps, 8.0), 20) if one.length > 15.9e-3 and one.width < 9e-3]
-    jet = made("jet", "test", nozzle=0.8e-3, pressure=pressure, height=12e-3)
+    jet = make_device("jet", "test", nozzle=0.8e-3, pressure=pressure, height=12e-3)
     share = jet.jet.thrust / (1024e-9 * STEEL * GRAVITY * 4.0 / 12.0)
     assert len(lying) == 2 and least < share < most  # the tall end ahead, or behind
     told = {0.2: 36e-3 * (1.0 - share), 0.5: 0.0, 4.5: -UNSURE, 9.0: -36e-3}[least]
@@ -111,7 +114,7 @@ def test_a_slope_under_a_jet_is_held_by_the_friction_of_what_presses_it_down():
         if one.length > 59e-3 and one.distance == pytest.approx(1e-3 * middle, rel=1e-3)
     ]
     side = (16.0 - middle) / 10.0  # of its weight, at 10 mm: less than what friction holds
-    jet = made("jet", "test", nozzle=0.5e-3, pressure=2e4, height=10e-3)
+    jet = make_device("jet", "test", nozzle=0.5e-3, pressure=2e4, height=10e-3)
     taken = np.sin(slope) ** 2 - 0.6 * np.sin(slope) * np.cos(slope)
     force = area * 60e-9 * STEEL * GRAVITY * min(0.6, side)
     assert jet.factor(DeviceEncounter(one)) == pytest.approx(taken * jet.jet.thrust / force, rel=0.03)
@@ -123,8 +126,8 @@ def test_a_gap_is_not_sure_of_what_it_is_as_much_too_long_for_as_the_part_travel
     for one in awkward.lying():
         if one.falls_off or one.gap <= 0.0:
             continue
-        more = made("gap", "test", limit=one.gap).more(DeviceEncounter(one))
-        within, beyond = (made("gap", "test", limit=one.gap + more + step) for step in (-1e-6, 1e-6))
+        more = make_device("gap", "test", limit=one.gap).more(DeviceEncounter(one))
+        within, beyond = (make_device("gap", "test", limit=one.gap + more + step) for step in (-1e-6, 1e-6))
         assert not verdict(within, one).sure and verdict(beyond, one).sure
         assert verdict(beyond, one).margin == pytest.approx(-1e-6, rel=1e-3)
         judged += abs(one.carry - one.carry_ahead) > 1e-5
@@ -143,7 +146,7 @@ def rod():
 def test_over_a_slot_a_rod_rides_that_sinks_no_deeper_than_the_drive_lifts_it(rod, wide, rides):
     """0.2 mm of 3 mm: w = 2 sqrt(9 - 2.8^2) = 2.15 mm."""
     y, half = rod.distance, 0.5e-3 * wide
-    found = verdict(made("slot", "test", span=(y - half, y + half)), replace(rod, climbs=0.2e-3))
+    found = verdict(make_device("slot", "test", span=(y - half, y + half)), replace(rod, climbs=0.2e-3))
     assert found.passes == 0.0 and found.sure != rides
     assert found.margin == -UNSURE if rides else found.margin < -1e-3
 
@@ -156,7 +159,7 @@ def test_over_a_shorter_hole_a_rod_only_dips(rod, wide, rides):
     2 mm over the edge, of which it travels 1 mm.
     """
     low, high = rod.distance - 0.5e-3 * wide, rod.distance + 0.5e-3 * wide
-    hole = made("cut_out", "test", corners=((0.0, low), (12e-3, low), (12e-3, high), (0.0, high)))
+    hole = make_device("cut_out", "test", corners=((0.0, low), (12e-3, low), (12e-3, high), (0.0, high)))
     found = verdict(hole, replace(rod, climbs=0.1e-3, carry=1e-3))
     assert found.passes == 0.0 and found.margin == pytest.approx(-UNSURE if rides else -1e-3, rel=1e-2)
     assert hole.goes_on(40e-3) == 12e-3
@@ -165,14 +168,14 @@ def test_over_a_shorter_hole_a_rod_only_dips(rod, wide, rides):
 @pytest.mark.parametrize(("low", "high", "beside"), [(15, 25, 0), (20, 25, 1), (-5, 0, 1), (-5, 5, 0)])
 def test_a_hole_may_reach_beyond_the_track_but_not_lie_beside_it(low, high, beside):
     corners = ((0.0, 1e-3 * low), (9e-3, 1e-3 * low), (5e-3, 1e-3 * high))
-    assert len(made("cut_out", "test", corners=corners).misfits(20e-3)) == beside
+    assert len(make_device("cut_out", "test", corners=corners).misfits(20e-3)) == beside
 
 
 @pytest.mark.parametrize(("limit", "left"), [(12e-3, (12e-3, 20e-3)), (20e-3, None), (25e-3, None)])
 def test_a_ledge_as_wide_as_the_track_takes_nothing_from_it(limit, left):
     for kind in ("narrowed_track", "pressure_break"):
-        assert made(kind, "test", limit=limit).span_on(NARROW) == left
-    assert made("narrowed_track", "test", limit=limit).acts(NARROW) == (left is not None)
+        assert make_device(kind, "test", limit=limit).span_on(NARROW) == left
+    assert make_device("narrowed_track", "test", limit=limit).acts(NARROW) == (left is not None)
 
 
 def test_a_design_tries_first_what_drops_parts_and_last_what_stands_in_their_way():
@@ -188,7 +191,7 @@ def test_what_no_width_carries_fails_on_every_ledge_by_as_far_as_its_foot_reache
     every = orientations(part, find(part), BOWL.track)
     tall = next(one for one in every if one.height > 19e-3 and one.length > 11e-3)
     one = replace(tall, track=replace(BOWL.track, bank=np.radians(30.0)))
-    found = verdict(made("narrowed_track", "test", limit=11e-3), one)
+    found = verdict(make_device("narrowed_track", "test", limit=11e-3), one)
     assert found.passes == 0.0
     assert found.margin == pytest.approx(
         -1e-3 * np.hypot(6.0, 2.5 + 10.0 * np.tan(np.radians(30.0))), rel=1e-3
@@ -204,7 +207,7 @@ def test_what_no_width_carries_fails_on_every_ledge_by_as_far_as_its_foot_reache
 )  # fmt: skip
 def test_a_face_sweeps_off_below_a_right_angle_less_its_angle_of_friction(rod, sweep, own, fate):
     """atan 0.6 = 31 deg of the track, atan 0.5 = 27 deg of the face; one straight across stops all."""
-    wiper = made(
+    wiper = make_device(
         "wiper",
         "test",
         limit=1e-3,
@@ -216,7 +219,7 @@ def test_a_face_sweeps_off_below_a_right_angle_less_its_angle_of_friction(rod, s
 
 def test_below_a_blade_is_what_its_lower_edge_leaves():
     """Over 20 mm: 6 mm all along, or from 6 to 4 mm over 9 mm and 4 mm from there on."""
-    plain = made("wiper", "test", limit=6e-3)
+    plain = make_device("wiper", "test", limit=6e-3)
     assert plain.opening((), 20e-3).area == pytest.approx(120e-6)
     falling = replace(plain, contour=((0.0, 6e-3), (9e-3, 4e-3)))
     assert falling.opening((), 20e-3).area == pytest.approx(45e-6 + 44e-6)
@@ -224,6 +227,6 @@ def test_below_a_blade_is_what_its_lower_edge_leaves():
 
 @pytest.mark.parametrize(("at_wall", "tallest"), [(6e-3, 60e-3), (90e-3, 20e-3)])
 def test_a_blade_is_higher_than_every_orientation_and_than_its_own_edge(rod, at_wall, tallest):
-    wiper = made("wiper", "test", limit=6e-3, contour=((0.0, at_wall), (9e-3, 4e-3)))
+    wiper = make_device("wiper", "test", limit=6e-3, contour=((0.0, at_wall), (9e-3, 4e-3)))
     (blade,) = wiper.standing(NARROW, (rod, replace(rod, height=tallest))).blades
     assert blade.solid.bounds[3] > max(at_wall, tallest) and blade.solid.is_valid

@@ -12,15 +12,16 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew.errors import Faults
 from feederscrew.mechanics.wall import lying_in_groove
+from feederscrew.output import tooling_drawing as drawing
+from feederscrew.output import tooling_figures
 from feederscrew.output.rate import remarks
-from feederscrew.output.tooling import drawing, profile
 from feederscrew.part import load
 from feederscrew.rates import stream
 from feederscrew.rates.well_oriented import velocity
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate, shares
 from feederscrew.tooling import solid
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.fates import at_entry, course, leading
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.track_sections import build_section, worst_passage
@@ -32,7 +33,7 @@ DEG = math.radians(1.0)
 
 
 def groove(angle):
-    return made("groove", "here", angle=angle * DEG, text=f"{{angle: {angle:g} deg}}")
+    return make_device("groove", "here", angle=angle * DEG, text=f"{{angle: {angle:g} deg}}")
 
 
 def known(part):
@@ -83,7 +84,7 @@ def test_what_turns_is_not_sure_and_counts_as_what_it_turns_into(dowel):
     assert found.leaving[row, lying] == 1.0 and found.leaving[row, row] == 0.0
     seen = worst_passage(groove(30.0), upright[row], upright)
     assert seen.after.name == "A@0" and seen.after.groove == 30.0 * DEG
-    assert profile.turned_into(seen) == "turns into A@0, not sure"
+    assert tooling_figures.turned_words(seen) == "turns into A@0, not sure"
 
 
 def test_a_place_is_known_though_the_track_leans_otherwise(dowel):
@@ -115,7 +116,7 @@ def test_a_round_part_is_sure_in_a_groove_and_counts_in_full(dowel):
 def test_a_bank_brings_to_the_wall_only_what_does_not_roll_along_it(dowel):
     """A set screw across a bank of 6 deg came 0.8 mm off the wall in 6 of 6 trials, and fell."""
     part, _ = dowel
-    bank = made("bank", "devices", angle=np.radians(6.0), text="6 deg")
+    bank = make_device("bank", "devices", angle=np.radians(6.0), text="6 deg")
     study = rate(part, BOWL, "A", rule="csa", devices=(bank,))
     found = study.rate.orientations
     sure = {one.name: bool(found.sure[k]) for k, one in enumerate(found.lying) if one.aspect == "A"}
@@ -133,13 +134,13 @@ def test_friction_acts_as_over_the_cosine(angle):
     assert there.friction.kinetic == pytest.approx(mu.kinetic * more)
     assert there.friction.backward == pytest.approx([one * more for one in mu.backward])
     assert there.track.bank == 0.0 and there.track.climb == BOWL.track.climb
-    back = stream.on_stretch(BOWL, made("bank", "b", angle=5.0 * DEG).onward(one))
+    back = stream.on_stretch(BOWL, make_device("bank", "b", angle=5.0 * DEG).onward(one))
     assert back.friction is BOWL.friction and back.track.bank == 5.0 * DEG
 
 
 def test_a_queue_travels_as_in_the_groove_that_is_listed_first(dowel):
     _, every = dowel
-    steep = made("separation", "s", angle=-6.0 * DEG)
+    steep = make_device("separation", "s", angle=-6.0 * DEG)
     lying = at_entry(every, [groove(40.0), steep])
     assert stream.queueing(BOWL, lying).track.climb == BOWL.track.climb
     there = replace(BOWL, friction=stream.on_stretch(BOWL, lying[0]).friction)
@@ -148,10 +149,10 @@ def test_a_queue_travels_as_in_the_groove_that_is_listed_first(dowel):
 
 
 def test_a_groove_begins_at_the_entry_and_a_bank_ends_it():
-    bank, steep = made("bank", "b", angle=6.0 * DEG), made("separation", "s", angle=-4.0 * DEG)
+    bank, steep = make_device("bank", "b", angle=6.0 * DEG), make_device("separation", "s", angle=-4.0 * DEG)
     assert leading([groove(30.0), steep, bank]) == (groove(30.0), steep)
     assert leading([bank, groove(30.0), bank]) == (bank, groove(30.0))
-    assert leading([made("gap", "g", limit=1e-3), bank]) == ()
+    assert leading([make_device("gap", "g", limit=1e-3), bank]) == ()
 
 
 def read(tmp_path, *lines):
@@ -181,13 +182,17 @@ def test_faults_of_a_groove(tmp_path, lines, fault):
 def test_it_is_read_as_written_and_a_bank_lets_devices_follow(tmp_path):
     first, bank, gap = read(tmp_path, "groove: {angle: 35 deg}", "bank: 6 deg", "gap: 4 mm")
     assert first.angle == pytest.approx(35.0 * DEG) and first.label == "groove {angle: 35 deg}"
-    assert first.told() == {"angle_deg": pytest.approx(35.0)}
+    assert first.document_values() == {"angle_deg": pytest.approx(35.0)}
     assert (first.grooved, bank.grooved, gap.grooved) == (True, False, None)
 
 
 def test_its_section_is_closed_and_has_the_other_face(dowel):
     _, every = dowel
-    chain = (groove(30.0), made("bank", "b", angle=6.0 * DEG), made("gap", "g", limit=5e-3, text="5 mm"))
+    chain = (
+        groove(30.0),
+        make_device("bank", "b", angle=6.0 * DEG),
+        make_device("gap", "g", limit=5e-3, text="5 mm"),
+    )
     section = build_section(BOWL.track, chain, every)
     (begin, first, lean), (_, end, upright) = section.walls
     assert (begin, end, upright) == (0.0, section.length, 0.0) and lean == pytest.approx(30.0 * DEG)
@@ -207,16 +212,16 @@ def test_its_section_is_closed_and_has_the_other_face(dowel):
 def test_its_drawing_has_a_line_and_its_angle(dowel):
     _, every = dowel
     section = build_section(BOWL.track, (groove(30.0),), every)
-    layers = {one.name: one for one in drawing.layers(section)}
-    assert len(layers["SLOPE"].rings) == 1
-    assert any("groove {angle: 30 deg}" in text for text, _ in layers["TEXT"].texts)
+    made, _, _ = drawing.draw(section)
+    assert sum(layer == "SLOPE" for layer, *_ in made.sheets[0]) == 1
+    assert "30 deg" in " ".join(made.texts())
 
 
 @pytest.mark.parametrize("angle", [20.0, 45.0, 58.0])
 def test_its_picture_has_the_part_between_both_faces(dowel, angle):
     _, every = dowel
     one = groove(angle).onward(named(every, "A@0"))
-    shown, line = profile.along(one, 20.0, 20.0)
+    shown, line = tooling_figures.profile_along_track(one, 20.0, 20.0)
     _, (x1, z1), (x2, z2) = line
     assert z1 == 0.0 and math.degrees(math.atan2(z2, x2 - x1)) == pytest.approx(angle)
     middle = shown.centroid

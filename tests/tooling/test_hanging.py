@@ -10,7 +10,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.falling import hangs_free
 from feederscrew.tooling.fates import course
 from feederscrew.tooling.orientations import Hanging, neck, orientations
@@ -32,7 +32,7 @@ def pin():
 
 def rails(every, width=SLOT):
     along = next(one for one in every if one.length > 0.02 and one.height < 0.012)
-    return made("rails", "test", span=(along.distance - 0.5 * width, along.distance + 0.5 * width))
+    return make_device("rails", "test", span=(along.distance - 0.5 * width, along.distance + 0.5 * width))
 
 
 def test_what_hangs_by_one_head_is_one_orientation(pin):
@@ -54,10 +54,10 @@ def test_what_hangs_by_one_head_is_one_orientation(pin):
 @pytest.mark.parametrize(
     ("device", "margin"),
     [
-        (made("hold_down", "test", limit=4.5e-3), 0.5e-3),
-        (made("wiper", "test", limit=3.8e-3), -0.2e-3),
-        (made("gap", "test", limit=3.5e-3), 0.5e-3),
-        (made("gap", "test", limit=4.3e-3), -0.3e-3),
+        (make_device("hold_down", "test", limit=4.5e-3), 0.5e-3),
+        (make_device("wiper", "test", limit=3.8e-3), -0.2e-3),
+        (make_device("gap", "test", limit=3.5e-3), 0.5e-3),
+        (make_device("gap", "test", limit=4.3e-3), -0.3e-3),
     ],
 )
 def test_devices_behind_rails_judge_what_hangs(pin, device, margin):
@@ -73,14 +73,14 @@ def test_devices_behind_rails_judge_what_hangs(pin, device, margin):
 def test_rails_may_narrow_and_widen(pin):
     first, last = rails(pin).span
     for by, margin in ((0.5e-3, 0.5e-3), (-1.5e-3, 0.5e-3), (-2.5e-3, -0.5e-3), (1.2e-3, -0.2e-3)):
-        other = made("rails", "test", span=(first + by, last - by))
+        other = make_device("rails", "test", span=(first + by, last - by))
         found = course([rails(pin), other], pin)
         assert found.verdicts[1][len(pin)].margin == pytest.approx(margin, abs=3e-5)
 
 
 def test_what_lies_over_the_slot_stands_beside_it_from_there_on(pin):
     across = next(k for k, one in enumerate(pin) if one.height > 0.023)
-    wide, gap = rails(pin, 8e-3), made("gap", "test", limit=4e-3)
+    wide, gap = rails(pin, 8e-3), make_device("gap", "test", limit=4e-3)
     assert course([gap], pin).leaving[across].sum() == 1.0  # half of 10 mm
     assert course([wide], pin).leaving[across].sum() == 1.0
     assert course([wide, gap], pin).leaving[across].sum() == 0.0  # 3 mm of the disc beside the slot
@@ -108,7 +108,7 @@ def test_a_conical_head_rests_on_its_cone():
     every = orientations(part, find(part), track)
     row = next(k for k, one in enumerate(every) if one.length > 0.015)
     span = every[row].distance - 3e-3, every[row].distance + 3e-3
-    hung = course([made("rails", "test", span=span)], every).states[-1]
+    hung = course([make_device("rails", "test", span=span)], every).states[-1]
     assert hung.name == "hanging"
     assert hung.height == pytest.approx(2.5e-3, abs=1e-4)  # the cone is 6 mm wide 2.5 mm below its top
     assert len(hung.foot.rings) == 2
@@ -116,9 +116,9 @@ def test_a_conical_head_rests_on_its_cone():
 
 
 def test_air_does_not_blow_off_what_rails_hold_and_a_groove_has_no_place_behind_them(pin, tmp_path):
-    jet = made("jet", "test", nozzle=2e-3, pressure=1e5, height=2e-3)
+    jet = make_device("jet", "test", nozzle=2e-3, pressure=1e5, height=2e-3)
     along = next(one for one in pin if one.length > 0.02 and one.height < 0.012)
-    sorter = made("sorter", "test", like=(along.aspect, along.heading, 1e-3), sees="height")
+    sorter = make_device("sorter", "test", like=(along.aspect, along.heading, 1e-3), sees="height")
     for device in (jet, sorter):
         found = course([rails(pin), device], [replace(one, grip=0.6, speed=0.02, swing=0.06) for one in pin])
         assert found.leaving[:, -1].sum() == pytest.approx(2.0)  # head ahead and head behind
@@ -131,7 +131,7 @@ def test_air_does_not_blow_off_what_rails_hold_and_a_groove_has_no_place_behind_
 @pytest.mark.parametrize(("near", "sure"), [(3.05e-3, False), (3.15e-3, True)])  # head 5 mm, shank 2 mm
 def test_a_head_that_touches_the_wall_may_wedge(pin, near, sure):
     along = next(one for one in pin if one.length > 0.02 and one.height < 0.012)
-    device = made("rails", "test", span=(near, near + SLOT), lead=(1e-3, near + SLOT, 0.01, 0.01))
+    device = make_device("rails", "test", span=(near, near + SLOT), lead=(1e-3, near + SLOT, 0.01, 0.01))
     found = verdict(device, replace(along, grip=0.1), pin)
     assert found.hangs and found.sure == sure
 

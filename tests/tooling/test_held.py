@@ -11,7 +11,7 @@ from feederscrew import bowl as bowls
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.isolating import tracks
 from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.orientations import orientations, travelling
@@ -48,7 +48,7 @@ def test_a_groove_stands_in_where_the_bank_would_be_steep_for_what_lies_along():
 def test_nothing_is_added_where_the_track_leans_or_nothing_rolls():
     assert angles(UPRIGHT, 0.5) == []
     assert angles(replace(ALONG, track=replace(ALONG.track, bank=0.01)), 0.5) == []
-    assert angles(ALONG, 0.5, before=(made("bank", "b", angle=0.1),)) == []
+    assert angles(ALONG, 0.5, before=(make_device("bank", "b", angle=0.1),)) == []
     assert angles(ALONG, 0.5, constraints=DesignConstraints(without=("bank",))) == []
 
 

@@ -10,7 +10,7 @@ from feederscrew.bowl.record import Track
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.tooling import falling
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
 from feederscrew.tooling.verdicts import UNSURE, verdict
 
@@ -33,9 +33,9 @@ def pin():
 def test_a_blade_lays_a_pin_over_from_a_height_on(pin, low, lays):
     """z = mu L + b (1 - mu^2) / mu = 0.5 6 mm + 3 mm 0.75 / 0.5 = 7.5 mm."""
     assert falling.may_lay_over(pin, low) == lays
-    margin = verdict(made("wiper", "here", limit=low), pin).margin
+    margin = verdict(make_device("wiper", "here", limit=low), pin).margin
     assert margin == pytest.approx(-UNSURE if lays else low - 20e-3)
-    free = made("wiper", "here", limit=7.6e-3)
+    free = make_device("wiper", "here", limit=7.6e-3)
     assert verdict(free, replace(pin, grip=0.0)).margin == pytest.approx(-12.4e-3)  # one that is only placed
 
 
@@ -48,9 +48,11 @@ def test_a_climb_helps_the_blade_and_a_rough_track_sticks(pin):
 
 def test_an_opening_above_the_part_lays_it_over_as_a_blade_does(pin):
     corners = ((0.0, 0.0), (9e-3, 0.0), (9e-3, 7.6e-3), (0.0, 7.6e-3))
-    assert verdict(made("profile", "here", corners=corners), pin).margin == -UNSURE
+    assert verdict(make_device("profile", "here", corners=corners), pin).margin == -UNSURE
     narrow = ((0.0, 0.0), (4e-3, 0.0), (4e-3, 30e-3), (0.0, 30e-3))  # met at the foot: it stands
-    assert verdict(made("profile", "here", corners=narrow), pin).margin == pytest.approx(-2e-3, rel=1e-3)
+    assert verdict(make_device("profile", "here", corners=narrow), pin).margin == pytest.approx(
+        -2e-3, rel=1e-3
+    )
 
 
 @pytest.mark.parametrize(("grip", "wedges"), [(0.57, False), (0.585, True)])
@@ -68,8 +70,8 @@ def test_a_part_that_leans_on_the_wall_dips_by_its_angle():
     """At climbs = 0.3 mm: 0.3 (2 13 - 6.5) / 4 = 1.4625 mm."""
     block = replace(lying(shapes.box(22, 13, 6), 13), climbs=3e-4)
     assert falling.wall_holds(block, 4e-3) == pytest.approx(1.4625e-3)
-    near = verdict(made("canyon", "here", limit=block.canyon + 1.2e-3), block).margin
-    beyond = verdict(made("canyon", "here", limit=block.canyon + 2.0e-3), block).margin
+    near = verdict(make_device("canyon", "here", limit=block.canyon + 1.2e-3), block).margin
+    beyond = verdict(make_device("canyon", "here", limit=block.canyon + 2.0e-3), block).margin
     assert near == -UNSURE and beyond == pytest.approx(0.3 * 19.5e-3 / (block.canyon + 2e-3) * 1e-3 - 2e-3)
 
 
@@ -87,7 +89,7 @@ def test_a_part_leans_on_the_wall_as_high_as_it_is_there():
 def test_the_margin_of_what_returns_is_that_of_the_first_device_that_does():
     part = shapes.part(shapes.box(20, 12, 5))
     kinds = (("wiper", 8e-3), ("gap", 10.5e-3), ("wiper", 4e-3))
-    chain = [made(kind, "here", limit=limit) for kind, limit in kinds]
+    chain = [make_device(kind, "here", limit=limit) for kind, limit in kinds]
     known = stream.follow_orientations(part, find(part), TRACK, chain)
     along = next(k for k, one in enumerate(known.lying) if one.height < 6e-3 and one.length > 0.015)
     assert known.margins[along, 1:] == pytest.approx([3e-3, -0.5e-3, -1e-3], rel=1e-2)

@@ -11,7 +11,7 @@ from feederscrew.bowl.record import Track
 from feederscrew.resting.aspects import find
 from feederscrew.tooling import falling, verdicts
 from feederscrew.tooling.devices.base import UNSURE
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import head_first, orientations, place
 from feederscrew.tooling.verdicts import verdict
 
@@ -53,7 +53,7 @@ def pin():
 def test_what_an_opening_holds_by_a_quarter_of_a_millimetre_wears_off(pin, held, stands):
     """Held up at its foot a pin stands before the gate; if that edge is gone, its top is pushed over."""
     corners = ((0.0, 0.0), (6e-3 - held, 0.0), (6e-3 - held, 12e-3), (0.0, 12e-3))
-    margin = verdict(made("profile", "test", corners=corners), pin).margin
+    margin = verdict(make_device("profile", "test", corners=corners), pin).margin
     assert margin == (pytest.approx(-8e-3, abs=1e-4) if stands else -UNSURE)
 
 
@@ -74,7 +74,7 @@ def test_a_head_that_comes_first_wedges_where_the_sides_are_steeper_than_frictio
     slot, radius = 6e-3, 5e-3
     angle = np.arccos(0.5 * slot / radius)
     span = (headed.distance - 0.5 * slot, headed.distance + 0.5 * slot)
-    device = made("rails", "test", span=span)
+    device = make_device("rails", "test", span=span)
     found = verdict(device, replace(headed, grip=np.tan(angle + lean + np.pi / 64 * (1 if lean > 0 else -1))))
     free = verdict(device, replace(headed, grip=0.0))
     assert free.margin == pytest.approx(2e-3, rel=0.01)  # 6 mm lets 4 mm down and holds 10 mm
@@ -93,7 +93,7 @@ def test_beyond_a_ledge_a_margin_is_the_least_of_what_it_lacks_and_what_turns_it
             limit = share * one.balcony
             lacks = one.balcony - limit
             _, certain = verdicts.beyond_ledge(one, every, limit)
-            found = verdict(made("tip", "test", limit=limit), one, every).margin
+            found = verdict(make_device("tip", "test", limit=limit), one, every).margin
             assert found <= min(lacks, certain) + 1e-12
             assert min(abs(found - lacks), abs(found - certain)) < 1e-12
             seen.add(bool(lacks < certain))
@@ -200,8 +200,8 @@ def test_the_rear_side_is_a_barrier_of_its_own_and_a_face_holds_what_its_momentu
         points = one.posture.solid.vertices - one.posture.solid.centre_of_mass
         seen = points @ np.array([one.axes[0], -one.axes[2]]).T  # ahead and down
         assert turn.lift == pytest.approx(lifted(seen, 1.0), abs=2e-8)
-        assert turn.back == pytest.approx(lifted(seen, -1.0), abs=2e-8)
-        uneven.append(abs(turn.lift - turn.back) / one.height)
+        assert turn.rear_lift == pytest.approx(lifted(seen, -1.0), abs=2e-8)
+        uneven.append(abs(turn.lift - turn.rear_lift) / one.height)
     assert max(uneven) > 0.05
 
 

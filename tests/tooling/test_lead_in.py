@@ -34,8 +34,8 @@ def test_a_slot_begins_as_wide_as_its_lead_in_and_narrows(devices):
     ring = 1e3 * rails.outline_on(None, 0.2)
     assert ring[:4] == pytest.approx(np.array([[0, 3], [40, 3], [70, 4.4], [200, 4.4]]))
     assert ring[4:] == pytest.approx(np.array([[200, 11.45], [70, 11.45], [40, 12], [0, 12]]))
-    assert rails.told()["span_mm"] == pytest.approx([4.4, 11.45])
-    assert rails.told()["lead_in"]["taper_mm"] == pytest.approx(30.0)
+    assert rails.document_values()["span_mm"] == pytest.approx([4.4, 11.45])
+    assert rails.document_values()["lead_in"]["taper_mm"] == pytest.approx(30.0)
 
 
 def test_rails_written_anew_are_read_as_they_were(devices):

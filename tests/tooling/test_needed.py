@@ -8,10 +8,10 @@ import shapes
 import trimesh
 
 from feederscrew import bowl as bowls
-from feederscrew.output.tooling import tables
+from feederscrew.output import tooling_tables as tables
 from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.isolating import chain, proposal
 from feederscrew.tooling.isolating.proposal import design_task, propose
 from feederscrew.tooling.orientations import orientations, travelling
@@ -56,7 +56,7 @@ def block():
 
 
 def cut(every, wanted, kind, **values):
-    device = made(kind, "design", **values)
+    device = make_device(kind, "design", **values)
     must = np.array([chain.margin_at(device, one, every) <= -MARGIN for one in every])
     return chain.judge_cut(every, wanted, device, must, device, device), must
 

@@ -60,7 +60,7 @@ def ravine(tmp_path, monkeypatch):
     folder.mkdir()
     (folder / "ravine.py").write_text(FILE)
     monkeypatch.setattr(devices, "__path__", [*devices.__path__, str(folder)])
-    kinds.found()
+    kinds.register_kinds()
     trimesh.creation.box((0.02, 0.012, 0.005)).apply_scale(1e3).export(tmp_path / "block.stl")
     (tmp_path / "bowl.yaml").write_text("track: {width: 30 mm}\ndevices:\n  - ravine: 8 mm\n")
     yield tmp_path

@@ -9,12 +9,12 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.output.tooling import bowl_file
+from feederscrew.output import tooling_tables
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling import verdicts
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.isolating import design, tracks
 from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.orientations import orientations, travelling
@@ -35,8 +35,8 @@ def block():
 
 
 def leaning(angle):
-    groove = made("groove", "design", angle=math.radians(angle), text=f"{{angle: {angle} deg}}")
-    return groove, made("bank", "design", angle=math.radians(6.0), text="6 deg")
+    groove = make_device("groove", "design", angle=math.radians(angle), text=f"{{angle: {angle} deg}}")
+    return groove, make_device("bank", "design", angle=math.radians(6.0), text="6 deg")
 
 
 def test_a_dowel_leaves_out_of_the_groove_in_which_what_lies_across_turns():
@@ -95,10 +95,10 @@ def test_what_falls_off_has_a_track_as_wide_as_it_is(tmp_path):
     assert f"the track has to be {1e3 * found.width:g} mm wide" in found.reasons
     path = tmp_path / "tooling.yaml"
     path.write_text(
-        bowl_file.bowl_file(study, bowls.settings(None, ["track.width=9 mm", "track.bank=0 deg"]))
+        tooling_tables.bowl_file(study, bowls.settings(None, ["track.width=9 mm", "track.bank=0 deg"]))
     )
     assert bowls.read(path).track.width == pytest.approx(found.width, abs=1e-12)
-    path.write_text(bowl_file.bowl_file(study, bowls.settings(None, [])))
+    path.write_text(tooling_tables.bowl_file(study, bowls.settings(None, [])))
     assert bowls.read(path).track.width == pytest.approx(found.width, abs=1e-12)
     assert (
         tooling(BLOCK, narrow, "A", heading=math.pi / 2, rule="csa", verdicts=1, vary=False).design.width
@@ -111,7 +111,7 @@ def test_a_narrower_track_lets_a_pulse_blow_off_what_is_heavy(block):
     assert tracks.widths(every, shares, 0, 2.5e-4) == []  # 9.4 g fly off 25 mm
     heavy = tuple(replace(one, posture=replace(one.posture, mass=0.1)) for one in every)
     (width,) = tracks.widths(heavy, shares, 0, 2.5e-4)
-    sorter = made("sorter", "design", like=(heavy[0].aspect, heavy[0].heading, 2.5e-4))
+    sorter = make_device("sorter", "design", like=(heavy[0].aspect, heavy[0].heading, 2.5e-4))
     ways = [tracks._blown(sorter, one, heavy) for one in heavy[1:]]
     assert width == pytest.approx(math.floor(1e3 * min(ways)) * 1e-3) and heavy[0].width < width < 25e-3
     there = [replace(one, track=replace(one.track, width=width)) for one in heavy]
@@ -128,7 +128,7 @@ def test_a_jet_meets_the_end_of_a_part_that_is_higher_than_its_middle():
     steps = [(0, 0), (16, 0), (16, 4), (4, 4), (4, 9), (0, 9)]  # [mm] a tall end behind or ahead
     every, _ = coming(shapes.part(shapes.prism(steps, 8.0)))
     one = max((k for k in every if k.height < 9.5e-3 and k.length > 15e-3), key=lambda k: k.height)
-    jet = made("jet", "j", nozzle=2e-3, pressure=5e4, height=7e-3)
+    jet = make_device("jet", "j", nozzle=2e-3, pressure=5e4, height=7e-3)
     met = DeviceEncounter(one, every)
     assert jet.jet.push(one, every)[0] == 0.0 and jet.most(met) > 2.0 * jet.factor(met) > 0.0
     pressures = [replace(jet, pressure=float(pressure)) for pressure in np.geomspace(1e2, 1e5, 60)]

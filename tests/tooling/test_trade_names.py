@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from feederscrew.tooling.devices.kinds import KINDS, made
+from feederscrew.tooling.devices.kinds import KINDS, make_device
 
 CORNERS = ((0.0, 0.0), (12e-3, 3e-3), (14e-3, 9e-3))
 
@@ -33,7 +33,7 @@ CORNERS = ((0.0, 0.0), (12e-3, 3e-3), (14e-3, 9e-3))
     ],
 )
 def test_a_device_has_a_name_of_the_trade_and_a_value_in_words(kind, values, name, words):
-    device = made(kind, "here", **values).rewritten()
+    device = make_device(kind, "here", **values).rewritten()
     assert (device.name, device.full_name, device.value_words) == (name, name, words)
 
 
@@ -48,7 +48,7 @@ def test_a_device_has_a_name_of_the_trade_and_a_value_in_words(kind, values, nam
 )
 def test_a_vision_reject_says_what_sees_what_it_keeps_and_what_it_rejects(sees, name, what):
     like, also = ("A", np.radians(187.672), 8.35e-3), (("A", np.radians(353.592)), ("B", np.radians(359.8)))
-    device = made("sorter", "here", like=like, also=also, sees=sees).rewritten()
+    device = make_device("sorter", "here", like=like, also=also, sees=sees).rewritten()
     assert device.full_name == name
     keeps = "keeps A at heading 188 and 354 deg and B at heading 0 deg"
     words = f"{keeps}, rejects {what} that differ by more than 8.35 mm"

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
 from feederscrew.tooling import verdicts
-from feederscrew.tooling.devices.kinds import KINDS, made
+from feederscrew.tooling.devices.kinds import KINDS, make_device
 from feederscrew.tooling.fates import course
 from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.isolating.design import design
@@ -121,7 +121,7 @@ def test_a_block_that_pitches_twice_lies_as_before(sides, size):
 
 def test_a_step_is_a_matrix_of_shares_that_grows_with_its_height(lying):
     heights = [0.1e-3, 1e-3, 4e-3, 8e-3, 15e-3, 25e-3]
-    found = course([made("step", "test", limit=h) for h in heights], lying)
+    found = course([make_device("step", "test", limit=h) for h in heights], lying)
     np.testing.assert_allclose(found.matrices.sum(axis=2), 1.0)
     np.testing.assert_allclose(found.matrices[0], np.eye(len(lying)))  # lower than every barrier
     stay = np.einsum("dii->di", found.matrices)
@@ -133,23 +133,23 @@ def test_a_step_is_a_matrix_of_shares_that_grows_with_its_height(lying):
     assert onto == turn.onto and share == pytest.approx(0.5)
     assert margin == pytest.approx(-0.5 * (turn.sure - turn.lift))
     assert not found.decided[tall]
-    assert course([made("step", "test", limit=8e-3)], lying).decided[tall]
+    assert course([make_device("step", "test", limit=8e-3)], lying).decided[tall]
 
 
 def test_a_ledge_turns_what_its_weight_lies_beyond(lying):
-    found = course([made("tip", "test", limit=4e-3)], lying)
+    found = course([make_device("tip", "test", limit=4e-3)], lying)
     for k, one in enumerate(lying):
         beyond = one.distance > 4e-3
         assert beyond or found.matrices[0][k, k] == 1.0
         assert beyond or found.verdicts[0][k].margin == pytest.approx(abs(one.balcony - 4e-3))
     k = pick(lying, A, B)  # its middle is 2.5 mm from the wall
-    assert course([made("tip", "test", limit=2e-3)], lying).matrices[0][k, k] == 0.0
-    soft = course([made("tip", "test", limit=2.6e-3)], lying, sigma=1e-4).matrices[0]
+    assert course([make_device("tip", "test", limit=2e-3)], lying).matrices[0][k, k] == 0.0
+    soft = course([make_device("tip", "test", limit=2.6e-3)], lying, sigma=1e-4).matrices[0]
     assert soft[k, k] == pytest.approx(0.5 * math.erfc(-1.0 / math.sqrt(2.0)), abs=2e-3)
 
 
 def test_turning_devices_do_not_commute_with_those_that_return(lying):
-    step, wiper = made("step", "test", limit=8e-3), made("wiper", "test", limit=15e-3)
+    step, wiper = make_device("step", "test", limit=8e-3), make_device("wiper", "test", limit=15e-3)
     k, down = pick(lying, B, A), pick(lying, A, B)
     assert course([wiper, step], lying).leaving[k].sum() == 0.0
     first = course([step, wiper], lying)

@@ -16,7 +16,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.tooling import footprints
 from feederscrew.tooling.devices import openings
 from feederscrew.tooling.devices.base import share
-from feederscrew.tooling.devices.kinds import KINDS, made
+from feederscrew.tooling.devices.kinds import KINDS, make_device
 from feederscrew.tooling.orientations import orientations, place
 from feederscrew.tooling.verdicts import verdict
 
@@ -207,7 +207,7 @@ def test_beside_a_round_edge_a_skew_foot_is_carried_by_what_a_circle_leaves_of_i
         assert beyond(one, 0.0, 0.99 * one.balcony) < 0.0 < beyond(one, 0.0, 1.01 * one.balcony)
         for part in (0.7, 1.2):
             strip = part * one.canyon
-            found = verdict(made("slot", "test", span=(0.0, strip)), one).margin
+            found = verdict(make_device("slot", "test", span=(0.0, strip)), one).margin
             assert found == pytest.approx(beyond(one, strip, one.track.width), abs=2e-6)
             assert (found > 0.0) == (part < 1.0)
         judged += 1

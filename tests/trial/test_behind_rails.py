@@ -11,7 +11,7 @@ import trimesh
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import Hanging
 from feederscrew.tooling.verdicts import DeviceEncounter
 from feederscrew.trial import course, queue
@@ -37,8 +37,8 @@ def tried(part, bowl, devices, which, parts=4):
 @pytest.mark.parametrize(("clearance", "passes"), [(5e-3, True), (2e-3, False)])
 def test_a_hold_down_over_the_heads_does_as_its_rule_says(clearance, passes):
     bowl = awkward.bowl("track.radius=0.15 m", "track.bank=6 deg")
-    rails = made("rails", "r", span=(2.25e-3, 6.65e-3), lead=(1e-3, 6.95e-3, 20e-3, 10e-3))
-    devices = (rails, made("hold_down", "h", limit=clearance))
+    rails = make_device("rails", "r", span=(2.25e-3, 6.65e-3), lead=(1e-3, 6.95e-3, 20e-3, 10e-3))
+    devices = (rails, make_device("hold_down", "h", limit=clearance))
     aspects, known, rows, seen = tried(
         HEADED, bowl, devices, lambda one: one.height < 9e-3 and one.length > 0.012
     )
@@ -59,8 +59,8 @@ def test_a_hold_down_over_the_heads_does_as_its_rule_says(clearance, passes):
 def test_rails_hold_what_a_swept_wiper_would_clear():
     """The head stands 3 mm over the rails: a wiper at 2 mm stops it, and cannot sweep it off them."""
     bowl = awkward.bowl("track.radius=0.15 m", "track.bank=6 deg")
-    rails = made("rails", "r", span=(2.25e-3, 6.65e-3), lead=(1e-3, 6.95e-3, 20e-3, 10e-3))
-    devices = (rails, made("wiper", "w", limit=2e-3, sweep=0.5))
+    rails = make_device("rails", "r", span=(2.25e-3, 6.65e-3), lead=(1e-3, 6.95e-3, 20e-3, 10e-3))
+    devices = (rails, make_device("wiper", "w", limit=2e-3, sweep=0.5))
     _, known, rows, seen = tried(
         HEADED, bowl, devices, lambda one: one.height < 9e-3 and one.length > 0.012, 2
     )
@@ -75,13 +75,13 @@ def test_a_t_nut_hangs_by_its_shoulders_in_rails_and_stops_in_a_slot():
         up = one.posture.axes[2]
         return abs(up[1] - 1.0) < 1e-6 and one.length > 0.015 and one.width < 0.011
 
-    rails = (made("rails", "r", span=(2.2e-3, 8.6e-3)),)
+    rails = (make_device("rails", "r", span=(2.2e-3, 8.6e-3)),)
     _, known, rows, seen = tried(T_NUT, bowl, rails, stem_down, 2)
     assert len(rows) == 1 and seen.fates.tolist() == [course.PASSED] * 2
     (down,) = [one for one in known.states if isinstance(one, Hanging)]
     assert known.leaving[rows[0], known.states.index(down)] == 1.0
     assert down.height == pytest.approx(3e-3, abs=1e-9) and down.neck.shank == pytest.approx(5e-3, abs=1e-9)
-    slot = made("slot", "s", span=(2.2e-3, 8.6e-3))
+    slot = make_device("slot", "s", span=(2.2e-3, 8.6e-3))
     meeting = DeviceEncounter(known.lying[rows[0]], known.lying)
     assert slot.judged(meeting).passes == 0.0 and slot.fate(meeting) == "stopped"
     _, _, _, seen = tried(T_NUT, bowl, (slot,), stem_down, 2)

@@ -11,7 +11,7 @@ from feederscrew import bowl as bowls
 from feederscrew.dropping.kernel import body
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import course, crowd, runs, shape, stations, whereabouts
 from feederscrew.trial.looks import Looks
@@ -25,7 +25,7 @@ BOWL = bowls.read(None, OWN)
 EVERY = orientations(PART, find(PART), BOWL.track)
 ALONG = next(k for k, one in enumerate(EVERY) if one.height < 6e-3 and one.length > 0.015)
 HEADED = shapes.prism([(-2.5, 0), (2.5, 0), (2.5, 14), (5, 14), (5, 17), (-5, 17), (-5, 14), (-2.5, 14)], 5)
-RAILS = made("rails", "r", span=(3.4e-3, 8.6e-3))
+RAILS = make_device("rails", "r", span=(3.4e-3, 8.6e-3))
 
 
 def sent(*devices, bowl=BOWL):
@@ -97,12 +97,12 @@ def test_a_part_hangs_where_it_reaches_below_the_track_it_has_come_to(drop, low,
 
 
 def test_a_blade_stops_a_part_at_its_own_place_in_the_chain():
-    seen = sent(made("gap", "g", limit=2e-3), made("wiper", "w", limit=4e-3))
+    seen = sent(make_device("gap", "g", limit=2e-3), make_device("wiper", "w", limit=4e-3))
     assert seen.fates[0] == course.STOPPED and seen.ended[0] == 2
 
 
 def test_what_has_gone_down_a_step_goes_over_the_next_gap_as_on_any_track():
-    seen = sent(made("step", "s", limit=3e-3), made("gap", "g", limit=2e-3))
+    seen = sent(make_device("step", "s", limit=3e-3), make_device("gap", "g", limit=2e-3))
     assert seen.fates[0] == course.PASSED and seen.orientations[-1][0] == ALONG
     assert seen.depths[0] < 5e-5
     before, after = (ride.states[0][body.Z] * seen.length for ride in seen.rides[1:])
@@ -130,10 +130,10 @@ def test_what_went_down_beside_a_ledge_comes_to_the_wall_and_what_stayed_up_does
 
 def test_a_jet_behind_a_step_blows_at_what_lies_on_the_lower_track():
     """All of it meets the side of the block, which it quickens by the thrust over the mass."""
-    jet = made("jet", "j", nozzle=2e-3, pressure=2e4, height=2.5e-3)
+    jet = make_device("jet", "j", nozzle=2e-3, pressure=2e4, height=2.5e-3)
     drive, track = replace(BOWL.drive, amplitude=0.0), replace(BOWL.track, climb=0.0)
     still = replace(BOWL, drive=drive, track=track)
-    line = crowd.crowded(still, EVERY, (made("step", "s", limit=8e-3), jet), 0.1)
+    line = crowd.crowded(still, EVERY, (make_device("step", "s", limit=8e-3), jet), 0.1)
     solid, length, principal = shape.solid_of(PART)
     known = replace(runs.setting(solid, length, still), friction=np.zeros(5))
     x, y, z = line.stage.air.jets[0, :3]

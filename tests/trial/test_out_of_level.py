@@ -12,7 +12,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import course, runs, starts, stations, whereabouts
 from feederscrew.trial.looks import OTHER, Looks
@@ -91,8 +91,8 @@ def test_what_rocks_or_flies_is_named_by_the_face_on_which_it_comes_to_lie(degre
 
 @pytest.mark.parametrize(
     "device",
-    [made("narrowed_track", "n", limit=6.5e-3), made("canyon", "c", limit=7e-3),
-     made("rails", "r", span=(3.5e-3, 7.5e-3))],
+    [make_device("narrowed_track", "n", limit=6.5e-3), make_device("canyon", "c", limit=7e-3),
+     make_device("rails", "r", span=(3.5e-3, 7.5e-3))],
     ids=lambda one: one.kind,
 )  # fmt: skip
 def test_a_gear_sinks_into_no_cut_with_its_teeth(device):

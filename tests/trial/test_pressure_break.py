@@ -10,13 +10,13 @@ from feederscrew import bowl as bowls
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.kinds import KINDS, made
+from feederscrew.tooling.devices.kinds import KINDS, make_device
 from feederscrew.tooling.verdicts import verdict
 from feederscrew.trial import queue
 
 BLOCK = shapes.part(shapes.box(20, 12, 5))
 BOWL = bowls.read(None, ["track.bank=3 deg"])
-STOP = made("height_bar", "", limit=4e-3)  # everything stands before it
+STOP = make_device("height_bar", "", limit=4e-3)  # everything stands before it
 
 
 def queued(*devices):
@@ -32,13 +32,13 @@ def queued(*devices):
 @pytest.mark.parametrize(("ledge", "leaves"), [(6.5, True), (14.0, False)])
 def test_parts_that_back_up_and_reach_over_the_ledge_leave_there(ledge, leaves):
     """12 mm wide: over a ledge of 6.5 mm they reach, over one of 14 mm they do not."""
-    found = queued(made("pressure_break", "", limit=1e-3 * ledge), STOP)
+    found = queued(make_device("pressure_break", "", limit=1e-3 * ledge), STOP)
     assert (found.relieved > 0) == leaves and found.returned == found.relieved
     assert found.jams > 0
 
 
 def test_nothing_leaves_at_a_break_behind_which_parts_go_on():
-    found = queued(made("pressure_break", "", limit=6.5e-3))
+    found = queued(make_device("pressure_break", "", limit=6.5e-3))
     assert found.leaving.sum() > 0 and found.relieved == found.returned == found.jams == 0
 
 

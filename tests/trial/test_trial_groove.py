@@ -10,7 +10,7 @@ from feederscrew import bowl as bowls
 from feederscrew.dropping.kernel import body
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.trial import air, course, crowd, rounding, runs, shape, starts, stations, whereabouts
@@ -23,7 +23,7 @@ DEG = np.radians(1.0)
 def in_groove(bowl, angle, radius=50.0):
     """The dowel along a groove, laid against its wall; and the bowl."""
     bowl = replace(bowl, track=replace(bowl.track, radius=radius))
-    chain = (made("groove", "g", angle=angle * DEG),)
+    chain = (make_device("groove", "g", angle=angle * DEG),)
     every = at_entry(travelling(orientations(DOWEL, find(DOWEL), bowl.track), bowl), chain)
     one = next(one for one in every if one.name == "A@0")
     solid, length, principal = shape.solid_of(DOWEL)
@@ -77,7 +77,7 @@ def test_the_lean_of_the_wall_goes_from_stretch_to_stretch():
 
 def test_a_queue_lies_in_the_groove_from_its_entry_but_not_on_the_steeper_way():
     bowl, every, *_ = in_groove(BOWL, 30.0, radius=0.15)
-    chain = (made("groove", "g", angle=30.0 * DEG), made("separation", "s", angle=-5.0 * DEG))
+    chain = (make_device("groove", "g", angle=30.0 * DEG), make_device("separation", "s", angle=-5.0 * DEG))
     made_of_it = crowd.crowded(bowl, every, chain, 0.1)
     first = made_of_it.stage.air.slopes[:2]
     assert [(climb, bank) for _, climb, bank, _ in first] == [(None, pytest.approx(30.0 * DEG)), (None, None)]
@@ -88,7 +88,7 @@ def test_a_queue_lies_in_the_groove_from_its_entry_but_not_on_the_steeper_way():
 def test_a_dowel_along_a_groove_passes_it():
     bowl, every, *_ = in_groove(replace(BOWL, track=replace(BOWL.track, climb=3.0 * DEG)), 30.0, radius=0.15)
     row = [k for k, one in enumerate(every) if one.name == "A@0"]
-    chain = (made("groove", "g", angle=30.0 * DEG), made("bank", "b", angle=8.0 * DEG))
+    chain = (make_device("groove", "g", angle=30.0 * DEG), make_device("bank", "b", angle=8.0 * DEG))
     found = course.course(DOWEL, bowl, every, course.Sending(row, 2), chain)
     assert list(found.fates) == [course.PASSED] * 2
     assert found.depths.max() < 5e-5

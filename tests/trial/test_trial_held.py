@@ -12,7 +12,7 @@ from feederscrew.bowl.record import Friction
 from feederscrew.conveying import answer
 from feederscrew.dropping.kernel import body
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import queue, whereabouts
 from feederscrew.trial.shape import solid_of
@@ -25,7 +25,7 @@ BOWL = bowls.read(None, OWN)
 PART = shapes.part(shapes.box(20, 12, 5))
 ASPECTS = find(PART)
 LENGTH = solid_of(PART)[1]
-BLADE = made("wiper", "w", limit=4e-3)
+BLADE = make_device("wiper", "w", limit=4e-3)
 SLOPE = np.radians(5.0)
 
 

@@ -13,7 +13,7 @@ from feederscrew.dropping.launches import named, sample
 from feederscrew.dropping.plate import drive, rides
 from feederscrew.geometry import vectors
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import looks, rounding, runs, shape, stations, whereabouts
 
@@ -207,7 +207,7 @@ def test_nothing_passes_the_edges_below_the_surface(block, axes, place, speed, l
     bowl = replace(BOWL, track=track, drive=replace(BOWL.drive, amplitude=0.0))
     solid, length, principal = shape.solid_of(block[0])
     known = runs.setting(solid, length, bowl)
-    stage = stations.station(made("gap", "9 mm", limit=9e-3), track, block[1])
+    stage = stations.station(make_device("gap", "9 mm", limit=9e-3), track, block[1])
     u, v = (vectors.unit(np.array(axis)) for axis in axes)
     state = np.zeros(body.STATE)
     state[body.Q : body.Q + 4] = whereabouts.quaternion(np.column_stack([u, v, np.cross(u, v)]) @ principal)

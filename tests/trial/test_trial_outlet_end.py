@@ -12,7 +12,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import runs, shape, stations, whereabouts
 from feederscrew.trial.queue import QueuePlan, queue_of
@@ -39,7 +39,7 @@ def test_a_cube_stands_over_an_edge_whatever_order_its_corners_have(order, speed
     bowl = replace(bowl, drive=replace(bowl.drive, amplitude=0.0))
     every = orientations(part, find(part), bowl.track)
     solid, length, principal = shape.solid_of(part)
-    edge = stations.station(made("gap", "here", limit=0.03), bowl.track, every)
+    edge = stations.station(make_device("gap", "here", limit=0.03), bowl.track, every)
     state = whereabouts.laid(every[0], principal, length, bowl.track, place=-8e-3, aside=5e-3)
     state[body.VX] = speed
     known = runs.setting(solid, length, bowl)

@@ -20,7 +20,7 @@ def decoded(text):
 
 def test_the_chapter_plays_the_path_of_the_part():
     block = shapes.part(shapes.box(20, 12, 5))
-    case = report(block, None, (), aspect="A", launch="feed", sent=7)
+    case = report(block, aspect="A", launch="feed", sent=7)
     (chapter,) = page(case, chapters=[one for one in CHAPTERS if one[0] == "trial"]).sections
     (views,) = (one for one in chapter.blocks if isinstance(one, Views))
     assert views.plays and len(views.captions) == len(views.scene["poses"]) == len(views.scene["paths"])

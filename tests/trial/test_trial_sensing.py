@@ -10,7 +10,7 @@ from feederscrew import bowl as bowls
 from feederscrew.dropping.kernel import body
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.devices.pneumatics import Nozzles, thrust
 from feederscrew.tooling.orientations import orientations, travel_speed, travelling
 from feederscrew.tooling.verdicts import verdict
@@ -28,7 +28,7 @@ OWN = {"like": (ALONG.aspect, ALONG.heading, 5e-4)}
 
 
 def test_the_trial_blows_off_what_a_sorter_sees_differ():
-    sorter = made("sorter", "here", **OWN)
+    sorter = make_device("sorter", "here", **OWN)
     seen = course.course(PART, BOWL, EVERY, course.Sending(range(len(EVERY)), len(EVERY)), [sorter])
     for k, fate in zip(seen.entered, seen.fates):
         said = verdict(sorter, EVERY[k], EVERY)
@@ -38,8 +38,8 @@ def test_the_trial_blows_off_what_a_sorter_sees_differ():
 
 
 def test_a_steady_jet_and_a_steeper_way_do_in_the_trial_what_they_say():
-    chain = [made("separation", "here", angle=np.radians(-6.0))]
-    chain += [made("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)]
+    chain = [make_device("separation", "here", angle=np.radians(-6.0))]
+    chain += [make_device("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)]
     tall = next(k for k, one in enumerate(EVERY) if one.length > 0.0119 and one.height > 0.0199)
     seen = course.course(PART, BOWL, EVERY, course.Sending([EVERY.index(ALONG), tall], 2), chain)
     assert seen.fates.tolist() == [course.PASSED, course.RETURNED] and seen.ended[1] == 2
@@ -50,7 +50,7 @@ def test_a_steady_jet_and_a_steeper_way_do_in_the_trial_what_they_say():
 
 
 def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
-    jet = made("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
+    jet = make_device("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
     solid, length, principal = solid_of(PART)
     known = runs.setting(solid, length, replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0)))
     station = stations.station(jet, BOWL.track, EVERY)
@@ -63,14 +63,14 @@ def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
 
 
 def test_a_sensor_of_heights_lets_what_is_as_high_pass():
-    sorter = made("sorter", "here", **OWN, sees="height")
+    sorter = make_device("sorter", "here", **OWN, sees="height")
     across = next(k for k, one in enumerate(EVERY) if one.length < 0.0121 and one.height < 0.0051)
     seen = course.course(PART, BOWL, EVERY, course.Sending([across], 1), [sorter])
     assert seen.fates[0] == course.PASSED
 
 
 def test_a_queue_blows_off_what_differs_and_what_cannot_be_told_from_its_neighbour():
-    bowl = replace(BOWL, devices=(made("sorter", "here", **OWN),))
+    bowl = replace(BOWL, devices=(make_device("sorter", "here", **OWN),))
     shares = np.array([float(one is ALONG) for one in EVERY])
     alone = queue_of(PART, bowl, ASPECTS, EVERY, EVERY, shares, QueuePlan(1, 5.0), RunSettings(1))
     assert alone.leaving.sum() and not alone.returned and alone.velocity > 0.0
@@ -129,7 +129,7 @@ def test_what_flies_past_the_outlet_on_its_way_off_the_track_has_not_left():
 
 
 def test_jets_blow_as_a_part_comes_to_them_at_its_own_speed():
-    sorter = made("sorter", "here", **OWN)
+    sorter = make_device("sorter", "here", **OWN)
     bowl = replace(BOWL, devices=(sorter,))
     line = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
     solid, length, _ = solid_of(PART)
@@ -163,7 +163,7 @@ def test_pulses_for_two_parts_blow_for_both():
 
 
 def test_a_part_that_is_held_up_as_it_is_seen_is_blown_at_by_its_mean_speed():
-    sorter = made("sorter", "here", **OWN)
+    sorter = make_device("sorter", "here", **OWN)
     bowl = replace(BOWL, devices=(sorter,))
     line = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
     solid, length, own = solid_of(PART)

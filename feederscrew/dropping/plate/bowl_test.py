@@ -14,7 +14,7 @@ from feederscrew.dropping.plate.occupancy import Occupancy, lasting, occupancy
 from feederscrew.dropping.plate.rides import Rides, joined, ride
 from feederscrew.dropping.rigid_body import Shape, shape_of_part
 from feederscrew.errors import ArgumentError
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.tumbling.by_class import ground
 from feederscrew.running import USUAL_RUN, RunSettings
 
@@ -42,7 +42,7 @@ EXACT = Pace(scatters=True)
 
 
 @dataclass(frozen=True, eq=False)
-class Shaken(Shown):
+class Shaken(ReadableRecord):
     """What parts did on one plate."""
 
     bowl: Bowl

@@ -15,7 +15,7 @@ from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import sides, turned
 from feederscrew.mechanics.wall import sameness, support
 from feederscrew.mechanics.wall.outline import rests
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 
 OUTLINE_TOLERANCE = 1e-5  # of the outline's size: outlines that differ by less are the same
 NO_TURN = 1e-5  # [rad] files in single precision turn a part by a hundredth of it
@@ -23,7 +23,7 @@ SHARE_TIE = 1e-4  # shares that differ by less of themselves are equal but for r
 
 
 @dataclass(frozen=True, eq=False)
-class Headings(Shown):
+class Headings(ReadableRecord):
     """Every stable heading of one posture on one track, the most frequent first, equals from 0 on; M rows."""
 
     aspect: str

@@ -12,7 +12,7 @@ from itertools import groupby
 from feederscrew.errors import printable
 from feederscrew.output import DPI, tables
 from feederscrew.output.page import blocks as kinds
-from feederscrew.output.page.numbers import cells
+from feederscrew.output.page.numbers import NOTHING, cells
 
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
 CSS_DPI = 96  # pixels of a page to the inch
@@ -151,15 +151,16 @@ def _height(block):
 
 def _block(block):
     match block:
-        case kinds.Text(text, quiet):
-            mark = ' class="quiet"' if quiet else ""
+        case kinds.Text(text, quiet, printed):
+            names = " ".join(name for name, holds in (("quiet", quiet), ("on-screen", not printed)) if holds)
+            mark = f' class="{names}"' if names else ""
             return f"<p{mark}>{escape(text)}</p>"
         case kinds.Notes(lines, loud):
             return _list(lines, "loud" if loud else "notes")
         case kinds.Code(text):
             return f"<pre>{escape(text)}</pre>"
-        case kinds.Table(frame):
-            return _table(frame)
+        case kinds.Table(frame, printed=printed):
+            return _table(frame) if printed else f'<div class="on-screen">{_table(frame)}</div>'
         case kinds.Knobs():
             return _knobs(block)
         case kinds.CsvSheet(file, text, shown):
@@ -204,11 +205,25 @@ def _table(frame):
         f"<th{mark}>{escape(name)} <small>{escape(unit)}</small></th>"
         for mark, (name, unit) in zip(marks, heads)
     )
+    pads = [_paddings(column) if n else [""] * len(rows) for n, column in zip(numeric, zip(*rows))]
     lines = [
-        f"<tr>{''.join(f'<td{m}>{escape(cell)}</td>' for m, cell in zip(marks, row))}</tr>" for row in rows
+        f"<tr>{''.join(f'<td{m}{pad}>{escape(cell)}</td>' for m, pad, cell in zip(marks, own, row))}</tr>"
+        for own, row in zip(zip(*pads), rows)
     ]
     kind = ' class="pairs"' if _pairs(kinds.Table(frame)) else ' class="many"' if len(heads) > MANY else ""
     return _grid(kind, head, lines)
+
+
+def _paddings(column):
+    """What the style sheet adds unseen behind each number of a column, so that their points line up."""
+    decimals = [len(cell.partition(".")[2]) for cell in column]
+    most = max((count for cell, count in zip(column, decimals) if "e" not in cell), default=0)
+    return [
+        f' data-pad="{"" if count else "."}{"0" * (most - count)}"'
+        if count < most and "e" not in cell and cell != NOTHING
+        else ""
+        for cell, count in zip(column, decimals)
+    ]
 
 
 def _pairs(block):

@@ -11,6 +11,7 @@ class Text:
 
     text: str
     quiet: bool = False
+    printed: bool = True  # also on paper
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,7 @@ class Table:
 
     frame: Frame
     caption: str = ""
+    printed: bool = True  # also on paper
 
 
 @dataclass(frozen=True)

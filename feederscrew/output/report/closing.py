@@ -10,6 +10,7 @@ from feederscrew.output.folder import LIBRARIES
 from feederscrew.output.page.blocks import Chapter, Code, Notes, Table, Text
 from feederscrew.output.report.resting import numbers
 
+DEFAULTS = "The bowl: the values by default."
 LIMITS = (
     "How often a part lands on an aspect: the rules compute from the part's shape and mass alone; only "
     "p_recommended knows how the part is launched, and none considers other parts. They disagree, "
@@ -39,21 +40,32 @@ def limits(case):
 def repeat(case):
     """The inputs: command, files, bowl values, versions, and the table of aspects to the last digit."""
     hashes = tables.frame({"input": list(case.inputs), "sha256": list(case.inputs.values())})
-    bowl = slide.settings(case.settings).only(("key", "value", "from", "meaning"))
-    origins = [Path(origin).name for origin in bowl["from"]]  # the inputs have their folders
-    bowl = tables.frame({name: origins if name == "from" else bowl[name] for name in bowl})
     return Chapter(
         (
             *((Code(case.command),) if case.command else ()),
             Text("The same program and inputs give this page again, byte for byte."),
             Table(hashes),
             Text(f"Versions: {', '.join(map(' '.join, _versions()))}."),
-            Text("The bowl: every value in effect and where it came from."),
-            Table(bowl),
+            *_bowl_values(case),
             Text("The aspects to six digits, as feeder aspects writes them."),
             numbers(case),
         ),
     )
+
+
+def _bowl_values(case):
+    """The values of the bowl that were given; on a screen those by default as well."""
+    bowl = slide.settings(case.settings).only(("key", "value", "from", "meaning"))
+    origins = [Path(origin).name for origin in bowl["from"]]  # the inputs have their folders
+    bowl = tables.frame({name: origins if name == "from" else bowl[name] for name in bowl})
+    rows = list(bowl.rows())
+    for given, lead in ((True, "The bowl: the values that were given."), (False, DEFAULTS)):
+        chosen = [row for row in rows if (row["from"] != "default") == given]
+        if chosen:
+            frame = tables.frame({name: [row[name] for row in chosen] for name in bowl})
+            yield Text(lead, printed=given)
+            yield Table(frame, printed=given)
+    yield Text("Every other key of the bowl has its default (feeder config show).")
 
 
 def _versions():

@@ -3,9 +3,10 @@
 from dataclasses import replace
 
 from feederscrew.output import tables as tables_of
+from feederscrew.output import tooling as tooling_files
+from feederscrew.output import tooling_tables, tooling_views
 from feederscrew.output.page.blocks import Chapter, Notes, Picture, Table, Text, Views
 from feederscrew.output.report.scene import over_cuts
-from feederscrew.output.tooling import files, relief, tables
 from feederscrew.output.trial import files as trial_files
 from feederscrew.output.trial import playback
 from feederscrew.output.trial import tables as trial_tables
@@ -25,9 +26,9 @@ def tooling(case):
         "Each orientation at each device that it meets, until one returns it; the margin is by how much it "
         "passes or fails. Verdicts are quasi-static: they hold while the part slides without hopping."
     )
-    drawn = files.chain_picture(study.devices, study.orientations, study.shares)
+    drawn = tooling_files.chain_picture(study.devices, study.orientations, study.shares)
     picture = Picture(drawn.name, drawn.make(), drawn.alt)
-    blocks = (lead, *_turning(study), *_views(study), Table(tables.passages(study)), picture)
+    blocks = (lead, *_turning(study), *_views(study), Table(tooling_tables.passages(study)), picture)
     return Chapter(blocks, warnings=remark(study.orientations))
 
 
@@ -73,7 +74,7 @@ def _turning(study):
 def _views(study):
     """The part over the track, to be turned: the most frequent that leaves, and the nearest that falls."""
     given = study.devices, study.orientations, study.shares, study.wanted
-    shown = relief.poses(*given)
+    shown = tooling_views.poses(*given)
     if not shown:
         return
     part = study.orientations[0].posture.solid
@@ -81,5 +82,5 @@ def _views(study):
     yield Views(
         scene, tuple((met.orientation.name, result, ()) for met, result in shown), "cuts", "Orientation"
     )
-    offered = files.solid_picture(*given)
+    offered = tooling_files.solid_picture(*given)
     yield Picture(offered.name, offered.make(), offered.alt, printed=True)

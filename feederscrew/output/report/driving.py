@@ -2,13 +2,10 @@
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
-from feederscrew.output import marking, offers, proof
+from feederscrew.output import machine, marking, offers, proof, solidbowl_views
 from feederscrew.output import tables as plain
-from feederscrew.output.machine import offers as machine_files
-from feederscrew.output.machine import tables
 from feederscrew.output.page.blocks import Chapter, Notes, Picture, Table, Text, Tile
 from feederscrew.output.page.numbers import SHORT, number
-from feederscrew.output.solidbowl import turnable
 
 SIZED = (
     "The bowl that brings the rate asked for, by the rules of thumb of the section sizing: what the bowl "
@@ -23,17 +20,17 @@ def bowl(case):
     if found is None:
         return None
     mark = _mark(case)
-    drawn = offers.by_name(machine_files(found, mark=mark))["bowl.png"]
+    drawn = offers.by_name(machine.offers(found, mark=mark))["bowl.png"]
     sized = found.order is not None
     blocks = (
         Text(SIZED if sized else GIVEN),
         *_turned(case, mark),
         *((Notes(found.remarks),) if found.remarks else ()),
         Picture(drawn.name, drawn.make(), drawn.alt),
-        Table(tables.summary(found)),
-        Table(tables.leaf_sets(found.changes)),
-        Table(tables.leaf_sets(found.sets)),
-        Table(_renamed(tables.emptying(found))),
+        Table(machine.summary(found)),
+        Table(machine.leaf_sets(found.changes)),
+        Table(machine.leaf_sets(found.sets)),
+        Table(_renamed(machine.emptying(found))),
     )
     return Chapter(blocks, tiles=(_tile(found),), warnings=found.remarks)
 
@@ -47,7 +44,7 @@ def _mark(case):
 def _turned(case, mark):
     """The bowl as a solid with parts on its track, to be turned, or why there is none."""
     try:
-        return turnable.blocks(case.solid, case.part, mark=mark)
+        return solidbowl_views.blocks(case.solid, case.part, mark=mark)
     except FeederError as fault:
         return [Notes(tuple(f"the bowl as a solid: {line}" for line in fault.lines))]
 

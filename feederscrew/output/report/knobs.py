@@ -11,7 +11,7 @@ LEAST_TOP_MM = 1.0  # to which the slider of the amplitude goes at least
 LEAD = (
     "Turn the drive and see at once what a part does. Friction turns all coefficients by the same factor. "
     "The rate keeps the mix of orientations and the verdicts that the devices have at the bowl file's own "
-    "drive, so it is a guide; `feeder rate` and `feeder trial` compute it."
+    "drive, so it is a guide; feeder rate and feeder trial compute it."
 )
 TWO_WAVES = "The drive has a second harmonic, which the knobs do not know: feeder convey computes it."
 
@@ -48,7 +48,7 @@ def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
         "regimes": [[name, colour, words] for name, (colour, words) in REGIMES.items()],
         "top": top,
     }
-    return [Text(LEAD.replace("`", ""), quiet=True), Knobs(sliders, values)]
+    return [Text(LEAD, quiet=True, printed=False), Knobs(sliders, values)]
 
 
 def _knob(name: str, label: str, unit: str, low: float, high: float, own: float) -> Knob:

@@ -36,7 +36,7 @@ def on_track(case, words):
     speed = number(found.velocity / MM_S, SHORT)
     regime = words.get(found.regime, found.regime)
     said = [f"On this track the part travels at {speed} mm/s and {regime}: the rate is computed with that."]
-    if HOP in case.track.cycle.state and stands and stands.way != tipping.THROWN:
+    if HOP in case.track.cycle.state and stands and stands.verdict != tipping.THROWN:
         said.append(THROWN)
-    said += [WORDS[stands.way].format(*np.degrees((stands.tilt, stands.lean)))] if stands else []
+    said += [WORDS[stands.verdict].format(*np.degrees((stands.tilt, stands.lean)))] if stands else []
     return " ".join(said)

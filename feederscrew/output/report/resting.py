@@ -56,14 +56,13 @@ def aspects(case):
     views = tuple(aspect_views(part, study))
     if part.vertices is not None:
         views = (*views[:1], _picture(offered["aspects.png"], printed=True), *views[1:])
-    chart = _picture(offered["probabilities.png"])
     lines = (Notes(tuple(said)),) if said and part.vertices is not None else ()
     straight = () if np.isfinite(table["rolling_circle_mm"]).any() else ("rolling_circle_mm",)
     shown = table.without((*aspects_output.NORMALS, *straight))
     chances = [name for name in shown if name.startswith("p_")]
     shapes = Table(shown.without(chances))
     return Chapter(
-        (*views, *lines, shapes, Table(shown.only(["aspect", *chances])), chart),
+        (*views, *lines, shapes, Table(shown.only(["aspect", *chances]))),
         tiles=(_tile(case),),
         warnings=tuple(found.warnings),
     )
@@ -127,11 +126,12 @@ def _caption(found, row):
 
 
 def _bars(found, row):
-    """The recommended answer with its interval, then every rule."""
+    """The recommended answer with its interval; without one, every rule. The table has all of them."""
     answer = found.recommended
     if answer is not None:
         share, low, high = (float(ends[row]) for ends in (answer.p, answer.low, answer.high))
         yield ShareBar("recommended", style.ANSWER, share, (low, high))
+        return
     for place, (rule, values) in enumerate(found.probabilities.items()):
         label, colour = style.method(rule, place)
         yield ShareBar(label, colour, float(values[row]))

@@ -3,9 +3,8 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from feederscrew.output import shading
+from feederscrew.output import shading, tooling_views
 from feederscrew.output.shading import outermost, short, stance
-from feederscrew.output.tooling import relief
 from feederscrew.units import MM
 
 REACH = 1.25  # of the part's radius: how much of the track around it is seen
@@ -55,8 +54,8 @@ def over_cuts(part, met, every):
         As ``scene``, with ``tracks``: the sections in mm, ahead, inwards and up from the foot of the centre
         of mass; and ``reach``, how far the view goes, in radii of the part.
     """
-    tracks = [shading.track(*relief.track_below(one, every)) for one in met]
-    return shading.viewed(part, relief.VIEW) | {
+    tracks = [shading.track(*tooling_views.track_below(one, every)) for one in met]
+    return shading.viewed(part, tooling_views.VIEW) | {
         "reach": REACH,
         "tracks": tracks,
         "poses": [_over_cut(one, place) for place, one in enumerate(met)],

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation, Slerp
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.output import DPI, style
 from feederscrew.output.shading import AWAY, EDGE, MISSED, STEEL, Camera, Rays, Shot, averaged, edges, lit
-from feederscrew.output.tooling.relief import camera_at
+from feederscrew.output.tooling_views import camera_at
 from feederscrew.output.trial.figures import LOOKS, solids, unrolled
 from feederscrew.output.trial.section import WALL, section
 from feederscrew.output.trial.shown import ShownRide, shown

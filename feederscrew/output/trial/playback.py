@@ -3,9 +3,8 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from feederscrew.output import shading
+from feederscrew.output import shading, tooling_views
 from feederscrew.output.shading import encoded, short
-from feederscrew.output.tooling import relief
 from feederscrew.output.trial.section import section
 from feederscrew.output.trial.shown import shown
 from feederscrew.units import MM
@@ -35,7 +34,7 @@ def scene(part, *tried):
         What each pose is, and what becomes of it.
     """
     rides, run, found = shown(*tried), tried[0], tried[0].course
-    seen = shading.viewed(part, relief.VIEW)
+    seen = shading.viewed(part, tooling_views.VIEW)
     cut = section(found.stations[rides[0].place], run.bowl.track, ABOVE * seen["radius"] * MM)
     paths = [_path(ride.path, found.principal) for ride in rides]
     return seen | {

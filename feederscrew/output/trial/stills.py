@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
 from feederscrew.output import shading, style
-from feederscrew.output.tooling.relief import clearest
+from feederscrew.output.tooling_views import clearest
 from feederscrew.output.trial.section import section
 from feederscrew.output.trial.shown import shown
 from feederscrew.units import MM

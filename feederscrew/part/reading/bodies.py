@@ -13,7 +13,7 @@ from feederscrew.part.reading.soup import Soup
 from feederscrew.part.repair import edges as repair_edges
 from feederscrew.part.repair import shells, weld
 from feederscrew.part.repair.gate import FARTHEST
-from feederscrew.units import shown
+from feederscrew.units import quantity_text
 
 CRACK_SHARE = 1e-4  # [1] of the size: open surfaces whose rims are closer are of one body
 MOST_RIM = 200_000  # corners of open rims that are looked at
@@ -38,7 +38,7 @@ class FileBody:
 
     def text(self, unit: str) -> str:
         """Return the body as a person reads it in a list: '2 'pin' (64 mm3, 4 x 4 x 4 mm)'."""
-        name = f" {shown(self.name)}" if self.name else ""
+        name = f" {quantity_text(self.name)}" if self.name else ""
         size = " x ".join(f"{length:.4g}" for length in self.size)
         return f"{self.number}{name} ({self.volume:.4g} {unit}3, {size} {unit})"
 
@@ -166,8 +166,12 @@ def _chosen(known, body, where, unit):
         return named[0]
     if named:
         numbers = " and ".join(str(one.number) for one in named)
-        raise ArgumentError("body", f"{shown(body)} is the name of bodies {numbers}", "give its number")
-    raise ArgumentError("body", f"there is no body {shown(body)}: {where} holds {_list(known, unit)}", GIVE)
+        raise ArgumentError(
+            "body", f"{quantity_text(body)} is the name of bodies {numbers}", "give its number"
+        )
+    raise ArgumentError(
+        "body", f"there is no body {quantity_text(body)}: {where} holds {_list(known, unit)}", GIVE
+    )
 
 
 def _shells(points, faces, objects):

@@ -15,7 +15,7 @@ from feederscrew.part.reading import source as read
 from feederscrew.part.reading.formats import FORMATS
 from feederscrew.part.record import Part
 from feederscrew.part.repair import gate
-from feederscrew.units import QuantityError, factor, quantity, shown
+from feederscrew.units import QuantityError, factor, quantity, quantity_text
 
 UNITS = {"mm": "millimetres", "in": "inches", "cm": "centimetres", "m": "metres", "um": "micrometres"}
 FED = (0.5e-3, 0.3)  # [m] largest dimension of what bowls feed
@@ -174,7 +174,7 @@ def _centre(text, unit, homogeneous):
         return homogeneous, ()
     pieces = text.strip().removeprefix("(").removesuffix(")").split(",")
     if len(pieces) != 3:
-        what = f"{shown(text)} is not three numbers"
+        what = f"{quantity_text(text)} is not three numbers"
         raise ArgumentError("centre_of_mass", what, "write x,y,z with points and commas, as in 1.5,0,-2")
     try:
         centre = np.array([quantity(piece, "length", bare=unit) for piece in pieces])

@@ -10,7 +10,7 @@ from feederscrew.part.reading import facets
 from feederscrew.part.reading.decimals import CommaError, Decimals
 from feederscrew.part.reading.formats import ASCII, BINARY, FACET, HEADER, claimed_facets, plain
 from feederscrew.part.reading.soup import LARGEST_TEXT, DamageError, Soup, TooManyFacetsError, refuse_crowds
-from feederscrew.units import shown
+from feederscrew.units import quantity_text
 
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 UNKNOWN_COUNTS = (0, 0xFFFFFFFF)  # what streaming exporters leave in the header
@@ -186,7 +186,7 @@ def _from_text(text, warnings, where):
     except WordError as error:
         if END.search(text, max(0, len(text) - LAST)) is None:
             raise _cut_short(where) from None
-        word = shown(error.args[0].decode(errors="replace"))
+        word = quantity_text(error.args[0].decode(errors="replace"))
         raise MeshError(
             where, f"has {word} where an STL has none", "remove it, or export the part again"
         ) from None

@@ -18,7 +18,7 @@ from feederscrew.errors import MeshError
 from feederscrew.part.reading import archives
 from feederscrew.part.reading.soup import LARGEST, MOST_FACETS, DamageError, Soup, refuse_crowds
 from feederscrew.part.repair import weld
-from feederscrew.units import counted, listed, shown
+from feederscrew.units import counted, listed, quantity_text
 
 MOST, DEEPEST = 5_000, 50  # instances; components within components
 MOST_PLACED = 100_000  # objects, or items and components
@@ -127,7 +127,7 @@ def soup(data: bytes, where: str) -> Soup:
     name = package.root.unit.strip().lower().rstrip("s").replace("metre", "meter") or "millimeter"
     if name not in UNITS:
         known = " or ".join(UNITS)
-        raise MeshError(where, f"its unit is {shown(package.root.unit)}", f"write {known} there")
+        raise MeshError(where, f"its unit is {quantity_text(package.root.unit)}", f"write {known} there")
     unit, factor = UNITS[name]
     kept, warnings = _by_role(pieces, package.left_out, where)
     names = tuple(piece.name for piece in kept)
@@ -388,7 +388,7 @@ def _by_role(pieces, left_out, where):
     for role, (noun, done) in LEFT_OUT.items():
         names = dict.fromkeys(piece.name for piece in pieces if piece.role == role and piece.name)
         if left_out[role]:
-            title = f" ({listed([shown(name) for name in list(names)[:3]])})" if names else ""
+            title = f" ({listed([quantity_text(name) for name in list(names)[:3]])})" if names else ""
             warnings.append(f"{counted(left_out[role], noun)}{title}: {done}")
     kept: list[Piece3MF] = []
     for item in dict.fromkeys(piece.item for piece in pieces):
@@ -421,7 +421,7 @@ def _manifold(piece, where):
     mesh = Mesh64(np.ascontiguousarray(vertices), np.ascontiguousarray(faces).astype(np.uint64))
     body = Manifold(mesh)
     if body.status() != Error.NoError or not body.volume() > 0.0:
-        name = f" {shown(piece.name)}" if piece.name else ""
+        name = f" {quantity_text(piece.name)}" if piece.name else ""
         kind = "negative part" if piece.role == NEGATIVE else "part with a negative part"
         raise MeshError(where, f"has a {kind}{name} that is not one closed solid: not subtracted", WAY_OUT)
     return body

@@ -7,7 +7,7 @@ from typing import Any
 from feederscrew.documents import hint
 from feederscrew.errors import FeederError
 from feederscrew.resting.rules.recommended import LAUNCH_NAMES
-from feederscrew.units import shown
+from feederscrew.units import quantity_text
 
 HEAD_LINE = re.compile(r"#\s*([A-Za-z_ -]{1,30}?)\s*:\s*(.*)")
 DIGEST = re.compile(r"(?:sha256:)?([0-9a-f]{8,64})", re.IGNORECASE)
@@ -93,8 +93,10 @@ def _fault(where, key, value, choices) -> FeederError | None:
     if len(value) > MAX_VALUE_LETTERS:
         return FeederError(where, f"{key} is longer than {MAX_VALUE_LETTERS} letters", "say it shorter")
     if key == "launch" and value not in LAUNCH_NAMES:
-        return FeederError(where, f"there is no launch {shown(value)}", hint(value, list(LAUNCH_NAMES)))
+        return FeederError(
+            where, f"there is no launch {quantity_text(value)}", hint(value, list(LAUNCH_NAMES))
+        )
     if key == "mesh" and not DIGEST.fullmatch(value):
-        what = f"mesh: {shown(value)} is not a sha256"
+        what = f"mesh: {quantity_text(value)} is not a sha256"
         return FeederError(where, what, "give its hexadecimal digits, at least 8, as in run.json")
     return None

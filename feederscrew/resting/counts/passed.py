@@ -10,7 +10,7 @@ from feederscrew.resting.counts import count_rows
 from feederscrew.resting.counts.count_rows import Few
 from feederscrew.resting.counts.head import NO_HEAD, Head
 from feederscrew.resting.counts.profiles import DEVICE, INTEGER, MAX_PARTS_COUNTED, of_another_part
-from feederscrew.units import shown
+from feederscrew.units import quantity_text
 
 PASSED, REJECTED = "passed", "rejected"  # the columns after the device, in either order
 PASSED_EXAMPLE = "give a header 'device,passed,rejected' and one row a device"
@@ -98,16 +98,20 @@ def _judge(where, row, columns, lines, faults) -> None:
     """Add what is wrong with a row to ``faults``."""
     name, cells = row[0], row[1:]
     if name in lines:
-        faults.add(where, f"device {shown(name)} is already in line {lines[name]}", "keep one of them")
+        faults.add(
+            where, f"device {quantity_text(name)} is already in line {lines[name]}", "keep one of them"
+        )
     elif len(cells) != len(columns):
         what = f"has {len(cells)} value{'s' * (len(cells) != 1)} after the device"
         faults.add(where, what, "give the parts that passed and those that were rejected")
-    elif odd := [f"{column}: {shown(cell)}" for column, cell in zip(columns, cells) if not _whole(cell)]:
+    elif odd := [
+        f"{column}: {quantity_text(cell)}" for column, cell in zip(columns, cells) if not _whole(cell)
+    ]:
         faults.add(
             where, f"{odd[0]} is not a number of parts", f"give a whole number up to {MAX_PARTS_COUNTED:g}"
         )
     elif not any(float(cell) for cell in cells):
-        faults.add(where, f"no part came to device {shown(name)}", "remove the row")
+        faults.add(where, f"no part came to device {quantity_text(name)}", "remove the row")
 
 
 def _whole(cell):

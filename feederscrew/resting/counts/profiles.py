@@ -12,7 +12,7 @@ from feederscrew.errors import Faults, FeederError
 from feederscrew.resting.counts import count_rows
 from feederscrew.resting.counts.count_rows import COUNTS_EXAMPLE, Few
 from feederscrew.resting.counts.head import NO_HEAD, Head
-from feederscrew.units import shown
+from feederscrew.units import quantity_text
 
 SUM_TOLERANCE = 0.005  # of the whole: how far printed fractions may miss their sum
 COLUMN_SUM = {"counts": 0.0, "fractions": 1.0, "percent": 100.0}  # what a column sums to; counts, to anything
@@ -205,15 +205,17 @@ def _columns(where, header, taken) -> list[str]:
         what = "counts by device, which does not say how often the part lies on each aspect"
         raise FeederError(where, what, "give counts by aspect or by orientation")
     if first.lower() not in (ASPECT, ORIENTATION):
-        raise FeederError(where, f"the first column is {shown(first)}, not aspect", COUNTS_EXAMPLE)
+        raise FeederError(where, f"the first column is {quantity_text(first)}, not aspect", COUNTS_EXAMPLE)
     if not columns:
         raise FeederError(where, "has no profile", COUNTS_EXAMPLE)
     if "" in columns:
         raise FeederError(where, "a column has no name", "give each its own name")
     if double := next((name for name in columns if columns.count(name) > 1), None):
-        raise FeederError(where, f"two columns are called {shown(double)}", "give each its own name")
+        raise FeederError(where, f"two columns are called {quantity_text(double)}", "give each its own name")
     if rule := next((name for name in columns if name in taken), None):
-        raise FeederError(where, f"column {shown(rule)} has the name of a rule", "give it another name")
+        raise FeederError(
+            where, f"column {quantity_text(rule)} has the name of a rule", "give it another name"
+        )
     return columns
 
 
@@ -224,10 +226,14 @@ def _row(where, row, columns, cells, names, by, faults) -> tuple[Any, ...] | Non
     if key is None:
         return None
     if key[0] not in names:
-        faults.add(where, f"the part has no aspect {shown(key[0])}", lambda: hint(key[0], list(names)))
+        faults.add(
+            where, f"the part has no aspect {quantity_text(key[0])}", lambda: hint(key[0], list(names))
+        )
         return None
     if key in cells:
-        faults.add(where, f"{by} {shown(name)} is already in line {cells[key][0]}", "keep one of them")
+        faults.add(
+            where, f"{by} {quantity_text(name)} is already in line {cells[key][0]}", "keep one of them"
+        )
     elif len(values) != len(columns):
         what = f"has {len(values)} value{'s' * (len(values) != 1)}, the header names {len(columns)}"
         faults.add(where, what, "give one value a column")
@@ -241,14 +247,14 @@ def _oriented(where, name, faults) -> tuple[str, float] | None:
     """Aspect and heading [rad] of 'A@180'; None where it is not of that form."""
     aspect, _, degrees = name.rpartition("@")
     if not aspect or not DECIMAL_PATTERN.fullmatch(degrees) or not abs(float(degrees)) <= FULL_TURN:
-        what = f"{shown(name)} is not an aspect at a heading"
+        what = f"{quantity_text(name)} is not an aspect at a heading"
         faults.add(where, what, "write it as feeder tooling does: A@180")
         return None
     return aspect, float(np.radians(float(degrees)))
 
 
 def _judge(where, column, value, faults) -> None:
-    what = f"{column[:MAX_NAME_LETTERS]}: {shown(value)}"
+    what = f"{column[:MAX_NAME_LETTERS]}: {quantity_text(value)}"
     if not DECIMAL_PATTERN.fullmatch(value):
         faults.add(where, f"{what} is not a number", "write digits with a decimal point")
     elif float(value) < 0.0:
@@ -262,13 +268,15 @@ def _measured(where, name, texts) -> Any:
     values = np.array([float(text) for text in texts])
     total = values.sum()
     if total == 0.0:
-        return FeederError(where, f"column {shown(name)} holds only zeros", "give at least one count above 0")
+        return FeederError(
+            where, f"column {quantity_text(name)} holds only zeros", "give at least one count above 0"
+        )
     if all(INTEGER.fullmatch(text) for text in texts) and total != 1.0:
         return _profile(name, "counts", values, total)
     for kind, whole in COLUMN_SUM.items():
         if abs(total - whole) <= SUM_TOLERANCE * whole:
             return _profile(name, kind, values, whole)
-    what = f"column {shown(name)} sums to {total:.6g}"
+    what = f"column {quantity_text(name)} sums to {total:.6g}"
     return FeederError(where, what, "give whole counts, fractions that sum to 1 or percents that sum to 100")
 
 

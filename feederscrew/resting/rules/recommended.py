@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.errors import ArgumentError
-from feederscrew.records import Shown
+from feederscrew.records import ReadableRecord
 from feederscrew.resting.rules import registry
 
 LAUNCH_NAMES = ("place", "drop", "flip", "roll", "feed")
@@ -35,7 +35,7 @@ WIDTH_FLOOR = 0.1  # [1] of that width that does not fall towards shares of 0 an
 
 
 @dataclass(frozen=True, eq=False)
-class Recommended(Shown):
+class Recommended(ReadableRecord):
     """Probability of each class by the recommended rule, for one launch; A rows."""
 
     rule: str  # 'CSA, launch drop', 'drop test, launch flip'

@@ -16,7 +16,7 @@ from feederscrew.errors import ArgumentError
 from feederscrew.resting.basins import barriers
 from feederscrew.resting.rules import published, surface, tumbled
 from feederscrew.resting.rules.quantities import ClassQuantities, FaceQuantities
-from feederscrew.units import shown
+from feederscrew.units import quantity_text
 
 RECOMMENDED_ANSWER = "recommended"  # the answer that is made from the rules; a name beside theirs
 
@@ -115,7 +115,7 @@ CHOICES = (*RULE_NAMES, CLOSED, RECOMMENDED_ANSWER)  # what a user may ask for
 def require_rule(rule) -> None:
     """Raise an ArgumentError where a user asks for a rule that there is not; it names the nearest one."""
     if rule not in CHOICES:
-        raise ArgumentError("rule", f"unknown rule {shown(str(rule))}", hint(str(rule), CHOICES))
+        raise ArgumentError("rule", f"unknown rule {quantity_text(str(rule))}", hint(str(rule), CHOICES))
 
 
 def weights(quantities) -> dict[Any, Any]:

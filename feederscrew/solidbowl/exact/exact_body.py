@@ -52,11 +52,11 @@ def parts(body, kind):
     """Return the parts of a kind that a body has, a list."""
     from OCP.TopExp import TopExp_Explorer
 
-    found, walk = [], TopExp_Explorer(body, kind)
+    parts, walk = [], TopExp_Explorer(body, kind)
     while walk.More():
-        found.append(walk.Current())
+        parts.append(walk.Current())
         walk.Next()
-    return found
+    return parts
 
 
 def polygon(corners):
@@ -64,8 +64,8 @@ def polygon(corners):
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakePolygon
 
     wire = BRepBuilderAPI_MakePolygon()
-    for one in corners:
-        wire.Add(point(one))
+    for corner in corners:
+        wire.Add(point(corner))
     wire.Close()
     return wire.Wire()
 
@@ -94,28 +94,28 @@ def outwards(body):
     return body if volume(body) > 0.0 else body.Reversed()
 
 
-def broken(one, other, end):
+def broken(start, stop, end):
     """Return both ends of a side of a ring, and the place between them where the way becomes straight."""
-    low, high = sorted((one[0], other[0]))
+    low, high = sorted((start[0], stop[0]))
     if not low < end < high:
-        return [one, other]
-    return [one, one + (other - one) * (end - one[0]) / (other[0] - one[0]), other]
+        return [start, stop]
+    return [start, start + (stop - start) * (end - start[0]) / (stop[0] - start[0]), stop]
 
 
-def side(way, one, other, z):
+def side(path, start, stop, z):
     """Return a side of a ring as an edge: a straight line, an arc of a circle, or else a spline."""
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
     from OCP.GC import GC_MakeArcOfCircle
 
-    straight = min(one[0], other[0]) >= way.end - 1e-12 or abs(one[0] - other[0]) < 1e-9
+    straight = min(start[0], stop[0]) >= path.end - 1e-12 or abs(start[0] - stop[0]) < 1e-9
     if straight:
-        ends = way.plan(*np.array([one, other]).T) / MM
+        ends = path.plan(*np.array([start, stop]).T) / MM
         return BRepBuilderAPI_MakeEdge(*(point([*place, z]) for place in ends)).Edge()
-    count = max(int(abs(other[0] - one[0]) / way.radius / CURVE_STEP_RAD), 3) + 1
-    ends = np.cos(way.bank_at(np.linspace(one[0], other[0], count)))
-    arc = abs(one[1] - other[1]) < 1e-9 and way.flare == 0.0 and np.ptp(ends) * abs(one[1]) < 1e-12
-    s, y = np.linspace(one, other, 3 if arc else count).T
-    places = [[*place, z] for place in way.plan(s, y) / MM]
+    count = max(int(abs(stop[0] - start[0]) / path.radius / CURVE_STEP_RAD), 3) + 1
+    ends = np.cos(path.bank_at(np.linspace(start[0], stop[0], count)))
+    arc = abs(start[1] - stop[1]) < 1e-9 and path.flare == 0.0 and np.ptp(ends) * abs(start[1]) < 1e-12
+    s, y = np.linspace(start, stop, 3 if arc else count).T
+    places = [[*place, z] for place in path.plan(s, y) / MM]
     if arc:
         return BRepBuilderAPI_MakeEdge(GC_MakeArcOfCircle(*map(point, places)).Value()).Edge()
     return edge(np.array(places))
@@ -131,9 +131,9 @@ def edge(places):
 def spline(places):
     """Return poles (N, 3), knots, multiplicities and degree of a spline through places (M, 3)."""
     degree = min(3, len(places) - 1)
-    found = make_interp_spline(np.linspace(0.0, 1.0, len(places)), places, k=degree)
-    knots, often = np.unique(found.t, return_counts=True)
-    return found.c, knots, often, degree
+    fitted_curve = make_interp_spline(np.linspace(0.0, 1.0, len(places)), places, k=degree)
+    knots, often = np.unique(fitted_curve.t, return_counts=True)
+    return fitted_curve.c, knots, often, degree
 
 
 def curve(poles, knots, often, degree):
@@ -144,15 +144,15 @@ def curve(poles, knots, often, degree):
                              row("int", often.tolist()), degree)  # fmt: skip
 
 
-def ruled(one, other):
+def ruled(lower, upper):
     """Return the face between two splines of the same knots."""
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
     from OCP.Geom import Geom_BSplineSurface
     from OCP.OCP.collections import Array2_gp_Pnt
 
-    (poles, knots, often, degree), others = one, other[0]
+    (poles, knots, often, degree), rest = lower, upper[0]
     grid = Array2_gp_Pnt(1, len(poles), 1, 2)
-    for k, pair in enumerate(zip(poles, others), start=1):
+    for k, pair in enumerate(zip(poles, rest), start=1):
         for column, place in enumerate(pair, start=1):
             grid.SetValue(k, column, point(place))
     ends = row("double", [0.0, 1.0]), row("int", [2, 2])
@@ -166,10 +166,10 @@ def row(kind, values):
     from OCP.OCP import collections
 
     values = list(values)
-    found = getattr(collections, f"Array1_{kind}")(1, len(values))
-    for k, one in enumerate(values, start=1):
-        found.SetValue(k, one)
-    return found
+    row_kind = getattr(collections, f"Array1_{kind}")(1, len(values))
+    for k, value in enumerate(values, start=1):
+        row_kind.SetValue(k, value)
+    return row_kind
 
 
 def closed(faces):
@@ -178,8 +178,8 @@ def closed(faces):
     from OCP.TopAbs import TopAbs_SHELL
 
     sewing = BRepBuilderAPI_Sewing(SEWN)
-    for one in faces:
-        sewing.Add(one)
+    for face in faces:
+        sewing.Add(face)
     sewing.Perform()
     shell = parts(sewing.SewedShape(), TopAbs_SHELL)[0]
     return outwards(BRepBuilderAPI_MakeSolid(cast("Shell", shell)).Solid())
@@ -190,11 +190,11 @@ def volume(body):
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
 
-    found = GProp_GProps()
+    properties = GProp_GProps()
     (getattr(BRepGProp, "VolumeProperties_s", None) or BRepGProp.VolumeProperties)(
-        body, found, EPS, False, False
+        body, properties, EPS, False, False
     )
-    return float(found.Mass())
+    return float(properties.Mass())
 
 
 def kinds(body):
@@ -203,12 +203,12 @@ def kinds(body):
     from OCP.TopAbs import TopAbs_FACE
 
     names = {"Plane": "planes", "Cylinder": "cylinders", "Cone": "cones", "BSplineSurface": "ruled"}
-    found = dict.fromkeys(names.values(), 0)
-    for one in parts(body, TopAbs_FACE):
-        kind = str(BRepAdaptor_Surface(cast("Face", one)).GetType()).rpartition("GeomAbs_")[2]
+    surface_kinds = dict.fromkeys(names.values(), 0)
+    for part in parts(body, TopAbs_FACE):
+        kind = str(BRepAdaptor_Surface(cast("Face", part)).GetType()).rpartition("GeomAbs_")[2]
         name = names.get(kind, "others")
-        found[name] = found.get(name, 0) + 1
-    return found
+        surface_kinds[name] = surface_kinds.get(name, 0) + 1
+    return surface_kinds
 
 
 def valid(body):
@@ -223,10 +223,10 @@ def below(body, place):
     from OCP.gp import gp_Dir, gp_Lin
     from OCP.IntCurvesFace import IntCurvesFace_ShapeIntersector
 
-    found = IntCurvesFace_ShapeIntersector()
-    found.Load(body, 1e-6)
-    found.Perform(gp_Lin(point(place), gp_Dir(0, 0, -1)), 0.0, 1e5)
-    heights = [found.Pnt(k + 1).Z() for k in range(found.NbPnt())]
+    intersector = IntCurvesFace_ShapeIntersector()
+    intersector.Load(body, 1e-6)
+    intersector.Perform(gp_Lin(point(place), gp_Dir(0, 0, -1)), 0.0, 1e5)
+    heights = [intersector.Pnt(k + 1).Z() for k in range(intersector.NbPnt())]
     return max(heights, default=None)
 
 
@@ -272,7 +272,7 @@ def swept(legs):
     faces = [flat_face(legs[0][0][::-1]), flat_face(legs[-1][-1])]
     for leg in legs:
         borders = [spline(leg[:, k]) for k in range(leg.shape[1])]
-        faces += [ruled(one, other) for one, other in zip(borders, [*borders[1:], borders[0]])]
+        faces += [ruled(border, other) for border, other in zip(borders, [*borders[1:], borders[0]])]
     return closed(faces)
 
 
@@ -320,15 +320,15 @@ def prism(area, low, high):
 
 def plank(area, thickness, axes, foot):
     """Return a plate over an area [m], ``thickness`` [m] deep; columns of ``axes`` (3, 3): its axes."""
-    made = []
-    for one in shapely.get_parts(area):
-        if one.geom_type == "Polygon":
-            one = shapely.geometry.polygon.orient(one)
-            rings = [np.asarray(ring.coords)[:-1] for ring in (one.exterior, *one.interiors)]
+    solid = []
+    for area_part in shapely.get_parts(area):
+        if area_part.geom_type == "Polygon":
+            area_part = shapely.geometry.polygon.orient(area_part)
+            rings = [np.asarray(ring.coords)[:-1] for ring in (area_part.exterior, *area_part.interiors)]
             rings = [(np.asarray(foot) + product(ring, np.asarray(axes)[:, :2].T)) / MM for ring in rings]
             wires = [polygon(ring) for ring in rings]
-            made.append(drawn(wires, thickness / MM * np.asarray(axes)[:, 2]))
-    return made[0] if len(made) == 1 else united(made)
+            solid.append(drawn(wires, thickness / MM * np.asarray(axes)[:, 2]))
+    return solid[0] if len(solid) == 1 else united(solid)
 
 
 def patch(ring, low, high):
@@ -343,15 +343,15 @@ def patch(ring, low, high):
     return drawn([wire.Wire()], [0.0, 0.0, (high - low) / MM])
 
 
-def over(way, ring, low, high, chord):
+def over(path, ring, low, high, chord):
     """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m]."""
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeWire
 
     wire = BRepBuilderAPI_MakeWire()
     for a, b in zip(ring, np.roll(ring, -1, axis=0)):
-        for one, other in itertools.pairwise(broken(a, b, way.end)):
-            if np.abs(one - other).max() > 1e-9:
-                wire.Add(side(way, one, other, low / MM))
+        for item, other in itertools.pairwise(broken(a, b, path.end)):
+            if np.abs(item - other).max() > 1e-9:
+                wire.Add(side(path, item, other, low / MM))
     return drawn([wire.Wire()], [0.0, 0.0, (high - low) / MM])
 
 
@@ -359,8 +359,8 @@ def united(bodies):
     """Return the union of bodies, one after the other."""
     from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
 
-    whole, *others = bodies
-    for other in others:
+    whole, *rest = bodies
+    for other in rest:
         whole = _combined(BRepAlgoAPI_Fuse, whole, [other])
     return whole
 
@@ -394,8 +394,8 @@ def one_piece(body, where):
     """Return the one piece of a body; as ``facets.one_piece``."""
     from OCP.TopAbs import TopAbs_SOLID
 
-    pieces = sorted(parts(body, TopAbs_SOLID), key=lambda one: -volume(one))
-    if not pieces or any(volume(one) > MIN_PIECE_VOLUME_MM3 for one in pieces[1:]):
+    pieces = sorted(parts(body, TopAbs_SOLID), key=lambda item: -volume(item))
+    if not pieces or any(volume(piece) > MIN_PIECE_VOLUME_MM3 for piece in pieces[1:]):
         raise FeederError(where, f"OpenCASCADE finds {len(pieces)} bodies", "take bowl.stl")
     return pieces[0]
 
@@ -403,13 +403,13 @@ def one_piece(body, where):
 def _combined(kind, body, tools):
     from OCP.OCP.collections import List_TopoDS_Shape
 
-    made, lists = kind(), (List_TopoDS_Shape(), List_TopoDS_Shape())
+    solid, lists = kind(), (List_TopoDS_Shape(), List_TopoDS_Shape())
     lists[0].Append(body)
-    for one in tools:
-        lists[1].Append(one)
-    made.SetArguments(lists[0])
-    made.SetTools(lists[1])
-    made.SetUseOBB(True)  # a face along a helix fills little of a box along the axes
-    made.SetFuzzyValue(_near.get())  # where two splines along one helix meet, which else ends nowhere
-    made.Build()
-    return made.Shape()
+    for tool in tools:
+        lists[1].Append(tool)
+    solid.SetArguments(lists[0])
+    solid.SetTools(lists[1])
+    solid.SetUseOBB(True)  # a face along a helix fills little of a box along the axes
+    solid.SetFuzzyValue(_near.get())  # where two splines along one helix meet, which else ends nowhere
+    solid.Build()
+    return solid.Shape()

@@ -29,12 +29,12 @@ class StepFile:
     off: float  # [m] the most by which the track's height differs from the formula
 
 
-def step_file(made):
+def step_file(solid):
     """Return a bowl as a STEP file with exact faces.
 
     Parameters
     ----------
-    made : BowlSolid
+    solid : BowlSolid
 
     Returns
     -------
@@ -46,27 +46,27 @@ def step_file(made):
         If OpenCASCADE is not installed, or what it makes is not the bowl of the facets.
     """
     exact_body.check()
-    *others, last = exact_body.FUZZY_TOLERANCES_MM
-    for near in others:
+    *rest, last = exact_body.FUZZY_TOLERANCES_MM
+    for near in rest:
         with contextlib.suppress(FeederError), exact_body.meeting(near):
-            return _tried(made)
+            return _tried(solid)
     with exact_body.meeting(last):
-        return _tried(made)
+        return _tried(solid)
 
 
-def _tried(made):
+def _tried(solid):
     """A bowl as a STEP file, or the fault of what came out of it."""
-    plan = made.plan
+    plan = solid.plan
     whole, gates = pieces(plan, exact_body)
-    bodies = [whole, *(one for _, one in gates)]
-    data = _written([exact_body.placed_as(one, mirrored=plan.left, turned=plan.turned) for one in bodies])
-    found = _opened(data)
-    sizes = [exact_body.volume(one) * MM**3 for one in found]
-    if len(found) != len(bodies) or not all(exact_body.valid(one) for one in found):
-        raise _refused(f"finds {len(found)} bodies, or one that is not closed")
-    if abs(sizes[0] / made.volume - 1.0) > STEP_VOLUME_TOLERANCE:
-        raise _refused(f"makes a bowl of {sizes[0] / MM**3:.6g} mm3, not {made.volume / MM**3:.6g}")
-    return StepFile(data, sizes[0], exact_body.kinds(found[0]), _off(plan, found[0]))
+    bodies = [whole, *(gate for _, gate in gates)]
+    data = _written([exact_body.placed_as(body, mirrored=plan.left, turned=plan.turned) for body in bodies])
+    opened = _opened(data)
+    sizes = [exact_body.volume(item) * MM**3 for item in opened]
+    if len(opened) != len(bodies) or not all(exact_body.valid(item) for item in opened):
+        raise _refused(f"finds {len(opened)} bodies, or one that is not closed")
+    if abs(sizes[0] / solid.volume - 1.0) > STEP_VOLUME_TOLERANCE:
+        raise _refused(f"makes a bowl of {sizes[0] / MM**3:.6g} mm3, not {solid.volume / MM**3:.6g}")
+    return StepFile(data, sizes[0], exact_body.kinds(opened[0]), _off(plan, opened[0]))
 
 
 def _refused(what):
@@ -81,7 +81,7 @@ def _written(bodies):
     _quiet()
     writer = STEPControl_Writer()
     (getattr(Interface_Static, "SetCVal_s", None) or Interface_Static.SetCVal)(STEP_NAME_SETTING, "bowl")
-    if any(writer.Transfer(one, STEPControl_AsIs) != IFSelect_RetDone for one in bodies):
+    if any(writer.Transfer(body, STEPControl_AsIs) != IFSelect_RetDone for body in bodies):
         raise _refused("cannot write it")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "bowl.step"
@@ -107,14 +107,14 @@ def _off(plan, body):
     """How far [m] the track's height lies off the formula, where no device is."""
     body = exact_body.placed_as(body, mirrored=False, turned=-plan.turned)
     body = exact_body.placed_as(body, mirrored=plan.left, turned=0.0)
-    last = plan.first if plan.stretch is not None else plan.way.end
-    found = []
+    last = plan.first if plan.stretch is not None else plan.path.end
+    off = []
     for k in range(STEP_HEIGHT_SAMPLES):
         s, y = last * (k + 1.0) / (STEP_HEIGHT_SAMPLES + 2.0), plan.width * (0.1 + 0.8 * (k * 0.618 % 1.0))
-        place = plan.way.places(s, y)
-        met = exact_body.below(body, (place + [0.0, 0.0, 0.5 * plan.headroom]) / MM)
-        found.append(np.inf if met is None else abs(met * MM - place[2]))
-    return float(max(found))
+        place = plan.path.places(s, y)
+        below = exact_body.below(body, (place + [0.0, 0.0, 0.5 * plan.headroom]) / MM)
+        off.append(np.inf if below is None else abs(below * MM - place[2]))
+    return float(max(off))
 
 
 def _quiet():

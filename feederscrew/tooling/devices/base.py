@@ -233,7 +233,7 @@ class Device:
         return kind.span_on is not Device.span_on or kind.hole_on is not Device.hole_on
 
     @property
-    def met(self):
+    def is_touched(self):
         """Whether parts meet it: a hole, a blade, a gate or an edge, and not air and light alone."""
         kind = type(self)
         gate, lower = kind.opening is not Device.opening, kind.lower is not Device.lower
@@ -283,8 +283,8 @@ class Device:
         encounter : Meeting
         """
         cut, span = (
-            self.outline_on(encounter.one.track, ENDLESS_HOLE_LENGTHS * encounter.size),
-            self.span_on(encounter.one.track),
+            self.outline_on(encounter.orientation.track, ENDLESS_HOLE_LENGTHS * encounter.size),
+            self.span_on(encounter.orientation.track),
         )
         if span is not None and span[0] > 0.0 and encounter.held_by_shoulders(span) >= 0.0:
             return STOPPED  # it hangs in the slot up to its end
@@ -350,7 +350,7 @@ class Device:
         """Return by how much more [m] an orientation that travels passes it than one that is placed."""
         return 0.0
 
-    def told(self):
+    def document_values(self):
         """Return its values for a document, in mm."""
         if self.corners:
             return {"outline_mm": [[x / MM, y / MM] for x, y in self.corners]}
@@ -394,7 +394,12 @@ class Device:
             return f"outline of {keeps(((aspect, heading),))}, with {length_words(play)} of play"
         return span_words(self.span) if self.span else YAML_MARKS.sub("", self.short)
 
-    def beside(self, width):
+    @property
+    def shop_words(self) -> tuple[str, ...]:
+        """What a shop buys and sets for it, a sentence each: sensor, nozzles, valve; () of plain steel."""
+        return ()
+
+    def beside_track_fault(self, width):
         """Return the ConfigError of a hole that lies beside a track of some width [m]."""
         what = f"{self.kind} lies beside the track: the track is {1e3 * width:.4g} mm wide"
         return ConfigError(self.where, what, "move it onto the track")
@@ -503,4 +508,4 @@ class Yield(Device):
 
     def judged(self, encounter):
         shares = {name.casefold(): share for name, share in self.shares}
-        return Verdict(shares.get(encounter.one.aspect.casefold(), 1.0), math.nan)
+        return Verdict(shares.get(encounter.orientation.aspect.casefold(), 1.0), math.nan)

@@ -68,7 +68,9 @@ class _Overhead(Device):
         return STOPPED
 
     def judged(self, encounter):
-        return encounter.verdict(encounter.unless_laid_over(self.limit - encounter.one.height, self.limit))
+        return encounter.verdict(
+            encounter.unless_laid_over(self.limit - encounter.orientation.height, self.limit)
+        )
 
 
 @dataclass(frozen=True)
@@ -148,9 +150,9 @@ class Wiper(_Overhead):
         if not self.contour:
             sweep = self.sweep if self.face else 0.0
             return encounter.verdict(
-                encounter.unless_laid_over(self.limit - encounter.one.height, self.limit, sweep)
+                encounter.unless_laid_over(self.limit - encounter.orientation.height, self.limit, sweep)
             )
-        return encounter.verdict(encounter.through(self.opening(encounter.every, BEYOND_TRACK_M)))
+        return encounter.verdict(encounter.through(self.opening(encounter.orientations, BEYOND_TRACK_M)))
 
     def standing(self, track, orientations):
         """Return its blade, which goes on over the free edge."""
@@ -176,10 +178,10 @@ class Wiper(_Overhead):
         near, far = [place, 0.0], [place + lean, width]
         return np.array([near, [place + thick, 0.0], [place + lean + thick, width], far])
 
-    def told(self):
+    def document_values(self):
         own = {"sweep_deg": math.degrees(self.sweep)}
         own |= {} if self.friction is None else {"friction": self.friction}
-        return super().told() | (own if self.face else {})
+        return super().document_values() | (own if self.face else {})
 
     def _edge(self, width):
         """Its lower edge from the wall to the free edge: distances and heights [m]."""
@@ -254,10 +256,10 @@ class Profile(Device):
         aspect, heading, play = self.like
         return orientations[
             orientation_names.place_of(orientations, aspect, heading, self.where, "profile names")
-        ].seen.buffer(play)
+        ].view_ahead.buffer(play)
 
     def fate(self, encounter):
         return STOPPED
 
     def judged(self, encounter):
-        return encounter.verdict(encounter.through(self.free(encounter.every)))
+        return encounter.verdict(encounter.through(self.free(encounter.orientations)))

@@ -10,7 +10,7 @@ from feederscrew.tooling.devices.base import Device
 KINDS: dict[str, type[Device]] = {}
 
 
-def found():
+def register_kinds():
     """Fill KINDS with the classes of all modules of this folder, and return it."""
     classes = []
     for info in pkgutil.iter_modules(devices.__path__):
@@ -24,7 +24,7 @@ def found():
     return KINDS
 
 
-def made(kind, where, **values):
+def make_device(kind, where, **values):
     """Return a device of a kind by its name."""
     return KINDS[kind](where, **values)
 
@@ -53,4 +53,4 @@ def leaning():
     return tuple(kind for kind in KINDS.values() if kind.leans)
 
 
-found()
+register_kinds()

@@ -60,7 +60,7 @@ class Lean(Device):
             [[start, 0.0], [start + DRAWN_LINE_M, 0.0], [start + DRAWN_LINE_M, width], [start, width]]
         )
 
-    def told(self):
+    def document_values(self):
         return {"angle_deg": math.degrees(self.angle)}
 
     @property

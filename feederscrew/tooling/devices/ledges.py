@@ -109,8 +109,8 @@ class Tip(_Turner):
         return np.array([[start, low], [start + length, low], [start + length, high], [start, high]])
 
     def judged(self, encounter):
-        needed = encounter.one.balcony
-        margin = self.limit - needed if np.isfinite(needed) else -encounter.one.standing.reach
+        needed = encounter.orientation.balcony
+        margin = self.limit - needed if np.isfinite(needed) else -encounter.orientation.standing.reach
         beyond = 1.0 - encounter.share(margin)
         turned: tuple[tuple[int, float], ...] = ()
         if beyond > 0.0:
@@ -122,7 +122,13 @@ class Tip(_Turner):
     @classmethod
     def changes(cls, often):
         """Return the values [m] at which it changes what it does with some orientations, a Meeting each."""
-        return sorted({encounter.one.balcony for encounter in often if np.isfinite(encounter.one.balcony)})
+        return sorted(
+            {
+                encounter.orientation.balcony
+                for encounter in often
+                if np.isfinite(encounter.orientation.balcony)
+            }
+        )
 
 
 def below_ledge(orientations):
@@ -174,9 +180,9 @@ class NarrowedTrack(_OneNumber):
         return orientation.balcony
 
     def judged(self, encounter):
-        needed = encounter.one.balcony
+        needed = encounter.orientation.balcony
         return encounter.verdict(
-            self.limit - needed if math.isfinite(needed) else -encounter.one.standing.reach
+            self.limit - needed if math.isfinite(needed) else -encounter.orientation.standing.reach
         )
 
 
@@ -229,9 +235,9 @@ class PressureBreak(_OneNumber):
         return cls(where).valued(limit) if limit + margin <= reach else None
 
     def judged(self, encounter):
-        needed = encounter.one.balcony
+        needed = encounter.orientation.balcony
         return encounter.verdict(
-            self.limit - needed if math.isfinite(needed) else -encounter.one.standing.reach
+            self.limit - needed if math.isfinite(needed) else -encounter.orientation.standing.reach
         )
 
 
@@ -261,7 +267,7 @@ class Canyon(_OneNumber):
         return encounter.leans(self.limit)
 
     def judged(self, encounter):
-        margin = encounter.one.canyon - self.limit
+        margin = encounter.orientation.canyon - self.limit
         return encounter.verdict(carried(margin, -margin, self.more(encounter) if margin < 0.0 else 0.0))
 
 
@@ -303,7 +309,7 @@ def between(device, width):
     """Return the faults [ConfigError] of a hole between two distances off the wall of a track."""
     first, last = device.span
     pieces = [device.whole(width)] if first <= 0.0 and last >= width else []
-    return pieces + ([device.beside(width)] if first >= width else [])
+    return pieces + ([device.beside_track_fault(width)] if first >= width else [])
 
 
 MAX_LEAD_IN_M = 1.0  # [m] of a lead-in
@@ -404,7 +410,7 @@ class Rails(Device):
 
     def judged(self, encounter):
         if encounter.hanging:
-            return encounter.verdict(encounter.one.over(self.span))
+            return encounter.verdict(encounter.orientation.over(self.span))
         first = self.entry.span
         over = encounter.over_slot(first)
         stem = encounter.held_by_shoulders(self.span) if over < -UNSURE else -np.inf
@@ -433,11 +439,13 @@ class Rails(Device):
         lead = f", lead-in {span_words(self.lead[:2])}" if self.lead else ""
         return f"slot {span_words(self.span)}{lead}"
 
-    def told(self):
+    def document_values(self):
         if not self.lead:
-            return super().told()
+            return super().document_values()
         names = ("from_mm", "to_mm", "length_mm", "taper_mm")
-        return super().told() | {"lead_in": {name: size / MM for name, size in zip(names, self.lead)}}
+        return super().document_values() | {
+            "lead_in": {name: size / MM for name, size in zip(names, self.lead)}
+        }
 
 
 def written(span, lead=()):

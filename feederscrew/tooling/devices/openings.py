@@ -195,10 +195,10 @@ class Gap(Device):
         return orientation.gap
 
     def more(self, encounter):
-        return encounter.one.carry_ahead
+        return encounter.orientation.carry_ahead
 
     def judged(self, encounter):
-        orientation = encounter.one
+        orientation = encounter.orientation
         return encounter.verdict(
             carried(orientation.gap - self.limit, self.limit - orientation.gap, orientation.carry_ahead)
         )
@@ -228,7 +228,7 @@ class CutOut(Device):
 
     def misfits(self, width):
         across = [y for _, y in self.corners]
-        return [self.beside(width)] if max(across) <= 0.0 or min(across) >= width else []
+        return [self.beside_track_fault(width)] if max(across) <= 0.0 or min(across) >= width else []
 
     def hole_on(self, track):
         return polygon(np.array(self.corners), track.radius)
@@ -240,7 +240,7 @@ class CutOut(Device):
         return max(x for x, _ in self.corners)
 
     def judged(self, encounter):
-        orientation, hole = encounter.one, self.hole_on(encounter.one.track)
+        orientation, hole = encounter.orientation, self.hole_on(encounter.orientation.track)
         margin, shift = encounter.over_hole(hole)
         if margin < 0.0 < orientation.carry:
             margin = carried(margin, encounter.unheld(hole), orientation.carry)

@@ -293,7 +293,7 @@ class Sorter(Device):
 
         Those that ``unlike`` gives for a view are named beside it: they pass too, though they look otherwise.
         """
-        orientation, sorters = encounter.one, []
+        orientation, sorters = encounter.orientation, []
         for view in SENSOR_VIEWS:
             also = tuple((other.aspect, other.heading) for other in unlike(view))
             like = (
@@ -344,6 +344,16 @@ class Sorter(Device):
         pulse = "" if self.time == PULSE else f", air for {self.time / MS:.4g} ms"
         return f"keeps {keeps((self.like[:2], *self.also))}, rejects {what} by more than {most}{pulse}"
 
+    @property
+    def shop_words(self):
+        most = f"resolves {length_words(self.blur)}, rejects more than {length_words(self.like[2])}"
+        nozzles = f"{self.nozzles:.0f} nozzles of {length_words(self.nozzle)} in the wall"
+        valve = f"solenoid valve: opens within {REACTION / MS:.3g} ms, pulse of {self.time / MS:.4g} ms"
+        return (
+            f"{SEEN_BY[self.sees][0]}: {most}",
+            f"{nozzles}, {self.pressure / BAR_PA:.4g} bar at the nozzle; {valve}",
+        )
+
     def _jet_text(self):
         """Its nozzles and its pulse as a bowl file has them, as far as they are not as by default."""
         nozzles = [
@@ -361,9 +371,10 @@ class Sorter(Device):
 
         At least, of what is not wanted; at most, of what is: either may come askew.
         """
-        wanted = self.wanted(encounter.every)
+        wanted = self.wanted(encounter.orientations)
         if any(
-            (orientation.aspect, orientation.heading) == (encounter.one.aspect, encounter.one.heading)
+            (orientation.aspect, orientation.heading)
+            == (encounter.orientation.aspect, encounter.orientation.heading)
             for orientation in wanted
         ):
             return encounter.askew(self.sees)
@@ -410,7 +421,10 @@ class Sorter(Device):
         margin = math.copysign(max(abs(margin) - self.blur, 0.0), margin)
         if (
             margin < 0.0
-            and encounter.blown(*self.jet.push(encounter.one, encounter.every or (encounter.one,)), self.time)
+            and encounter.blown(
+                *self.jet.push(encounter.orientation, encounter.orientations or (encounter.orientation,)),
+                self.time,
+            )
             <= 0.0
         ):
             return encounter.verdict(0.0)  # it is carried on, whatever is seen
@@ -420,7 +434,7 @@ class Sorter(Device):
         """Return what it sees, unrolled: the track as far as the longest part."""
         return np.array([[start, 0.0], [start + length, 0.0], [start + length, width], [start, width]])
 
-    def told(self):
+    def document_values(self):
         return {
             "value_mm": self.like[2] / MM,
             "sees": self.sees,
@@ -509,6 +523,13 @@ class SteadyJet(Device):
         return f"nozzle of {bore} at {self.pressure / BAR_PA:.4g} bar, {high} over the track"
 
     @property
+    def shop_words(self):
+        bore = length_words(self.nozzle)
+        return (
+            f"1 nozzle of {bore} in the wall, blows steadily: regulator {self.pressure / BAR_PA:.4g} bar",
+        )
+
+    @property
     def jet(self):
         """Its Nozzles, one."""
         return Nozzles(self.nozzle, self.pressure, self.height)
@@ -526,13 +547,15 @@ class SteadyJet(Device):
 
     def _factors(self, encounter):
         """The same (PLACES,) at places along its length: it may offer more ahead or behind than amid."""
-        orientation = encounter.one
+        orientation = encounter.orientation
         wide = self.nozzle + SPREAD * orientation.width + orientation.length
         ends = orientation.outline[:, 0].min(), orientation.outline[:, 0].max()
         shares = (np.arange(JET_POSITIONS) + 0.5) / JET_POSITIONS
         pushes = [
             self.jet.push(
-                orientation, encounter.every or (orientation,), -float(ends[0] + share * (ends[1] - ends[0]))
+                orientation,
+                encounter.orientations or (orientation,),
+                -float(ends[0] + share * (ends[1] - ends[0])),
             )
             for share in shares
         ]
@@ -544,7 +567,7 @@ class SteadyJet(Device):
         if encounter.hanging:
             return encounter.verdict(0.0)
         factor, most = self.factor(encounter), self.most(encounter)
-        distance = encounter.one.track.width - encounter.one.distance
+        distance = encounter.orientation.track.width - encounter.orientation.distance
         margin = distance * (1.0 - (most if factor < 1.0 else factor))
         if most > 1.0 / SURE_FORCE_RATIO and factor < SURE_FORCE_RATIO:
             margin = 0.0 if factor < 1.0 else -UNSURE
@@ -562,7 +585,7 @@ class SteadyJet(Device):
             [[middle - near, 0.0], [middle + near, 0.0], [middle + far, width], [middle - far, width]]
         )
 
-    def told(self):
+    def document_values(self):
         return {"nozzle_mm": self.nozzle / MM, "pressure_bar": self.pressure / 1e5,
                 "height_mm": self.height / MM, "thrust_N": self.jet.thrust}  # fmt: skip
 

@@ -62,7 +62,7 @@ def sensor(entry, views):
         any_of["sees"] = node.text.strip()
         if any_of["sees"] not in views:
             raise ConfigError(
-                node.where, f"sees is {units.shown(node.text)}", f"known are {', '.join(views)}"
+                node.where, f"sees is {units.quantity_text(node.text)}", f"known are {', '.join(views)}"
             )
     if "resolution" in arguments:
         any_of["resolution"] = within(arguments, "resolution", "length", 0.0, MAX_LENGTH_M)
@@ -155,7 +155,7 @@ def _orientation(node):
     """Aspect and heading [rad] of an orientation, as A@90."""
     name, at, turn = node.text.partition("@")
     if not at or not name.strip():
-        what = f"{units.shown(node.text)} is not an orientation"
+        what = f"{units.quantity_text(node.text)} is not an orientation"
         raise ConfigError(node.where, what, "write aspect@heading, as A@90")
     return name.strip(), _parsed(f"{turn.strip().removesuffix('deg')} deg", node.where, "heading", "angle")
 
@@ -222,7 +222,7 @@ def mapping(entry, names, mend, optional=()):
         if orientation.key not in names:
             raise ConfigError(
                 orientation.where,
-                f"unknown key {units.shown(orientation.key)}",
+                f"unknown key {units.quantity_text(orientation.key)}",
                 f"known are {', '.join(names)}",
             )
     missing = [name for name in names if name not in entries and name not in optional]
@@ -256,7 +256,7 @@ def _drawn(entry):
     read = dxf.outlines(path, layer, node.where)
     rings = read.rings
     if len(rings) != 1:
-        what = f"layer {units.shown(layer)} of {path.name} holds {len(rings)} closed polylines"
+        what = f"layer {units.quantity_text(layer)} of {path.name} holds {len(rings)} closed polylines"
         raise ConfigError(arguments["layer"].value.where, what, "give each cut_out a layer of its own")
     what = f"{node.where}: {units.printable(path.name)} names no unit ($INSUNITS), read in mm"
     return rings[0], "" if read.has_unit else f"{what} - save it in millimetres"

@@ -464,7 +464,7 @@ def find_difference(wanted, other):
 def _nearest(wanted, other):
     """What some device measures in which two orientations are farthest apart, and by how much [m]."""
     differences = [
-        (-opening_margin(wanted.seen, other), kind.kind, kind.feature)
+        (-opening_margin(wanted.view_ahead, other), kind.kind, kind.feature)
         for kind in KINDS.values()
         if hasattr(kind, "free")
     ]

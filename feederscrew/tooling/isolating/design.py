@@ -59,7 +59,7 @@ def design_rails(task):
     Design or None
         None where the part has no head, lies elsewhere than over the slot, or others are left over.
     """
-    orientations, wanted, margin = task.every, task.wanted, task.margin
+    orientations, wanted, margin = task.orientations, task.wanted, task.margin
     device = _slot_between(orientations[wanted], margin, task.constraints.step)
     if device is None or orientations[wanted].returned:
         return None
@@ -96,7 +96,9 @@ def design_rails(task):
 def _before(task, passed, same, stage):
     """Cuts before the rails that return what they neither let hang nor return, and which those return."""
     equals = np.flatnonzero(same & task.often)
-    margins = chain.candidates(task.every, task.wanted, task.margin, task.constraints, same=equals, **stage)
+    margins = chain.candidates(
+        task.orientations, task.wanted, task.margin, task.constraints, same=equals, **stage
+    )
     margins = {
         device: some for device, some in margins.items() if (some[same & task.often] >= task.margin).all()
     }
@@ -105,7 +107,7 @@ def _before(task, passed, same, stage):
         return (), passed & ~same
     must = [some & ~passed for some in chain.shared_out(margins, devices, task.margin)]
     cuts = chain.place_devices(
-        task.every, task.wanted, devices, must, step=task.constraints.step, same=equals
+        task.orientations, task.wanted, devices, must, step=task.constraints.step, same=equals
     )
     return cuts, np.any([np.zeros(len(passed), bool), *must], axis=0)
 
@@ -203,7 +205,7 @@ def turning_chains(task):
 
 def _devices(task):
     """Steps and ledges, one between each two values at which what they do changes."""
-    orientations = task.every
+    orientations = task.orientations
     often = [orientation for orientation, some in zip(orientations, task.often & task.stays) if some]
     longest = max((max(orientation.length, orientation.height) for orientation in often), default=0.0)
     kinds = [kind for kind in KINDS.values() if kind.turns]
@@ -215,8 +217,8 @@ def _devices(task):
 
 def _changes(task, kind):
     """Values [m] at which a device changes what it does with an orientation that comes often, ascending."""
-    often = [orientation for orientation, some in zip(task.every, task.often & task.stays) if some]
-    return kind.changes([DeviceEncounter(orientation, task.every) for orientation in often])
+    often = [orientation for orientation, some in zip(task.orientations, task.often & task.stays) if some]
+    return kind.changes([DeviceEncounter(orientation, task.orientations) for orientation in often])
 
 
 def _heights_between(heights):
@@ -238,17 +240,20 @@ def _device(kind, limit):
 
 def _sure(task, device):
     """Whether a device does by the margin with the wanted orientation what it does."""
-    return verdict(device, task.every[task.wanted], task.every).margin >= task.margin
+    return verdict(device, task.orientations[task.wanted], task.orientations).margin >= task.margin
 
 
 def _matrix(task, device):
-    return course((device,), task.every).matrices[0]
+    return course((device,), task.orientations).matrices[0]
 
 
 def _counted(task, device):
     """Matrix of a device in which what momentum may decide counts as lost."""
     matrix = np.array(_matrix(task, device))
-    some = [verdict(device, orientation, task.every).margin >= task.margin for orientation in task.every]
+    some = [
+        verdict(device, orientation, task.orientations).margin >= task.margin
+        for orientation in task.orientations
+    ]
     matrix[~np.array(some)] = 0.0
     return matrix
 
@@ -272,9 +277,9 @@ def _cuts(task, devices):
     """Turning devices as cuts of a design, the second with what the first brings to it."""
     cuts, coming = [], task.coming
     for device in devices:
-        listed = [verdict(device, orientation, task.every) for orientation in task.every]
+        listed = [verdict(device, orientation, task.orientations) for orientation in task.orientations]
         moved = [
-            (task.every[k].name, task.every[onto].name, float(share))
+            (task.orientations[k].name, task.orientations[onto].name, float(share))
             for k, orientation in enumerate(listed)
             for onto, share in orientation.onto
             if onto != k and coming[k] >= LEAST_SHARE
@@ -392,7 +397,7 @@ def design(
 def _returning(task, search):
     """The best chain of devices that only return parts: they leave lying, or hanging."""
     if any(device.hangs for device in task.before):
-        return propose(task, (), np.zeros(len(task.every), dtype=bool))
+        return propose(task, (), np.zeros(len(task.orientations), dtype=bool))
     outcome = task.constraints.outcome
     hung = design_rails(task) if outcome != "lying" and task.constraints.allows(*names(hangs=True)) else None
     if outcome == "hanging":
@@ -408,7 +413,7 @@ def _with_turning(task, proposal, search, efficiency):
     enough = GAIN if efficiency <= 0.0 else 1.0
     for cuts in turning_chains(task):
         behind = asked_for(
-            task.every, task.shares, task.wanted, task.margin, task.purity, task.before,
+            task.orientations, task.shares, task.wanted, task.margin, task.purity, task.before,
             cuts, task.constraints,
         )  # fmt: skip
         other = _returning(behind, search.started())
@@ -422,7 +427,7 @@ def _with_turning(task, proposal, search, efficiency):
 
 def _short(task, proposal, efficiency):
     """By how much what was asked for is missed, and why, a sentence each."""
-    orientation, reasons = task.every[task.wanted], []
+    orientation, reasons = task.orientations[task.wanted], []
     if proposal.efficiency < efficiency:
         comes = task.shares[task.wanted] / task.shares.sum()
         why = (
@@ -441,7 +446,7 @@ def _short(task, proposal, efficiency):
 
 def _plain(task, search):
     """The chain of devices that return the others and leave the wanted one lying."""
-    orientations, wanted = task.every, task.wanted
+    orientations, wanted = task.orientations, task.wanted
     if orientations[wanted].turns_over:
         return without_device(task, "can tip over on the track at this drive")
     if orientations[wanted].may_roll_back:
@@ -482,7 +487,7 @@ def _purer(proposal, other):
 
 def _chosen(task, weight, stage) -> tuple[Any, np.ndarray]:
     """Cuts of the fewest devices of a stage, and which orientations are returned."""
-    orientations, wanted = task.every, task.wanted
+    orientations, wanted = task.orientations, task.wanted
     same = np.flatnonzero(task.same & task.often)
     equals, more = task.same & task.often, stage.get("varied", False)
     stage_options = {name: value for name, value in stage.items() if name != "varied"}
@@ -515,9 +520,13 @@ def _with_holes(task, cuts, returned, search):
         left = [k for k in np.flatnonzero(~returned) if k != task.wanted and task.often[k]]
         if task.coming[left].sum() <= task.allowed:
             break
-        left = [k for k in left if not stands_on_all(task.every[k], task.every[task.wanted], task.margin)]
-        play = task.margin + task.every[task.wanted].flight  # a hole so much shorter may be jumped
-        hole = hole_search.cut_out(task.every, task.wanted, left, play, search) if left else None
+        left = [
+            k
+            for k in left
+            if not stands_on_all(task.orientations[k], task.orientations[task.wanted], task.margin)
+        ]
+        play = task.margin + task.orientations[task.wanted].flight  # a hole so much shorter may be jumped
+        hole = hole_search.cut_out(task.orientations, task.wanted, left, play, search) if left else None
         if hole is not None and task.constraints.cutter > 0.0:
             hole = hole_search.round_corners(task, hole, task.constraints.cutter)
         if hole is None:

@@ -37,7 +37,7 @@ class HoleSearch:
     until: float = math.inf  # [s] of time.monotonic(): the last resort
     late: bool = False  # whether that was reached
     spent: int = 0  # verdicts so far
-    known: dict = field(default_factory=dict)  # what whole searches found, and the verdicts each took
+    memo: dict = field(default_factory=dict)  # what whole searches found, and the verdicts each took
 
     def started(self):
         """Return the same search for another orientation."""
@@ -84,7 +84,7 @@ def cut_out(orientations, wanted, competitors, margin, search):
 def _search(orientations, wanted, competitors, margin, search):
     """The best hole, as (corners, margins of the others), or None; a whole search is made once."""
     key = (wanted, *competitors, margin, *(orientations[k].carry for k in competitors))
-    best, spent = search.known.get(key, (None, math.inf))
+    best, spent = search.memo.get(key, (None, math.inf))
     if search.spent + spent < search.verdicts:
         search.spent += spent
         return best
@@ -93,7 +93,7 @@ def _search(orientations, wanted, competitors, margin, search):
         np.random.default_rng((search.seed, wanted, *competitors))
     )
     if not search.over():
-        search.known[key] = best, search.spent - before
+        search.memo[key] = best, search.spent - before
     return best
 
 
@@ -318,6 +318,6 @@ def round_corners(task, hole, radius):
     if round_.geom_type != "Polygon" or round_.is_empty:
         return None
     corners = np.round(shapely.get_coordinates(round_.exterior)[:-1] / SHOP_ROUNDING_M) * SHOP_ROUNDING_M
-    must, ends = np.isin(np.arange(len(task.every)), held), (cut.smallest, cut.largest)
-    rounded = judge_cut(task.every, task.wanted, device_of(corners), must, *ends)
+    must, ends = np.isin(np.arange(len(task.orientations)), held), (cut.smallest, cut.largest)
+    rounded = judge_cut(task.orientations, task.wanted, device_of(corners), must, *ends)
     return (rounded, held) if min(rounded.margin_pass, rounded.margin_reject) >= task.margin else None

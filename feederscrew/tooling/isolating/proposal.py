@@ -72,7 +72,7 @@ ALL = Goal()
 class DesignTask:
     """One orientation to be isolated behind some devices; M orientations."""
 
-    every: tuple  # of Orientation
+    orientations: tuple  # of Orientation
     shares: np.ndarray  # (M,) [1] probability of each
     wanted: int
     margin: float  # [m] to either side
@@ -85,14 +85,14 @@ class DesignTask:
     @property
     def stays(self):
         """(M,) bool, whether the bare track carries it."""
-        return np.array([not orientation.returned for orientation in self.every])
+        return np.array([not orientation.returned for orientation in self.orientations])
 
     @property
     def same(self):
         """(M,) bool, which count as the wanted one: itself, and what lies on an aspect that may be up too."""
         up = {name.casefold() for name in self.constraints.up}
-        equal = np.array([orientation.aspect.casefold() in up for orientation in self.every])
-        return equal | (np.arange(len(self.every)) == self.wanted)
+        equal = np.array([orientation.aspect.casefold() in up for orientation in self.orientations])
+        return equal | (np.arange(len(self.orientations)) == self.wanted)
 
     @property
     def often(self):
@@ -102,7 +102,7 @@ class DesignTask:
     @property
     def allowed(self):
         """Share of others [1] that may leave beside the wanted one alone."""
-        return self.allowed_beside(np.arange(len(self.every)) == self.wanted)
+        return self.allowed_beside(np.arange(len(self.orientations)) == self.wanted)
 
     def allowed_beside(self, same):
         """Return the share of others [1] that may leave beside those (M,) bool that leave as wanted."""
@@ -144,7 +144,7 @@ def propose(task, cuts, returned, same=None, late=False):
     -------
     Design
     """
-    orientations, shares, wanted = task.every, task.shares, task.wanted
+    orientations, shares, wanted = task.orientations, task.shares, task.wanted
     same = task.same if same is None else same
     cuts = (*task.turners, *_separated(task, cuts))
     flow = course((*task.before, *(cut.device for cut in cuts)), orientations)
@@ -205,7 +205,7 @@ def _surely(task, flow, states):
             and not orientation.groove
             and (orientation.track.bank <= 0.0 or orientation.along_a_bank)
         )
-        for orientation in task.every
+        for orientation in task.orientations
     ]
     share = np.where(loose, 0.0, task.shares) * flow.leaving[:, states].sum(axis=1)
     return float(share.sum() / total) if total > 0.0 else 0.0
@@ -225,7 +225,7 @@ def _separated(task, cuts):
 
     Before rails the track climbs as it did: where it falls, a head that comes first has no time to turn down.
     """
-    steeper, orientation = task.constraints.separation, task.every[task.wanted]
+    steeper, orientation = task.constraints.separation, task.orientations[task.wanted]
     first = next(
         (k for k, cut in enumerate(cuts) if cut.device.gap(orientation, orientation.speed) > 0.0), None
     )
@@ -245,7 +245,7 @@ def plain_cut(device):
 
 def _with_stops(task, flow, cuts):
     """Cuts with the names of those that come to stand at each."""
-    first, names = 1 + len(task.before), [orientation.name for orientation in task.every]
+    first, names = 1 + len(task.before), [orientation.name for orientation in task.orientations]
     stands = flow.stops * (task.shares > 0.0)[:, None]
     return tuple(
         replace(cut, stops=tuple(name for name, share in zip(names, stands[:, first + k]) if share > 0.0))
@@ -264,7 +264,7 @@ def without_device(task, why):
         efficiency=0.0,
         purity=np.nan,
         left_over=(),
-        reasons=(f"{task.every[task.wanted].name} {why}",),
+        reasons=(f"{task.orientations[task.wanted].name} {why}",),
     )
 
 
@@ -309,7 +309,7 @@ def propose_needed(task, cuts, returned, same=None, late=False):
 
 def _returns(task, cut):
     """(M,) bool, which orientations a cut returns by the margin that is asked for."""
-    margins = [margin_at(cut.device, orientation, task.every) for orientation in task.every]
+    margins = [margin_at(cut.device, orientation, task.orientations) for orientation in task.orientations]
     return np.array([margin <= -task.margin for margin in margins], dtype=bool)
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from feederscrew.geometry.compiled import compiled, entry
+from feederscrew.geometry.compiled import apart, compiled, entry
 from feederscrew.tooling.kernel.hull_depth import inset_beside
 from feederscrew.tooling.kernel.passage import _under
 
@@ -24,6 +24,12 @@ def over_ring(foot, low, high, scratch):
     -------
     float [m]
     """
+    return _ring_margin(foot, low, high, scratch)
+
+
+@apart
+def _ring_margin(foot, low, high, scratch):
+    """The margin [m] of a foot over the ring between two radii [m]."""
     count, points = 0, scratch.points
     for k in range(len(foot.corners)):
         held = not low < foot.polar[k, 1] < high
@@ -65,11 +71,11 @@ def _crossed(foot, side, radius, points, count):
 def balcony(foot, radius, farthest, scratch):
     """Return the least width [m] of track that carries a foot; beyond ``farthest`` where none does."""
     low, high = 0.0, farthest
-    if over_ring(foot, 0.0, radius - farthest, scratch) < 0.0:
+    if _ring_margin(foot, 0.0, radius - farthest, scratch) < 0.0:
         return math.inf
     for _ in range(60):
         middle = 0.5 * (low + high)
-        if over_ring(foot, 0.0, radius - middle, scratch) >= 0.0:
+        if _ring_margin(foot, 0.0, radius - middle, scratch) >= 0.0:
             high = middle
         else:
             low = middle
@@ -80,11 +86,11 @@ def balcony(foot, radius, farthest, scratch):
 def canyon(foot, radius, farthest, scratch):
     """Return the greatest width [m] of a strip removed along the wall that carries a foot; -1 for none."""
     low, high = 0.0, farthest
-    if over_ring(foot, radius, 2.0 * radius, scratch) < 0.0:
+    if _ring_margin(foot, radius, 2.0 * radius, scratch) < 0.0:
         return -1.0
     for _ in range(60):
         middle = 0.5 * (low + high)
-        if over_ring(foot, radius - middle, 2.0 * radius, scratch) >= 0.0:
+        if _ring_margin(foot, radius - middle, 2.0 * radius, scratch) >= 0.0:
             low = middle
         else:
             high = middle

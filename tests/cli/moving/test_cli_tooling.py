@@ -171,7 +171,7 @@ def test_a_card_has_no_mesh(run):
 
 
 def test_orientations_that_hardly_come_are_not_counted():
-    from feederscrew.output.tooling import tables
+    from feederscrew.output import tooling_tables as tables
 
     good, bad = (SimpleNamespace(isolated=isolated, efficiency=0.3) for isolated in (True, False))
     designs = good, bad, good, good

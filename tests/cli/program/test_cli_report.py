@@ -41,7 +41,6 @@ def test_one_file_with_every_chapter(run):
     ]
     assert tiles[0][1] == "aspect B"
     for picture in (
-        "probabilities.png",
         "tipping.png",
         "headings_B.png",
         "convey_map.png",

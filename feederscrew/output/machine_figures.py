@@ -3,8 +3,8 @@
 import numpy as np
 from matplotlib.patches import Circle, Polygon, Rectangle, Wedge
 
+from feederscrew.output import machine_sheet as sheets
 from feederscrew.output import style
-from feederscrew.output.machine import sheet as sheets
 from feederscrew.units import DEG, MM, PER_MINUTE
 
 WIDE, HIGH = 1760, 1500  # [px] of the page

@@ -4,15 +4,17 @@ import textwrap
 
 import numpy as np
 import shapely
-from matplotlib.patches import Polygon
+from matplotlib.lines import Line2D
+from matplotlib.patches import PathPatch, Polygon
+from matplotlib.path import Path
 from shapely import affinity
 
-from feederscrew.output import style
-from feederscrew.output.tooling import ink, leaving, profile, tables
+from feederscrew.output import style, tooling_tables
 from feederscrew.tooling import track_sections
 from feederscrew.tooling.isolating.proposal import (
     LEAST_SHARE,  # orientations that come less often have no row
 )
+from feederscrew.tooling.orientations import Hanging
 from feederscrew.units import MM
 
 WIDTH = 1200  # pixels
@@ -29,6 +31,12 @@ KEY = (
 )
 LETTERS = 38  # of a line of text in the last column
 NARROW = 24  # the same in the first column
+SHRINK = 0.82  # of a size in points
+BESIDE = 1.0  # [mm] from the left end of what is drawn
+SHEET, DEEP = "#c3ccd4", 2.0  # [mm] of a rail as drawn
+BAR = 120  # pixels: at most as long is a bar
+STEPS = (1.0, 2.0, 5.0)
+ALIKE = 1.02  # scales that differ by less are one
 
 
 def chain(devices, every, shares, wanted=None):
@@ -62,22 +70,22 @@ def chain(devices, every, shares, wanted=None):
     for panel in range(panels):
         for place, device in enumerate(shown):
             left = panel * wide + LEFT + place * column + 8
-            ink.text(page, left, HEAD - 22, _device(device, place), weight="bold")
-        ink.text(page, (panel + 1) * wide - OUT + 8, HEAD - 22, "as it leaves", weight="bold")
+            write_text(page, left, HEAD - 22, _device(device, place), weight="bold")
+        write_text(page, (panel + 1) * wide - OUT + 8, HEAD - 22, "as it leaves", weight="bold")
     size = _scale(every, rows, column)
-    leaving.bar_on_page(page, panels * wide - 16, 66, size)  # below the title, which may be as long
+    draw_scale_bar(page, panels * wide - 16, 66, size)  # below the title, which may be as long
     for place, k in enumerate(rows):
         panel, line = divmod(place, high)
         left, top = panel * wide, HEAD + line * ROW
         found = track_sections.until_returned(shown, every[k], every)
         if panel == 0:
-            ink.rule(page, top)
+            draw_rule(page, top)
         _told(page, (left + 16, top), every[k], shares[k], found, k == wanted)
         for step, one in enumerate(found):
             _cell(page, (left + LEFT + step * column, top, column, ROW), one, size)
         if found and all(one.verdict.passes > 0.0 for one in found):
             box = left + wide - OUT + 8, top + 8, OUT - 24, ROW - 38
-            leaving.column(page, box, found[-1].after, size, PASSES)
+            draw_leaving(page, box, found[-1].after, size, PASSES)
         if every[k].returned:
             _bare(page, (left + LEFT, top, column, ROW), every[k], size)
     return page
@@ -97,23 +105,23 @@ def limits(study):
     every, shares = study.orientations, study.shares
     rows = _rows(every, shares, None)
     page = style.page(WIDTH, HEAD + ROW * len(rows) + FOOT)
-    _heading(page, tables.isolated(study), _missing(every, rows, shares))
+    _heading(page, tooling_tables.isolation_words(study), _missing(every, rows, shares))
     for left, text in (
         (LEFT + 8, "from above"),
         (LEFT + COLUMN + 8, "along the track"),
         (830, "isolated by"),
     ):
-        ink.text(page, left, HEAD - 22, text, weight="bold")
+        write_text(page, left, HEAD - 22, text, weight="bold")
     size = _scale(every, rows, COLUMN)
     for place, k in enumerate(rows):
         top, one, found = HEAD + place * ROW, every[k], study.designs[k]
-        ink.rule(page, top)
+        draw_rule(page, top)
         _measured(page, top, one, shares[k])
         colour = style.INK if found is None else PASSES if study.isolates(k) else FALLS
         _above(_axes(page, (LEFT, top, COLUMN, ROW), size, True), one, None, None, colour)
         _ahead(_axes(page, (LEFT + COLUMN, top, COLUMN, ROW), size, False), one, None, colour)
         for line, text in enumerate(_isolated(study, k)):
-            ink.text(page, 830, top + 30 + line * LINE, text, colour=colour)
+            write_text(page, 830, top + 30 + line * LINE, text, colour=colour)
     return page
 
 
@@ -130,16 +138,16 @@ def _cell(page, box, found, size):
     else:
         _ahead(axes, found.after if found.device.leans else found.orientation, found.opening, colour)
     if found.verdict.onto:
-        ink.text(page, box[0] + 8, box[1] + ROW - 12, profile.turned_into(found), colour=colour)
+        write_text(page, box[0] + 8, box[1] + ROW - 12, turned_words(found), colour=colour)
         return
     word = "hangs" if found.verdict.hangs else "passes" if good else f"is {found.fate}"
-    ink.text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, {ink.margin(found.verdict)}", colour=colour)
+    write_text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, {margin_words(found.verdict)}", colour=colour)
 
 
 def _bare(page, box, one, size):
     """One orientation that the bare track returns: it meets no device."""
     _above(_axes(page, box, size, True), one, None, None, FALLS)
-    ink.text(page, box[0] + 8, box[1] + ROW - 12, "meets no device", colour=FALLS)
+    write_text(page, box[0] + 8, box[1] + ROW - 12, "meets no device", colour=FALLS)
 
 
 def _turned(page, axes, found, box, colour):
@@ -151,15 +159,15 @@ def _turned(page, axes, found, box, colour):
     if turned:
         room = 0.5 * (axes.get_xlim()[1] - wide - (other.bounds[2] - other.bounds[0]))
         other = affinity.translate(other, wide + max(min(room, 12.0), 2.0) - other.bounds[0], 0.0)
-        ink.fill(axes, other, f"{PART}b0", colour, 4, width=1.8)
+        fill_area(axes, other, f"{PART}b0", colour, 4, width=1.8)
     one = affinity.translate(one, -one.bounds[0], 0.0)
-    ink.fill(axes, one, "none" if turned else f"{PART}b0", "#4d5b68" if turned else colour, 5, width=1.2)
+    fill_area(axes, one, "none" if turned else f"{PART}b0", "#4d5b68" if turned else colour, 5, width=1.2)
     right = (other if turned else one).bounds[2]
     axes.plot([0.0, right], [0.0, 0.0], color=style.INK, lw=1.5, zorder=6)
     share = max(share for _, share in found.verdict.onto)
     word = f"turns into {found.after.name}" if turned else "stays as it lies"
     word += f", {100.0 * share:.3g} %" if share < 0.9995 else ""
-    ink.text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, quasi-static", colour=colour)
+    write_text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, quasi-static", colour=colour)
 
 
 def _side(one, along):
@@ -175,17 +183,17 @@ def _above(axes, one, hole, found, colour):
     right = axes.get_xlim()[1]
     half = min(0.95 * max(one.length, one.width) / MM, right)
     track = shapely.box(-half, 0.0, half, one.track.width / MM)
-    curved = profile.sunk(track, one.track.radius / MM)
-    ink.fill(axes, curved if hole is None else curved.difference(ink.mm(hole)), TRACK, "#b8c2cb", 1)
+    curved = curved_track(track, one.track.radius / MM)
+    fill_area(axes, curved if hole is None else curved.difference(in_mm(hole)), TRACK, "#b8c2cb", 1)
     outline = np.add(one.outline, [0.0, one.distance]) / MM
     axes.add_patch(Polygon(outline, fc=PART, ec="#4d5b68", lw=0.9, alpha=0.45, zorder=3))
-    touching = ink.mm(track_sections.foot_area(one))
+    touching = in_mm(track_sections.foot_area(one))
     if hole is not None:
-        ink.fill(axes, ink.mm(hole).intersection(curved), "none", style.INK, 6, width=0.8)
-    left_over = touching if hole is None else touching.difference(ink.mm(hole))
-    ink.fill(axes, left_over, TOUCHING, TOUCHING, 4)
+        fill_area(axes, in_mm(hole).intersection(curved), "none", style.INK, 6, width=0.8)
+    left_over = touching if hole is None else touching.difference(in_mm(hole))
+    fill_area(axes, left_over, TOUCHING, TOUCHING, 4)
     hull = left_over.convex_hull if found is None else shapely.MultiPoint(found.supported / MM).convex_hull
-    ink.fill(axes, hull, "none", colour, 5, width=1.8)
+    fill_area(axes, hull, "none", colour, 5, width=1.8)
     weight = 0.0, (one.distance - one.shift) / MM
     axes.plot(*weight, "o", ms=5.5, color=colour, mec="white", mew=0.8, zorder=7)
 
@@ -195,12 +203,12 @@ def _ahead(axes, one, opening, colour):
     top = axes.get_ylim()[1]
     right = min(axes.get_xlim()[1], one.track.width / MM, 1.5 * max(one.length, one.width) / MM)
     if opening is not None:
-        plate = shapely.box(0.0, 0.0, right, top).difference(ink.mm(opening))
-        ink.fill(axes, plate, "#c3ccd4", "#8593a0", 2)
-    shown, line = profile.along(one, top, right)
+        plate = shapely.box(0.0, 0.0, right, top).difference(in_mm(opening))
+        fill_area(axes, plate, "#c3ccd4", "#8593a0", 2)
+    shown, line = profile_along_track(one, top, right)
     axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)
-    ink.fill(axes, shown, f"{PART}b0", "none", 4)
-    ink.fill(axes, shown, "none", colour, 5, width=1.8)
+    fill_area(axes, shown, f"{PART}b0", "none", 4)
+    fill_area(axes, shown, "none", colour, 5, width=1.8)
 
 
 def _axes(page, box, size, middle):
@@ -223,9 +231,9 @@ def _scale(every, rows, column):
 
 
 def _heading(page, title, missing):
-    ink.text(page, 16, 26, title, size=11, weight="bold")
+    write_text(page, 16, 26, title, size=11, weight="bold")
     for line, text in enumerate([*KEY, missing]):
-        ink.text(page, 16, 50 + LINE * line, text, size=8)
+        write_text(page, 16, 50 + LINE * line, text, size=8)
 
 
 def _told(page, at, one, share, found, is_wanted):
@@ -236,18 +244,18 @@ def _told(page, at, one, share, found, is_wanted):
         colour = PASSES if word.startswith("leaves") else FALLS
     else:
         word, colour = f"{found[-1].fate} by {found[-1].device.name}", FALLS
-    ink.text(page, left, top + 30, one.name, size=12, weight="bold", colour=colour)
-    ink.text(page, left, top + 52, f"{100.0 * share:.3g} % of the parts")
+    write_text(page, left, top + 30, one.name, size=12, weight="bold", colour=colour)
+    write_text(page, left, top + 52, f"{100.0 * share:.3g} % of the parts")
     lines = textwrap.wrap(word, NARROW)
     for line, text in enumerate(lines):
-        ink.text(page, left, top + 52 + (1 + line) * LINE, text, colour=colour)
+        write_text(page, left, top + 52 + (1 + line) * LINE, text, colour=colour)
     if is_wanted:
-        ink.text(page, left, top + 52 + (1 + len(lines)) * LINE, "wanted", weight="bold")
+        write_text(page, left, top + 52 + (1 + len(lines)) * LINE, "wanted", weight="bold")
 
 
 def _measured(page, top, one, share):
     """Share and limits of an orientation, at the left of its row."""
-    ink.text(page, 16, top + 24, one.name, size=12, weight="bold")
+    write_text(page, 16, top + 24, one.name, size=12, weight="bold")
     balcony = f"{one.balcony / MM:.2f} mm" if np.isfinite(one.balcony) else "none"
     lines = [
         ("of the parts", f"{100.0 * share:.3g} %"), ("track at least", balcony),
@@ -255,8 +263,8 @@ def _measured(page, top, one, share):
         ("gap up to", f"{one.gap / MM:.2f} mm"), ("height", f"{one.height / MM:.2f} mm"),
     ]  # fmt: skip
     for place, (name, value) in enumerate(lines):
-        ink.text(page, 16, top + 50 + place * LINE, name)
-        ink.text(page, 138, top + 50 + place * LINE, value)
+        write_text(page, 16, top + 50 + place * LINE, name)
+        write_text(page, 138, top + 50 + place * LINE, value)
 
 
 def _isolated(study, place):
@@ -269,7 +277,7 @@ def _isolated(study, place):
         margin = f"margin {found.margin / MM:.2f} mm" if np.isfinite(found.margin) else ""
         return [
             *result,
-            f"{100.0 * tables.leaving(study, place)['efficiency']:.3g} % of the parts leave",
+            f"{100.0 * tooling_tables.leaving(study, place)['efficiency']:.3g} % of the parts leave",
             margin,
         ]
     reasons = (*(() if tried is None else tried.faults), *found.reasons)
@@ -296,3 +304,132 @@ def _missing(every, rows, shares):
     if not left:
         return ""
     return f"without a row, as less than {100.0 * LEAST_SHARE:g} % of the parts come so: {', '.join(left)}"
+
+
+def fill_area(axes, area, face, edge, order, width=0.8):
+    """Draw a shapely geometry [mm]: areas with their holes, lines and points."""
+    for part in shapely.get_parts(area):
+        if part.geom_type == "Polygon":
+            rings = [np.asarray(ring.coords) for ring in (part.exterior, *part.interiors)]
+            path = Path.make_compound_path(*(Path(ring, closed=True) for ring in rings))
+            axes.add_patch(PathPatch(path, fc=face, ec=edge, lw=width, zorder=order))
+        elif part.geom_type == "LineString":
+            axes.plot(*np.asarray(part.coords).T, color=edge, lw=2.0, zorder=order)
+        elif part.geom_type == "Point":
+            axes.plot(part.x, part.y, "s", color=edge, ms=3.0, zorder=order)
+
+
+def in_mm(area):
+    """Return a shapely geometry [m] in millimetres."""
+    return shapely.transform(area, lambda points: points / MM)
+
+
+def margin_words(verdict):
+    """Return the margin of a verdict in words; a device that only sets parts apart has none."""
+    if np.isnan(verdict.margin):
+        return "no margin"
+    return f"margin {verdict.margin / MM:+.2f} mm" if verdict.sure else "not sure"
+
+
+def draw_rule(page, top):
+    """Draw a line across a page, ``top`` pixels from its upper edge."""
+    wide, high = page.get_size_inches() * style.DPI
+    y = 1.0 - top / high
+    page.add_artist(Line2D([16.0 / wide, 1.0 - 16.0 / wide], [y, y], color=style.FAINT, lw=0.8))
+
+
+def write_text(page, x, y, text, *, size=9, colour=style.INK, weight="normal"):
+    """Write a line of text on a page, in pixels from its upper left corner."""
+    wide, high = page.get_size_inches() * style.DPI
+    page.text(
+        x / wide, 1.0 - y / high, text, fontsize=SHRINK * size, color=colour, fontweight=weight, va="center"
+    )
+
+
+def profile_along_track(one, top, right):
+    """Return what is seen of an orientation [mm], and the line (K, 2) [mm] of wall and track below it.
+
+    Parameters
+    ----------
+    one : Orientation
+    top, right : float [mm]
+        How far wall and track are drawn.
+    """
+    shown = in_mm(one.view_ahead)
+    if not one.groove:
+        return shown, np.array([[0.0, top], [0.0, 0.0], [right, 0.0]])
+    angle, lean = one.groove, 2.0 * one.groove - 0.5 * np.pi
+    y, z = np.concatenate([np.asarray(ring) for ring in one.silhouette]).T / MM
+    shift = -float((y - z * np.tan(lean)).min())  # the other face begins at the wall's foot
+    shown = affinity.rotate(affinity.translate(shown, shift), angle, origin=(0.0, 0.0), use_radians=True)
+    c, s = np.cos(angle), np.sin(angle)
+    left = max(BESIDE - shown.bounds[0], 0.0)
+    faces = np.array([[-left, left * s / c], [0.0, 0.0], [right * c, right * s]])
+    return affinity.translate(shown, left), faces + [left, 0.0]
+
+
+def curved_track(track, radius):
+    """Return the track [mm] between the curved wall and its inner edge."""
+    left, _, right, high = track.bounds
+    x = np.linspace(left, right, 41)
+    wall = radius - np.sqrt(radius**2 - x**2)
+    inner = radius - high
+    far = radius - np.sqrt(np.maximum(inner**2 - x**2, 0.0)) if inner > abs(left) else np.full(41, 1e3)
+    return shapely.Polygon(np.vstack([np.column_stack([x, wall]), np.column_stack([x, far])[::-1]]))
+
+
+def turned_words(found):
+    """Say what a stretch that leans the track turns an orientation into, where statics tells."""
+    if found.after.name == found.orientation.name:
+        return "may turn, not sure"
+    return f"turns into {found.after.name}, not sure"
+
+
+def scale_bar_length(size):
+    """Return the length [mm] of a scale bar, 1, 2 or 5 times a power of ten, at ``size`` mm a pixel."""
+    return max(step * 10.0**k for k in range(-3, 5) for step in STEPS if step * 10.0**k <= BAR * size)
+
+
+def draw_scale_bar(page, right, y, size):
+    """Draw a scale bar that ends ``right`` pixels from the left edge, ``y`` from the upper one."""
+    wide, high = page.get_size_inches() * style.DPI
+    length = scale_bar_length(size)
+    left = right - length / size
+    ends = [left / wide, right / wide], [1.0 - y / high] * 2
+    page.add_artist(Line2D(*ends, color=style.INK, lw=2.0, solid_capstyle="butt"))
+    write_text(page, left, y - 10, f"{length:g} mm", size=8)
+
+
+def draw_leaving(page, box, one, size, colour):
+    """Draw an orientation as it leaves in a box of pixels, ``size`` mm a pixel or, if need be, more."""
+    left, top, wide, high = box
+    low, up = min(one.view_ahead.bounds[1], 0.0) / MM, one.view_ahead.bounds[3] / MM
+    across = max(one.view_ahead.bounds[2], *one.span) / MM if _hangs(one) else one.view_ahead.bounds[2] / MM
+    own = max(size, 1.05 * (across + _hangs(one) * DEEP) / wide, 1.05 * (up - low) / high)
+    page_wide, page_high = page.get_size_inches() * style.DPI
+    place = left / page_wide, 1.0 - (top + high) / page_high, wide / page_wide, high / page_high
+    axes = page.add_axes(place)
+    begin = min(low, -3.0 * own)
+    axes.set(xlim=(-4.0 * own, (wide - 4.0) * own), ylim=(begin - 2.0 * own, begin + (high - 2.0) * own))
+    axes.axis("off")
+    draw_along_track(axes, one, colour)
+    if own > ALIKE * size:
+        draw_scale_bar(page, left + wide - 4.0, top + high + 24.0, own)
+
+
+def _hangs(one):
+    return isinstance(one, Hanging)
+
+
+def draw_along_track(axes, one, colour):
+    """Draw an orientation [mm] as it leaves: the wall at the left, the track below it, rails cut across."""
+    shown, (_, top), (_, right) = in_mm(one.view_ahead), axes.get_ylim(), axes.get_xlim()
+    if _hangs(one):
+        first, last = (end / MM for end in one.span)
+        for low, high in ((0.0, first), (last, right)):
+            fill_area(axes, shapely.box(low, -DEEP, high, 0.0), SHEET, style.INK, 3)
+        axes.plot([0.0, 0.0], [min(shown.bounds[1], -DEEP), top], color=style.INK, lw=1.5, zorder=6)
+    else:
+        shown, line = profile_along_track(one, top, right)
+        axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)
+    fill_area(axes, shown, f"{PART}b0", colour, 5, width=1.6)

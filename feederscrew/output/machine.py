@@ -1,4 +1,6 @@
-"""A machine and a bowl as tables and documents."""
+"""The machine and the bowl for a part as tables, documents and files: ``feeder bowl``."""
+
+import math
 
 import numpy as np
 
@@ -6,13 +8,53 @@ from feederscrew import units
 from feederscrew.conveying.hop import hop
 from feederscrew.machine import drive_sizing
 from feederscrew.machine.springs import mean_pull
-from feederscrew.output import tables
-from feederscrew.output.machine import sheet as sheets
-from feederscrew.output.solidbowl import tables as solids
+from feederscrew.output import machine_sheet as sheets
+from feederscrew.output import marking, proof, solidbowl, tables
+from feederscrew.output.offers import document as json_file
+from feederscrew.output.offers import picture, table
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
 LITRE = units.factor("l", "volume")
+
+
+def offers(study, tried=None, mark=None, fields=None):
+    """Return the files of a machine.
+
+    Parameters
+    ----------
+    study : MachineSheet
+    tried : Verified, optional
+        What a trial of exactly this bowl at this stroke has shown: it leads, and what falls short is marked.
+    mark : str, optional
+        Across every drawing; that of the trial without it.
+    fields : marking.SheetFields, optional
+        Date and revision of the drawing.
+
+    Returns
+    -------
+    tuple of Offer
+    """
+    from feederscrew.output import machine_figures as figures
+    from feederscrew.output import solidbowl
+
+    alt = "The bowl from above and in section, with its sizes, and what it does from full to empty"
+    solid = () if study.solid is None else solidbowl.offers(study, tried, mark, fields)
+    drawn = picture("bowl.png", alt, figures.bowl, study, tried)
+    return (
+        *solid,
+        json_file("bowl.json", _document, study, tried),
+        table("bowl.csv", summary, study, tried),
+        table("bowl_angles.csv", angles, study),
+        table("bowl_leaves.csv", leaf_sets, study.sets),
+        table("bowl_leaf_changes.csv", leaf_sets, study.changes),
+        table("bowl_emptying.csv", emptying, study),
+        *marking.pictures([drawn], marking.of_trial(tried, mark)),
+    )
+
+
+def _document(study, tried):
+    return document(study) | ({} if tried is None else {"verified": proof.block(tried)})
 
 
 def document(study):
@@ -46,7 +88,7 @@ def document(study):
         "emptying": emptying(study),
         "remarks": list(study.remarks),
         "warnings": list(study.remarks),
-        **({} if study.solid is None else solids.document(study.solid)),
+        **({} if study.solid is None else solidbowl.document(study.solid)),
         **({} if study.rocking is None else _rocking(study)),
     }
 
@@ -247,3 +289,43 @@ def summary(study, tried=None):
     """Return the record as a frame for people: the quotation sheet, with what was tried, or the machine."""
     rows = sheets.quotation(study, tried) if study.order is not None else sheets.machine(study, tried)
     return tables.frame({name: [row[name] for row in rows] for name in ("quantity", "value")})
+
+
+def measured_summary(one):
+    """Return what was measured beside what should be, and the likely cause, as a table."""
+    rows = [("parts in the bowl [%]", f"{100.0 * one.fill:.3g}", "")]
+    pairs = (
+        ("stroke, peak to peak [mm]", one.should["stroke"] / MM, one.stroke and one.stroke / MM),
+        ("acceleration, peak [m/s2]", one.should["acceleration"], one.acceleration),
+        ("frequency [Hz]", one.should["frequency"], one.frequency),
+        ("velocity of a part [mm/s]", one.velocity_should / MM_S, one.velocity / MM_S),
+    )
+    rows += [(name, f"{should:.4g}", _measured_text(now)) for name, should, now in pairs]
+    rows.append(("natural frequency, as drawn [Hz]", f"{one.natural_frequency:.4g}", ""))
+    rows += [("likely cause" if k == 0 else "", cause, "") for k, cause in enumerate(one.causes)]
+    return tables.frame(dict(zip(("quantity", "should be", "measured"), zip(*rows))))
+
+
+def _measured_text(value):
+    return "-" if value is None or math.isnan(value) else f"{value:.4g}"
+
+
+def measured_document(one):
+    """Return a MeasuredMachine as the JSON document."""
+    now = {"stroke_mm": one.stroke and one.stroke / MM, "acceleration_m_s2": one.acceleration}
+    return {
+        "fill_percent": 100.0 * one.fill,
+        "measured": now | {"frequency_hz": one.frequency, "velocity_mm_s": _finite_velocity(one.velocity)},
+        "should": {
+            "stroke_mm": one.should["stroke"] / MM,
+            "acceleration_m_s2": one.should["acceleration"],
+            "frequency_hz": one.should["frequency"],
+            "velocity_mm_s": _finite_velocity(one.velocity_should),
+        },
+        "natural_frequency_hz": one.natural_frequency,
+        "causes": list(one.causes),
+    }
+
+
+def _finite_velocity(velocity):
+    return velocity / MM_S if math.isfinite(velocity) else None

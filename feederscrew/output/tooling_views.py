@@ -1,4 +1,4 @@
-"""The part in three dimensions over a cut: what shall leave, and the nearest of what falls."""
+"""The part in three dimensions over a cut: the orientation that leaves, and the nearest that falls."""
 
 from dataclasses import replace
 
@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew.geometry.polygons import turned
 from feederscrew.output import shading, style
 from feederscrew.output.shading import Camera
-from feederscrew.output.tooling import ink
+from feederscrew.output.tooling_figures import FALLS, PASSES, margin_words
 from feederscrew.tooling import solid, track_sections
 from feederscrew.tooling.isolating.proposal import (
     LEAST_SHARE,  # what comes less often is not the nearest that falls
@@ -15,7 +15,6 @@ from feederscrew.tooling.isolating.proposal import (
 from feederscrew.tooling.track_sections import build_section
 
 WIDE, HIGH, HEAD = 620, 520, 96  # pixels of one view and of the lines over it
-PASSES, FALLS = "#0072b2", "#d55e00"
 VIEW = np.array([0.55, 0.80, 0.85])  # to the viewer: ahead, inwards, up
 TURNS = np.radians(
     [0.0, -69.0, -35.0, 25.0, -95.0]
@@ -70,7 +69,7 @@ def _short(met):
     """'gap, margin +0.64 mm': device and margin."""
     if met.orientation.kind == "hanging":
         return "in the rails"
-    return f"{met.device.name}, {ink.margin(met.verdict)}"
+    return f"{met.device.name}, {margin_words(met.verdict)}"
 
 
 def _drawable(met):
@@ -113,7 +112,7 @@ def _told(met, word):
     where = "half way through" if met.verdict.passes > 0.0 else "in front of it"
     if _over_a_cut(met):
         where = "where it bears least; outline: hull of its support, dot: its weight"
-    return f"{met.orientation.name} {word} the {kind}", f"{ink.margin(met.verdict)}, {where}"
+    return f"{met.orientation.name} {word} the {kind}", f"{margin_words(met.verdict)}, {where}"
 
 
 def track_below(met, every):
@@ -140,7 +139,7 @@ def track_below(met, every):
     return np.column_stack([ahead, from_wall - one.distance, corners[:, 2]]), faces
 
 
-def placed(met, station):
+def part_on_section(met, station):
     """Return the corners (V, 3) [m] of the part of a passage on a track section that holds its station."""
     one = met.orientation
     points = np.array(one.posture.surface)
@@ -162,7 +161,7 @@ def station_of(met, every):
 def _image(met, every):
     """The rendered view of a passage, its place, the camera, and the point in its middle."""
     section = station_of(met, every)
-    corners, faces = placed(met, section.stations[0]), met.orientation.posture.solid.faces
+    corners, faces = part_on_section(met, section.stations[0]), met.orientation.posture.solid.faces
     angle = met.angle(section.stations[0])
     centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
     track, sides = solid.solid(section)

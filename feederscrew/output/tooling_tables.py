@@ -1,9 +1,11 @@
-"""Orientations and chains of devices as tables and as a document, in the units of the shop."""
+"""Tables, documents and the bowl file of ``feeder tooling``."""
 
 import numpy as np
 
+from feederscrew.bowl.devices import DEVICES_SECTION, check_written, value_text
 from feederscrew.output import columns, tables
 from feederscrew.tooling import track_sections
+from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE
 from feederscrew.units import DEG, MM
 
@@ -24,6 +26,7 @@ CHAIN = (
 WORDS = {"margin_pass_mm": "passes_by_mm", "margin_reject_mm": "others_fail_by_mm"}  # for people
 WIDE = 34  # letters of a text in a table for people
 QUASI_STATIC = "quasi-static, until a trial confirms it"
+TRACK, WIDTH = "track", "track.width"
 
 
 def document(study):
@@ -170,7 +173,7 @@ def remarks(study, efficiency=0.0):
     """Return what a reader should know: what cannot be told apart, and why."""
     found = study.design
     if found is None:
-        return [isolated(study, efficiency)]
+        return [isolation_words(study, efficiency)]
     return [_lead(study, found), *found.reasons]
 
 
@@ -208,7 +211,7 @@ def trials(study):
     return [text for faults, text in said if faults], [text for faults, text in said if not faults]
 
 
-def isolated(study, efficiency=0.0):
+def isolation_words(study, efficiency=0.0):
     """Say how many of the orientations that come often enough to matter can be isolated."""
     often = np.flatnonzero(study.shares >= LEAST_SHARE)
     designed = [k for k in often if study.designs[k] is not None]
@@ -286,11 +289,11 @@ def _designed(study, place, found):
 def _cut(cut):
     return {
         "device": cut.device.kind,
-        **cut.device.told(),
+        **cut.device.document_values(),
         "margin_pass_mm": cut.margin_pass / MM,
         "margin_reject_mm": cut.margin_reject / MM,
-        "smallest": cut.smallest.told(),
-        "largest": cut.largest.told(),
+        "smallest": cut.smallest.document_values(),
+        "largest": cut.largest.document_values(),
         "returns": [name for name in cut.returns if name not in cut.stops],
         "stops": list(cut.stops),
         "text": cut.device.text,
@@ -318,3 +321,63 @@ def _turns(cut):
 
 def _finite(value):
     return float(value) if np.isfinite(value) else None
+
+
+def bowl_file(study, settings):
+    """Return a bowl file: what the user gave, and the devices that isolate the orientation asked for.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+        Of one orientation.
+    settings : sequence of Setting
+        Of its bowl.
+
+    Returns
+    -------
+    str
+    """
+    check_written(study.design.devices, "tooling.yaml")
+    width = study.design.width
+    given = [s for s in settings if s.is_own and s.key.field != DEVICES_SECTION]
+    given = [s for s in given if width is None or s.key.name != WIDTH]
+    lines = [*_file_head(study), *(f"{s.key.word}: {s.text}" for s in given if not s.key.section)]
+    for section in dict.fromkeys(s.key.section for s in given if s.key.section):
+        lines += [f"{section}:"]
+        lines += [f"  {s.key.word}: {s.text}" for s in given if s.key.section == section]
+        lines += [_wide(width)] if width is not None and section == TRACK else []
+    if width is not None and not any(s.key.section == TRACK for s in given):
+        lines += [f"{TRACK}:", _wide(width)]
+    lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
+    lines += [f"  - {device.kind}: {value_text(device)}" for device in study.design.before]
+    lines += [f"  - {cut.device.kind}: {value_text(cut.device)}{_mark(cut)}" for cut in study.design.cuts]
+    return "\n".join(lines) + "\n"
+
+
+def _wide(width):
+    return f"  width: {in_mm(width)}  # as the design asks for"
+
+
+def _mark(cut):
+    """What is not certain of a device."""
+    return "  # quasi-static, until a trial confirms it" if cut.device.turns else ""
+
+
+def _file_head(study):
+    one, found = study.orientations[study.wanted], study.design
+    return [
+        f"# Tooling that lets aspect {one.aspect} at heading {one.name.partition('@')[2]} deg leave.",
+        f"# By the static rule: efficiency {'at least ' * (found.least < found.efficiency)}"
+        f"{100.0 * found.least:.4g} %, purity {'at least ' * bool(found.purity_is_least)}"
+        f"{100.0 * found.purity:.4g} %, by {study.answer}.",
+        *_tried(study.trial_of(study.wanted)),
+    ]
+
+
+def _tried(trial):
+    """What the trial said, the first thing to know of a design that it denies."""
+    if trial is None:
+        return ["# By the static rule, not tried: see feeder trial."]
+    if trial.faults:
+        return [f"# DENIED by its trial: {'; '.join(trial.faults)}."]
+    return [f"# Of {trial.parts} parts tried {trial.figures}."]

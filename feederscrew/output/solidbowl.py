@@ -1,5 +1,9 @@
-"""The bowl as a solid as a document."""
+"""The bowl as a solid: its document, and the files of ``feeder bowl --solid``."""
 
+import functools
+
+from feederscrew.output import marking
+from feederscrew.output import offers as offer
 from feederscrew.solidbowl import segments
 from feederscrew.solidbowl.segments import overhangs
 from feederscrew.units import DEG, MM
@@ -10,6 +14,65 @@ NOT_EXACT = (
     "slanted edges of cuts are splines",
 )
 WALL = "the wall is no surface of revolution: it is ruled between splines through 16 places a quarter turn"
+
+
+def offers(study, tried=None, mark=None, fields=None):
+    """Return the files of the solid of a bowl.
+
+    Parameters
+    ----------
+    study : MachineSheet
+        With its solid.
+    tried : Verified, optional
+        What a trial of the bowl has shown: it is in the title block, and across what falls short.
+    mark : str, optional
+        On every drawing and solid; that of the trial without it.
+    fields : marking.SheetFields, optional
+        Date and revision of the drawing.
+
+    Returns
+    -------
+    tuple of Offer
+    """
+    from feederscrew.output import bowl_sheet, solid_files, solidbowl_views
+
+    name, cut, mark = study.order.part.name, study.solid.segments, marking.of_trial(tried, mark)
+    title = marking.marked_title(f"bowl for {name}", mark)
+    sheet_title = marking.marked_title(f"{name}: bowl", mark)
+    sheets = functools.cache(lambda: bowl_sheet.draw_sheets(study, tried, mark, fields))
+    pieces = (
+        ()
+        if cut is None
+        else (
+            *(
+                _file(f"bowl_{one.name}.stl", mark, solid_files.binary_stl, one.vertices, one.faces, mark)
+                for one in cut.pieces
+            ),
+            _file(
+                "bowl_segments.3mf", mark, solid_files.segments_3mf, cut.pieces, f"{title}, in segments", mark
+            ),
+        )
+    )
+    exact = () if study.solid.step is None else (_file("bowl.step", mark, _marked_step, study.solid, mark),)
+    picture = offer.picture("bowl_solid.png", "The bowl, parts on its track", solidbowl_views.figure, study)
+    return (
+        *pieces,
+        *exact,
+        _file("bowl.stl", mark, solid_files.bowl_stl, study.solid, mark),
+        _file("bowl.3mf", mark, solid_files.bowl_3mf, study.solid, title, mark),
+        offer.text("bowl.pdf", lambda: sheets().pdf(sheet_title)),
+        offer.text("bowl.dxf", lambda: sheets().dxf()),
+        *marking.pictures([picture], mark),
+    )
+
+
+def _file(name, mark, make, *arguments):
+    """A file of the solid, of which nobody sees a mark but in its name."""
+    return offer.text(marking.file_name(name, mark), make, *arguments)
+
+
+def _marked_step(solid, mark):
+    return marking.mark_step(solid.step.data, mark)
 
 
 def document(solid):
@@ -25,7 +88,7 @@ def document(solid):
     """
     plan, extent = solid.plan, solid.vertices.max(axis=0) - solid.vertices.min(axis=0)
     return {
-        "diameter_mm": 2.0 * plan.way.radius / MM,
+        "diameter_mm": 2.0 * plan.path.radius / MM,
         "solid_volume_mm3": solid.volume / MM**3,
         "solid_mass_kg": solid.mass,
         "solid_inertia_kg_m2": solid.inertia,

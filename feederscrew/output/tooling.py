@@ -1,14 +1,14 @@
-"""What ``feeder tooling`` leaves in its folder."""
+"""Files of ``feeder tooling``."""
 
 import numpy as np
 
 from feederscrew.output import marking
 from feederscrew.output import offers as offer
-from feederscrew.output.tooling import bowl_file, tables
+from feederscrew.output import tooling_tables as tables
 from feederscrew.tooling.track_sections import build_section
 
 
-def offers(study, settings, step=False, mark=""):
+def offers(study, settings, step=False, mark="", fields=None):
     """Offer the files of a ToolingStudy, as a list of Offer.
 
     Parameters
@@ -20,6 +20,8 @@ def offers(study, settings, step=False, mark=""):
         Offer the section of track as STEP as well, which needs OpenCASCADE.
     mark : str
         On every drawing, picture and solid.
+    fields : marking.SheetFields, optional
+        Date and revision of the drawing.
 
     Returns
     -------
@@ -36,9 +38,9 @@ def offers(study, settings, step=False, mark=""):
         return marking.pictures(found, mark)
     found = [
         *found,
-        offer.text("tooling.yaml", bowl_file.bowl_file, study, settings),
-        offer.text("tooling.dxf", _drawn, "dxf", study, mark),
-        offer.text("tooling.svg", _drawn, "svg", study, mark),
+        offer.text("tooling.yaml", tables.bowl_file, study, settings),
+        offer.text("tooling.dxf", _drawn, "dxf", study, mark, fields),
+        offer.text("tooling.svg", _drawn, "svg", study, mark, fields),
         offer.text(marking.file_name("tooling.stl", mark), _printed, study, mark),
         *([offer.text(marking.file_name("tooling.step", mark), _quoted, study, mark)] if step else []),
         *_views(study),
@@ -48,7 +50,7 @@ def offers(study, settings, step=False, mark=""):
 
 def picture(study):
     """Return the figure of a study: the chain of the orientation asked for, or all with their limits."""
-    from feederscrew.output.tooling import figures
+    from feederscrew.output import tooling_figures as figures
 
     if study.design is None or not study.design.devices:
         return figures.limits(study)
@@ -70,7 +72,7 @@ def chain_picture(devices, every, shares):
     """
 
     def draw():
-        from feederscrew.output.tooling import figures
+        from feederscrew.output import tooling_figures as figures
 
         return figures.chain(devices, every, shares)
 
@@ -103,34 +105,38 @@ def solid_picture(devices, every, shares, wanted):
     """
 
     def draw():
-        from feederscrew.output.tooling import relief
+        from feederscrew.output import tooling_views
 
-        return relief.figure(devices, every, shares, wanted)
+        return tooling_views.figure(devices, every, shares, wanted)
 
     text = "The part over the cut: what passes, and the nearest that falls"
     return offer.picture("tooling_3d.png", text, draw)
 
 
-def _drawn(kind, study, mark):
-    from feederscrew.output.tooling import drawing
+def _drawn(kind, study, mark, fields):
+    from feederscrew.output import tooling_drawing as drawing
 
     made = _strip(study)
     one = study.orientations[study.wanted]
     outline = np.add(one.outline, [0.0, one.distance])
     places = [station.start + 0.5 * station.length for station in made.stations if station.hole is None]
-    return getattr(drawing, kind)(made, [(outline, place) for place in (0.6 * one.length, *places)], mark)
+    ghosts = [(outline, place) for place in (0.6 * one.length, *places)]
+    titles = [("tooling for", study.part.name), ("leaves as", one.name)]
+    return getattr(drawing, kind)(
+        made, ghosts, mark, thickness=study.bowl.sizing.sheet, fields=fields, titles=titles
+    )
 
 
 def _printed(study, mark):
-    from feederscrew.output.tooling import written_stl
+    from feederscrew.output import solid_files
 
-    return written_stl.stl(_strip(study), mark)
+    return solid_files.section_stl(_strip(study), mark)
 
 
 def _quoted(study, mark):
-    from feederscrew.output.tooling import written_step
+    from feederscrew.output import solid_files
 
-    return marking.mark_step(written_step.step(_strip(study)), mark)
+    return marking.mark_step(solid_files.section_step(_strip(study)), mark)
 
 
 def _strip(study):

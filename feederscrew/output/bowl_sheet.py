@@ -1,0 +1,682 @@
+"""The drawing sheets of a bowl: A3, to scale, with dimensions that are measured on the solid.
+
+Sheet 1 has the bowl, its springs and what belongs to it; sheet 2 the devices on the unrolled track; sheet 3
+the stretches of the track and their development in sheet metal.
+"""
+
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+
+from feederscrew.output import machine_sheet as sheets
+from feederscrew.output import solidbowl_views as views
+from feederscrew.output import tooling_drawing
+from feederscrew.output.drafting import FRAME, Drawing, scale_words
+from feederscrew.output.marking import SheetFields, of_trial
+from feederscrew.output.tooling_drawing import EDGES, View
+from feederscrew.solidbowl import facets, segments, track
+from feederscrew.solidbowl.measuring import Measures, measures
+from feederscrew.solidbowl.plan import BowlPlan, TrackPath
+from feederscrew.units import DEG, MM, PER_MINUTE, factor
+
+LITRE, GRAM = factor("l", "volume"), factor("g", "mass")
+SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1:2.5
+VIEW_ROOM = 134.0  # [mm] of paper for the bowl across
+VIEW_HEIGHT = 56.0  # and upright, in each of two views
+TOP, BETWEEN = 276.0, 21.0  # [mm] where the upper of them begins, and from its foot to the lower one
+STRIP_ROOM = 330.0, 45.0  # [mm] of paper for the unrolled track
+CUT = "±0.1"  # [mm] of an edge that parts meet
+GENERAL = "ISO 2768-m"
+LONG, NARROW_LETTERS = 46, 38  # letters of a line in the title block, and of its left column
+PIECE_ANGLE = np.pi  # [rad] of one piece of the track's development, at most
+PLACES = 61  # along a piece at which it is developed
+
+
+def draw_sheets(
+    study: Any, tried: Any = None, mark: str | None = None, fields: SheetFields | None = None
+) -> Drawing:
+    """Return the drawing of a bowl on its sheets.
+
+    Parameters
+    ----------
+    study : MachineSheet
+        With its order and its solid.
+    tried : Verified, optional
+        What a trial of the bowl has shown.
+    mark : str, optional
+        Across each sheet; that of the trial without it.
+    fields : SheetFields, optional
+        Date and revision of the title block.
+    """
+    drawing, solid = Drawing(tooling_drawing.PENS), study.solid.with_lugs
+    sizes = measures(study.solid)
+    sizes = replace(sizes, extent=tuple(float(x) for x in np.ptp(solid.vertices, axis=0)))
+    scale = min(_scale(max(sizes.extent[:2]) / MM, VIEW_ROOM), _scale(sizes.height / MM, VIEW_HEIGHT))
+    count = 3 if solid.plan.stretch is not None else 2
+    drawing.box(*FRAME)
+    _from_above(drawing, solid, sizes, scale)
+    _section(drawing, solid, sizes, scale)
+    _from_outside(drawing, solid, sizes, scale)
+    _standing(drawing, solid)
+    _springs(drawing, study)
+    _list_parts(drawing, study, (246.0, 134.0))
+    _title_block(drawing, study, sizes, scale, tried, fields, f"1 of {count}")
+    drawing.mark(of_trial(tried, mark))
+    if solid.plan.stretch is not None:
+        _devices(drawing, study, fields, f"2 of {count}")
+        drawing.mark(of_trial(tried, mark))
+    _track(drawing, study, fields, f"{count} of {count}")
+    drawing.mark(of_trial(tried, mark))
+    return drawing
+
+
+def _scale(size: float, room: float) -> float:
+    return next((one for one in SCALES if one * size <= room), SCALES[-1])
+
+
+def _placed(pieces: ArrayLike, at: ArrayLike, scale: float) -> NDArray[np.float64]:
+    return np.asarray(pieces, float) / MM * scale + np.asarray(at, float)
+
+
+def _draw_view(drawing: Drawing, pieces: NDArray[np.float64]) -> None:
+    """Draw the edges of a view (N, 2, 2) [mm]; those that go on from each other as one line."""
+    merged = shapely.line_merge(shapely.multilinestrings(np.round(pieces, 4)))
+    drawing.lines(shapely.get_coordinates(line) for line in shapely.get_parts(merged))
+
+
+def _head(drawing: Drawing, x: float, y: float, words: str, scale: float | None) -> None:
+    drawing.text(x, y, words if scale is None else f"{words}  {scale_words(scale)}", 3.0, bold=True)
+
+
+def _from_above(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> None:
+    """The bowl from above: its diameter, the track's width, the bolts, and where the tooling begins."""
+    at, plan = np.array([95.0, 203.0]), solid.plan
+    drawn = views.lines(solid.vertices, solid.faces, views.camera(-90.0, 90.0))
+    _draw_view(drawing, _placed(drawn, at, scale))
+    r = 0.5 * sizes.diameter / MM * scale
+    low = at[1] - 0.5 * max(sizes.extent[:2]) / MM * scale - 6.0
+    if plan.stairs is None:
+        drawing.length(at - [r, 0.0], at + [r, 0.0], (0.0, low - at[1]), scale, "Ø<>", decimals=1)
+    else:
+        drawing.round_size(at, r, plan.turned / DEG, scale, text="<> at the outlet", decimals=1)
+        lowest = float(plan.path.wall_radius(0.0)) / MM
+        drawing.text(25.0, 268.0, f"R{lowest:.4g} of the wall where the track begins", 2.2)
+    turn = plan.turned + (1.0 if plan.left else -1.0) * 0.5 * np.pi
+    outward = np.array([np.cos(turn), np.sin(turn)])
+    wide = sizes.track_width * np.cos(float(plan.path.bank_at(plan.path.at(-0.5 * np.pi)))) / MM * scale
+    drawing.lines([[at + outward * (r - wide - 7.0), at + outward * r]], "DIMENSION")
+    x, y = at + outward * (r - wide - 9.5)
+    drawing.text(x, y - 1.0, f"track {sizes.track_width / MM:.4g}", 2.2, "center")
+    drawing.circle(at, 0.5 * plan.bolt_circle / MM * scale, "CENTRE")
+    bolts = f"{plan.bolts} x Ø{plan.bolt / MM:.4g} on Ø{plan.bolt_circle / MM:.4g}, and one in the middle"
+    drawing.text(25.0, 276.5, bolts, 2.2)
+    if plan.stretch is not None:
+        start = angle_from_outlet(plan, 0.0)
+        drawing.text(25.0, 272.5, f"tooling begins at the datum D, {start:.4g}° before the outlet", 2.2)
+        ray = _way_angle(plan, float(plan.path.angle(plan.first)))
+        drawing.lines([[at + (r - wide - 2.0) * _ray(ray), at + (r + 5.0) * _ray(ray)]], "NOTE")
+        x, y = at + (r + 7.5) * _ray(ray)
+        drawing.text(x, y - 1.2, "D", 3.0, "center", bold=True)
+    drawing.lines([[at - [r + 6, 0], at + [r + 6, 0]]], "CENTRE")
+    for side in (-1, 1):
+        drawing.text(at[0] + side * (r + 10.0), at[1] - 5.0, "A", 3.0, "center", bold=True)
+    _head(drawing, 25.0, 281.0, "from above", scale)
+
+
+def _ray(angle: float) -> NDArray[np.float64]:
+    return np.array([np.cos(angle), np.sin(angle)])
+
+
+def _way_angle(plan: BowlPlan, angle: float) -> float:
+    """The angle [rad] on the sheet of an angle of the track, at most 0 and 0 at the outlet."""
+    return plan.turned + (-angle if plan.left else angle)
+
+
+def angle_from_outlet(plan: BowlPlan, place: float) -> float:
+    """Return how far [deg] before the outlet a place [m] of the tooled stretch lies, along the bowl."""
+    return -float(plan.path.angle(plan.first + place)) / DEG
+
+
+def _section(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> None:
+    """The section A-A, with a yoke that carries the inner rail."""
+    at = np.array([255.0, TOP - solid.vertices[:, 2].max() / MM * scale])
+    rings = [_placed(ring, at, scale) for ring in facets.section(facets.placed(solid), 0.0)]
+    drawing.hatched(rings)
+    low = at[1] + solid.vertices[:, 2].min() / MM * scale
+    left = min(ring[:, 0].min() for ring in rings)
+    right = max(ring[:, 0].max() for ring in rings)
+    high = low + sizes.height / MM * scale
+    drawing.length((left, low), (left, high), (-6.0, 0.0), scale)
+    drawing.length((right, at[1]), (right, at[1] + sizes.outlet_height / MM * scale), (6.0, 0.0), scale)
+    _head(drawing, 190.0, 281.0, "A-A", scale)
+    plate, far = solid.plan.material.plate / MM, sizes.outlet_height / MM
+    text = f"wall {sizes.wall / MM:.3g}, floor {sizes.floor / MM:.3g}, track {plate:.3g}"
+    text += f"; outlet {far:.4g} over the floor's edge"
+    yoke = _yoke(solid.plan)
+    if yoke is not None:
+        drawing.outline(_placed(yoke, at, scale), "HIDDEN")
+        text += "; dashed: yoke of the inner rail"
+    drawing.text(at[0], low - 8.0, text, 2.2, "center")
+
+
+def _hanging_station(plan: BowlPlan) -> Any:
+    """The station of the rails that parts hang between, or None."""
+    stations = plan.stretch.stations if plan.stretch is not None else ()
+    return next((one for one in stations if one.device.hangs and one.hole is not None), None)
+
+
+def _yoke(plan: BowlPlan) -> NDArray[np.float64] | None:
+    """A yoke of the inner rail as it is seen in A-A (K, 2) [m]; None where A-A does not cut the rails."""
+    rails = _hanging_station(plan)
+    angle = (plan.turned if plan.left else -plan.turned) % (2.0 * np.pi)
+    place = float(plan.path.at(angle - 2.0 * np.pi if angle > 1e-9 else 0.0))
+    if rails is None or place < plan.first + float(rails.hole[:, 0].min()):
+        return None
+    wall, high = float(plan.path.wall_radius(place)), float(plan.path.height(place)) - plan.material.plate
+    low, deep = high - plan.hanging - track.YOKE, high - plan.hanging
+    near, far = (wall - edge for edge in rails.device.span)
+    inner = wall - plan.width
+    return np.array(
+        [(wall, high), (wall, low), (inner, low), (inner, high), (far, high), (far, deep), (near, deep),
+         (near, high)]
+    )  # fmt: skip
+
+
+def _from_outside(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> None:
+    """The bowl from the side that its outlet leaves to."""
+    top = TOP - sizes.height / MM * scale - BETWEEN
+    at = np.array([255.0, top - solid.vertices[:, 2].max() / MM * scale])
+    turn = np.degrees(solid.plan.turned) + (-90.0 if solid.plan.left else 90.0)
+    drawn = _placed(views.lines(solid.vertices, solid.faces, views.camera(turn, 0.0)), at, scale)
+    _draw_view(drawing, drawn)
+    low = at[1] + solid.vertices[:, 2].min() / MM * scale
+    wide = (0.5 * sizes.diameter + sizes.wall) / MM * scale
+    ends, text = (at[0] - wide, at[0] + wide), "Ø<>"
+    if solid.plan.stairs is not None:
+        ends, text = (drawn[..., 0].min(), drawn[..., 0].max()), "<>"
+    drawing.length((ends[0], low), (ends[1], low), (0.0, -6.0), scale, text, decimals=1)
+    _head(drawing, 190.0, top + 3.0, "towards the outlet", scale)
+
+
+def _standing(drawing: Drawing, solid: Any) -> None:
+    """The bowl as it stands, not to scale."""
+    looked = views.camera(np.degrees(solid.plan.turned) - 125.0, 42.0)
+    pieces = views.lines(solid.vertices, solid.faces, looked)
+    low, high = pieces.reshape(-1, 2).min(axis=0), pieces.reshape(-1, 2).max(axis=0)
+    scale = min(72.0 / (high - low)[0], 80.0 / (high - low)[1])
+    _draw_view(drawing, (pieces - 0.5 * (low + high)) * scale + [371.0, 235.0])
+    drawing.text(335.0, 281.0, "not to scale", 2.2)
+
+
+@dataclass(frozen=True)
+class SpringBanks:
+    """Leaf springs as a maker builds them: lengths [m], angles [rad]."""
+
+    counts: tuple[int, ...]  # leaves of each bank
+    angles: tuple[float, ...]  # of each bank about the axis, as the sheet shows the bowl from above
+    thickness: float  # of a leaf, and of the spacers between two leaves at both ends
+
+    @property
+    def spacers(self) -> int:
+        """Spacers of all banks: between two leaves, at both ends."""
+        return sum(2 * (count - 1) for count in self.counts)
+
+    @property
+    def stack(self) -> float:
+        """Thickness [m] of the thickest bank with its spacers."""
+        return (2 * max(self.counts) - 1) * self.thickness
+
+
+def spring_banks(bowl: Any) -> SpringBanks:
+    """Return the banks of the leaf springs of a bowl."""
+    leaves, banks = int(bowl.machine.leaves), int(bowl.sizing.banks)
+    counts = tuple(leaves // banks + (k < leaves % banks) for k in range(banks))
+    angles = tuple(float(0.5 * np.pi + 2.0 * np.pi * k / banks) for k in range(banks))
+    return SpringBanks(counts, angles, float(bowl.machine.leaf_thickness))
+
+
+def _springs(drawing: Drawing, study: Any) -> None:
+    """The circle of the springs from above, and one bank from the axis, as it stands."""
+    under, banks = study.bowl.machine, spring_banks(study.bowl)
+    at, reach = np.array([77.0, 68.0]), (under.spring_radius + under.leaf_width) / MM
+    scale = _scale(2.0 * reach, 105.0)
+    r = under.spring_radius / MM * scale
+    _head(drawing, 25.0, 127.0, "leaf springs from above", scale)
+    drawing.circle(at, r, "CENTRE")
+    sides = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+    half = 0.5 * np.array([under.leaf_width, under.leaf_thickness]) / MM * scale
+    for count, angle in zip(banks.counts, banks.angles):
+        axes = np.array([_ray(angle), _ray(angle + 0.5 * np.pi)])
+        for step in 4.0 * half[1] * (np.arange(count) - 0.5 * (count - 1)):
+            drawing.outline(at + (sides * half + [r, step]) @ axes, "EDGE")
+    drawing.round_size(at, r, 200.0, scale, diameter=True)
+    if len(banks.angles) > 1:
+        first, other = (angle / DEG for angle in banks.angles[:2])
+        drawing.angle(at, 0.6 * r, first, other)
+    outlet = study.solid.plan.turned
+    drawing.lines([[at, at + (r + 8.0) * _ray(outlet)]], "CENTRE")
+    x, y = at + (r + 10.0) * _ray(outlet)
+    drawing.text(float(x), float(y), "outlet", 2.2, "left" if np.cos(outlet) >= 0.0 else "right")
+    if abs((banks.angles[0] - outlet) / DEG % 360.0) > 1e-6:
+        drawing.angle(at, 0.35 * r, outlet / DEG, banks.angles[0] / DEG)
+    _bank(drawing, study, banks)
+
+
+def _bank(drawing: Drawing, study: Any, banks: SpringBanks) -> None:
+    """One bank seen from the axis: its leaves with spacers, the free length and the tilt."""
+    under, count = study.bowl.machine, max(banks.counts)
+    long, thick = under.leaf_length / MM, under.leaf_thickness / MM
+    scale = _scale(max(long + 30.0, 2.0 * banks.stack / MM), 80.0)
+    tilt, at = under.spring_angle, np.array([187.0, 72.0])
+    along = np.array([np.sin(tilt), np.cos(tilt)])
+    axes = np.array([[along[1], -along[0]], along])  # across the leaves, along them
+    half = 0.5 * thick * scale
+    for k in range(2 * count - 1):
+        middle = 2.0 * half * (k - (count - 1))
+        ends = np.array([-0.5 * long - 12.0, 0.5 * long + 12.0]) * scale
+        if k % 2 == 0:  # a leaf
+            corners = [
+                (middle + x * half, y) for x, y in ((-1, ends[0]), (1, ends[0]), (1, ends[1]), (-1, ends[1]))
+            ]
+            drawing.outline(at + np.array(corners) @ axes, "EDGE")
+            continue
+        for low, high in ((ends[0], -0.5 * long * scale), (0.5 * long * scale, ends[1])):
+            corners = [(middle + x * half, y) for x, y in ((-1, low), (1, low), (1, high), (-1, high))]
+            drawing.hatched([at + np.array(corners) @ axes])
+    outer = (2 * count - 1) * half
+    clamps = at + np.array([(outer, -0.5 * long * scale), (outer, 0.5 * long * scale)]) @ axes
+    drawing.length(clamps[0], clamps[1], 8.0 * axes[0], scale)
+    tops = (
+        at
+        + np.array([(-outer, 0.5 * long * scale + 12.0 * scale), (outer, 0.5 * long * scale + 12.0 * scale)])
+        @ axes
+    )
+    drawing.length(tops[0], tops[1], 6.0 * axes[1], scale)
+    foot = at + np.array([(-outer, -0.5 * long * scale - 12.0 * scale)]) @ axes
+    drawing.lines([[foot[0], foot[0] + [0.0, 0.75 * long * scale]]], "CENTRE")
+    drawing.angle(foot[0], 0.62 * long * scale, 90.0 - tilt / DEG, 90.0)
+    _head(drawing, 140.0, 127.0, "one bank from the axis", scale)
+    words = (
+        f"{len(banks.counts)} banks: {', '.join(map(str, banks.counts))} leaves {_leaf_words(under)}",
+        f"{banks.spacers} spacers {under.leaf_width / MM:.3g} x {thick:.3g}, as thick as a leaf",
+    )
+    for k, line in enumerate(words):
+        drawing.text(140.0, 19.0 - 4.0 * k, line, 2.2)
+
+
+def _leaf_words(under: Any) -> str:
+    sides = (under.leaf_width, under.leaf_thickness, under.leaf_length)
+    return " x ".join(f"{side / MM:.3g}" for side in sides)
+
+
+def _list_parts(drawing: Drawing, study: Any, at: tuple[float, float]) -> None:
+    """The parts list at its upper left corner [mm]."""
+    plan, under, banks = study.solid.plan, study.bowl.machine, spring_banks(study.bowl)
+    weight, angle = study.solid.balance
+    rows = [("1", f"bowl, {plan.material.name}, {study.solid.mass:.4g} kg")]
+    rows.append(("1", f"weight to balance it, {weight / GRAM:.3g} g on the wall at {angle / DEG:.0f}°"))
+    rows += [("1", f"{name.replace('_', ' ')}, in its notch of the wall") for name, _, _ in study.solid.gates]
+    cut = study.solid.segments
+    if cut is not None and cut.dowels:
+        size = f"{cut.dowel / MM:.3g} x {cut.dowel_length / MM:.3g} mm"
+        rows.append((str(cut.dowels), f"dowels {size}, between {len(cut.pieces)} segments"))
+    if cut is not None and len(cut.screws):
+        screw = f"screws ISO 4762 {segments.SCREW_NAME} with nuts ISO 4032"
+        text = f"{screw}, in lugs of the segments; floor: dowels"
+        rows.append((str(len(cut.screws)), text))
+    rows.append((str(plan.bolts + 1), f"bolts for holes of {plan.bolt / MM:.4g} mm"))
+    each = "/".join(map(str, dict.fromkeys(banks.counts)))
+    leaves = f"leaves {_leaf_words(under)} mm of spring steel, {len(banks.counts)} banks of {each}"
+    rows.append((f"{under.leaves:.0f}", f"{leaves}, at {under.spring_angle / DEG:.3g}°"))
+    rows.append((str(banks.spacers), f"spacers {under.leaf_width / MM:.3g} x {banks.thickness / MM:.3g} mm"))
+    supply = sheets.supply(study.stroke.frequency)
+    rows.append(("1", f"coil, force amplitude {study.force:.3g} N, {supply} Hz"))
+    peak, share = study.stroke.peak_to_peak / MM, 100.0 * study.bowl.sizing.controller
+    rows.append(("1", f"controller, set to {share:.3g} %: {peak:.3g} mm peak to peak"))
+    numbered = [[str(k), *row] for k, row in enumerate(rows, start=1)]
+    line = min(4.6, 54.0 / (len(rows) + 1))
+    drawing.table(*at, [10.0, 18.0, 136.0], [["pos.", "quantity", "what"], *numbered], line=line)
+
+
+def _title_block(
+    drawing: Drawing, study: Any, sizes: Measures, scale: float, tried: Any, fields: SheetFields | None,
+    sheet: str,
+) -> None:  # fmt: skip
+    """The title block in the lower right corner; of a bowl that was tried as it was tried."""
+    left, low, right, high = 246.0, 10.0, 410.0, 78.0
+    drawing.box(left, low, right, high)
+    name = f"Bowl for {_shortened(study.order.part.name)}"
+    drawing.text(left + 2.0, high - 5.5, name, 4.0, bold=True)
+    for k, line in enumerate(_not_made(study)):
+        drawing.text(left, high + 5.4 - 3.2 * k, line, 1.85, layer="NOTE")
+    pairs = [*_fields(study, sizes, tried), *_sheet_fields(fields, scale, sheet)]
+    half = (len(pairs) + 1) // 2
+    for k, (name, value) in enumerate(pairs):
+        x, y = left + 2.0 + 82.0 * (k // half), high - 11.0 - 4.5 * (k % half)
+        drawing.text(x, y, name, 1.9, layer="EDGE")
+        drawing.text(x + 27.0, y, value, 2.0)
+
+
+def _sheet_fields(fields: SheetFields | None, scale: float, sheet: str) -> list[tuple[str, str]]:
+    scales = ("scale, sheet", f"{scale_words(scale)}, A3, {sheet}, sizes in mm")
+    return [scales, *tooling_drawing.title_fields(fields)]
+
+
+def _small_title(drawing: Drawing, study: Any, scale: float, fields: SheetFields | None, sheet: str) -> None:
+    """Frame and title line of a further sheet."""
+    left, low, right, _ = FRAME
+    drawing.box(*FRAME)
+    drawing.box(left, low, right, low + 8.0)
+    name = ("bowl for", _shortened(study.order.part.name))
+    for k, (key, value) in enumerate([name, *_sheet_fields(fields, scale, sheet)]):
+        x = left + 2.0 + (0.0, 88.0, 190.0, 292.0, 342.0)[k]
+        drawing.text(x, low + 2.8, f"{key}: {value}", 2.2)
+
+
+def _not_made(study: Any) -> Iterator[str]:
+    """What of its drive the springs do not make, at most two lines."""
+    said = sheets.two_axis(study.bowl.drive)
+    if said:
+        yield said
+    if study.mismatch is not None:
+        yield f"these springs make {study.mismatch.machine.text}"
+
+
+def _shortened(words: str, letters: int = LONG) -> str:
+    return words if len(words) <= letters else f"{words[: letters - 1]}…"
+
+
+def _fields(study: Any, sizes: Measures, tried: Any) -> list[tuple[str, str]]:
+    """Names and values of the title block."""
+    solid, order, plan = study.solid, study.order, study.solid.plan
+    centre = ", ".join(f"{x / MM:.1f}" for x in solid.centre)
+    extent = " x ".join(f"{x / MM:.4g}" for x in sizes.extent)
+    wanted = (
+        "all that pass"
+        if order.wanted is None
+        else f"{order.wanted[0]} at {np.degrees(order.wanted[1]):.3g}°"
+    )
+    rate = "" if tried is None else _shortened(sheets.rate_of_trial(tried), NARROW_LETTERS)
+    hand = f"{'left' if plan.left else 'right'}: parts climb {'' if plan.left else 'counter-'}clockwise"
+    return [
+        ("drawing of part", _shortened(order.part.source.rpartition("/")[2])),
+        ("rate asked for", f"{order.target / PER_MINUTE:.4g} a minute"),
+        ("orientation", wanted if tried is None else _shortened(tried.wanted, NARROW_LETTERS)),
+        *([] if tried is None else [("rate of its trial", rate)]),
+        ("part material", sheets.material(order.part)),
+        ("fill, hopper", f"{study.fill.mass:.3g} kg, {order.hopper / LITRE:.3g} l"),
+        ("drive", f"{study.stroke.frequency:.4g} Hz, {study.stroke.peak_to_peak / MM:.3g} mm"),
+        ("vibration angle", sheets.angles(study, phase=False)),
+        ("natural frequency", f"{study.springs.natural_frequency:.4g} Hz"),
+        ("climb, bank", f"{_climbs(plan.path)}, {_banks(plan.path)}"),
+        ("hand", hand),
+        ("turns", f"{study.turns:.3g}"),
+        ("material", f"{plan.material.name}, {plan.material.density:.4g} kg/m³"),
+        ("mass, volume", f"{solid.mass:.4g} kg, {solid.with_lugs.volume / MM**3:.6g} mm³"),
+        ("inertia about axis", f"{solid.inertia:.4g} kg m²"),
+        ("centre of mass", f"{centre} mm"),
+        ("size", f"{extent} mm"),
+        ("general tolerance", f"{GENERAL}; cuts {CUT} mm"),
+        ("drawn by", "feeder bowl" if tried is None else "feeder design, feeder bowl"),
+    ]
+
+
+def _banks(way: TrackPath) -> str:
+    """'0°', '0° to 12°': the banks of the track, one after the other."""
+    return " to ".join(f"{np.degrees(bank):.3g}°" for bank in (way.bank, *(one[2] for one in way.leans)))
+
+
+def _climbs(way: TrackPath) -> str:
+    """'4°', '4° to -6° to 3°': the climbs of the track, one after the other."""
+    return " to ".join(f"{np.degrees(one):.3g}°" for one in (way.climb, *(climb for _, climb in way.bends)))
+
+
+def number_devices(plan: BowlPlan) -> list[tuple[str, float, float]]:
+    """Return the changes of the track that are no device of their own: words, from and to [m] of the stretch.
+
+    Steps, ledges, twists to another bank, and where the wall leans back.
+    """
+    stretch = plan.stretch
+    if stretch is None:
+        return []
+    below = {one.start for one in stretch.ledges}
+    found = [(f"step {drop / MM:.4g} mm down", at, at) for at, drop in stretch.drops if at not in below]
+    for one in stretch.ledges:
+        level = f"ledge {one.width / MM:.4g} wide, track {one.drop / MM:.4g} lower"
+        found.append((f"{level}; to {one.end / MM:.5g} level", one.start, one.end + one.ramp))
+    for start, end, bank in stretch.leans:
+        found.append((f"twists to a bank of {np.degrees(bank):.3g}°", start, end))
+    for start, end, lean, _ in stretch.grooves:
+        words = f"groove: the wall leans back by {np.degrees(lean):.3g}°"
+        found.append((words, max(start, 0.0), end))
+    return found
+
+
+def _devices(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str) -> None:
+    """Sheet 2: the tooled stretch unrolled, seen from above, with its dimensions and the list of devices."""
+    plan, stretch = study.solid.plan, study.solid.plan.stretch
+    end = min(
+        stretch.length + plan.path.end - plan.first - stretch.length + plan.outlet, 2.0 * stretch.length
+    )
+    length = end if _hanging_station(plan) is not None else stretch.length
+    scale = min(_scale(length / MM, STRIP_ROOM[0]), _scale(plan.width / MM, STRIP_ROOM[1]))
+    drawing.new_sheet()
+    _small_title(drawing, study, scale, fields, sheet)
+    wide = plan.width / MM * scale
+    view = View((45.0, 215.0 - wide), scale, length)
+    drawing.outline(view.placed([(0, 0), (length, 0), (length, plan.width), (0, plan.width)]), "TRACK")
+    drawing.outline(view.placed([(0, -2e-3), (length, -2e-3), (length, -1e-9), (0, -1e-9)]), "WALL")
+    holes = iter(stretch.cuts)
+    for station in stretch.stations:
+        if station.edge is not None:
+            drawing.outline(view.placed(station.edge), station.device.layer)
+        elif station.hole is not None:
+            ring = np.array(next(holes).ring)
+            if station.device.hangs:
+                ring[ring[:, 0] >= ring[:, 0].max() - 1e-9, 0] = length
+            ring[:, 1] = np.clip(ring[:, 1], 0.0, plan.width)
+            drawing.outline(view.placed(ring), "CUT")
+        if station.blade is not None:
+            drawing.outline(view.placed(station.blade), "GATE")
+    stations = [_to_the_outlet(one, length) for one in stretch.stations]
+    tooling_drawing.dimension_devices(drawing, stations, view, plan.width)
+    drawing.length(view.placed([length, 0]), view.placed([length, plan.width]), (27.0, 0.0), scale)
+    tooling_drawing.draw_wall_bores(drawing, stations, view, 240.0)
+    behind = (plan.path.end - plan.first) / MM
+    words = f"track unrolled: wall below, parts move to the right; D lies {behind:.5g} mm along the wall, "
+    _head(drawing, 25.0, 281.0, f"{words}{angle_from_outlet(plan, 0.0):.4g}° before the outlet", scale)
+    rows = tooling_drawing.device_rows(stretch.stations, lambda s: angle_from_outlet(plan, s))
+    rows[0][4:6] = ["from [°] *", "to [°] *"]
+    for words, start, stop in number_devices(plan):
+        angles = [f"{angle_from_outlet(plan, place):.4g}" for place in (start, stop)]
+        rows.append(["", "track", f"{start / MM:.5g}", f"{stop / MM:.5g}", *angles, words])
+    low = drawing.table(25.0, 175.0, tooling_drawing.COLUMNS, rows, line=min(4.6, 130.0 / len(rows)))
+    listed = [
+        f"from and to: along the wall from D; cuts {CUT}, everything else {GENERAL}; * before the outlet",
+        f"track of sheet {plan.material.plate / MM:.4g}, wall {plan.material.wall / MM:.4g}; "
+        f"arcs are facets within {plan.chord / MM:.3g} mm; {EDGES}",
+        *_yoke_words(plan),
+    ]
+    for k, line in enumerate(listed):
+        drawing.text(25.0, low - 5.0 - 4.0 * k, line, 2.2)
+
+
+def _to_the_outlet(station: Any, length: float) -> Any:
+    """A station whose slot, if parts hang in it, goes on to the end of the outlet."""
+    if not station.device.hangs or station.hole is None:
+        return station
+    ring = station.hole.copy()
+    ring[ring[:, 0] >= ring[:, 0].max() - 1e-9, 0] = length
+    return replace(station, hole=ring)
+
+
+def _yoke_words(plan: BowlPlan) -> Iterator[str]:
+    places = [f"{(place - plan.first) / MM:.5g}" for place in track.yoke_places(plan)]
+    if places:
+        yield (
+            f"inner rail: {len(places)} yokes of {track.YOKE / MM:.3g} below it, to the wall, at "
+            f"{' and '.join(places)} from D; {plan.hanging / MM:.4g} clear below the track"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class TrackPiece:
+    """A piece of the track in sheet metal, developed into the plane: lengths [m]."""
+
+    start: float  # s of the way
+    end: float
+    climb: float  # [rad]
+    outer: NDArray[np.float64]  # (N, 2) by the wall
+    inner: NDArray[np.float64]  # (N, 2) the free edge
+
+    @property
+    def radii(self) -> tuple[float, float]:
+        """Outer and inner radius of the flat piece: those of an annulus with borders as long as its own."""
+        outer, inner = (float(np.hypot(*np.diff(edge, axis=0).T).sum()) for edge in (self.outer, self.inner))
+        width = float(np.hypot(*(self.outer[0] - self.inner[0])))
+        within = width * inner / (outer - inner)
+        return within + width, within
+
+    @property
+    def angle(self) -> float:
+        """Angle [rad] of that annulus."""
+        return float(np.hypot(*np.diff(self.outer, axis=0).T).sum()) / self.radii[0]
+
+
+def develop_track(way: TrackPath, width: float, start: float, end: float) -> tuple[NDArray, NDArray]:
+    """Return the flat outline of a piece of track: its outer and inner border, (N, 2) [m] each.
+
+    The surface between both borders is taken as triangles, which are laid into the plane one after the
+    other. For a helicoid of one climb this is the annulus of a screw flight's blank.
+
+    Parameters
+    ----------
+    way : TrackPath
+    width : float [m]
+    start, end : float [m]
+        Lengths along the wall.
+    """
+    s = np.linspace(start, end, PLACES)
+    outer, inner = way.places(s, 0.0), way.places(s, width)
+    flat = [np.array([0.0, 0.0]), np.array([0.0, -_away(outer[0], inner[0])])]
+    for k in range(PLACES - 1):
+        one, other = flat[-2], flat[-1]
+        ahead = _third(one, other, _away(outer[k], outer[k + 1]), _away(inner[k], outer[k + 1]))
+        below = _third(ahead, other, _away(outer[k + 1], inner[k + 1]), _away(inner[k], inner[k + 1]))
+        flat += [ahead, below]
+    return np.array(flat[0::2]), np.array(flat[1::2])
+
+
+def _away(one: NDArray, other: NDArray) -> float:
+    return float(np.sqrt(((one - other) ** 2).sum()))
+
+
+def _third(one: NDArray, other: NDArray, from_one: float, from_other: float) -> NDArray[np.float64]:
+    """The corner of a triangle at distances from two others, ahead of the line between them."""
+    base = _away(one, other)
+    along = (other - one) / base
+    x = (from_one**2 - from_other**2 + base**2) / (2.0 * base)
+    y = np.sqrt(max(from_one**2 - x**2, 0.0))
+    return one + x * along + y * np.array([-along[1], along[0]])
+
+
+def track_pieces(plan: BowlPlan) -> list[TrackPiece]:
+    """Return the pieces that the track is made of in sheet metal: one climb each, half a turn at most."""
+    way = plan.path
+    stops = [0.0, *(at for at, _ in way.bends), way.end]
+    climbs = [way.climb, *(climb for _, climb in way.bends)]
+    found = []
+    for (start, end), climb in zip(itertools.pairwise(stops), climbs):
+        count = int(np.ceil((float(way.angle(end)) - float(way.angle(start))) / PIECE_ANGLE - 1e-9))
+        ends = np.linspace(start, end, max(count, 1) + 1)
+        found += [TrackPiece(a, b, climb, *develop_track(way, plan.width, a, b))
+                  for a, b in itertools.pairwise(ends) if b > a]  # fmt: skip
+    return found
+
+
+def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str) -> None:
+    """The last sheet: the stretches of the track from the side, and their development in sheet metal."""
+    plan, way = study.solid.plan, study.solid.plan.path
+    scale = _scale(way.end / MM, 340.0)
+    drawing.new_sheet()
+    _small_title(drawing, study, scale, fields, sheet)
+    _profile(drawing, plan, scale)
+    pieces = track_pieces(plan)
+    rows = [["piece", "from [°] *", "to [°] *", "climb", "height [mm]", "pitch [mm]", "outer R", "inner R",
+             "angle", "width"]]  # fmt: skip
+    for k, one in enumerate(pieces, start=1):
+        ends = [f"{abs(float(way.angle(s))) / DEG:.4g}" for s in (one.start, one.end)]
+        heights = " to ".join(f"{float(way.height(s)) / MM:.4g}" for s in (one.start, one.end))
+        pitch = 2.0 * np.pi * way.radius * np.tan(one.climb) / MM
+        radii = [f"{radius / MM:.5g}" for radius in one.radii]
+        rows.append([str(k), *ends, f"{one.climb / DEG:.3g}°", heights, f"{pitch:.4g}", *radii,
+                     f"{one.angle / DEG:.4g}°", f"{plan.width / MM:.4g}"])  # fmt: skip
+    low = drawing.table(25.0, 215.0, [12.0, 22, 22, 18, 36, 24, 24, 24, 24, 22], rows)
+    drawing.text(25.0, low - 5.0, "* before the outlet; radii, angle and width: of the flat sheet", 2.2)
+    _flat_pieces(drawing, pieces, low - 14.0)
+
+
+def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
+    """The height of the track over the floor's edge along the wall, from where it rises to the outlet."""
+    way = plan.path
+    stops = sorted({0.0, *(at for at, _ in way.bends), *(at for at, _ in way.drops), way.end})
+    places = np.unique(np.concatenate([stops, np.nextafter(np.array(stops[1:-1]), 0.0), [plan.first]]))
+    heights = way.height(places)
+    at = np.array([40.0, 275.0 - float(heights.max()) / MM * scale])
+    line = np.column_stack([places, heights]) / MM * scale + at
+    drawing.outline(line, "OUTLINE", closed=False)
+    drawing.lines([[at, at + [way.end / MM * scale, 0.0]]], "CENTRE")
+    ends = tooling_drawing.spread([way.end * 0 + s / MM * scale + at[0] for s in stops], 4.2)
+    for s, end in zip(stops, ends):
+        place = np.array([s, float(way.height(s))]) / MM * scale + at
+        drawing.ordinate(place, (end, at[1] - 14.0), at, False, scale)
+    right = at[0] + way.end / MM * scale
+    levels = sorted({round(float(way.height(s)), 7) for s in stops if float(way.height(s)) > 1e-6})
+    spots = [next(s for s in stops if abs(float(way.height(s)) - z) < 1e-6) for z in levels]
+    for z, s, end in zip(
+        levels, spots, tooling_drawing.spread([z / MM * scale + at[1] for z in levels], 4.2)
+    ):
+        place = np.array([s, z]) / MM * scale + at
+        drawing.ordinate(place, (right + 12.0, end), at, True, scale)
+    climbs = [way.climb, *(climb for _, climb in way.bends)]
+    bends = [0.0, *(s for s, _ in way.bends), way.end]
+    for (start, end), climb in zip(itertools.pairwise(bends), climbs):
+        middle = 0.5 * (start + end)
+        x, y = np.array([middle, float(way.height(middle))]) / MM * scale + at
+        drawing.text(float(x), float(y) + 3.0, f"{climb / DEG:.3g}°", 2.5, "center")
+    if plan.stretch is not None:
+        x, y = np.array([plan.first, float(way.height(plan.first))]) / MM * scale + at
+        drawing.lines([[(x, y - 3.0), (x, y + 7.0)]], "NOTE")
+        drawing.text(float(x), float(y) + 8.0, "D", 3.0, "center", bold=True)
+    _head(drawing, 25.0, 281.0, "track along the wall, heights over the floor's edge", scale)
+
+
+def _flat_pieces(drawing: Drawing, pieces: Sequence[TrackPiece], top: float) -> None:
+    """The outlines of the flat pieces beside each other, each upright in the middle."""
+    bodies = []
+    for one in pieces:
+        ring = np.vstack([one.outer, one.inner[::-1]])
+        ends = one.outer[-1] - one.outer[0]
+        turn = -np.arctan2(ends[1], ends[0])
+        c, s = np.cos(turn), np.sin(turn)
+        bodies.append(ring @ np.array([[c, s], [-s, c]]) / MM)
+    room = top - FRAME[1] - 26.0
+    columns = min(len(bodies), 3)
+    lines = -(-len(bodies) // columns)
+    widest, tallest = np.max([np.ptp(ring, axis=0) for ring in bodies], axis=0)
+    scale = min(_scale(widest, 350.0 / columns - 14.0), _scale(tallest, room / lines - 12.0))
+    for k, ring in enumerate(bodies):
+        column, line = k % columns, k // columns
+        at = np.array([25.0 + (column + 0.5) * 375.0 / columns, top - 6.0 - line * room / lines])
+        flat = ring * scale
+        shift = at - [0.5 * (flat[:, 0].min() + flat[:, 0].max()), flat[:, 1].max()]
+        drawing.outline(flat + shift, "OUTLINE")
+        chord = flat[[0, PLACES - 1]] + shift
+        drawing.length(chord[0], chord[1], (0.0, flat[:, 1].min() - flat[0, 1] - 7.0), scale)
+        drawing.text(float(at[0]), float(at[1]) + 2.0, f"piece {k + 1}", 2.5, "center", bold=True)
+    _head(drawing, 25.0, top + 3.5, "track in sheet metal, flat", scale)

@@ -1,0 +1,372 @@
+"""Technical drawings on A3 sheets: entities of a DXF file with real dimensions, and the same as PDF and SVG.
+
+A sheet is drawn once, as entities of ``ezdxf``. The figure of a sheet is made from these entities. Its
+letters stay letters, which ``ezdxf.addons.drawing`` turns into outlines: a search in the PDF finds them.
+"""
+
+import io
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_pdf import PdfPages
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
+from numpy.typing import ArrayLike, NDArray
+
+from feederscrew import dxf
+from feederscrew.output import marking, style
+
+A3 = 420.0, 297.0  # [mm]
+FRAME = 20.0, 10.0, 410.0, 287.0  # [mm] left, low, right, high: ISO 5457
+APART = 30.0  # [mm] between the sheets in the DXF file
+INCH = 25.4  # [mm]
+CAPITAL = 0.72  # [1] height of a capital over the size of its font
+POINT = 72.0 / INCH / CAPITAL  # [pt] of a font whose capitals are one millimetre high
+CHORD = 0.02  # [mm] by which an arc may be seen too flat
+LETTERS, SMALL = 2.5, 2.2  # [mm] height of letters
+THICK, THIN = 0.5, 0.18  # [mm] width of lines: ISO 128-2
+LINE_TYPES = {  # ISO 128-2: name, its description, and its dashes [mm]
+    "DASHED": ("dashed", (3.0, 1.0)),
+    "CENTER": ("long dashed dotted", (6.0, 1.0, 0.5, 1.0)),
+}
+ALIGNED = {"left": 0, "center": 1, "right": 2}
+
+
+@dataclass(frozen=True)
+class Pen:
+    """How the entities of a layer look."""
+
+    colour: int = 7  # of AutoCAD's index, in the DXF file: 1 red, 3 green, 5 blue, 7 white or black, 8 grey
+    ink: str = style.INK  # on paper
+    width: float = THIN  # [mm]
+    dashes: str = ""  # of LINE_TYPES
+    face: str = ""  # colour within closed outlines; '' for none
+
+
+PENS = {
+    "EDGE": Pen(),
+    "OUTLINE": Pen(width=THICK),
+    "FRAME": Pen(width=THICK),
+    "CENTRE": Pen(8, dashes="CENTER"),
+    "HIDDEN": Pen(8, dashes="DASHED"),
+    "SECTION": Pen(width=THICK, face="#dfe6ec"),
+    "DIMENSION": Pen(),
+    "TEXT": Pen(),
+    "NOTE": Pen(1, ink=style.ACCENT),
+    "TABLE": Pen(),
+    "MARK": Pen(1, ink=marking.COLOUR),
+}
+
+
+class Drawing:
+    """Sheets of a drawing; places are in millimetres from the lower left corner of the present sheet."""
+
+    def __init__(self, pens: dict[str, Pen] | None = None) -> None:
+        self.pens = PENS | (pens or {})
+        self.document = dxf.new_document()
+        for name, (words, dashes) in LINE_TYPES.items():
+            gaps = [size if k % 2 == 0 else -size for k, size in enumerate(dashes)]
+            self.document.linetypes.add(name, pattern=[sum(dashes), *gaps], description=words)
+        self.document.styles.add("SHEET", font="arial.ttf")
+        self.space = self.document.modelspace()
+        self.sheets: list[list[tuple[str, str, Any, bool]]] = [[]]  # layer, kind, what is drawn, bold
+
+    @property
+    def origin(self) -> NDArray[np.float64]:
+        """Place (2,) [mm] of the present sheet in the DXF file."""
+        return np.array([(len(self.sheets) - 1) * (A3[0] + APART), 0.0])
+
+    def new_sheet(self) -> None:
+        """Begin another sheet, to the right of the former ones."""
+        self.sheets.append([])
+
+    # entities
+
+    def outline(self, corners: ArrayLike, layer: str, closed: bool = True) -> None:
+        """Draw a polyline through corners (K, 2) [mm]."""
+        places = np.asarray(corners, float) + self.origin
+        self.space.add_lwpolyline(places.tolist(), close=closed, dxfattribs=self._look(layer))
+        self.sheets[-1].append((layer, "line", np.vstack([places, places[:1]]) if closed else places, False))
+
+    def lines(self, pieces: Iterable[ArrayLike], layer: str = "EDGE") -> None:
+        """Draw open lines (2, 2) or (K, 2) [mm] each."""
+        for piece in pieces:
+            self.outline(piece, layer, closed=False)
+
+    def box(self, left: float, low: float, right: float, high: float, layer: str = "FRAME") -> None:
+        """Draw a rectangle."""
+        self.outline([(left, low), (right, low), (right, high), (left, high)], layer)
+
+    def circle(self, middle: ArrayLike, radius: float, layer: str = "EDGE") -> None:
+        """Draw a circle [mm]."""
+        self._keep(self.space.add_circle(self._at(middle), radius, dxfattribs=self._look(layer)))
+
+    def hatched(self, rings: Sequence[ArrayLike], layer: str = "SECTION") -> None:
+        """Draw the cut face of closed outlines, holes among them."""
+        hatch = self.space.add_hatch(dxfattribs=self._look(layer))
+        hatch.set_pattern_fill("ANSI31", scale=1.0)
+        for ring in rings:
+            hatch.paths.add_polyline_path([tuple(place) for place in np.asarray(ring, float) + self.origin])
+        self._keep(hatch)
+        for ring in rings:
+            self.outline(ring, layer)
+
+    def text(
+        self, x: float, y: float, words: str, size: float = LETTERS, align: str = "left",
+        turn: float = 0.0, bold: bool = False, layer: str = "TEXT",
+    ) -> None:  # fmt: skip
+        """Write one line; ``align`` is 'left', 'center' or 'right' of the place, ``turn`` is in degrees."""
+        entity = self.space.add_text(
+            words, height=size, rotation=turn, dxfattribs=self._look(layer) | {"style": "SHEET"}
+        )
+        entity.dxf.halign = ALIGNED[align]
+        entity.dxf.insert = entity.dxf.align_point = self._at((x, y))
+        self._keep(entity, bold)
+
+    def table(
+        self, left: float, top: float, widths: Sequence[float], rows: Sequence[Sequence[str]],
+        size: float = SMALL, line: float = 4.6,
+    ) -> float:  # fmt: skip
+        """Draw a table whose first row is its head; return the height of its lower border [mm]."""
+        right, low = left + sum(widths), top - line * len(rows)
+        self.lines(([(left, top - line * k), (right, top - line * k)] for k in range(len(rows) + 1)), "TABLE")
+        edges = left + np.concatenate([[0.0], np.cumsum(widths)])
+        self.lines(([(x, top), (x, low)] for x in edges), "TABLE")
+        for k, row in enumerate(rows):
+            for x, words in zip(edges, row):
+                self.text(float(x) + 1.0, top - line * (k + 1) + 1.2, words, size, bold=k == 0)
+        return low
+
+    # dimensions
+
+    def length(
+        self, one: ArrayLike, other: ArrayLike, off: ArrayLike, scale: float = 1.0, text: str = "<>",
+        size: float = LETTERS, decimals: int = 2,
+    ) -> None:  # fmt: skip
+        """Dimension the distance of two places [mm]: its line is moved off by a vector (2,) square to it.
+
+        ``text`` has '<>' for the number, which is measured: the distance over the ``scale``.
+        """
+        one, other, off = (np.asarray(p, float) for p in (one, other, off))
+        across = other - one
+        turn = np.degrees(np.arctan2(across[1], across[0]))
+        if np.abs(off).max() > 1e-9:  # its line is square to the way it is moved off
+            turn = np.degrees(np.arctan2(-off[0], off[1]))
+        turn = (turn + 89.999) % 180.0 - 89.999
+        self._measured(
+            self.space.add_linear_dim(
+                base=self._at(one + off), p1=self._at(one), p2=self._at(other), angle=float(turn), text=text,
+                dimstyle=self._dimension_style(scale, size, decimals), dxfattribs=self._look("DIMENSION"),
+            )
+        )  # fmt: skip
+
+    def ordinate(
+        self, place: ArrayLike, end: ArrayLike, origin: ArrayLike, upright: bool, scale: float = 1.0,
+        size: float = LETTERS,
+    ) -> None:  # fmt: skip
+        """Dimension a place from an origin, along X or ``upright`` along Y; the number stands at ``end``."""
+        place, end = np.asarray(place, float), np.asarray(end, float)
+        add = self.space.add_ordinate_y_dim if upright else self.space.add_ordinate_x_dim
+        self._measured(
+            add(
+                feature_location=self._at(place), offset=tuple(map(float, end - place)),
+                origin=self._at(origin), dimstyle=self._dimension_style(scale, size),
+                dxfattribs=self._look("DIMENSION"),
+            )
+        )  # fmt: skip
+
+    def angle(
+        self, middle: ArrayLike, radius: float, start: float, end: float, text: str = "<>",
+        size: float = LETTERS,
+    ) -> None:  # fmt: skip
+        """Dimension an angle [deg] counter-clockwise about a middle, on an arc of a radius [mm]."""
+        self._measured(
+            self.space.add_angular_dim_cra(
+                center=self._at(middle), radius=0.8 * radius, start_angle=start, end_angle=end,
+                distance=0.2 * radius, text=text, dimstyle=self._dimension_style(1.0, size),
+                dxfattribs=self._look("DIMENSION"),
+            )
+        )  # fmt: skip
+
+    def round_size(
+        self, middle: ArrayLike, radius: float, turn: float, scale: float = 1.0, diameter: bool = False,
+        size: float = LETTERS, text: str = "<>", decimals: int = 2,
+    ) -> None:  # fmt: skip
+        """Dimension a radius, or a diameter, of a circle at an angle [deg]."""
+        add = self.space.add_diameter_dim if diameter else self.space.add_radius_dim
+        self._measured(
+            add(
+                center=self._at(middle), radius=radius, angle=turn, text=text,
+                dimstyle=self._dimension_style(scale, size, decimals), dxfattribs=self._look("DIMENSION"),
+            )
+        )  # fmt: skip
+
+    def mark(self, words: str, low: ArrayLike = (0.0, 0.0), size: tuple[float, float] = A3) -> None:
+        """Write a mark from corner to corner of the present sheet, on a layer of its own; '' for none."""
+        if words:
+            height, turn = marking.diagonal(size, words)
+            middle = np.asarray(low, float) + 0.5 * np.asarray(size)
+            self.text(
+                float(middle[0]),
+                float(middle[1]),
+                words,
+                CAPITAL * height,
+                "center",
+                np.degrees(turn),
+                bold=True,
+                layer="MARK",
+            )
+
+    # files
+
+    def dxf(self) -> bytes:
+        """Return the sheets as the bytes of a DXF file in millimetres, beside each other."""
+        return dxf.document_bytes(self.document)
+
+    def pdf(self, title: str) -> bytes:
+        """Return the sheets as the pages of a PDF without a date."""
+        file = io.BytesIO()
+        with PdfPages(file, metadata={"Title": title, "CreationDate": None}) as pages:
+            for sheet in range(len(self.sheets)):
+                pages.savefig(self.figure(sheet))
+        return file.getvalue()
+
+    def svg(self, low: ArrayLike, high: ArrayLike) -> str:
+        """Return what lies between two corners [mm] of the first sheet as an SVG file of true size."""
+        import matplotlib
+
+        file = io.StringIO()
+        with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "feeder"}):
+            figure = self.figure(0, low, high)
+            FigureCanvasSVG(figure).print_svg(file, metadata={"Date": None})
+        text = file.getvalue()
+        return text[text.index("<svg ") :]
+
+    def figure(self, sheet: int = 0, low: ArrayLike = (0.0, 0.0), high: ArrayLike = A3) -> Figure:
+        """Return a sheet between two corners [mm] as a figure of true size."""
+        low, high = np.asarray(low, float), np.asarray(high, float)
+        figure = Figure(figsize=tuple((high - low) / INCH), facecolor="white")
+        axes = figure.add_axes((0, 0, 1, 1), xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+        axes.set_axis_off()
+        shift = np.array([sheet * (A3[0] + APART), 0.0])
+        lines: dict[str, list[Any]] = {}
+        for layer, kind, value, bold in self.sheets[sheet]:
+            parts = dxf.primitives(value) if kind == "entity" else ((kind, value),)
+            for shape, places in parts:
+                self._draw(axes, lines, (layer, shape, places, bold), shift)
+        for layer, pieces in lines.items():
+            look = self._line_look(layer, "s")
+            axes.add_collection(LineCollection(pieces, colors=self._pen(layer).ink, **look))
+        return figure
+
+    def texts(self, sheet: int = 0) -> list[str]:
+        """Return what is written on a sheet, numbers of dimensions among it."""
+        from matplotlib.text import Text
+
+        return [text.get_text() for text in self.figure(sheet).findobj(Text) if text.get_text()]
+
+    # helpers
+
+    def _at(self, place: ArrayLike) -> tuple[float, float]:
+        x, y = np.asarray(place, float) + self.origin
+        return float(x), float(y)
+
+    def _look(self, layer: str) -> dict[str, Any]:
+        if layer not in self.document.layers:
+            pen = self._pen(layer)
+            self.document.layers.add(
+                layer,
+                color=pen.colour,
+                linetype=pen.dashes or "CONTINUOUS",
+                lineweight=round(100 * pen.width),
+            )
+        return {"layer": layer}
+
+    def _keep(self, entity: Any, bold: bool = False) -> None:
+        self.sheets[-1].append((entity.dxf.layer, "entity", entity, bold))
+
+    def _measured(self, dimension: Any) -> None:
+        dimension.render()
+        self._keep(dimension.dimension)
+
+    def _dimension_style(self, scale: float, size: float, decimals: int = 2) -> str:
+        """The dimension style of a scale and a height of letters [mm], made where there is none yet."""
+        name = f"SCALE_{scale:g}_{size:g}_{decimals}".replace(".", "P")
+        if name not in self.document.dimstyles:
+            self.document.dimstyles.new(
+                name,
+                dxfattribs={
+                    "dimtxt": size, "dimasz": 0.8 * size, "dimexe": 1.0, "dimexo": 0.6, "dimgap": 0.6,
+                    "dimtad": 1, "dimtih": 0, "dimtoh": 0, "dimdec": decimals, "dimadec": 1, "dimazin": 2,
+                    "dimzin": 8, "dimlfac": 1.0 / scale, "dimtxsty": "SHEET", "dimdsep": ord("."),
+                },
+            )  # fmt: skip
+        return name
+
+    def _pen(self, layer: str) -> Pen:
+        return self.pens.get(layer) or self.pens[layer_kind(layer)]
+
+    def _line_look(self, layer: str, plural: str = "") -> dict[str, Any]:
+        """The width and dashes of a layer's lines, as matplotlib takes them."""
+        pen = self._pen(layer)
+        dashes = [size / pen.width for size in LINE_TYPES[pen.dashes][1]] if pen.dashes else ()
+        return {
+            f"linewidth{plural}": 72.0 / INCH * pen.width,
+            f"linestyle{plural}": (0, dashes) if dashes else "-",
+            "gid": layer,
+        }
+
+    def _draw(self, axes: Any, lines: dict[str, list[Any]], drawn: Any, shift: NDArray[np.float64]) -> None:
+        """Draw a text or an area on the axes of a figure, as its layer looks; collect what is a line."""
+        layer, kind, value, bold = drawn
+        pen = self._pen(layer)
+        if kind == "text":
+            self._draw_text(axes, value, shift, pen, bold, layer)
+        elif kind == "area":
+            rings = [Path(np.vstack([ring, ring[:1]]) - shift, closed=True) for ring in value]
+            outline = Path.make_compound_path(*rings)
+            axes.add_patch(PathPatch(outline, facecolor=pen.face or pen.ink, linewidth=0.0, gid=layer))
+        elif pen.face and layer != "SECTION":
+            look = self._line_look(layer)
+            axes.add_patch(
+                PathPatch(Path(value - shift), facecolor=pen.face, edgecolor=pen.ink, zorder=0.9, **look)
+            )
+        else:
+            lines.setdefault(layer, []).append(value - shift)
+
+    @staticmethod
+    def _draw_text(axes: Any, written: Any, shift: Any, pen: Pen, bold: bool, layer: str) -> None:
+        words, place, height, turn, across, up = written
+        x, y = np.asarray(place) - shift
+        axes.text(
+            x, y, words, fontsize=height * POINT, color=pen.ink, rotation=turn, rotation_mode="anchor",
+            ha=across, va=up, parse_math=False, fontweight="bold" if bold else "normal", gid=layer,
+            alpha=marking.STRENGTH if layer == "MARK" else None,
+        )  # fmt: skip
+
+
+def layer_kind(layer: str) -> str:
+    """Return the layer whose pen a numbered or bent one has: 'CUT' of 'BENT_CUT_2'."""
+    return layer.removeprefix("BENT_").partition("_")[0]
+
+
+def spread(wanted: ArrayLike, apart: float) -> NDArray[np.float64]:
+    """Return places (N,) near the wanted ones, in their order, of which no two are nearer than ``apart``."""
+    wanted = np.asarray(wanted, float)
+    order = np.argsort(wanted, kind="stable")
+    steps = np.arange(len(order)) * apart
+    lower = np.maximum.accumulate(wanted[order] - steps)
+    upper = np.minimum.accumulate((wanted[order] - steps)[::-1])[::-1]
+    places = np.empty(len(order))
+    places[order] = 0.5 * (lower + upper) + steps
+    return places
+
+
+def scale_words(scale: float) -> str:
+    """Return a scale as it is written: '1:2.5'."""
+    return f"1:{1.0 / scale:g}" if scale <= 1.0 else f"{scale:g}:1"

@@ -1,0 +1,201 @@
+"""The bowl with parts on its track: as a picture, for the viewer of a page, and as lines for a drawing."""
+
+import numpy as np
+
+from feederscrew.output import marking, shading, style
+from feederscrew.output.page.blocks import Notes, Views
+from feederscrew.output.shading import SINGLE, Camera, Rays
+from feederscrew.solidbowl import riding
+from feederscrew.units import MM
+
+COLUMNS, ROWS = 1500, 1050  # [px]
+SIDE, HIGH = -118.0, 40.0  # [deg] from where it is seen, from the outlet's begin
+PART = np.array([0.93, 0.55, 0.20])
+MARGIN = 1.03
+BAND = 16  # rows of pixels at a time
+UPRIGHT = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
+TURN = (
+    "The bowl as one closed body, parts on its track. Drag it to turn it, or use the arrow keys; "
+    "double-click sets it back."
+)
+CLOSE = 0.9  # of how far other views reach: from every side the whole bowl is seen
+MOST = 60_000  # facets of all parts together
+SHARP = np.cos(np.radians(20.0))  # of the normals on both sides of an edge that is drawn
+STEP = 0.006  # of the solid's size: places along an edge at which it is looked at
+OFF = 2e-3  # of the solid's size: by which a place is moved off the surface before it is looked at
+
+
+def figure(study):
+    """Return the figure of a bowl with parts on its track.
+
+    Parameters
+    ----------
+    study : MachineSheet
+        With its order and its solid.
+
+    Returns
+    -------
+    Figure
+    """
+    return style.pixels(_image(study.solid.with_lugs, study.order.part, COLUMNS, ROWS))
+
+
+def parts(solid, part):
+    """Return the parts along the track of a bowl as one mesh, vertices (V, 3) [m] and faces (F, 3)."""
+    own = part.vertices - part.centre_of_mass
+    placed = [riding.place_rider(solid.plan, one, own, s) for one, s in solid.riders]
+    if not placed:
+        return np.zeros((0, 3)), np.zeros((0, 3), int)
+    faces = [part.faces + len(own) * k for k in range(len(placed))]
+    return np.concatenate(placed), np.concatenate(faces)
+
+
+def _image(solid, part, columns, rows):
+    looked = camera(np.degrees(solid.plan.turned) + SIDE, HIGH)
+    points, faces = parts(solid, part)
+    centre = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
+    corners = np.concatenate([solid.vertices, points])
+    whole = Rays(corners, np.concatenate([solid.faces, faces + len(solid.vertices)]), centre)
+    across, up = _frame(looked.project(whole.points), columns, rows)
+    image = np.full((rows, columns, 3), 255, dtype=np.uint8)  # numbers of eight bytes: 100 MB more
+    each = shading.SAMPLES
+    for first in range(0, rows, BAND):
+        place = slice(max(0, each * first - 2), each * (first + BAND) + 2)
+        drawn = _drawn(whole, len(solid.faces), looked, across, up[place])
+        kept = drawn[each * first - place.start :][: each * min(BAND, rows - first)]
+        image[first : first + BAND] = np.rint(255.0 * shading.averaged(kept, each))
+    return image
+
+
+def _frame(seen, columns, rows):
+    """Positions of the samples across and up the picture."""
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    pixel = MARGIN * max((high - low)[0] / columns, (high - low)[1] / rows) / shading.SAMPLES
+    middle = 0.5 * (low + high)
+    counts = columns * shading.SAMPLES, rows * shading.SAMPLES
+    across, up = (pixel * (np.arange(n) + 0.5 - 0.5 * n) for n in counts)
+    return middle[0] + across, (middle[1] + up)[::-1]
+
+
+def _drawn(whole, bowl, looked, across, up):
+    """The samples of some rows; the first ``bowl`` facets are the bowl's, the others those of parts."""
+    depths, normals, met = looked.meet(whole, across, up)
+    image = np.ones((*depths.shape, 3), dtype=SINGLE)
+    for drawn, colour in (((met >= 0) & (met < bowl), shading.STEEL), (met >= bowl, PART)):
+        image[drawn] = shading.lit(normals[drawn], looked, colour)
+    image[shading.edges(depths, normals, looked, up[0] - up[1])] = shading.EDGE
+    return image
+
+
+def blocks(solid, part, why="", mark=""):
+    """Return what a page shows of a bowl: the solid to be turned, or why there is none.
+
+    Parameters
+    ----------
+    solid : BowlSolid or None
+    part : Part
+        With a mesh.
+    why : str
+        There is none.
+    mark : str
+        Across it.
+
+    Returns
+    -------
+    list of blocks
+    """
+    if solid is None:
+        return [Notes((f"the bowl as a solid: {why}",))] if why else []
+    text = f"{2.0 * solid.plan.path.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
+    captions = ((marking.marked_title("bowl", mark), text, ()),)
+    return [Views(scene(solid, part), captions, "solid-bowl", "The", hint=TURN, printed=True, mark=mark)]
+
+
+def scene(solid, part):
+    """Return what the viewer draws of a bowl with its parts.
+
+    Parameters
+    ----------
+    solid : BowlSolid
+    part : Part
+        With a mesh.
+
+    Returns
+    -------
+    dict
+        As ``report.scene.over_cuts`` has it: the parts in place of one, the bowl in place of the track, both
+        in mm about the bowl's middle.
+    """
+    middle = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
+    points, faces = parts(solid, part)
+    points, faces = shading.reduced_mesh((points - middle) / MM, faces, MOST)
+    bowl = solid.vertices - middle
+    return {
+        **shading.track(points * MM, faces),
+        "radius": shading.short(np.sqrt((bowl**2).sum(axis=1).max()) / MM),
+        "facets": len(faces),
+        "all": len(faces),
+        "azimuth": shading.short(np.degrees(solid.plan.turned) + SIDE),
+        "elevation": shading.short(HIGH),
+        "unmarked": True,
+        "colour": "parts",
+        "reach": CLOSE,
+        "tracks": [shading.track(bowl, solid.faces)],
+        "poses": [{"name": "bowl", "quaternion": UPRIGHT, "height": 0.0, "contact": [], "track": 0}],
+    }
+
+
+def camera(azimuth, elevation):
+    """Return the camera that looks from an azimuth and an elevation [deg]."""
+    a, e = np.radians(azimuth), np.radians(elevation)
+    back = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+    right = np.array([-np.sin(a), np.cos(a), 0.0])
+    return Camera(right, np.cross(back, right), back)
+
+
+def lines(vertices, faces, looked):
+    """Return the visible edges of a closed surface.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float
+    faces : (F, 3) int
+    looked : Camera
+
+    Returns
+    -------
+    (N, 2, 2) float
+        Ends of each piece, across and up the view, in the vertices' unit, from their origin.
+    """
+    centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
+    rays = Rays(vertices, faces, centre)
+    a, b, push = _edges(rays.points, faces, looked.back)
+    count = np.maximum(1, np.ceil(np.sqrt(((b - a) ** 2).sum(axis=1)) / STEP)).astype(int)
+    owner = np.repeat(np.arange(len(a)), count)
+    place = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
+    ends = [a[owner] + (b - a)[owner] * ((place + k) / count[owner])[:, None] for k in (0, 1)]
+    middle = 0.5 * (ends[0] + ends[1]) + OFF * push[owner] + OFF * looked.back
+    seen = looked.sees(rays, middle, slack=OFF)
+    same = owner[1:] == owner[:-1]  # pieces of one edge that are seen one after the other are one
+    first = seen & ~np.append(False, same & seen[:-1])
+    last = seen & ~np.append(same & seen[1:], False)
+    pieces = np.stack([looked.project(ends[0][first]), looked.project(ends[1][last])], axis=1)
+    return pieces * rays.size + looked.project(centre[None])[0]
+
+
+def _edges(points, faces, back):
+    """Ends of the edges that are drawn, and the direction off the surface there."""
+    corners = points[faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.maximum(np.sqrt((normal**2).sum(axis=1, keepdims=True)), 1e-30)
+    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    owner = np.tile(np.arange(len(faces)), 3)
+    order = np.lexsort(np.sort(sides, axis=1).T)
+    one, other = owner[order[0::2]], owner[order[1::2]]
+    pair = sides[order[0::2]]
+    cosine = (normal[one] * normal[other]).sum(axis=1)
+    facing = (normal * back).sum(axis=1)
+    drawn = (cosine < SHARP) | ((facing[one] > 1e-6) != (facing[other] > 1e-6))
+    drawn &= (facing[one] > -1e-6) | (facing[other] > -1e-6)
+    push = (normal[one] + normal[other])[drawn]
+    return points[pair[drawn, 0]], points[pair[drawn, 1]], push

@@ -1,1 +1,0 @@
-"""Tables, drawings and pictures of ``feeder tooling``."""

@@ -1,0 +1,403 @@
+"""The stretch of track with its devices, dimensioned: DXF and SVG of ``feeder tooling``, and for the sheet.
+
+Every length along the track is measured from the datum D, where the stretch begins. Every length across it
+is measured from the wall.
+"""
+
+import itertools
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from feederscrew.output import marking
+from feederscrew.output.drafting import Drawing, Pen, spread
+from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
+from feederscrew.tooling.track_sections import Station, TrackSection
+from feederscrew.units import DEG, MM
+
+APART = 20.0  # [mm] between the views
+NARROW = 1e-9  # [m] the line of the wall needs no width
+WALL = 2e-3  # [m] thickness the wall is drawn with
+EDGES = f"edges broken at most {CUT_BORDER_RADIUS_M / MM:.3g} mm"  # as they are tried
+SHOP = f"values +-0.1 mm; {EDGES}; lands 1 mm and the sheet's thickness at least"
+PENS = {  # of the layers of devices
+    "TRACK": Pen(7, "#22303c", 0.25, face="#eef1f4"),
+    "WALL": Pen(8, "#22303c", 0.25, face="#9aa5b1"),
+    "CUT": Pen(1, "#d55e00", 0.35, face="#ffffff"),
+    "GATE": Pen(5, "#0072b2", 0.25, face="#0072b2"),
+    "OPENING": Pen(4, "#0072b2", 0.25, face="#ffffff"),
+    "GHOST": Pen(9, "#7a8793", 0.18, "DASHED"),
+    "SENSOR": Pen(3, "#009e73", 0.25, "DASHED"),
+    "NOZZLE": Pen(3, "#009e73", 0.25),
+    "BORE": Pen(3, "#009e73", 0.25),
+    "SLOPE": Pen(6, "#cc79a7", 0.35),
+    "STEP": Pen(6, "#cc79a7", 0.35),
+    "LEDGE": Pen(6, "#cc79a7", 0.35),
+}
+TEXT_GAP = 4.2  # [mm] of paper between two numbers
+NUMBERS = 11.0  # [mm] of paper from the wall to the numbers along it
+TAPER_ANGLE_RAD = 1.0 * DEG  # by which an outline turns at least at a corner that has dimensions
+MANY_CORNERS = 12  # beyond which an outline is one of arcs,
+ARC_ANGLE_RAD = 20.0 * DEG  # and what turns less is a chord of an arc
+NARROW_MM = 8.0  # of paper: a dimension that has no room for its number between others
+CROSS = 2.0  # [mm] of paper: half of a sensor's cross
+COLUMNS = 9.0, 56.0, 21.0, 19.0, 20.0, 17.0, 160.0  # [mm] of the list of devices
+LINE_LETTERS = 92  # of a line in the last column
+
+
+@dataclass(frozen=True)
+class View:
+    """Where unrolled lengths [m] lie on a sheet [mm]."""
+
+    at: tuple[float, float] = (0.0, 0.0)
+    scale: float = 1.0
+    right: float = field(default=np.inf)  # [m] where the drawn stretch ends
+
+    def placed(self, places: ArrayLike) -> NDArray[np.float64]:
+        """Return places (..., 2) [mm] of the sheet."""
+        found = np.array(places, float)
+        found[..., 0] = np.minimum(found[..., 0], self.right)
+        return np.asarray(self.at) + found / MM * self.scale
+
+
+def dxf(strip: TrackSection, ghosts: Sequence = (), mark: str = "", **sheet: object) -> bytes:
+    """Return the drawing of ``draw`` as the bytes of a DXF file."""
+    return draw(strip, ghosts, mark, **sheet)[0].dxf()  # type: ignore[arg-type]
+
+
+def svg(strip: TrackSection, ghosts: Sequence = (), mark: str = "", **sheet: object) -> str:
+    """Return the drawing of ``draw`` as an SVG file of its true size."""
+    drawing, low, high = draw(strip, ghosts, mark, **sheet)  # type: ignore[arg-type]
+    return drawing.svg(low, high)
+
+
+def draw(
+    strip: TrackSection,
+    ghosts: Sequence = (),
+    mark: str = "",
+    *,
+    thickness: float | None = None,
+    fields: marking.SheetFields | None = None,
+    titles: Sequence[tuple[str, str]] = (),
+) -> tuple[Drawing, NDArray[np.float64], NDArray[np.float64]]:
+    """Draw a strip 1:1: unrolled with its dimensions, the list of devices, as bent, and openings of gates.
+
+    Parameters
+    ----------
+    strip : TrackSection
+    ghosts : sequence of ((K, 2) float [m], float [m])
+        Outlines of parts from the wall, each with its place along it; they are not cut.
+    mark : str
+        Written across the drawing, on the layer ``MARK``, and among its notes.
+    thickness : float [m], optional
+        Of the track's sheet.
+    fields : SheetFields, optional
+        Date and revision.
+    titles : sequence of (str, str)
+        Names and values that stand before them.
+
+    Returns
+    -------
+    Drawing
+        ``TRACK``, ``WALL``, ``GATE``, ``GHOST`` unrolled, the wall along the X axis and parts moving towards
+        +X; ``CUT``, ``CUT_2`` ... one hole each; the same with ``BENT_`` before it as it lies in the bowl;
+        ``OPENING``, ``OPENING_2`` ... one gate each, seen along the track; ``BORE`` holes of nozzles, seen
+        from the bowl's axis.
+    low, high : (2,) float [mm]
+        Corners of all that is drawn.
+    """
+    drawing, view = Drawing(PENS), View()
+    length, width = strip.length / MM, strip.width / MM
+    for name, rings in _plan(strip).items():
+        for ring in rings:
+            drawing.outline(view.placed(ring), name)
+    for ring, place in ghosts:
+        drawing.outline(view.placed(np.add(ring, [place, 0.0])), "GHOST")
+    dimension_devices(drawing, strip.stations, view, strip.width)
+    top = draw_wall_bores(drawing, strip.stations, view, width + 28.0)
+    low = -WALL / MM - NUMBERS - 20.0
+    for line in _notes(mark, thickness):
+        drawing.text(0.0, low, line, 3.0)
+        low -= 5.0
+    rows = device_rows(strip.stations, lambda s: s / strip.track.radius / DEG)
+    low = drawing.table(0.0, low, COLUMNS, rows)
+    right = max(length, sum(COLUMNS), _openings(drawing, strip))
+    names = [*titles, ("scale", "1:1"), ("sizes", "mm"), *title_fields(fields)]
+    for k, (name, value) in enumerate(names):
+        drawing.text(0.0, top + 6.0 + 5.0 * (len(names) - 1 - k), f"{name}: {value}", 3.0)
+    top += 6.0 + 5.0 * len(names)
+    bent_low = _bent(drawing, strip, ghosts, low - APART)
+    corners = np.array([-16.0, bent_low - 8.0]), np.array([right + 12.0, top + 6.0])
+    drawing.mark(mark, corners[0], tuple(corners[1] - corners[0]))
+    return drawing, *corners
+
+
+def title_fields(fields: marking.SheetFields | None) -> list[tuple[str, str]]:
+    """Return names and values of the fields that the user gives, empty where nothing is given."""
+    fields = fields or marking.SheetFields()
+    views = "labelled views (ISO 128-3)"
+    return [("projection", views), ("date", fields.date), ("rev", fields.revision)]
+
+
+def _notes(mark: str, thickness: float | None) -> Iterable[str]:
+    sheet = "" if thickness is None else f"; track of sheet {thickness / MM:.4g} mm"
+    yield f"unrolled: wall below, parts move to the right; from the datum D, the begin of the stretch{sheet}"
+    yield SHOP
+    if mark:
+        yield mark
+
+
+def dimension_devices(drawing: Drawing, stations: Sequence[Station], view: View, width: float) -> None:
+    """Dimension the devices of an unrolled stretch: every cut from the wall, and along it from the datum D.
+
+    Parameters
+    ----------
+    drawing : Drawing
+    stations : sequence of Station
+    view : View
+        Of the stretch.
+    width : float [m]
+        Of the track.
+    """
+    along: list[float] = []
+    for number, station in enumerate(stations, start=1):
+        places = _lengths(station, view.right)
+        along += [place for place in places if place <= view.right]
+        name = view.placed([places[0], width]) + [0.5, 13.0 + 4.0 * (number % 2 == 0)]
+        drawing.text(float(name[0]), float(name[1]), f"{number}  {station.device.name}", 2.5)
+        if station.hole is not None:
+            _dimension_cut(drawing, station.hole, view, width)
+        if station.standing.sensor is not None:
+            middle = view.placed([station.start + station.standing.sensor.at, 0.5 * width])
+            arms = np.array([[-CROSS, 0.0], [CROSS, 0.0], [0.0, -CROSS], [0.0, CROSS]])
+            drawing.lines([middle + arms[:2], middle + arms[2:]], "SENSOR")
+    wanted = np.unique(np.round(along, 8))
+    ends = spread(view.placed(np.column_stack([wanted, 0.0 * wanted]))[:, 0], TEXT_GAP)
+    foot = -WALL / MM * min(view.scale, 1.0)
+    for place, end in zip(wanted, ends):
+        begin = view.placed([place, 0.0]) + [0.0, foot]
+        drawing.ordinate(begin, (end, view.at[1] + foot - NUMBERS + 4.0), view.at, False, view.scale)
+    drawing.text(view.at[0] - 3.5, view.at[1] + 0.5, "D", 3.5, "right", bold=True)
+
+
+def _lengths(station: Station, right: float) -> list[float]:
+    """Lengths along the wall [m] that a device is made by, from the datum."""
+    standing, start = station.standing, station.start
+    found = [start + jet.at[0] for jet in standing.jets[:1]]
+    if standing.sensor is not None:
+        found.insert(0, start + standing.sensor.at)
+    if station.hole is not None:
+        found += [float(x) for x in np.unique(np.round(cut_corners(station.hole)[:, 0], 9))]
+        if station.device.hangs:
+            found = [x for x in found if x < min(float(station.hole[:, 0].max()), right) - 1e-9]
+    if station.blade is not None:
+        found.append(float(station.blade[0, 0]))
+    found += [start + slope.begin for slope in standing.slopes]
+    if station.drop > 0.0:
+        found.append(start + 0.5 * station.length)
+    return sorted(found) or [start]
+
+
+def cut_corners(hole: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the corners (K, 2) [m] of a cut that are dimensioned: sharp ones, and its extremes.
+
+    Between them an outline of short chords is an arc, whose corners are no sizes of a drawing.
+    """
+    ahead = np.roll(hole, -1, axis=0) - hole
+    heading = np.arctan2(ahead[:, 1], ahead[:, 0])
+    turn = np.abs((heading - np.roll(heading, 1) + np.pi) % (2.0 * np.pi) - np.pi)
+    sharp = turn >= TAPER_ANGLE_RAD
+    if sharp.sum() > MANY_CORNERS:
+        sharp = turn >= ARC_ANGLE_RAD
+    for side in (hole.argmin(axis=0), hole.argmax(axis=0)):
+        sharp[side] = True
+    return hole[sharp].copy()
+
+
+def _dimension_cut(drawing: Drawing, hole: NDArray[np.float64], view: View, width: float) -> None:
+    """Dimension a cut: its corners from the wall, its stretches along the wall, its widths."""
+    inside = cut_corners(hole)
+    inside[:, 0] = np.minimum(inside[:, 0], view.right)
+    left, right = inside[:, 0].min(), inside[:, 0].max()
+    for side, x, way in ((inside[:, 0] <= left + 1e-9, left, -1.0), (inside[:, 0] > left + 1e-9, right, 1.0)):
+        heights = {round(float(y), 9) for y in inside[side, 1] if 1e-9 < y < width - 1e-9}
+        if way > 0.0:
+            heights -= {round(float(y), 9) for y in inside[~side, 1]}
+        corners = [max((c for c in inside if abs(c[1] - y) < 1e-8), key=lambda c: way * c[0])
+                   for y in sorted(heights)]  # fmt: skip
+        ends = spread([float(view.placed(c)[1]) for c in corners], TEXT_GAP)
+        for corner, end in zip(corners, ends):
+            beside = float(view.placed([x, 0.0])[0]) + way * 9.0
+            origin = view.placed([corner[0], 0.0])
+            drawing.ordinate(view.placed(corner), (beside, end), origin, True, view.scale)
+    stops = np.unique(np.round(inside[:, 0], 9))
+    above = float(view.placed([0.0, width])[1]) + 4.0
+    for one, other in itertools.pairwise(stops):
+        _dimension_width(drawing, hole, 0.5 * (one + other), view, width)
+        ends = view.placed([[one, width], [other, width]])
+        row = 3.8 if ends[1][0] - ends[0][0] < NARROW_MM else 0.0
+        drawing.length(ends[0], ends[1], (0.0, above + row - ends[0][1]), view.scale)
+
+
+def _dimension_width(drawing: Drawing, hole: NDArray[np.float64], x: float, view: View, width: float) -> None:
+    """Dimension the width of a cut at a place along it, where its borders are parallel to the wall."""
+    crossing = [
+        (a[1], b[1]) for a, b in zip(hole, np.roll(hole, -1, axis=0)) if min(a[0], b[0]) < x < max(a[0], b[0])
+    ]
+    if len(crossing) != 2 or any(abs(a - b) > 1e-9 for a, b in crossing):
+        return
+    low, high = sorted(float(np.clip(a, 0.0, width)) for a, _ in crossing)
+    if (high - low) / MM * view.scale > 5.0:
+        ends = view.placed([[x, low], [x, high]])
+        drawing.length(ends[0], ends[1], (0.001, 0.0), view.scale)
+
+
+def draw_wall_bores(drawing: Drawing, stations: Sequence[Station], view: View, low: float) -> float:
+    """Draw the holes of nozzles in the wall, seen from the bowl's axis, on a track [mm]; return the top [mm].
+
+    Without nozzles nothing is drawn.
+    """
+    bores = [(station.start + jet.at[0], jet.at[2], jet.radius) for station in stations
+             for jet in station.standing.jets]  # fmt: skip
+    if not bores:
+        return low - 10.0
+    along = View((view.at[0], low), view.scale)
+    top = low + max(z + r for _, z, r in bores) / MM * view.scale + 5.0
+    for s in sorted({s for s, _, _ in bores}):
+        column = [(z, r) for place, z, r in bores if place == s]
+        middle = float(along.placed([s, 0.0])[0])
+        drawing.lines([[(middle, low - 2.0), (middle, top)]], "CENTRE")
+        drawing.lines([[(middle - 25.0, low), (middle + 25.0, low)]], "OUTLINE")
+        for z, r in column:
+            drawing.circle(along.placed([s, z]), r / MM * view.scale, "BORE")
+        ends = spread([low + z / MM * view.scale for z, _ in column], TEXT_GAP)
+        for (z, _), end in zip(column, ends):
+            drawing.ordinate(along.placed([s, z]), (middle + 14.0, end), (middle, low), True, view.scale)
+        size = 2.0 * column[0][1] / MM
+        drawing.text(middle - 5.0, low + 3.0, f"{len(column)} x Ø{size:.4g} through the wall", 2.5, "right")
+        at = f"at {s / MM:.5g} from D, heights over the track"
+        drawing.text(middle - 5.0, low - 4.5, at, 2.5, "right")
+    drawing.text(view.at[0], top + 1.0, "wall seen from the bowl's axis", 2.5, bold=True)
+    return top + 5.0
+
+
+def device_rows(stations: Sequence[Station], angle: Callable[[float], float]) -> list[list[str]]:
+    """Return the list of devices as rows of texts, its head first.
+
+    Parameters
+    ----------
+    stations : sequence of Station
+    angle : callable
+        Returns the angle [deg] along the bowl of a length [m] from the datum.
+    """
+    rows = [["no.", "device", "from [mm]", "to [mm]", "from [°]", "to [°]", "value; what is bought and set"]]
+    for number, station in enumerate(stations, start=1):
+        start, end = device_span(station)
+        open_end = station.device.hangs
+        lines = [line for words in _device_words(station) for line in _wrapped(words)]
+        far = ["outlet", "outlet"] if open_end else [f"{end / MM:.5g}", f"{angle(end):.4g}"]
+        rows.append(
+            [str(number), station.device.full_name[:34], f"{start / MM:.5g}", far[0], f"{angle(start):.4g}",
+             far[1], lines[0]]
+        )  # fmt: skip
+        rows += [["", "", "", "", "", "", line] for line in lines[1:]]
+    return rows
+
+
+def device_span(station: Station) -> tuple[float, float]:
+    """Return where a device begins and ends [m], from the datum: a cut at its corners."""
+    if station.hole is not None:
+        return float(station.hole[:, 0].min()), float(station.hole[:, 0].max())
+    if station.blade is not None:
+        return float(station.blade[:, 0].min()), float(station.blade[:, 0].max())
+    return station.start, station.start + station.length
+
+
+def _device_words(station: Station) -> list[str]:
+    device = station.device
+    lead = getattr(device, "lead", ())
+    more = ""
+    if lead:
+        wide, narrow = ((far - near) / MM for near, far in (lead[:2], device.span))
+        long, taper = (size / MM for size in lead[2:])
+        more = f": {wide:.5g} mm wide for {long:.5g} mm, then over {taper:.5g} mm to {narrow:.5g} mm"
+    doubt = ": quasi-static, until a trial confirms it" if device.turns else ""
+    words = [f"{device.value_words}{more}{doubt}", *device.shop_words]
+    if station.standing.sensor is not None and station.edge is not None:
+        long, wide = np.ptp(station.edge, axis=0) / MM
+        words[1] += f", at the cross; window {long:.4g} x {wide:.4g} mm"
+    return words
+
+
+def _wrapped(words: str) -> list[str]:
+    import textwrap
+
+    return textwrap.wrap(words, LINE_LETTERS) or [""]
+
+
+def _plan(strip: TrackSection) -> dict[str, list[NDArray[np.float64]]]:
+    """Rings of each layer, unrolled."""
+    length, width = strip.length, strip.width
+    found = {
+        "TRACK": [_rectangle(0.0, 0.0, length, width)],
+        "WALL": [_rectangle(0.0, -WALL, length, -NARROW)],
+    }
+    for station in strip.stations:
+        if station.edge is not None:
+            found.setdefault(station.device.layer, []).append(station.edge)
+    cuts = [one.hole for one in strip.stations if one.hole is not None and one.edge is None]
+    found |= {_numbered("CUT", place): [ring] for place, ring in enumerate(cuts)}
+    blades = [station.blade for station in strip.stations if station.blade is not None]
+    return found | ({"GATE": blades} if blades else {})
+
+
+def _bent(drawing: Drawing, strip: TrackSection, ghosts: Sequence, top: float) -> float:
+    """Draw the stretch as it lies in the bowl below a height [mm]; return its lowest [mm]."""
+    radius = strip.track.radius / MM
+    rings = [(f"BENT_{name}", strip.bent(ring)) for name, group in _plan(strip).items() for ring in group]
+    rings += [("BENT_GHOST", strip.outline_in_bowl(*ghost)) for ghost in ghosts]
+    highest = max(float(ring[:, 1].max()) for _, ring in rings) / MM
+    shift = np.array([0.0, top - highest])
+    for name, ring in rings:
+        drawing.outline(ring / MM + shift, name)
+    middle, out = np.array([0.0, radius]) + shift, radius + 12.0
+    starts = [device_span(station)[0] / strip.track.radius / DEG for station in strip.stations]
+    for k, start in enumerate(sorted(set(starts))):
+        drawing.angle(middle, out + 6.0 * k, -90.0, -90.0 + start)
+    text = f"as bent: radius of the wall {radius:.6g} mm; angles from the datum D"
+    low = float(middle[1]) - out - 6.0 * len(starts) - 8.0
+    drawing.text(0.0, low, text, 3.0)
+    return low
+
+
+def _openings(drawing: Drawing, strip: TrackSection) -> float:
+    """Draw the openings of gates to the right of the track, each on its own layer; return their right end."""
+    right, count = strip.length / MM + APART + 15.0, 0
+    for station in strip.stations:
+        if not station.openings:
+            continue
+        name, widest = _numbered("OPENING", count), right
+        for ring in station.openings:
+            corners = ring / MM + [right, 0.0]
+            drawing.outline(corners, name)
+            widest = max(widest, float(corners[:, 0].max()))
+        inner = np.vstack(station.openings) / MM
+        heights = [float(z) for z in np.unique(np.round(inner[:, 1], 6)) if z > 1e-6][:8]
+        for z, end in zip(heights, spread(heights, TEXT_GAP)):
+            drawing.ordinate((right, z), (right - 9.0, end), (right, 0.0), True)
+        places = [float(y) for y in np.unique(np.round(inner[:, 0], 6)) if y > 1e-6][:8]
+        for y, end in zip(places, spread([right + y for y in places], TEXT_GAP)):
+            drawing.ordinate((right + y, 0.0), (end, -NUMBERS), (right, 0.0), False)
+        drawing.text(right, -NUMBERS - 6.0, f"opening of the {station.device.name}", 2.5)
+        right, count = widest + APART + 15.0, count + 1
+    return right - APART
+
+
+def _numbered(name: str, place: int) -> str:
+    return f"{name}_{place + 1}" if place else name
+
+
+def _rectangle(x0: float, y0: float, x1: float, y1: float) -> NDArray[np.float64]:
+    return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
