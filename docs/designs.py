@@ -4,8 +4,11 @@ Example: python docs/designs.py                                  (writes the tab
          python docs/designs.py --check                          (status 1 if it is out of date)
          python docs/designs.py parts/washer_m6.stl some/nut.stl (designs these anew at first, one job each)
          python docs/designs.py some/nut.stl --target 40/min --more "--up A,B"
+         python docs/designs.py --results runs/nut.json          (takes runs that were made before)
 
 A part is a line of docs/designs.csv for each rate and each list of further options. A minute or four each.
+A result is what `feeder design --format json` printed, with the CPU seconds of the command as `cpu_s`, and
+its further options, where it had any, as the text `more`.
 """
 
 import argparse
@@ -22,102 +25,108 @@ from pathlib import Path
 FOLDER = Path(__file__).resolve().parent
 PAGE, TABLE = FOLDER / "design.md", FOLDER / "designs.csv"
 BEGIN, END = "<!-- designs -->\n", "<!-- end of designs -->"
-OWN = ("part", "asked", "more")  # what a line is found by
-COUNTED = (
-    "status", "wanted", "chain", "rate", "low", "purity", "jams", "held", "draws", "queue_s", "trials",
-    "cpu_s",
+KEYS = ("part", "asked", "more")  # by which a line is found
+FIGURES = (
+    "status", "class", "wanted", "chain", "rate", "low", "purity", "jams", "held", "draws", "queue_s",
+    "trials", "cpu_s",
 )  # fmt: skip
 HEAD = (
-    "Part", "Asked", "Answer", "Leaves as", "Chain", "Rate", "Purity", "Jams", "Queue [s]", "Draws", "Trials",
+    "Part", "Answer", "Class", "Leaves as", "Chain", "Rate", "Purity", "Jams", "Queue [s]", "Draws", "Trials",
     "CPU [s]",
 )  # fmt: skip
 
 
-def designed(path, target, more):
+def run_design(path: str, target: str, more: str) -> dict[str, str]:
     """Design one part as a user does, and return its line."""
     feeder = Path(sys.executable).parent / "feeder"
     with tempfile.TemporaryDirectory() as folder:
-        asked = ["design", path, "--target", target, "--jobs", "1", "--format", "json", "-o", folder]
+        options = ["design", path, "--target", target, "--jobs", "1", "--format", "json", "-o", folder]
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        done = subprocess.run(
-            [feeder, *asked, *shlex.split(more)], capture_output=True, text=True, check=True, timeout=1800
+        finished = subprocess.run(
+            [feeder, *options, *shlex.split(more)], capture_output=True, text=True, check=True, timeout=1800
         )
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return {"part": Path(path).stem, "asked": target, "more": more} | told(json.loads(done.stdout), used)
+    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return line_of(json.loads(finished.stdout), Path(path).stem, target, more, seconds)
 
 
-def told(found, seconds):
-    """What a line says of the answer of `feeder design`, which took some seconds."""
-    chain = (f"{one['device']} {one['value']}".strip() for one in found["chain"])
+def line_of(result: dict, part: str, target: str, more: str, seconds: float) -> dict[str, str]:
+    """Return the line of a part from what `feeder design` printed, which took some CPU seconds."""
+    chain = (f"{device['device']} {device['value']}".strip() for device in result["chain"])
+    held = [row["class"] for row in result["alternatives"] if row["status"] == result["status"]]
     return {
-        "status": found["status"],
-        "wanted": found["wanted"] or "",
+        "part": part,
+        "asked": target,
+        "more": more,
+        "status": result["status"],
+        "class": str(min(held, default="")),
+        "wanted": result["wanted"] or "",
         "chain": ", ".join(chain) or "none",
-        "rate": f"{found['delivered_per_minute']:.3g}",
-        "low": f"{found['delivered_low']:.3g}",
-        "purity": "" if found["purity"] is None else f"{100.0 * found['purity']:.1f}",
-        "jams": str(found["jams"]),
-        "held": str(found["robust"]["held"]),
-        "draws": str(found["robust"]["draws"]),
-        "queue_s": f"{found['queue_seconds']:.0f}",
-        "trials": str(len(found["attempts"])),
+        "rate": f"{result['delivered_per_minute']:.3g}",
+        "low": f"{result['delivered_low']:.3g}",
+        "purity": "" if result["purity"] is None else f"{100.0 * result['purity']:.1f}",
+        "jams": str(result["jams"]),
+        "held": str(result["robust"]["held"]),
+        "draws": str(result["robust"]["draws"]),
+        "queue_s": f"{result['queue_seconds']:.0f}",
+        "trials": str(len(result["attempts"])),
         "cpu_s": f"{seconds:.0f}",
     }
 
 
-def known():
-    """The lines of docs/designs.csv."""
+def read_table() -> list[dict[str, str]]:
+    """Return the lines of docs/designs.csv."""
     if not TABLE.exists():
         return []
     with TABLE.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
-def kept(line):
+def put_line(line: dict[str, str]) -> None:
     """Write a line into docs/designs.csv, in the place of the one of the same part, rate and options."""
-    lines = [one for one in known() if any(one[name] != line[name] for name in OWN)]
+    lines = [row for row in read_table() if any(row[name] != line[name] for name in KEYS)]
     with TABLE.open("w", encoding="utf-8", newline="") as file:
-        out = csv.DictWriter(file, (*OWN, *COUNTED), lineterminator="\n")
+        out = csv.DictWriter(file, (*KEYS, *FIGURES), lineterminator="\n")
         out.writeheader()
-        out.writerows(sorted([*lines, line], key=lambda one: [one[name] for name in OWN]))
+        out.writerows(sorted([*lines, line], key=lambda row: [row[name] for name in KEYS]))
 
 
-def row(one):
-    """A line of the page's table."""
-    name = one["part"] + (f", `{one['more']}`" if one["more"] else "")
-    rate, draws = f"{one['rate']} ({one['low']})", f"{one['held']} of {one['draws']}"
-    purity = f"{one['purity']} %" if one["purity"] else "-"
+def page_row(line: dict[str, str]) -> str:
+    """Return a line of the page's table."""
+    name = line["part"] + (f", `{line['more']}`" if line["more"] else "")
+    rate, draws = f"{line['rate']} ({line['low']})", f"{line['held']} of {line['draws']}"
+    purity = f"{line['purity']} %" if line["purity"] else "-"
     cells = (
-        name, one["asked"].partition("/")[0], one["status"], one["wanted"], one["chain"], rate, purity,
-        one["jams"], one["queue_s"], draws, one["trials"], one["cpu_s"],
+        name, line["status"], line["class"], line["wanted"], line["chain"], rate, purity,
+        line["jams"], line["queue_s"], draws, line["trials"], line["cpu_s"],
     )  # fmt: skip
     return f"| {' | '.join(cells)} |\n"
 
 
-def table():
-    """The page's table."""
-    return f"| {' | '.join(HEAD)} |\n|{'---|' * len(HEAD)}\n" + "".join(map(row, known()))
+def with_table(page: str) -> str:
+    """Return the page with the table that docs/designs.csv makes."""
+    head = f"| {' | '.join(HEAD)} |\n|{'---|' * len(HEAD)}\n"
+    before, _, rest = page.partition(BEGIN)
+    return before + BEGIN + head + "".join(map(page_row, read_table())) + END + rest.partition(END)[2]
 
 
-def paged(text):
-    """The page with the table that docs/designs.csv makes."""
-    before, _, rest = text.partition(BEGIN)
-    return before + BEGIN + table() + END + rest.partition(END)[2]
-
-
-def main():
+def main() -> int:
     """Design, write or check; the exit status."""
     parser = argparse.ArgumentParser()
     parser.add_argument("parts", nargs="*")
     parser.add_argument("--target", default="30/min")
     parser.add_argument("--more", default="", help="further options of feeder design")
+    parser.add_argument("--results", nargs="+", default=[], help="runs that were made before, JSON")
     parser.add_argument("--check", action="store_true")
     asked = parser.parse_args()
     for path in asked.parts:
-        kept(designed(path, asked.target, asked.more))
+        put_line(run_design(path, asked.target, asked.more))
+    for path in asked.results:
+        result = json.loads(Path(path).read_text(encoding="utf-8"))
+        more = result.get("more", "")
+        put_line(line_of(result, Path(path).stem.partition("-")[0], asked.target, more, result["cpu_s"]))
     old = PAGE.read_text(encoding="utf-8")
-    new = paged(old)
+    new = with_table(old)
     if asked.check:
         sys.stdout.writelines(difflib.unified_diff(old.splitlines(True), new.splitlines(True), "page", "now"))
         return int(old != new)

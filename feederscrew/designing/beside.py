@@ -129,12 +129,13 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     devices = tuple(of_device(k, one) for k, one in enumerate(study.devices, start=1))
     try:
         made = bowls.settings(None, (*kept, *own))
-        sized, why = _sized((*made, *devices), study)
+        stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
+        tried = bowls.settings(None, (*kept, *own, stroke))
+        sized, why = _sized((*made, *devices), study, (*tried, *devices))
         driven = replace(sized.bowl, drive=study.bowl.drive)  # at the stroke that was tried
         words = drive_sizing.user_keys(listed, "machine")
         machine = driven.machine if "leaves" in words else drive_sizing.on_leaves(driven, words)
         under = [f"machine.{name}={text}" for name, text in _machine(machine)]
-        stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
         lines = _last((*kept, *own, stroke, *under, *_fill(study.part, sized)))
         own_settings = (*bowls.settings(None, lines), *devices)
         sheet = machines.machine(own_settings)
@@ -211,11 +212,12 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
     -------
     DesignStudy
         Its ``warnings`` hold those of ``feeder bowl`` for its file. Where the leaf springs that are drawn do
-        not make the angle that was tried, it falls short.
+        not make the angle that was tried, or its bowl makes no solid, it falls short.
     """
     sheet = built.sheet
+    solid = (f"no solid of its bowl can be made: {built.why}",) if built.why else ()
     if study.bowl is None or sheet is None:
-        return study
+        return replace(study, machine_lacks=solid) if solid else study
     warnings = [*checks.remarks(sheet)]
     warnings += [] if built.drawn is None else checks.solid_remarks(built.drawn)
     warnings += built.remarks
@@ -226,6 +228,7 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
         else ()
     )
     lacking += (f"the machine that is drawn does not make its drive: {built.lacks}",) if built.lacks else ()
+    lacking += solid
     made = replace(
         study,
         bowl=replace(study.bowl, machine=sheet.bowl.machine),
@@ -264,16 +267,21 @@ def _drawn(sheet: MachineSheet, sized: MachineSheet) -> MachineSheet | None:
     return replace(sheet, bowl=replace(sheet.bowl, machine=under), order=sized.order, solid=sized.solid)
 
 
-def _sized(settings: Sequence[Setting], study: DesignStudy) -> tuple[MachineSheet, str]:
+def _sized(
+    settings: Sequence[Setting], study: DesignStudy, tried: Sequence[Setting]
+) -> tuple[MachineSheet, str]:
     """The bowl of a design, with its solid, or else why there is none.
 
-    Where the static rule lets nothing or too little through, the machine is that of a track without devices.
+    Where the static rule lets nothing or too little through, it is the bowl at the stroke that was tried,
+    whose settings are ``tried``; where that makes no solid, that of a track without devices.
     """
     wanted = solidbowl.asked(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
-    try:
-        return machines.bowl(settings, study.part, study.request.target, solid=wanted), ""
-    except FeederError as fault:
-        why = str(fault)
+    target = study.request.target
+    for own, as_tried in ((settings, False), (tried, True)):
+        try:
+            return machines.bowl(own, study.part, target, solid=wanted, as_tried=as_tried), ""
+        except FeederError as fault:
+            why = str(fault)
     try:
         return machines.bowl(settings, study.part, study.request.target), why
     except FeederError:

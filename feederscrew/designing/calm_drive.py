@@ -4,7 +4,7 @@ import functools
 import itertools
 import math
 from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -75,7 +75,7 @@ class PlainBowl:
 
     bowl: Bowl
     given: frozenset[str]
-    size: sizing.Size | None  # None once the bowl has changed
+    size: sizing.Size | None = field(compare=False)  # None once the bowl has changed
     drive: str = LEAF_SPRING  # kind of drive that is asked for, of DRIVES
 
     @property
@@ -135,6 +135,7 @@ def _tenths(value: float, step: float) -> float:
     return float(np.ceil(value / step - 1e-9) * step)
 
 
+@functools.lru_cache(maxsize=256)
 def driven(made: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
     """Return a bowl with the calmest drive that carries a point mass at a velocity, or with the fastest.
 

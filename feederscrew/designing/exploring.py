@@ -1,5 +1,6 @@
 """Short trials of chains: an orientation at its own drive, what the trial denies changed, and again."""
 
+import functools
 import heapq
 import itertools
 import math
@@ -41,6 +42,7 @@ NUMBER = re.compile(r"(?<![A-Za-z_])-?[0-9]+(?:\.[0-9]+)?")
 LITTLE, LITTLE_SHARE = 0.1, 0.03  # [mm or deg], [1] of a value: chains that differ by less are alike
 AVOIDED = 2  # times that a device is left out at which what is wanted was lost
 HANGS_BELOW = np.radians(5.0)  # bank above which a part askew comes to rails beside its slot
+ASKED_STEP = 1.2  # between the velocities at which chains are looked for
 SLOWER = 1.2  # a chain that gains so many times what was taken for it is proposed again, at its own drive
 
 
@@ -56,6 +58,11 @@ class _BankedTrack:
     weights: np.ndarray  # (M,)
     rows: list[int]  # those worth a try
     rank: float  # [1] how likely the bank is to do
+
+    @functools.cached_property
+    def fastest(self):
+        """Velocity [m/s] at the fastest drive."""
+        return calm_drive.speed(calm_drive.driven(self.made, np.inf, hops=True))
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +120,7 @@ def _best_first(search, ideas):
         if _promise(search, idea.track, idea.row, idea.way) < _least(search):
             continue
         if idea.proposal is None:
-            proposal = _proposed(search, idea.track, idea.row, idea.way)
+            proposal = _proposal(search, idea)
             if proposal is not None and not _tried_before(search, idea.track, proposal):
                 idea = replace(idea, proposal=proposal)
                 heapq.heappush(heap, (-_score(search, idea), next(order), idea))
@@ -129,6 +136,28 @@ def _best_first(search, ideas):
             way = replace(idea.way, without=(*idea.way.without, *more))
             other = _Idea(idea.track, idea.row, way, again=idea.again + 1)
             heapq.heappush(heap, (-_bound(search, other), next(order), other))
+
+
+def _proposal(search, idea):
+    """The chain of an idea; None where none is, or there is none with less asked for.
+
+    A smaller margin asks for less, and so do chains without turning devices: where even those isolate
+    nothing, the longer search is left out.
+    """
+    if idea.way.turns and _kept(search, idea, replace(idea.way, turns=False)) is None:
+        return None
+    least = replace(idea.way, margin=min(proposals.MARGINS))
+    if least != idea.way and _kept(search, idea, least) is None:
+        return None
+    return _kept(search, idea, idea.way)
+
+
+def _kept(search, idea, way):
+    """The chain that a way proposes for the orientation of an idea, looked for once."""
+    key = *_place(idea.track, idea.row), way
+    if key not in search.proposed:
+        search.proposed[key] = _proposed(search, idea.track, idea.row, way)
+    return search.proposed[key]
 
 
 def _tracks(search):
@@ -243,9 +272,8 @@ def _promise(search, track, row, way):
     if way.outcome != "lying" and neck(track.ways.lying[row]) is not None:
         return np.inf  # what hangs comes from several headings
     pitch = trying.GAP * float((track.weights * track.ways.lengths).sum())
-    fastest = calm_drive.speed(calm_drive.driven(track.made, np.inf, hops=True))
     share = 1.0 if way.turns else _share(search, track, row)
-    return share * fastest / pitch
+    return share * track.fastest / pitch
 
 
 def _share(search, track, row):
@@ -266,7 +294,9 @@ def _proposed(search, track, row, way):
 
 def _at(search, track, row, way, gain):
     """The chain for a drive that a share [1] asks for."""
-    bowl = calm_drive.driven(track.made, asked(search, track.ways, track.weights, gain))
+    velocity = asked(search, track.ways, track.weights, gain)
+    step = math.ceil(math.log(velocity, ASKED_STEP) - 1e-9)  # the same drive for shares that are alike
+    bowl = calm_drive.driven(track.made, ASKED_STEP**step)
     bowl = replace(bowl, devices=search.plain.devices)
     return proposals.proposed(search.part, bowl, search.known.aspects, row, track.ways, search.request, way)
 
@@ -335,8 +365,11 @@ def offered(search, bowl):
 
 
 def _tried_out(search, made, proposal, weights):
-    """Try a proposal and what mends it; the Candidate where one is clean and fast enough."""
-    lost, before = 0, None
+    """Try a proposal and what mends it; the Candidate where one is clean and fast enough.
+
+    One that one draw alone denies is taken where nothing mends it: the draws of its proof are more.
+    """
+    lost, before, nearly = 0, None, None
     for _ in range(MENDED + 1):
         candidate = _screened(search, attempted(search, made, proposal, weights))
         calmed = _calmed(search, made, candidate, weights)
@@ -348,24 +381,30 @@ def _tried_out(search, made, proposal, weights):
         if candidate.attempt.clean:
             return
         search.failed.append(candidate)
+        nearly = nearly or _with_one_draw_denied(candidate)
         if not candidate.attempt.efficiency > 0.0 and not candidate.proposal.hangs:
             lost += 1
-        if lost == LOST or _showed(candidate) == before:  # what was changed made no difference
-            lively = _livened(search, made, candidate, weights)
-            if lively is not None:
-                yield lively
-                return
-            break
+        same = _showed(candidate) == before  # what was changed made no difference
         before = _showed(candidate)
-        changed = proposals.better(proposal, candidate.tried, candidate.ways.lying, candidate.drawn)
-        if changed is None or search.spent:
-            break
-        if chain_key(made.bowl.track, changed, candidate.ways.lying) in search.chains:
+        changed = None
+        if not (same or lost == LOST or search.spent):
+            changed = proposals.better(proposal, candidate.tried, candidate.ways.lying, candidate.drawn)
+        if changed is None or chain_key(made.bowl.track, changed, candidate.ways.lying) in search.chains:
             break
         proposal = changed
+    chosen = _livened(search, made, candidate, weights) or nearly
+    if chosen is not None:
+        yield chosen
+        return
     place = made.bowl.track.bank, proposal.row
     search.avoid(place, proposal, candidate.tried)
     search.note_lost(place, proposal, candidate.tried)
+
+
+def _with_one_draw_denied(candidate):
+    """The candidate where all draws of its screening but one held; else None."""
+    drawn = candidate.drawn
+    return candidate if drawn is not None and drawn.held == drawn.draws - 1 >= SCREENED - 1 else None
 
 
 def _showed(candidate):
@@ -375,21 +414,47 @@ def _showed(candidate):
 
 
 def _livened(search, made, candidate, weights):
-    """The clean candidate at a livelier drive, where parts stay at a blade or at rails; or None."""
-    met = [cut.device for cut in candidate.proposal.cuts if cut.device.overhead or cut.device.hangs]
-    names = [device.name for device in met]
+    """The candidate at a livelier drive, where parts stay at a blade or at rails; None where none is clean.
+
+    Where one draw alone denies that, it is taken as well.
+    """
     for _ in range(LIVELIER_TRIALS):
-        stays = any(f"stopped at {name}" in fault for fault in candidate.attempt.faults for name in names)
-        bowl = calm_drive.livelier(made, candidate.bowl) if stays and not search.spent else None
-        if bowl is None:
+        if search.spent or not stays_at_steel(candidate.proposal, candidate.attempt.faults):
             return None
-        step = f"livelier drive, {2e3 * bowl.drive.amplitude:.3g} mm peak to peak"
-        proposal = replace(candidate.proposal, step=step)
-        candidate = _screened(search, attempted(search, made, proposal, weights, bowl))
+        candidate = livened(search, made, candidate, weights)
+        if candidate is None:
+            return None
         if candidate.attempt.clean:
             search.passed.append(candidate)
             return candidate if candidate.attempt.rate >= search.request.target else None
+        if _with_one_draw_denied(candidate) is not None:
+            return candidate
     return None
+
+
+def livened(search, made, candidate, weights):
+    """Return a Candidate: the same chain screened at a livelier drive; None where there is none.
+
+    Parameters
+    ----------
+    search : Search
+    made : PlainBowl
+        The bowl without devices.
+    candidate : Candidate
+        At the drive at which parts stay or jam.
+    weights : (M,) float [1]
+    """
+    bowl = calm_drive.livelier(made, candidate.bowl)
+    if bowl is None:
+        return None
+    step = f"livelier drive, {2e3 * bowl.drive.amplitude:.3g} mm peak to peak"
+    return _screened(search, attempted(search, made, replace(candidate.proposal, step=step), weights, bowl))
+
+
+def stays_at_steel(proposal, faults):
+    """Return whether faults, sentences of a trial or of draws, name a blade or rails at which parts stay."""
+    names = [cut.device.name for cut in proposal.cuts if cut.device.overhead or cut.device.hangs]
+    return any(f"stopped at {name}" in fault for fault in faults for name in names)
 
 
 def _calmed(search, made, candidate, weights):
@@ -442,7 +507,7 @@ def _screened(search, candidate):
         search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.rows,
         draws=min(SCREENED, request.draws), tolerance=request.tolerance, run=request.run,
         any_heading=candidate.proposal.any_heading, spared=trying.spared_rows(candidate.tried),
-        enough=search.enough(candidate.attempt),
+        enough=search.enough(candidate.attempt), allowed=1,
     )  # fmt: skip
     if drawn.partial:
         raise KeyboardInterrupt
@@ -468,10 +533,7 @@ def attempted(search, made, proposal, weights, driven=None):
     part = search.part
     check_written(proposal.devices, "design.yaml")
     made = _drawable(search, made, proposal)
-    bowl = replace(made.bowl, devices=proposal.devices)
-    ways = proposals.known_through(part, search.known.aspects, bowl)
-    gain = trying.gain(ways, weights, proposal.states(ways))
-    own = _at_velocity(search, made, proposal, ways, weights, gain) if driven is None else driven
+    own = driven_for(search, made, proposal, weights) if driven is None else driven
     bowl = replace(own, track=made.bowl.track, devices=proposal.devices)
     ways = arrivals.oriented(proposals.known_through(part, search.known.aspects, bowl), search.known.measured)
     name = ways.lying[proposal.row].name
@@ -521,9 +583,19 @@ def _cause(tried, proposal):
     return DEVICE if lost or proposal.devices else PART
 
 
-def _at_velocity(search, made, proposal, ways, weights, gain):
-    """The bowl at the drive that brings the target, with the gaps that its devices need at that drive."""
-    apart = 0.0
+def driven_for(search, made, proposal, weights):
+    """Return the bowl at the drive that brings the target, with the gaps that its devices need there.
+
+    Parameters
+    ----------
+    search : Search
+    made : PlainBowl
+    proposal : Proposal
+    weights : (M,) float [1]
+    """
+    bowl = replace(made.bowl, devices=proposal.devices)
+    ways = proposals.known_through(search.part, search.known.aspects, bowl)
+    gain, apart = trying.gain(ways, weights, proposal.states(ways)), 0.0
     for _ in range(2):
         velocity = max(asked(search, ways, weights, gain, apart), search.least)
         bowl = calm_drive.driven(made, velocity, hops=not proposal.devices)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
+from feederscrew.conveying.hop import hop
 from feederscrew.designing import (
     alternatives,
     beside,
@@ -48,6 +49,8 @@ from feederscrew.trial.result import TrialRun
 
 ANY_RATE = 1e-6  # [1/s] a target below any rate
 PROVED, DRAWN = 2, 4  # designs of a cost class that go through queues, and through draws
+CHANGES = 2  # of one design, each by what its proof denied
+LIVELY_HOP_M = 1.2e-4  # hop from which jams ask for a device, not for a livelier drive
 FASTER = 1.3  # times as fast, where draws lose what is wanted: what creeps over a slot falls in late
 Proofs = list[tuple[DesignStudy, Candidate]]
 
@@ -216,31 +219,71 @@ def _answered(search: Search, proofs: Proofs) -> bool:
 
 
 def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
-    """Prove a design as far as it holds; then one at another drive or with another value."""
-    study = proved(search, candidate, whole=False)
-    proofs.append((study, candidate))
-    proposal, lively = candidate.proposal, None
+    """Prove a design as far as it holds; then, ``CHANGES`` times, one with what denied it changed."""
+    for _ in range(CHANGES + 1):
+        study = proved(search, candidate, whole=False)
+        proofs.append((study, candidate))
+        if study.status == HOLDS or study.partial or search.spent:
+            return
+        other = _changed(search, study, candidate)
+        if other is None or not other.attempt.clean:
+            return
+        candidate = other
+
+
+def _changed(search: Search, study: DesignStudy, candidate: Candidate) -> Candidate | None:
+    """A design at another drive, with another value or one device more, by what its proof denied.
+
+    None where there is nothing to change.
+    """
     made = calm_drive.PlainBowl(replace(candidate.bowl, devices=()), search.given, None, search.request.drive)
-    if study.jams and not study.partial and not search.spent:  # parts that hop higher come free of a blade
-        lively = calm_drive.livelier(made, candidate.bowl)
-        if lively is None:
-            return
-    elif nearest.only_slow(study):
+    weights, worst = candidate.weights, (study.robust.worst,)
+    if study.jams:
+        lively = exploring.livened(search, made, candidate, weights) if _is_calm(candidate.bowl) else None
+        if lively is not None and lively.attempt.clean:
+            return lively
+        return _with_change(search, made, candidate, proposals.relieved(candidate))
+    if nearest.only_slow(study):
         search.reserve *= 1.1 * RATE_KEPT * search.request.target / study.delivered[1]
-    elif nearest.only_lost(study):
-        search.least = FASTER * calm_drive.speed(candidate.bowl)
-    else:
-        denied = study.robust.share < DRAWS_HELD and not study.partial and not search.spent
-        lying = candidate.ways.lying
-        changed = proposals.better(proposal, candidate.tried, lying, study.robust) if denied else None
-        if changed is None:
-            return
-        proposal = changed
-    other = exploring.attempted(search, made, proposal, candidate.weights, lively)
-    search.least = 0.0
-    is_other = other.bowl.drive != candidate.bowl.drive or proposal is not candidate.proposal
-    if is_other and other.attempt.clean:
-        proofs.append((proved(search, other, whole=False), other))
+        return _faster(search, made, candidate)
+    if study.robust.share < DRAWS_HELD:
+        if nearest.only_lost(study):
+            search.least = FASTER * calm_drive.speed(candidate.bowl)
+            other = _faster(search, made, candidate)
+            search.least = 0.0
+            if other is not None:
+                return other
+        if exploring.stays_at_steel(candidate.proposal, worst):
+            return exploring.livened(search, made, candidate, weights)
+        tried, lying = candidate.tried, candidate.ways.lying
+        changed = proposals.better(candidate.proposal, tried, lying, study.robust)
+        return _with_change(search, made, candidate, changed)
+    return _with_change(search, made, candidate, proposals.purer(candidate, study.left_instead))
+
+
+def _is_calm(bowl: Bowl) -> bool:
+    """Whether parts hop so low that a livelier drive may clear what jams."""
+    return hop(bowl).height < LIVELY_HOP_M
+
+
+def _faster(search: Search, made: calm_drive.PlainBowl, candidate: Candidate) -> Candidate | None:
+    """The same chain at the drive that is now asked for; None where that is the one it was proved at."""
+    bowl = exploring.driven_for(search, made, candidate.proposal, candidate.weights)
+    if bowl.drive == candidate.bowl.drive:
+        return None
+    return exploring.attempted(search, made, candidate.proposal, candidate.weights, bowl)
+
+
+def _with_change(
+    search: Search,
+    made: calm_drive.PlainBowl,
+    candidate: Candidate,
+    proposal: proposals.Proposal | None,
+) -> Candidate | None:
+    """A changed chain at the drive of the one it was made of; None without a change."""
+    if proposal is None:
+        return None
+    return exploring.attempted(search, made, proposal, candidate.weights, candidate.bowl)
 
 
 def _make_whole(search: Search, proofs: Proofs) -> None:
@@ -278,9 +321,10 @@ def proved(
     ride, candidate = _at_the_tooling(search, candidate)
     bowl, ways, row = candidate.bowl, candidate.ways, candidate.proposal.row
     study = replace(_unproved(search, candidate, known), long_ride=ride)
-    tested = drawn or _drawn(search, candidate, ride.either)
-    study = replace(study, robust=tested, partial=tested.partial)
-    if tested.partial or not (whole or tested.share >= DRAWS_HELD):
+    if drawn is None or drawn.draws < search.request.draws:
+        drawn = _drawn(search, candidate, ride.either, whole=whole)
+    study = replace(study, robust=drawn, partial=drawn.partial)
+    if drawn.partial or not (whole or drawn.share >= DRAWS_HELD):
         return study
     try:
         study = _in_queues(search, study, candidate, known, ride.entering, whole=whole)
@@ -300,8 +344,8 @@ def _at_the_tooling(search: Search, candidate: Candidate) -> tuple[LongRide, Can
     return ride, replace(candidate, weights=ride.arriving)
 
 
-def _drawn(search: Search, candidate: Candidate, shares: np.ndarray) -> RobustRun:
-    """The draws of a design, of parts that come in some shares (M,) [1]."""
+def _drawn(search: Search, candidate: Candidate, shares: np.ndarray, *, whole: bool) -> RobustRun:
+    """The draws of a design, of parts that come in some shares (M,) [1]; unless whole, while it may hold."""
     request = search.request
     text = f"{request.draws} of part, friction, drive and cuts"
     search.begin_proof(f"draws: {candidate.attempt.wanted}, {text}")
@@ -310,6 +354,7 @@ def _drawn(search: Search, candidate: Candidate, shares: np.ndarray) -> RobustRu
         draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
         any_heading=candidate.proposal.any_heading, spared=trying.spared_rows(candidate.tried),
         enough=search.enough(candidate.attempt),
+        allowed=None if whole else math.floor((1.0 - DRAWS_HELD) * request.draws + 1e-9),
     )  # fmt: skip
 
 

@@ -326,7 +326,7 @@ def _other_search(search: Search, request: DesignRequest) -> Search:
     """A search for another request that tells and counts as the first one does."""
     return replace(
         search, request=request, passed=[], failed=[], avoided={}, most=np.inf, further=None,
-        first=len(search.attempts), tracks=[], chains=set(), lost_behind=[], reach=np.inf,
+        first=len(search.attempts), tracks=[], proposed={}, chains=set(), lost_behind=[], reach=np.inf,
     )  # fmt: skip
 
 

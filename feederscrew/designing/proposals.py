@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.designing import pulses, trying
+from feederscrew.designing.record import RobustRun
 from feederscrew.designing.robust import CARRIED
 from feederscrew.designing.slots import STEP, widened
 from feederscrew.rates import stream
@@ -191,6 +192,7 @@ def proposed(part, bowl, aspects, row, known, request, way):
     found = tooling(
         part, bowl, one.aspect, heading=one.heading, rule=request.rule, margin=way.margin, known=aspects,
         seed=request.seed, verdicts=VERDICTS, outcome=way.outcome, without=without, turn=way.turns,
+        air=way.cost_class > COST_CLASSES[0],
         purity=ENOUGH, up=request.up, play=0.0, tolerance=0.0, vary=False,  # draws and the loop have them
     ).design  # fmt: skip
     if found is None or not found.efficiency > 0.0 or not (found.cuts or found.before):
@@ -198,12 +200,13 @@ def proposed(part, bowl, aspects, row, known, request, way):
     cuts = tuple(pulses.quickened(rounded(cut, known.lying, row), known.lying) for cut in found.cuts)
     step = f"proposed with margins of {in_mm(way.margin)}"
     same, free = alike(known.lying, row, request.up), free_headings(known.lying, row, request)
-    pure = float(np.nan_to_num(0.5 * (found.purity + found.hopeful)))
+    hopeful = found.hopeful or 0.0
+    pure = 0.5 * (float(np.nan_to_num(found.purity)) + hopeful)
     made = Proposal(row, cuts, tuple(found.before), step, same, free, pure, found.margin)
     if found.isolated:
         return made
     through = known_through(part, aspects, replace(bowl, devices=made.devices))
-    return _guarded_stops(made, through, request.rule) if found.hopeful >= ENOUGH else None
+    return _guarded_stops(made, through, request.rule) if hopeful >= ENOUGH else None
 
 
 def _guarded_stops(proposal, through, rule):
@@ -333,6 +336,51 @@ def cut_more(proposal, tried, drawn, every):
     wanted = trying.wanted_rows(tried.known, tried.states)
     rows = [k for k, one in enumerate(every) if one.name == name and k not in wanted]
     return dropped_before(proposal, rows, wanted, every)
+
+
+def purer(candidate, left_instead):
+    """Return the proposal that cuts more of what left queues instead of what is wanted; None without one.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        As it was proved.
+    left_instead : sequence of (str, int)
+        Names of what left, the most frequent first, and how many.
+    """
+    for name, _ in left_instead:
+        drawn = RobustRun(1, 0, f"{name}{CARRIED}")
+        changed = cut_more(candidate.proposal, candidate.tried, drawn, candidate.ways.lying)
+        if changed is not None:
+            return changed
+    return None
+
+
+def relieved(candidate):
+    """Return the proposal with a pressure break before its devices, at which parts leave that back up.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        That jams in a queue.
+
+    Returns
+    -------
+    Proposal or None
+        None where it has one, or a wanted orientation does not reach over any.
+    """
+    proposal, every = candidate.proposal, candidate.ways.lying
+    if any(device.relieves for device in proposal.devices):
+        return None
+    wanted = [every[k] for k in trying.wanted_rows(candidate.ways, candidate.tried.states)]
+    makers = [KINDS[kind] for kind in names(relieves=True)]
+    found = [kind.relieving(wanted, MARGINS[-1], DESIGN_KEY) for kind in makers] if wanted else []
+    device = next((one for one in found if one is not None), None)
+    if device is None:
+        return None
+    cut = judge_cut(every, proposal.row, device, np.zeros(len(every), bool), device, device)
+    step = f"{device.name} of {device.text} before it, for what backs up"
+    return replace(proposal, cuts=(cut, *proposal.cuts), step=step)
 
 
 def guarded(proposal, tried, every):

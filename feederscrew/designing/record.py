@@ -101,7 +101,7 @@ class RobustRun:
     draws: int
     held: int
     worst: str  # what went wrong most often; '' where nothing did
-    slowest: float = np.nan  # [m/s] velocity of the slowest draw
+    slowest: float = 0.0  # [m/s] velocity of the slowest draw; 0 of none
     partial: bool = False
 
     @property

@@ -167,8 +167,9 @@ def matched(one, every):
 
 
 def robust_run(
-    part, bowl, known, shares, wanted, *, draws, tolerance, run, any_heading=(), spared=(), enough=HALF
-):
+    part, bowl, known, shares, wanted, *, draws, tolerance, run, any_heading=(), spared=(), enough=HALF,
+    allowed=None,
+):  # fmt: skip
     """Try draws of part, friction, drive and cuts.
 
     Parameters
@@ -192,6 +193,8 @@ def robust_run(
         Orientations that count as the wanted one and may be returned.
     enough : float [1]
         Share of what is wanted that has to leave, where a part of it comes back: HALF at least.
+    allowed : int, optional
+        Draws that may fail: with one more the run ends, for the rest decides nothing. All draws without it.
 
     Returns
     -------
@@ -208,19 +211,28 @@ def robust_run(
         )  # fmt: skip
 
     def work(begin):
-        for done, task in enumerate([begin(draw_one, draw) for draw in range(draws)]):
-            task.result()
+        tasks: list[Any] = []
+        failures = 0
+        for done in range(draws):
+            while len(tasks) < min(done + run.jobs, draws):
+                tasks.append(begin(draw_one, len(tasks)))
+            failures += bool(tasks[done].result()[0])
             run.tell(done + 1, draws)
+            if failures > most:
+                return
 
+    most = draws if allowed is None else allowed
     try:
-        outcomes, _ = gather(work, run.jobs)  # after an interrupt what was done is counted, and marked
+        outcomes, stopped = gather(work, run.jobs)  # after an interrupt what was done is counted, and marked
     except KeyboardInterrupt:
-        outcomes = []
+        outcomes, stopped = [], True
+    failed = np.cumsum([bool(wrongs) for wrongs, _ in outcomes])
+    outcomes = outcomes[: int((failed <= most).sum()) + 1]  # alike for any number of jobs
     held, done = sum(not wrongs for wrongs, _ in outcomes), len(outcomes)
     wrong = Counter(fault for wrongs, _ in outcomes for fault in set(wrongs))
     speeds = [speed for _, speed in outcomes]
     worst = "" if not wrong else f"{wrong.most_common(1)[0][0]} in {wrong.most_common(1)[0][1]} of {done}"
-    return RobustRun(done, held, worst, float(min(speeds, default=np.nan)), partial=done < draws)
+    return RobustRun(done, held, worst, float(min(speeds, default=0.0)), partial=stopped)
 
 
 def _draw(part, bowl, known, shares, wanted, tolerance, seed, any_heading, spared, enough):

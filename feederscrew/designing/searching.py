@@ -42,6 +42,7 @@ class Search:
     least: float = 0.0  # [m/s] through tooling, where what is wanted was lost at a slower drive
     avoided: dict = field(default_factory=dict)  # kinds of devices at which a row was lost, by bank and row
     tracks: list = field(default_factory=list)  # of each bank what comes along it
+    proposed: dict = field(default_factory=dict)  # proposals or None, by bank, row and way
     chains: set = field(default_factory=set)  # tracks and chains that were tried, whatever the drive
     lost_behind: list = field(default_factory=list)  # (bank and row, first devices) that lost all of it
     reach: float = np.inf  # trials, those made included, after which the next cost class has its turn

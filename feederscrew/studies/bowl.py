@@ -1,5 +1,6 @@
 """``feeder bowl``: the machine under a bowl, and the bowl for a part and a rate."""
 
+import contextlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -7,8 +8,8 @@ from typing import Any, Unpack, cast
 
 import numpy as np
 
+from feederscrew import __version__, check, units
 from feederscrew import bowl as bowls
-from feederscrew import check, units
 from feederscrew.bowl.record import Bowl, Track, vibration_angle
 from feederscrew.bowl.settings import Setting, has_machine
 from feederscrew.conveying import answer
@@ -246,7 +247,12 @@ def bowl(
     wanted, counted["target"], plain = one, one, replace(plain, track=track)
     room = cast(float, part.volume if part.hull is None else part.hull.volume)  # a card has no size
     sought = drive_sizing.DriveSearch(plain, size, tuple(settings), target, part.mass / room)
-    driven, flow, note = _driven(sought, lambda bowl: sizing.flow(ways(bowl), **counted), as_tried)
+    bare = _ways(part, found, track, ())
+    driven, flow, note = _driven(
+        sought,
+        lambda bowl: sizing.flow(ways(bowl), **counted),
+        (lambda bowl: sizing.flow(bare(bowl), **counted)) if as_tried else None,
+    )
     order = Order(
         part=part,
         target=target,
@@ -299,6 +305,7 @@ def size_bowl(
     Returns
     -------
     MachineSheet
+        At the stroke that was tried, where the file has a trial that is still of this part and bowl.
     """
     own: dict[str, Any] = {"rule": rule, "gap": arguments.amount("gap", gap, "length", 0.0), "fill": fill}
     wanted = arguments.amount("target", target, "rate", LEAST)
@@ -306,14 +313,23 @@ def size_bowl(
     solid = arguments.a_part(part)
     file = None if path is None else arguments.a_file("path", path)
     effective = bowls.settings(file, override_texts(overrides, settings))
-    return bowl(effective, solid, wanted, aspect=aspect, heading=angle, **own)
+    name = aspect if aspect is None or angle is None else f"{aspect}@{round(np.degrees(angle)) % 360}"
+    tried = bowls.verified(file)
+    void = tried is None or any(tried.void(solid, bowls.record(effective), __version__, name))
+    return bowl(effective, solid, wanted, aspect=aspect, heading=angle, as_tried=not void, **own)
 
 
 def _driven(
-    sought: drive_sizing.DriveSearch, flow: Callable[[Bowl | None], sizing.Flow], as_tried: bool
+    sought: drive_sizing.DriveSearch,
+    flow: Callable[[Bowl | None], sizing.Flow],
+    bare: Callable[[Bowl | None], sizing.Flow] | None,
 ) -> tuple[Bowl, sizing.Flow, str]:
-    """The bowl with its drive, its flow, and what the static rule takes where that is another drive."""
-    if not as_tried:
+    """The bowl with its drive, its flow, and what the static rule takes where that is another drive.
+
+    ``bare`` is the flow without devices of what was tried: it is taken where the rule lets nothing through
+    them. None of what was not tried.
+    """
+    if bare is None:
         return (*drive_sizing.bring_target(sought, flow), "")
     driven = drive_sizing.with_own_drive(sought)
     rate, own = f"{sought.target * units.MINUTE:.4g}/min", 2e3 * driven.drive.amplitude
@@ -321,10 +337,18 @@ def _driven(
     try:
         other, _ = drive_sizing.bring_target(sought, flow)
     except FeederError:
-        return driven, flow(driven), f"{lead}: the static rule finds none for {rate}"
+        return driven, _flow(driven, flow, bare), f"{lead}: the static rule finds none for {rate}"
     stroke = 2e3 * other.drive.amplitude
     same = np.isclose(stroke, own, rtol=SAME_STROKE, atol=0.0)
     return driven, flow(driven), "" if same else f"{lead}: the static rule takes {stroke:.3g} mm for {rate}"
+
+
+def _flow(driven: Bowl, *flows: Callable[[Bowl | None], sizing.Flow]) -> sizing.Flow:
+    """The first flow that lets anything through."""
+    for flow in flows[:-1]:
+        with contextlib.suppress(FeederError):
+            return flow(driven)
+    return flows[-1](driven)
 
 
 def _sorting(bowl: Bowl, order: Order) -> Iterator[str]:

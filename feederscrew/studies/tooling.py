@@ -1,5 +1,6 @@
 """The study of ``feeder tooling``: which orientations of a part can be isolated, and by which devices."""
 
+import functools
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -175,6 +176,7 @@ def tooling(
     up: str | Sequence[str] = DesignConstraints.up,
     without: str | Sequence[str] = DesignConstraints.without,
     turn: bool = DesignConstraints.turn,
+    air: bool = DesignConstraints.air,
     vary: bool = DesignConstraints.vary,
     step: Quantity = DesignConstraints.step,
     cutter: Quantity = DesignConstraints.cutter,
@@ -215,6 +217,8 @@ def tooling(
         Kinds of devices that are not used, 'wiper,cut_out'.
     turn : bool
         Whether devices that turn parts over may be used.
+    air : bool
+        Whether air that blows all the time may be used, where cuts and blades are not enough.
     vary : bool
         Whether other banks, grooves and widths of the track are tried.
     step : str or float [m]
@@ -274,7 +278,7 @@ def tooling(
     clear += play + tolerance
     may_use = _usable(
         part, bowl, found,
-        outcome=outcome, without=without, up=up, vary=bool(vary), turn=turn,
+        outcome=outcome, without=without, up=up, vary=bool(vary), turn=turn, air=air,
         step=arguments.amount("step", step, "length", SHOP_ROUNDING_M),
         cutter=arguments.amount("cutter", cutter, "length", 0.0),
     )  # fmt: skip
@@ -317,6 +321,7 @@ class _Track:
     cache: dict[Any, Any]  # of orientations where it leans
 
 
+@functools.lru_cache(maxsize=32)
 def _coming(part: Part, found: Aspects, bowl: Bowl) -> tuple[Orientation, ...]:
     """Every orientation of a part as it comes in a bowl."""
     every, _ = marked(name_mirror_images(orientations(part, found, bowl.track)), bowl)

@@ -115,7 +115,7 @@ def test_a_class_uses_its_share_of_the_trials_and_the_next_has_the_rest(searchin
     list(exploring.candidates(search, 1))
     assert len(search.attempts) == 5  # half of ten
     list(exploring.candidates(search, 2))
-    assert len(search.attempts) == 5  # no device of steady air is proposed
+    assert len(search.attempts) == 7  # the first two 70 %
     list(exploring.candidates(search, 3))
     assert len(search.attempts) == 10
 
@@ -179,3 +179,22 @@ def test_what_is_impure_names_the_fill_and_the_device_that_others_came_through()
     assert "B@0: 11 of 135 (most at high fill, through the gap)" in replace(found, queues=rows).why
     bare = replace(found, queues=rows, cuts=())
     assert "B@0: 11 of 135 (most at high fill)" in bare.why
+
+
+@pytest.mark.parametrize("isolates", [True, False])
+def test_more_is_asked_of_a_chain_only_where_less_isolates(searching, monkeypatch, isolates):
+    """First the least margin without a turning device; the rest only where that has a chain."""
+    search, _ = searching
+    way = next(way for way in proposals.ways_of(1, search.request) if way.turns and way.margin == 5e-4)
+    ways, chain = [], proposals.Proposal(0, (), (), "test")
+    monkeypatch.setattr(
+        exploring,
+        "_proposed",
+        lambda search, track, row, way: ways.append(way) or (chain if isolates else None),
+    )
+    idea = exploring._Idea(search.tracks[0], 1, way)
+    assert exploring._proposal(search, idea) is (chain if isolates else None)
+    tried = [(way.turns, way.margin) for way in ways]
+    assert tried == ([(False, 5e-4), (True, 2.5e-4), (True, 5e-4)] if isolates else [(False, 5e-4)])
+    exploring._proposal(search, idea)
+    assert len(ways) == len(tried)  # each is looked for once

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -301,3 +302,43 @@ def test_what_draws_carry_through_is_cut_by_more(block):
     assert after.margin_pass > 0.0 and "A@90" in after.returns
     other = replace(drawn, worst="A@0 is carried through in 2 of 20")  # nothing tells it from itself
     assert proposals.better(proposal, seen, ways.lying, other) is None
+
+
+def test_what_left_a_queue_instead_is_cut_by_more(block):
+    _, ways, names = block
+    across, along = names["A@90"], names["A@0"]
+    seen = tried(ways, {along}, {across}, (), along)
+    proposal = proposals.better(proposals.Proposal(along, (), (), "no device"), seen, ways.lying)
+    candidate = SimpleNamespace(proposal=proposal, tried=seen, ways=ways)
+    changed = proposals.purer(candidate, (("in no known pose", 3), ("A@90", 2)))
+    (before,), (after,) = proposal.cuts, changed.cuts
+    assert abs(after.device.limit - after.largest.limit) < abs(before.device.limit - before.largest.limit)
+    assert proposals.purer(candidate, (("in no known pose", 3),)) is None
+
+
+def test_a_pressure_break_carries_what_is_wanted_and_lets_it_reach_over_the_ledge(block):
+    """A ledge under a block of 12 mm: wider than half of that by the margin, and narrower than it."""
+    _, ways, names = block
+    seen = tried(ways, {names["A@0"]}, (), (), names["A@0"])
+    candidate = SimpleNamespace(
+        proposal=proposals.Proposal(names["A@0"], (), (), "test"), tried=seen, ways=ways
+    )
+    changed = proposals.relieved(candidate)
+    (cut,) = changed.cuts
+    assert cut.device.kind == "pressure_break" and not cut.returns.count("A@0")
+    assert 6e-3 + proposals.MARGINS[-1] <= cut.device.limit <= 12e-3 - proposals.MARGINS[-1]
+    candidate.proposal = changed
+    assert proposals.relieved(candidate) is None  # it has one
+
+
+def test_draws_end_once_more_have_failed_than_may(monkeypatch, block):
+    part, ways, _ = block
+    results = iter([["B is lost"], [], ["B is lost"], [], []])
+    monkeypatch.setattr(robust, "_draw", lambda *_: (next(results), 0.05))
+    shares = np.full(len(ways.lying), 1.0)
+    own = {"draws": 5, "tolerance": 1e-4, "run": RunSettings(1)}
+    drawn = robust.robust_run(part, bowls.default(), ways, shares, 0, allowed=1, **own)
+    assert (drawn.draws, drawn.held, drawn.partial) == (3, 1, False)
+    results = iter([[], [], [], ["B is lost"], []])
+    drawn = robust.robust_run(part, bowls.default(), ways, shares, 0, allowed=1, **own)
+    assert (drawn.draws, drawn.held) == (5, 4)

@@ -60,6 +60,27 @@ def test_a_jet_over_what_lies_flat_blows_off_what_stands():
     assert not verdict(between, TALL, EVERY).sure
 
 
+def test_the_jets_that_a_design_tries_surely_blow_off_others_and_surely_leave_what_is_wanted():
+    flat, tall = DeviceEncounter(FLAT, EVERY), DeviceEncounter(TALL, EVERY)
+    jets = KINDS["jet"].proposals([flat], [tall], EVERY, "here")
+    assert jets and all(jet.height > 0.5 * FLAT.height for jet in jets)  # else it blows at what lies flat
+    for jet in jets:
+        assert verdict(jet, FLAT, EVERY).sure and verdict(jet, FLAT, EVERY).passes == 1.0
+        assert verdict(jet, TALL, EVERY).sure and verdict(jet, TALL, EVERY).passes == 0.0
+        gentler = replace(jet, pressure=jet.pressure - 5e3)  # the least a regulator is set to
+        assert jet.factor(tall) > 2.0 and gentler.factor(tall) < 2.2
+    assert not KINDS["jet"].proposals([tall], [flat], EVERY, "here")  # what lies flat is not met alone
+
+
+def test_a_design_takes_a_steady_jet_where_air_may_be_used_and_nothing_else():
+    others = [name for name, kind in KINDS.items() if kind.proposed and kind.kind != "jet"]
+    own = {"margin": 2.5e-4, "without": others, "play": 0.0, "tolerance": 0.0, "up": FLAT.aspect}
+    found = tooling_study.tooling(PART, BOWL, FLAT.aspect, heading=FLAT.heading, air=True, **own).design
+    assert [cut.device.kind for cut in found.cuts] == ["jet"]
+    assert TALL.name in found.cuts[0].returns and FLAT.name not in found.cuts[0].returns
+    assert not tooling_study.tooling(PART, BOWL, FLAT.aspect, heading=FLAT.heading, **own).design.cuts
+
+
 def test_the_force_that_tips_is_weight_times_foot_over_height():
     force = verdicts.force_to_clear(replace(TALL, swing=0.0), 1.0, 0.015)
     assert force == pytest.approx(TALL.posture.mass * BOWL.gravity * 2.5e-3 / 0.015, rel=1e-6)

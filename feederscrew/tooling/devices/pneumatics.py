@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
+from scipy.optimize import brentq
 
 from feederscrew import units
 from feederscrew import value_forms as forms
@@ -446,6 +447,9 @@ SURE_FORCE_RATIO = (
     2.0  # times the force that just moves a part off: within it, to either side, nothing is sure
 )
 JET_POSITIONS = 9  # along a part at which a jet meets it
+FORCE_RESERVE = 1.1  # beyond that, of a jet that a design proposes
+NOZZLE_HEIGHTS = 6  # that a design tries, evenly up to the tallest orientation
+MAX_JET_PRESSURE_PA, REGULATOR_STEP_PA = 4e5, 5e3  # of a usual compressed-air net, and of a regulator
 JET_BORE_M, JET_PRESSURE_PA = 2e-3, 2e4  # [m], [Pa]
 BAR_PA = units.factor("bar", "pressure")
 
@@ -472,10 +476,42 @@ class SteadyJet(Device):
     picture = "above"
     layer = "NOZZLE"
     cost_class = 2
+    proposed = True
 
     @classmethod
     def read(cls, entry):
         return values.nozzle(entry, needed=("nozzle", "pressure", "height"))
+
+    @classmethod
+    def proposals(cls, wanted, others, orientations, where):
+        """Return the jets that blow surely off some orientations and surely leave others, one a height.
+
+        Parameters
+        ----------
+        wanted, others : sequence of DeviceEncounter
+            That shall stay, and that shall be blown off where they can.
+        orientations : sequence of Orientation
+            Of the part.
+        where : str
+
+        Returns
+        -------
+        list of SteadyJet
+            Of the least pressure that blows off as many as the greatest one that leaves all that are wanted.
+        """
+        jets, top = [], max(orientation.height for orientation in orientations)
+        for height in np.round(top * (np.arange(NOZZLE_HEIGHTS) + 0.5) / NOZZLE_HEIGHTS, 4):
+            jet = cls(where, height=float(height))
+            own, full = jet.jet.thrust, thrust(jet.nozzle, MAX_JET_PRESSURE_PA)
+            most = max(jet.most(encounter) for encounter in wanted) / own
+            limit = min(full, 1.0 / (SURE_FORCE_RATIO * FORCE_RESERVE * most) if most > 0.0 else full)
+            ratio = SURE_FORCE_RATIO * FORCE_RESERVE
+            thrusts = [ratio * own / max(jet.factor(encounter), 1e-12) for encounter in others]
+            enough = [force for force in thrusts if force <= limit]
+            if enough:
+                steps = math.ceil(_pressure(jet.nozzle, max(enough)) / REGULATOR_STEP_PA - 1e-6)
+                jets.append(replace(jet, pressure=steps * REGULATOR_STEP_PA).rewritten())
+        return jets
 
     def value_text(self):
         entries = (("nozzle", length_text(self.nozzle)), ("pressure", f"{self.pressure / BAR_PA:.9g} bar"))
@@ -556,3 +592,8 @@ class SteadyJet(Device):
     @property
     def label(self):
         return f"{self.kind} {self.text}"
+
+
+def _pressure(nozzle, force):
+    """The pressure [Pa] at which a nozzle [m] has a thrust [N], which the supply makes."""
+    return float(brentq(lambda pressure: thrust(nozzle, pressure) - force, 0.0, MAX_JET_PRESSURE_PA))

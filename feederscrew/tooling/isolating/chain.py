@@ -65,6 +65,7 @@ class DesignConstraints:
     vary: bool = True  # other tracks and sweeps are tried where they give more
     gentle: bool = False  # cuts take no more of the wanted orientation's foot than they must
     turn: bool = False  # devices that turn parts over, where returning them wastes too much
+    air: bool = False  # air that blows all the time, where cuts and blades are not enough
 
     def allows(self, *kinds):
         """Return whether some kinds of devices may all be used."""
@@ -81,7 +82,9 @@ class DesignConstraints:
         return any(self.allows(kind.kind) for kind in numbered() if kind.overhead)
 
 
-def candidates(orientations, wanted, margin, constraints=None, *, clearing=True, sensed=False, same=()):
+def candidates(
+    orientations, wanted, margin, constraints=None, *, clearing=True, air=False, sensed=False, same=()
+):
     """Return every device of one number that the wanted orientation passes by a margin.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -95,8 +98,9 @@ def candidates(orientations, wanted, margin, constraints=None, *, clearing=True,
     constraints : DesignConstraints, optional
     same : sequence of int
         Those that count as the wanted one: a device of one number lets all of them pass.
-    clearing, sensed : bool
-        Whether what has to clear itself, and what sees, is tried beside what drops parts.
+    clearing, air, sensed : bool
+        Whether what has to clear itself, air that blows all the time, and what sees, is tried beside what
+        drops parts.
 
     Returns
     -------
@@ -120,6 +124,15 @@ def candidates(orientations, wanted, margin, constraints=None, *, clearing=True,
         limit = snap_to_shop_step(values[first] + (-play if lower else play), constraints.step, up=not lower)
         device = kind.proposal(DESIGN_KEY, limit)
         if limit > 0.0 and device.acts(orientations[wanted].track):
+            margins[device] = np.array(
+                [margin_at(device, orientation, orientations) for orientation in orientations]
+            )
+
+    for kind in blowing() if air else ():
+        rows = sorted({wanted, *same})
+        encounters = [DeviceEncounter(orientation, orientations) for orientation in orientations]
+        others = [encounter for k, encounter in enumerate(encounters) if k not in rows]
+        for device in kind.proposals([encounters[k] for k in rows], others, orientations, DESIGN_KEY):
             margins[device] = np.array(
                 [margin_at(device, orientation, orientations) for orientation in orientations]
             )
@@ -151,6 +164,11 @@ def pivot(kind, orientations, wanted, same=()):
 def values_around():
     """Return the kinds that a design tries with the wanted orientation's own outline."""
     return [kind for kind in KINDS.values() if kind.proposed and kind.senses]
+
+
+def blowing():
+    """Return the kinds that a design tries that blow all the time."""
+    return [kind for kind in KINDS.values() if kind.proposed and not (kind.senses or kind.bound)]
 
 
 def margin_at(device, orientation, orientations):
@@ -258,8 +276,10 @@ def shared_out(margins, devices, margin):
 
 
 def _cut(orientations, wanted, device, must, least, step):
-    if not device.bound:
+    if device.senses:
         return _sensor(orientations, wanted, device, must, step)
+    if not device.bound:
+        return judge_cut(orientations, wanted, device, must, device, device)
     values, upper = limits(type(device), orientations), device.bound == "upper"
     values = values + np.where(np.arange(len(orientations)) == wanted, 0.0, _more(device, orientations))
     nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]

@@ -36,7 +36,7 @@ from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 PLAY, MOST = 4e-4, 6e-4  # [m] by which a slot is wider than the shank: 0.2 to 0.6 mm
 HEAD_WALL_CLEARANCE_M = 4e-4  # [m] between a hanging head and the wall, wherever the shank stands in its slot
 # drops first, then what clears itself, then what sees
-STAGES: tuple[dict[str, bool], ...] = ({"clearing": False}, {}, {"sensed": True})
+STAGES: tuple[dict[str, bool], ...] = ({"clearing": False}, {}, {"air": True}, {"sensed": True})
 RAIL = 1e-3  # [m] least width of a rail, and of the sheet it is cut from
 # a part that lies along the wall is askew: its shank's tip lies nearer to the wall than its weight, and has
 # to be over the slot. The lead-in reaches so far under it, in radii of the shank, and so much at least
@@ -74,7 +74,7 @@ def design_rails(task):
     gone = (at_rails <= -margin) | ~task.stays | (task.coming <= 0.0)
     passed = gone | same
     for stage in STAGES:
-        if not stage.get("sensed") or task.constraints.sensed:
+        if all(getattr(task.constraints, name) for name in ("air", "sensed") if stage.get(name)):
             cuts, returned = _before(task, passed, same, stage)
         left = ~returned & ~passed & task.often
         jams = (left & np.isnan(at_rails)).any()  # however seldom it comes, it blocks the rails
@@ -466,8 +466,8 @@ def _plain(task, search):
         if not _left(task, returned):
             break
     proposal = propose_needed(task, cuts, returned)
-    sensed = {"sensed": task.constraints.sensed}
-    for stage in (sensed, sensed | {"varied": task.constraints.vary}):
+    air, sensed = {"air": task.constraints.air}, {"sensed": task.constraints.sensed}
+    for stage in (air, sensed, sensed | {"varied": task.constraints.vary}):
         if proposal.isolated or not any(stage.values()):
             continue
         other = propose_needed(task, *_chosen(task, weight, stage))

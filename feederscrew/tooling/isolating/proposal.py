@@ -29,21 +29,22 @@ class Design:
     left_over: tuple[str, ...]  # what leaves as well
     reasons: tuple[str, ...]  # why, a sentence each
     late: bool = False  # the time limit stopped the search: another machine may find more
-    hopeful: float = np.nan  # [1] purity where a trial confirms what is not sure to be returned
+    # [1] purity where a trial confirms what is not sure to be returned; None where nothing leaves
+    hopeful: float | None = None
     width: float | None = None  # [m] of the track, where it is another than the bowl's
     least_purity: float = ISOLATED_PURITY  # [1] from which it is said to isolate
-    surely: float = np.nan  # [1] of the efficiency, what does not roll or rock on its way: the least of it
+    surely: float = 0.0  # [1] of the efficiency, what does not roll or rock on its way: the least of it
     steady: bool = True  # the drive leaves the wanted orientation lying on what the cuts leave of its foot
 
     @property
     def purity_is_least(self):
         """Whether the purity counts as leaving what no verdict is sure to return."""
-        return self.hopeful > self.purity
+        return self.hopeful is not None and self.hopeful > self.purity
 
     @property
     def least(self):
         """The least of the efficiency [1] that the static rule is sure of."""
-        return self.efficiency if np.isnan(self.surely) else min(self.surely, self.efficiency)
+        return min(self.surely, self.efficiency)
 
     @property
     def stands(self):
@@ -153,9 +154,11 @@ def propose(task, cuts, returned, same=None, late=False):
     doubt = float(unsure.sum())  # may leave as well: no trial has said
     total, leaving = shares.sum(), out.sum()
     cuts = _with_stops(task, flow, cuts)
-    hopeful = float(out[states].sum() / leaving) if leaving > 0.0 else np.nan
+    hopeful = float(out[states].sum() / leaving) if leaving > 0.0 else None
     least = min(task.purity, ISOLATED_PURITY)
-    impure = [f"only {100.0 * hopeful:.3g} % of what leaves is so"] if hopeful < least else []
+    impure = []
+    if hopeful is not None and hopeful < least:
+        impure = [f"only {100.0 * hopeful:.3g} % of what leaves is so"]
     stands = any(cut.stops for cut in cuts)
     left = [k for k in np.flatnonzero(~returned & ~same) if task.often[k]]
     rest = task.coming[left].sum()
@@ -313,7 +316,8 @@ def _returns(task, cut):
 def _same_numbers(orientation, other):
     """Whether a design says the same of what leaves as another, and no more stands in it."""
     first, second = (
-        np.nan_to_num([k.efficiency, k.purity, k.hopeful], nan=-1.0) for k in (orientation, other)
+        np.nan_to_num([k.efficiency, k.purity, -1.0 if k.hopeful is None else k.hopeful], nan=-1.0)
+        for k in (orientation, other)
     )
     stands = [{name for cut in design.cuts for name in cut.stops} for design in (orientation, other)]
     return (
