@@ -2,6 +2,7 @@
 
 import functools
 import re
+from typing import Any
 
 import click
 
@@ -284,7 +285,7 @@ def _title_text(context, option, value):
 
 def title_block(command):
     """Fields of the title block of drawings; the command receives them as ``fields``, by keyword."""
-    named = {"default": "", "callback": _title_text, "metavar": "TEXT"}
+    named: Any = {"default": "", "callback": _title_text, "metavar": "TEXT"}
     return stacked(
         packed(command, "fields", ("date", "revision")),
         click.option("--date", help="Date in the title block of the drawings.  [default: empty]", **named),
