@@ -1,9 +1,10 @@
 """Which nodes of a graph hang together."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 
-def components(i, j, count):
+def components(i, j, count) -> tuple[int, NDArray[np.int64]]:
     """Return the components of a graph.
 
     Parameters
@@ -31,7 +32,7 @@ def components(i, j, count):
     return number, component.astype(int)
 
 
-def component_of(pairs, count):
+def component_of(pairs, count) -> NDArray[np.int64]:
     """Return of each node its component (count,) int; pairs (N, 2) int are the two ends of each link."""
     first, second = pairs.T
     return components(first, second, count)[1]
