@@ -1,6 +1,5 @@
 """Hull triangles gathered into faces a part can rest on: flats, and curved sides it rolls on."""
 
-import itertools
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,55 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew.geometry import vectors
-from feederscrew.geometry.graphs import component_of, components
+from feederscrew.geometry.graphs import (
+    component_of,
+    components,
+    group_starts,
+    group_sums,
+    join_groups,
+    split_groups,
+)
 from feederscrew.resting.landscape import GENTLE_COSINE, RIPPLE_OF_RADIUS, SMOOTH_ANGLE, angle, edges, gentle
-
-
-def join_groups(groups) -> tuple[np.ndarray, np.ndarray]:
-    """Return the members of groups in one array, and to which of them each belongs.
-
-    Parameters
-    ----------
-    groups : sequence of G int arrays
-        At least one.
-
-    Returns
-    -------
-    members, owners : (N,) int
-        The owners ascend.
-    """
-    counts = np.fromiter(map(len, groups), int, len(groups))
-    return np.concatenate(groups), np.repeat(np.arange(len(groups)), counts)
-
-
-def group_starts(owners, count) -> NDArray[np.int64]:
-    """Return the place (G,) of the first member of each of ``count`` groups, by ascending owners (N,)."""
-    return np.searchsorted(owners, np.arange(count))
-
-
-def split_groups(members, owners, count) -> list[np.ndarray]:
-    """Return the members (N, ...) of each of ``count`` groups, by ascending owners (N,): a list of arrays."""
-    bounds = group_starts(owners, count + 1).tolist()
-    return [members[start:stop] for start, stop in itertools.pairwise(bounds)]
-
-
-def group_sums(values, owners, count) -> Any:
-    """Return the sums over the members of each of ``count`` groups, none of them empty.
-
-    Parameters
-    ----------
-    values : (N,) or (K, N) float
-        Of one quantity, or of several, a row each.
-    owners : (N,) int
-        Ascending.
-    count : int
-
-    Returns
-    -------
-    (G,) or (G, K) float
-    """
-    return np.add.reduceat(values, group_starts(owners, count), axis=-1).T
-
 
 ONE_PLANE = np.radians(0.2)  # between triangles of one facet
 LARGER = 1.5  # times the bend round most of a side: a facet between sharper bends was not cut by chance
