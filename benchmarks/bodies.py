@@ -9,11 +9,11 @@ from types import SimpleNamespace
 import numpy as np
 import trimesh
 
-from feederscrew.dropping import conditions, drop_test
+from feederscrew.dropping import drop_test, launch_conditions
 from feederscrew.resting.aspects import find
+from feederscrew.resting.exact_tumbling import ground
 from feederscrew.resting.rules import recommended
-from feederscrew.resting.rules.surface import surface_weights
-from feederscrew.resting.tumbling.by_class import ground
+from feederscrew.resting.rules.formulas import surface_weights
 from feederscrew.running import RunSettings
 
 ROOT = Path(__file__).parent.parent
@@ -63,7 +63,7 @@ class Body:
     def tally(self, launch):
         """Counts of a drop test."""
         if launch not in self.tallies:
-            own, run = dict.fromkeys(conditions.KEYS), RunSettings(jobs=self.jobs)
+            own, run = dict.fromkeys(launch_conditions.CONDITION_KEYS), RunSettings(jobs=self.jobs)
             tested = drop_test.test(self.part, self.aspects, launch, own, drops=self.drops, run=run)
             self.tallies[launch] = tested.tally
             self._keep()

@@ -22,8 +22,8 @@ from feederscrew.dropping import ensemble
 from feederscrew.dropping.kernel import body, falling
 from feederscrew.dropping.kernel.falling import Steps
 from feederscrew.dropping.kernel.floor_motion import at_rest
-from feederscrew.dropping.launches import PRESETS
-from feederscrew.dropping.rigid_body import shape_of_part
+from feederscrew.dropping.launch_conditions import PRESETS
+from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.geometry.compiled import entry
 from feederscrew.part import load
 from feederscrew.resting.aspects import find

@@ -18,7 +18,7 @@ import waits
 from conveying_reference import Reference, random_settings
 
 from feederscrew.conveying import steady, sweep
-from feederscrew.conveying.setting import OperatingPoint, plain
+from feederscrew.conveying.operating_point import OperatingPoint, plain
 from feederscrew.mechanics import limits
 
 TARGETS = {0.0: (60_000, 1_600), 0.3: (12_000, 300)}  # points a second: compiled, plain Python

@@ -11,7 +11,7 @@ a standard deviation that all launches have in common and that is not known but 
 import numpy as np
 from scipy import optimize, stats
 
-from feederscrew.dropping.ensemble import NORMAL
+from feederscrew.dropping.ensemble import NORMAL_95
 from feederscrew.resting.counts.deviation import total_variation
 from feederscrew.resting.rules import recommended
 
@@ -188,7 +188,7 @@ def _beyond(one):
 def _within(known, width):
     """How many deviations a width holds, with their own sampling beside it."""
     away, noise = known
-    return int(np.sum(np.abs(away) <= np.hypot(width, NORMAL * np.sqrt(noise))))
+    return int(np.sum(np.abs(away) <= np.hypot(width, NORMAL_95 * np.sqrt(noise))))
 
 
 def _held(sets, kind):

@@ -17,7 +17,7 @@ import speed
 import waits
 
 from feederscrew.conveying import sweep
-from feederscrew.conveying.setting import plain
+from feederscrew.conveying.operating_point import plain
 
 POINTS = 20_000
 PAIRS = 3

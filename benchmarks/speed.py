@@ -16,12 +16,11 @@ from scipy.spatial import ConvexHull
 
 from feederscrew.dropping import ensemble
 from feederscrew.dropping.kernel import one_drop
-from feederscrew.dropping.launches import Launch, sample
-from feederscrew.dropping.rigid_body import shape_of_part
+from feederscrew.dropping.launch_conditions import Launch, sample
+from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.part.hull import convex_hull
 from feederscrew.resting.aspects import find
-from feederscrew.resting.tumbling.by_class import ground
-from feederscrew.resting.tumbling.exact import tumble
+from feederscrew.resting.exact_tumbling import ground, tumble
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 import shapes

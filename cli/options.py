@@ -123,10 +123,10 @@ def parts(command):
 
 def _known_density(context, option, value):
     """The density as typed; a wrong one is told of before anything is read."""
-    from feederscrew.part.density import density
+    from feederscrew.part.density import find_density
 
     if value is not None:
-        density(value)
+        find_density(value)
     return value
 
 

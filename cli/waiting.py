@@ -15,9 +15,9 @@ def drops(out):
 
 def plate(out):
     """Say so when the first plate on this machine must wait for the compiler."""
-    from feederscrew.dropping.plate import rides
+    from feederscrew.dropping import plate_test
 
-    if not rides.compiled():
+    if not plate_test.compiled():
         out.say("Compiling the plate's kernel, once on this machine: about ten seconds.")
 
 

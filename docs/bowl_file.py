@@ -13,7 +13,7 @@ from pathlib import Path
 
 from feederscrew.bowl import documentation
 from feederscrew.bowl.schema import BOWL_KEYS
-from feederscrew.dropping import conditions
+from feederscrew.dropping import launch_conditions
 
 PAGE = Path(__file__).resolve().parent / "bowl_file.md"
 KEYWORDS = PAGE.parent.parent / "feederscrew" / "studies" / "arguments.py"
@@ -58,7 +58,11 @@ def between(text, name, content):
 def with_keywords(text):
     """Return the module with a keyword for each key whose name is in one section, and is none of a launch."""
     count = Counter(key.word for key in BOWL_KEYS)
-    words = [key.word for key in BOWL_KEYS if count[key.word] == 1 and key.word not in conditions.KEYS]
+    words = [
+        key.word
+        for key in BOWL_KEYS
+        if count[key.word] == 1 and key.word not in launch_conditions.CONDITION_KEYS
+    ]
     before, _, rest = text.partition(BEGIN)
     lines = "".join(f"    {word}: Setting\n" for word in words)
     return before + BEGIN + lines + END + rest.partition(END)[2]

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from feederscrew.conveying.operating_point import plain
 from feederscrew.conveying.scaling import Numbers, with_numbers
-from feederscrew.conveying.setting import plain
 from feederscrew.conveying.steady import VELOCITY
 from feederscrew.conveying.sweep import sweep
 

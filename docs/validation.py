@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from feederscrew.dropping.ensemble import wilson
-from feederscrew.dropping.launch_file import FACES
+from feederscrew.dropping.toss_runs import FACE_NAMES
 from feederscrew.part import load
 from feederscrew.studies.aspects import aspects
 from feederscrew.studies.compare import compare_sets
@@ -131,7 +131,7 @@ def tosses():
 def judged(study):
     """Return what the other half of the tosses says, of which MODEL_DOUBT knows nothing."""
     half = slice(1, None, 2)
-    measured = np.array([FACES.index(face) for face in study.launches.faces])
+    measured = np.array([FACE_NAMES.index(face) for face in study.launches.faces])
     right, p, off = (study.result.faces == measured)[half], study.p[half], 1e3 * study.off[half]
     (low, high), sure = wilson(right.sum(), len(right)), p >= SURE
     return [

@@ -15,7 +15,7 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import settings
 
-from feederscrew.dropping.plate import arrival
+from feederscrew.dropping import arrival
 from feederscrew.output import shading as shading_output
 from feederscrew.output import style
 from feederscrew.studies import aspects, simulation_cache, tune
@@ -125,7 +125,7 @@ def _compiled(request):
 def _counts(dropped, fed, led):
     return (
         *((aspects, "MOST", dropped), (tune, "FEW", led)),
-        *((arrival, name, fed) for name in ("FIRST", "MOST", "LONGEST")),
+        *((arrival, name, fed) for name in ("FIRST_PARTS", "MAX_ARRIVALS", "LONGER_TIME_PARTS")),
     )
 
 

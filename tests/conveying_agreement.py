@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from feederscrew.conveying import settling, steady
-from feederscrew.conveying.law import law
+from feederscrew.conveying import steady
+from feederscrew.conveying.operating_point import law
 from feederscrew.conveying.point_motion import TALLY, at_rest, turn
 
 LONGEST = 40  # periods the general solver is asked to follow
@@ -13,7 +13,7 @@ LONGEST = 40  # periods the general solver is asked to follow
 def agreed(setting, reference):
     """Whether both give one velocity; None where the steady state comes too late for the general solver."""
     rules = law(setting)
-    state, period = settling.settle(rules, at_rest(rules))
+    state, period = steady.settle(rules, at_rest(rules))
     lead_in = _periods_to(rules, state)
     if not period or lead_in is None:
         return None

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from feederscrew.dropping.rigid_body import shape_of
+from feederscrew.dropping.rounded_hull import shape_of
 from feederscrew.part.hull import convex_hull
 
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2.0

@@ -17,7 +17,7 @@ from feederscrew.documents import found_as, raise_all
 from feederscrew.errors import ConfigError, FeederError
 from feederscrew.output.folder import safe_name
 from feederscrew.part import aspect_names
-from feederscrew.part.reading.formats import CARD, FORMATS
+from feederscrew.part.reading.formats import CARD_FORMAT, FORMATS
 
 PART, NAMES, ASPECT, CONFIG = "part", "names", "aspect", "config"
 LISTED_OPTIONS = ("units", "density", "centre_of_mass", "body")
@@ -107,8 +107,10 @@ def _row(path, line, header, cells, faults):
     return [ListedPart(str(folder / texts[PART]), options, config, where, texts.get(ASPECT) or None, names)]
 
 
-MESHES = {suffix for name, file_format in FORMATS.items() if name != CARD for suffix in file_format.suffixes}
-CARDS = set(FORMATS[CARD].suffixes)
+MESHES = {
+    suffix for name, file_format in FORMATS.items() if name != CARD_FORMAT for suffix in file_format.suffixes
+}
+CARDS = set(FORMATS[CARD_FORMAT].suffixes)
 CARD_KEY = re.compile(rb"^(mass|inertia|aspects)\s*:", re.MULTILINE)
 LONGEST, MOST_BYTES = 80, 160  # letters and bytes of a folder's name
 
@@ -173,7 +175,7 @@ def _names(rows, faults):
         if row.names not in names_by_file:
             names_by_file[row.names] = None
             try:
-                names_by_file[row.names] = aspect_names.read(row.names)
+                names_by_file[row.names] = aspect_names.read_aspect_names(row.names)
             except FeederError as fault:
                 located = ConfigError(f"{row.line}: {fault.where}", fault.what, fault.mend)
                 faults += getattr(fault, "faults", [located])

@@ -31,7 +31,7 @@ from feederscrew.errors import FeederError
 from feederscrew.output import tables
 from feederscrew.output.batch import SHEET
 from feederscrew.output.folder import RECORD
-from feederscrew.part.reading import source
+from feederscrew.part import loading
 
 MARKER = "batch.json"  # says that the folder is a batch's
 RESUME_STORE_ADVICE = "make room there, then start this batch again with `resume`: what is finished is kept"
@@ -333,7 +333,7 @@ def count_stale(requests, directory, choices=None):
 
 
 def _why_again(store, request, choices):
-    return store.why_again(Task.of(request, choices, source.file(request.source).data))
+    return store.why_again(Task.of(request, choices, loading.read_file(request.source).data))
 
 
 def _stays(store, request, choices):
@@ -356,7 +356,7 @@ class _UnderWay:
         """Yield a task for each request that needs one, its file read only when the task is asked for."""
         for request in requests:
             try:
-                data = source.file(request.source).data
+                data = loading.read_file(request.source).data
             except FeederError as fault:
                 unread = Task.of(request, self.choices, b"")
                 self.finish(Outcome.failed(unread, str(fault), final=False))

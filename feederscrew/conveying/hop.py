@@ -6,16 +6,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.conveying.answer import STILL, settings
-from feederscrew.conveying.harmonic import after, gain, onward, travel
-from feederscrew.conveying.law import Law, law, throw_number
+from feederscrew.conveying.answer import LEAST_ACCELERATION_RATIO, settings
+from feederscrew.conveying.operating_point import FLIGHT, Law, OperatingPoint, law, throw_number
 from feederscrew.conveying.point_motion import TALLY, TRAVEL, State, at_rest, step
-from feederscrew.conveying.setting import FLIGHT, TURN, OperatingPoint
-from feederscrew.conveying.settling import settle
+from feederscrew.conveying.steady import settle
+from feederscrew.conveying.waves import PERIOD_RAD, after, gain, onward, travel
 
-FOLLOWED = 32  # periods of a motion that does not repeat
+FOLLOWED_PERIODS = 32  # periods of a motion that does not repeat
 MARGIN_M = 2.5e-4  # that a static verdict has where it counts as sure
-HALVINGS = 60  # of the span in which a part is highest
+PEAK_HALVINGS = 60  # of the span in which a part is highest
 
 
 @dataclass(frozen=True)
@@ -32,7 +31,7 @@ class Hop:
         return f"{1e3 * self.height:.2g} mm high and {1e3 * self.flight:.2g} mm far"
 
 
-STAYS = Hop(0.0, 0.0, 0.0)  # on the track
+NO_HOP = Hop(0.0, 0.0, 0.0)  # on the track
 
 
 def hop(bowl: Bowl) -> Hop:
@@ -61,8 +60,8 @@ def hop(bowl: Bowl) -> Hop:
     ``flights.throw_of_flight``.
     """
     setting = OperatingPoint(*settings(replace(bowl, devices=())).tolist())
-    if setting.ratio <= STILL:
-        return STAYS
+    if setting.ratio <= LEAST_ACCELERATION_RATIO:
+        return NO_HOP
     height, flight, duration = _hop(setting._replace(restitution=0.0))
     amplitude = float(bowl.drive.amplitude)
     return Hop(height * amplitude, flight * amplitude, duration)
@@ -98,8 +97,10 @@ def _hop(setting: OperatingPoint) -> tuple[float, float, float]:
     state, period = settle(rules, at_rest(rules))
     tally = np.zeros(TALLY)
     height = farthest = longest = way = 0.0
-    for _ in range(period + 1 if period > 0 else FOLLOWED):  # one more: a flight may begin in the last one
-        while state.angle < TURN:
+    for _ in range(
+        period + 1 if period > 0 else FOLLOWED_PERIODS
+    ):  # one more: a flight may begin in the last one
+        while state.angle < PERIOD_RAD:
             before = tally[TRAVEL]
             following = step(rules, state, tally)
             if state.phase == FLIGHT:
@@ -109,7 +110,7 @@ def _hop(setting: OperatingPoint) -> tuple[float, float, float]:
                 farthest, longest = max(farthest, abs(way)), max(longest, state.aloft + span)
             state = following
         state = state._replace(angle=0.0)
-    return height, farthest, longest / TURN
+    return height, farthest, longest / PERIOD_RAD
 
 
 def _greatest_gap(rules: Law, state: State, span: float) -> float:
@@ -119,7 +120,7 @@ def _greatest_gap(rules: Law, state: State, span: float) -> float:
     high = span
     if state.rising + gain(arc, low) <= 0.0:
         low = 0.0
-    for _ in range(HALVINGS):
+    for _ in range(PEAK_HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if state.rising + gain(arc, middle) > 0.0 else (low, middle)
     return max(state.height, state.height + state.rising * low + travel(arc, low))

@@ -1,18 +1,160 @@
-"""From event to event: ride, slide, fly, land; and a whole period of the drive."""
+"""From event to event: ride, slide, fly, land; and a whole period of the drive.
+
+Where a phase ends, every root is bracketed where the sought function is monotone or of one curvature.
+"""
 
 import math
 from typing import NamedTuple
 
-from feederscrew.conveying.events import landing, later, slip_end
-from feederscrew.conveying.harmonic import gain, onward, travel, value
-from feederscrew.conveying.law import contact
-from feederscrew.conveying.setting import BACKWARD, FLIGHT, FORWARD, STICK, TURN
+from feederscrew.conveying.operating_point import BACKWARD, FLIGHT, FORWARD, STICK, contact
+from feederscrew.conveying.waves import PERIOD_RAD, above, after, gain, onward, reached, travel, value
+
+EVENT_TIE_RAD = 1e-12  # [rad] an event this little in the past is happening now
+NEWTON_TOLERANCE = 1e-14  # relative size of a last Newton step
+MAX_NEWTON_STEPS = 80
+LATE_NEWTON_STEPS = 10  # steps
+
+
+def later(zeros, now) -> float:
+    """Return the first of two angles [rad], ascending, still to come in this period; inf otherwise."""
+    if zeros[0] >= now - EVENT_TIE_RAD:
+        return max(zeros[0], now)
+    return max(zeros[1], now) if zeros[1] >= now - EVENT_TIE_RAD else math.inf
+
+
+def slip_end(a, angle, speed) -> float:
+    """Return the first angle of this period at which a slip ends.
+
+    Source: own; docs/conveying.md, "How it is computed".
+
+    Parameters
+    ----------
+    a : Harmonic
+        Growth of the speed.
+    angle : float [rad]
+        Now. A slip that starts from rest grows first, and ends only after that.
+    speed : float [A w]
+        Size of the relative velocity.
+
+    Returns
+    -------
+    float [rad]
+        inf where it lasts beyond the period.
+    """
+    closing = speed > 0.0 and value(a, angle) < 0.0
+    start, arc = angle if closing else later(a.falls, angle), onward(a, angle)
+    while start < PERIOD_RAD:
+        end = min(after(a.rises, start), PERIOD_RAD)
+        if speed + gain(arc, end - angle) <= 0.0:
+            steepest = (1.5 * math.pi - a.phase - angle) % PERIOD_RAD
+            return angle + _stop(arc, speed, start - angle, end - angle, steepest)
+        start = later(a.falls, end)
+    return math.inf
+
+
+def _stop(arc, speed, low, high, steepest) -> float:
+    """Span after which a speed that only falls from ``low`` to ``high`` is zero.
+
+    Where it falls steepest its curvature changes sign: from there Newton approaches from one side. With a
+    second harmonic it may change sign again, so late steps that are not half the last give way to halving.
+    """
+    x, last = min(max(steepest, low), high), math.inf
+    for count in range(MAX_NEWTON_STEPS):
+        left, slope = speed + gain(arc, x), reached(arc, x)
+        if abs(left) <= -slope * NEWTON_TOLERANCE * x:
+            return x - left / slope
+        if left > 0.0:
+            low = x
+        else:
+            high = x
+        new = x - left / slope if slope < 0.0 else low
+        if not low < new < high or (count > LATE_NEWTON_STEPS and abs(new - x) > 0.5 * last):
+            new = 0.5 * (low + high)
+        x, last = new, abs(new - x)
+    return x
+
+
+def landing(lift, angle, height, speed) -> float:
+    """Return the first angle of this period at which a flight ends.
+
+    Source: own; docs/conveying.md, "How it is computed".
+
+    Parameters
+    ----------
+    lift : Harmonic
+        Relative acceleration along the normal.
+    angle : float [rad]
+        Now.
+    height : float [A]
+        Over the plate; zero at a take-off.
+    speed : float [A w]
+        Relative velocity along the normal; not negative at a take-off.
+
+    Returns
+    -------
+    float [rad]
+        inf where the flight lasts beyond the period.
+    """
+    start, arc = angle, onward(lift, angle)
+    while start < PERIOD_RAD:
+        hollow = above(lift, start)
+        end = min(after(lift.falls if hollow else lift.rises, start), PERIOD_RAD)
+        if hollow:
+            down = _dip(arc, height, speed, start - angle, end - angle)
+        else:
+            down = _descent(arc, height, speed, end - angle)
+        if down < math.inf:
+            return angle + down
+        start = end
+    return math.inf
+
+
+def _descent(arc, height, speed, end) -> float:
+    """Span to the landing on a stretch curved downwards: Newton from beyond it never passes it."""
+    if height + speed * end + travel(arc, end) > 0.0:
+        return math.inf
+    x = end
+    if height == 0.0 and speed > 0.0:
+        x = _beyond_bounce(arc, speed, end)
+    for _ in range(MAX_NEWTON_STEPS):
+        step = (height + speed * x + travel(arc, x)) / (speed + gain(arc, x))
+        x -= step
+        if abs(step) <= NEWTON_TOLERANCE * x:
+            break
+    return x
+
+
+def _beyond_bounce(arc, speed, end) -> float:
+    """A span just beyond a bounce, from its parabola: bounces may be a millionth of the stretch."""
+    x = 2.0 * speed / max(-reached(arc, 0.0), speed)
+    while x < end and speed * x + travel(arc, x) > 0.0:
+        x *= 2.0
+    return min(x, end)
+
+
+def _dip(arc, height, speed, start, end) -> float:
+    """Span to the landing on a stretch curved upwards: Newton from before it never passes it."""
+    x = start
+    for _ in range(MAX_NEWTON_STEPS):
+        sinking = speed + gain(arc, x)
+        if sinking >= 0.0:
+            return math.inf
+        step = (height + speed * x + travel(arc, x)) / sinking
+        x -= step
+        if x > end:
+            return math.inf
+        if abs(step) <= NEWTON_TOLERANCE * x:
+            break
+    return x
+
 
 TRAVEL, TIMES, LONGEST, HARDEST, FLIGHTS = 0, 1, 5, 6, 7  # places in a tally; TIMES holds one per phase
 STOPS, UPWARD, DOWNWARD = 8, 9, 10  # how often it came to rest on the plate, and slid or landed each way
 TALLY = 11
-SETTLED = 1e-6  # [rad] a bounce that would last twice this ends endless bouncing: an error of second order
-EVENTS = 100_000  # in one period
+LAST_BOUNCE_RAD = (
+    1e-6  # [rad] a bounce that would last twice this ends endless bouncing: an error of second order
+)
+MAX_EVENTS_A_PERIOD = 100_000  # in one period
 
 
 class State(NamedTuple):
@@ -26,12 +168,12 @@ class State(NamedTuple):
     aloft: float  # [rad] since take-off
 
 
-def at_rest(rules):
+def at_rest(rules) -> State:
     """Return a part lying on the plate at mid stroke."""
     return State(0.0, contact(rules, 0.0, 0.0), 0.0, 0.0, 0.0, 0.0)
 
 
-def turn(rules, state, tally):
+def turn(rules, state, tally) -> State:
     """Follow the part to the end of this period of the drive.
 
     Source: docs/conveying.md, "How it is computed".
@@ -50,14 +192,14 @@ def turn(rules, state, tally):
     State
         With its clock set back by one period.
     """
-    for _ in range(EVENTS):
-        if state.angle >= TURN:
+    for _ in range(MAX_EVENTS_A_PERIOD):
+        if state.angle >= PERIOD_RAD:
             break
         state = step(rules, state, tally)
     return State(0.0, state.phase, state.speed, state.height, state.rising, state.aloft)
 
 
-def step(rules, state, tally):
+def step(rules, state, tally) -> State:
     """Follow the part to its next event, or to the end of this period; adds to ``tally`` (11,)."""
     if state.phase == FLIGHT:
         return _fly(rules, state, tally)
@@ -66,11 +208,11 @@ def step(rules, state, tally):
     return _slide(rules, state, tally)
 
 
-def _ride(rules, state, tally):
+def _ride(rules, state, tally) -> State:
     now = state.angle
     lift, ahead = later(rules.lift.rises, now), later(rules.onset.rises, now)
     back = later(rules.onset_back.rises, now)
-    end = min(lift, ahead, back, TURN)
+    end = min(lift, ahead, back, PERIOD_RAD)
     phase = STICK
     if lift == end:
         phase = FLIGHT
@@ -83,12 +225,12 @@ def _ride(rules, state, tally):
     return State(end, phase, 0.0, 0.0, 0.0, 0.0)
 
 
-def _slide(rules, state, tally):
+def _slide(rules, state, tally) -> State:
     now = state.angle
     sign = 1.0 if state.phase == FORWARD else -1.0
     growth = rules.slip if state.phase == FORWARD else rules.slip_back
     lift, stop = later(rules.lift.rises, now), slip_end(growth, now, abs(state.speed))
-    end = min(lift, stop, TURN)
+    end = min(lift, stop, PERIOD_RAD)
     span, arc = end - now, onward(growth, now)
     tally[TRAVEL] += state.speed * span + sign * travel(arc, span)
     tally[TIMES + state.phase] += span
@@ -102,17 +244,17 @@ def _slide(rules, state, tally):
     return State(end, state.phase, speed, 0.0, 0.0, 0.0)
 
 
-def _fly(rules, state, tally):
+def _fly(rules, state, tally) -> State:
     now = state.angle
     down = landing(rules.lift, now, state.height, state.rising)
-    end = min(down, TURN)
+    end = min(down, PERIOD_RAD)
     span, along, normal = end - now, onward(rules.free, now), onward(rules.lift, now)
     tally[TRAVEL] += state.speed * span + travel(along, span)
     tally[TIMES + FLIGHT] += span
     speed = state.speed + gain(along, span)
     rising = state.rising + gain(normal, span)
     aloft = state.aloft + span
-    if down > TURN:
+    if down > PERIOD_RAD:
         height = state.height + state.rising * span + travel(normal, span)
         return State(end, FLIGHT, speed, height, rising, aloft)
     tally[LONGEST] = max(tally[LONGEST], aloft)
@@ -123,7 +265,7 @@ def _fly(rules, state, tally):
     return landed
 
 
-def land(rules, angle, speed, impact):
+def land(rules, angle, speed, impact) -> State:
     """Return the state after an impact: restitution (Newton) across the track, Coulomb's bound along it.
 
     Source: Newton's restitution, Coulomb's law for the impulses; docs/conveying.md, "The model".
@@ -141,7 +283,7 @@ def land(rules, angle, speed, impact):
     """
     friction = rules.kinetic if speed > 0.0 else rules.kinetic_back
     rebound = rules.restitution * impact
-    if rebound <= SETTLED * max(0.0, -value(rules.lift, angle)):
+    if rebound <= LAST_BOUNCE_RAD * max(0.0, -value(rules.lift, angle)):
         rebound = (
             0.0  # the endless bounces left out pass on the impulse of a plastic impact and of their time
         )

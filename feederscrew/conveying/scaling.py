@@ -8,7 +8,7 @@ import math
 from typing import NamedTuple
 
 from feederscrew import check
-from feederscrew.conveying.setting import plain
+from feederscrew.conveying.operating_point import plain
 
 
 class Numbers(NamedTuple):
@@ -21,7 +21,7 @@ class Numbers(NamedTuple):
     phase: float = 0.0  # [rad] by which the motion along the normal leads the one along the track
 
 
-def numbers(setting):
+def numbers(setting) -> Numbers:
     """Return the five numbers of a setting.
 
     Parameters

@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 
 from feederscrew.conveying.answer import answer, scaled
 
-CHANGE = 0.1  # of stroke, friction and angle, each by itself
+SENSITIVITY_CHANGE = 0.1  # of stroke, friction and angle, each by itself
 FRICTION_DOUBT = 0.2  # what a coefficient of friction is seldom known better than
 RESTITUTION_DOUBT = 0.16
 """[1] Relative standard deviation of the restitution of single impacts of one body on one surface. 1,718
 filmed impacts have the quartiles 0.53, 0.60, 0.66, and half of that width is 0.67 standard deviations."""
-MOST = 0.99  # [1] restitution: at 1 a part never comes to rest on the track
-QUANTITIES = ("amplitude", "friction", "angle")
+MAX_RESTITUTION = 0.99  # [1] restitution: at 1 a part never comes to rest on the track
+SENSITIVE_QUANTITIES = ("amplitude", "friction", "angle")
 
 
 @dataclass(frozen=True)
@@ -21,12 +21,12 @@ class Neighbours:
     less: float  # [m/s] NaN where there is no steady state
     more: float  # [m/s]
 
-    def elasticity(self, velocity, change=CHANGE):
+    def elasticity(self, velocity, change=SENSITIVITY_CHANGE) -> float:
         """Return per cent of velocity for one per cent of the quantity; NaN where the part stands."""
         return (self.more - self.less) / (2.0 * change * velocity) if velocity else math.nan
 
 
-def sensitivity(bowl):
+def sensitivity(bowl) -> dict[str, Neighbours]:
     """Return velocities with each quantity a tenth lower and higher.
 
     Parameters
@@ -38,10 +38,10 @@ def sensitivity(bowl):
     dict of str to Neighbours
         By 'amplitude', 'friction' (all of its coefficients) and 'angle'.
     """
-    return {name: _neighbours(bowl, name, CHANGE) for name in QUANTITIES}
+    return {name: _neighbours(bowl, name, SENSITIVITY_CHANGE) for name in SENSITIVE_QUANTITIES}
 
 
-def friction_doubt(bowl):
+def friction_doubt(bowl) -> Neighbours:
     """Return neighbours for friction a fifth lower and higher."""
     return _neighbours(bowl, "friction", FRICTION_DOUBT)
 
@@ -69,7 +69,7 @@ def surfaces(bowl, hops):
 
 def rebounds(bowl):
     """Return both ends of the spread of a bowl's restitution [1], not above ``MOST``."""
-    return tuple(min(end, MOST) for end in even_range(bowl.restitution))
+    return tuple(min(end, MAX_RESTITUTION) for end in even_range(bowl.restitution))
 
 
 def restitution_doubt(bowl):
@@ -77,7 +77,7 @@ def restitution_doubt(bowl):
     return Neighbours(*(answer(replace(bowl, restitution=end)).velocity for end in rebounds(bowl)))
 
 
-def even_range(restitution):
+def even_range(restitution) -> tuple[float, float]:
     """Return both ends of the even range round a restitution with ``RESTITUTION_DOUBT`` as deviation.
 
     A uniform range has 1 / sqrt(12) of its width as its standard deviation. It ends at 0 and 1.
@@ -95,5 +95,5 @@ def even_range(restitution):
     return restitution - half, restitution + half
 
 
-def _neighbours(bowl, name, change):
+def _neighbours(bowl, name, change) -> Neighbours:
     return Neighbours(*(answer(scaled(bowl, **{name: 1.0 + sign * change})).velocity for sign in (-1.0, 1.0)))

@@ -1,11 +1,17 @@
-"""The steady motion: its period, its averages, and how many of them one setting has."""
+"""The steady motion: where a motion settles, its period and averages, and one cycle of it drawn out.
+
+A motion repeats after some periods, or slides on and never does; one setting may have several.
+"""
 
 import math
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from feederscrew.conveying.harmonic import harmonic, peak, value
-from feederscrew.conveying.law import law, throw_number
+from feederscrew import check
+from feederscrew.conveying.operating_point import FLIGHT, FORWARD, STICK, contact, law, throw_number
 from feederscrew.conveying.point_motion import (
     DOWNWARD,
     FLIGHTS,
@@ -18,29 +24,295 @@ from feederscrew.conveying.point_motion import (
     UPWARD,
     State,
     at_rest,
+    step,
     turn,
 )
-from feederscrew.conveying.setting import FLIGHT, TURN
-from feederscrew.conveying.settling import RUNS, TRANSIENT, follow, noted
-from feederscrew.conveying.waves import Wave
+from feederscrew.conveying.waves import PERIOD_RAD, Wave, harmonic, onward, peak, travel, value
 from feederscrew.mechanics import limits
+
+LONGEST_PERIOD = 32
+TRANSIENT = 400  # periods followed before a motion is hastened, or counts as not periodic
+EQUAL_STATES_GAP = 1e-12  # difference of two states at which the motion counts as repeating
+JOINING_STATES_GAP = 1e-9  # of two states: from here a motion goes over into a known one
+RESTING = -1.0  # in place of the height of a part on the plate
+FIRST_LEAP = 4  # period
+LEAST_LEAP = 1e-11  # [A w] change in a period below which no leap is worth its trial
+LONGEST_LEAP = 10.0  # [A w] of a series that hardly falls the rest is all rounding
+JOINS = -2  # in place of a period: the motion has become one that is known
+RUNS = -1  # in place of a period: the part slides on without stopping and does not slow down
+LEAPS = 200  # of a motion that closes in slowly
+SPEED_BRACKET = 1e-13  # [A w] width of the bracket of its speed at which it is found
+MAX_RUNAWAY_SPEED = 1e6  # [A w] no bracket is sought beyond
+
+
+def settle(rules, state) -> tuple[State, int]:
+    """Follow a part until its state repeats every q periods of the drive, twice in a row.
+
+    Parameters
+    ----------
+    rules : Law
+    state : State
+
+    Returns
+    -------
+    (State, int)
+        State at the start of a period of the drive; q, ``RUNS``, or 0 where none up to 32 was found.
+
+    Notes
+    -----
+    What a part does along the normal does not depend on its speed along the track. Once the former repeats
+    every q periods, and the part has slid through q periods without stopping or turning round and is no
+    slower after them, the next q periods add as much: it slides on and never settles.
+    """
+    return follow(rules, state, np.empty((0, 3)), TRANSIENT)
+
+
+def follow(rules, state, known, patience) -> Any:
+    """Follow a part as ``settle`` does, or to where it joins a motion that is known.
+
+    Source: own; docs/conveying.md, "How it is computed".
+
+    Parameters
+    ----------
+    rules : Law
+    state : State
+    known : (N, 3) float [A, A w, A w]
+        Of ``noted``: states of steady motions at the start of a period.
+    patience : int
+        Periods followed before the motion is hastened, or counts as not periodic.
+
+    Returns
+    -------
+    (State, int)
+        The number is ``JOINS`` where the motion has become one that is known.
+    """
+    tally = np.zeros(TALLY)
+    history = np.empty((LONGEST_PERIOD + 1, 3))  # read no further back than it is written
+    streak = np.zeros(LONGEST_PERIOD + 1)
+    sliding, sense, even = 0, 0.0, evenly(rules)
+    for count in range(patience):
+        state = _on(rules, state, 1, tally)
+        sliding, sense = _slid_forward(tally, sliding, sense)
+        period = _repeats(history, streak, count, state)
+        if period:
+            return state, RUNS if sliding >= period and sense != 0.0 else period
+        if sense != 0.0 and _grows(history, count, state, sliding, sense):
+            return state, RUNS
+        if _joins(known, state, even):
+            return state, JOINS
+        if even and count >= FIRST_LEAP:
+            before, state = state.speed, _leap(rules, history, count, state, tally)
+            if state.speed != before:
+                sliding, sense = 0, 0.0  # what it slid before the leap says nothing
+                history[count % (LONGEST_PERIOD + 1), 0] = state.speed
+    return _hasten(rules, state, _period_of_normal(history, patience - 1), tally)
+
+
+def noted(state) -> tuple[float, float, float]:
+    """Return a state at the start of a period: height [A], velocity along the normal [A w], speed [A w]."""
+    return (state.height if state.phase == FLIGHT else RESTING), state.rising, state.speed
+
+
+def evenly(rules) -> bool:
+    """Tell whether friction is the same at the onset of a slip as during it, both ways, and not zero.
+
+    Then two parts whose motions along the normal are the same never get farther apart in speed along the
+    track, and one motion along the normal has one velocity.
+    """
+    same = rules.onset.level == rules.slip.level and rules.onset_back.level == rules.slip_back.level
+    return same and min(rules.kinetic, rules.kinetic_back) > 0.0
+
+
+def _joins(known, state, even) -> bool:
+    """Whether a state is one of a known motion; with even friction the motion along the normal tells."""
+    height, rising, speed = noted(state)
+    for k in range(len(known)):
+        apart = max(abs(known[k, 0] - height), abs(known[k, 1] - rising))
+        if apart <= JOINING_STATES_GAP and (even or abs(known[k, 2] - speed) <= JOINING_STATES_GAP):
+            return True
+    return False
+
+
+def _leap(rules, history, count, state, tally) -> State:
+    """The state, or where its speed tends to while the motion along the normal repeats every period.
+
+    Three speeds in a row tell (Aitken). The leap is kept where the speed then changes less than before it:
+    a period is followed to see.
+    """
+    one, two = (count - 1) % (LONGEST_PERIOD + 1), (count - 2) % (LONGEST_PERIOD + 1)
+    if (
+        _normal_apart(history, one, state) > EQUAL_STATES_GAP
+        or _normal_apart(history, two, state) > EQUAL_STATES_GAP
+    ):
+        return state
+    first, second = history[one, 0] - history[two, 0], state.speed - history[one, 0]
+    if not (0.0 < second * first < first * first and abs(second) > LEAST_LEAP):
+        return state
+    beyond = second * second / (first - second)  # the rest of a geometric series
+    if abs(beyond) > LONGEST_LEAP:
+        return state
+    leap = _at_speed(rules, state, state.speed + beyond)
+    change = _on(rules, leap, 1, tally).speed - leap.speed
+    return leap if abs(change) < abs(second) else state
+
+
+def _slid_forward(tally, sliding, sense) -> tuple[int, float]:
+    """Periods for which a part has now slid without stopping or turning round, and which way."""
+    up, down = tally[UPWARD] > 0.0, tally[DOWNWARD] > 0.0
+    if tally[STOPS] > 0.0 or (up and down):
+        return 0, 0.0
+    now = 1.0 if up else (-1.0 if down else 0.0)
+    if now * sense < 0.0:
+        return 1, now
+    return sliding + 1, sense if now == 0.0 else now
+
+
+def _repeats(history, streak, count, state) -> int:
+    """Periods after which the state came back for the second time running, or 0; notes the state."""
+    for q in range(1, min(count, LONGEST_PERIOD) + 1):
+        then = (count - q) % (LONGEST_PERIOD + 1)
+        apart = abs(state.speed - history[then, 0])
+        if apart <= EQUAL_STATES_GAP:
+            apart = _normal_apart(history, then, state)
+        streak[q] = streak[q] + 1.0 if apart <= EQUAL_STATES_GAP else 0.0
+        if streak[q] == 2.0:
+            return q
+    row = count % (LONGEST_PERIOD + 1)
+    history[row, 0], history[row, 1], history[row, 2] = state.speed, state.height, state.rising
+    return 0
+
+
+def _normal_apart(history, row, state) -> float:
+    """How far the motion along the normal is from what it was."""
+    return max(abs(state.height - history[row, 1]), abs(state.rising - history[row, 2]))
+
+
+def _grows(history, count, state, sliding, sense) -> bool:
+    """Whether a part that has slid for some periods comes back along the normal, but faster."""
+    for q in range(1, min(count, sliding, LONGEST_PERIOD) + 1):
+        then = (count - q) % (LONGEST_PERIOD + 1)
+        if _normal_apart(history, then, state) <= EQUAL_STATES_GAP:
+            return sense * (state.speed - history[then, 0]) > EQUAL_STATES_GAP
+    return False
+
+
+def _period_of_normal(history, count) -> int:
+    """Periods after which the motion along the normal repeats, twice in a row; 0 where it does not."""
+    size = LONGEST_PERIOD + 1
+    for q in range(1, LONGEST_PERIOD):
+        apart = 0.0
+        for back in range(2):
+            now, then = (count - back) % size, (count - back - q) % size
+            apart = max(apart, abs(history[now, 1] - history[then, 1]))
+            apart = max(apart, abs(history[now, 2] - history[then, 2]))
+        if apart <= EQUAL_STATES_GAP:
+            return q
+    return 0
+
+
+def _hasten(rules, state, period, tally) -> tuple[State, int]:
+    """Find the steady motion of a part whose motion along the normal repeats, but whose speed changes slowly.
+
+    Parameters
+    ----------
+    rules : Law
+    state : State
+    period : int
+        Of the motion along the normal; 0 for none.
+    tally : (11,) float
+        To count with.
+
+    Returns
+    -------
+    (State, int)
+        As ``settle`` returns them.
+
+    Notes
+    -----
+    Over whole periods the speed is carried on by a function of one number that keeps the order of speeds, so
+    it tends to the first fixed point in its way: that is bracketed by doubling the step, then closed in on
+    by the secant rule in its Illinois form.
+    """
+    step = _on(rules, state, period, tally).speed - state.speed
+    if step == 0.0:
+        return state, period
+    near, rise, far, fall = state.speed, step, state.speed, step
+    while fall * rise > 0.0:
+        near, rise = far, fall
+        far = near + step
+        fall = _on(rules, _at_speed(rules, state, far), period, tally).speed - far
+        if (_runs(tally) and fall * rise > 0.0 and fall * far > 0.0) or abs(step) > MAX_RUNAWAY_SPEED:
+            return state, RUNS
+        step *= 2.0
+    far = _closed_in(rules, state, period, (near, rise, far, fall), tally)
+    return _at_speed(rules, state, far), period
+
+
+def _closed_in(rules, state, period, bracket, tally) -> float:
+    """The speed that a period does not change, between two of which one grows and the other does not."""
+    near, rise, far, fall = bracket
+    side = 0
+    for _ in range(LEAPS):
+        if abs(far - near) <= SPEED_BRACKET or fall == 0.0:
+            break
+        middle = far - fall * (far - near) / (fall - rise)
+        gained = _on(rules, _at_speed(rules, state, middle), period, tally).speed - middle
+        if gained * rise > 0.0:
+            near, rise = middle, gained
+            fall = 0.5 * fall if side == 1 else fall
+            side = 1
+        else:
+            far, fall = middle, gained
+            rise = 0.5 * rise if side == -1 else rise
+            side = -1
+    return far
+
+
+def _at_speed(rules, state, speed) -> State:
+    """The state at another speed along the track."""
+    phase = FLIGHT if state.phase == FLIGHT else contact(rules, state.angle, speed)
+    return State(state.angle, phase, speed, state.height, state.rising, state.aloft)
+
+
+def _on(rules, state, periods, tally) -> State:
+    """The state after some periods, stops and contacts counted."""
+    tally[STOPS], tally[UPWARD], tally[DOWNWARD] = 0.0, 0.0, 0.0
+    for _ in range(periods):
+        state = turn(rules, state, tally)
+    return state
+
+
+def _runs(tally) -> bool:
+    """Whether a part slid all the time, and one way."""
+    return tally[STOPS] == 0.0 and (tally[UPWARD] > 0.0) != (tally[DOWNWARD] > 0.0)
+
 
 PERIODIC, AVERAGED, NO_STEADY_STATE = range(3)
 STATUSES = ("periodic", "averaged", "no steady state")
 STATUS, PERIOD, VELOCITY, LOW, HIGH, FRACTIONS = range(6)  # places in a row of results
 FLIGHT_TIME, IMPACT, HOPS, SLOWEST, FASTEST = range(FRACTIONS + 4, FRACTIONS + 9)
 THROW, REGIME, RUNAWAY, COLUMNS = range(FASTEST + 1, FASTEST + 5)
-BLOCK, BLOCKS = 32, 8  # periods averaged where there is no period, and in how many lots their spread is taken
-BRIEF, FEW = 64, 4  # periods followed, and lots averaged, of further starts where the first has no period
-KNOWN = 64  # states of steady motions that are noted, for further starts to join
-LOTS = 16  # averages taken of a part that would run away once it slid all the time, until it does
-ALIKE = 1e-8  # of two states: a motion that closes in from alternate sides repeats doubly first
-DROPS = (1.5,)  # flights [periods] of the drops among the starts
-BOUNCES = 3  # periods of the longest regular bounce among the starts
-OFF = 1.001  # such starts are this much too fast: exactly on it, even an unstable bounce would last
+AVERAGED_PERIODS, AVERAGED_LOTS = (
+    32,
+    8,
+)  # periods averaged where there is no period, and in how many lots their spread is taken
+BRIEF_PERIODS, BRIEF_LOTS = (
+    64,
+    4,
+)  # periods followed, and lots averaged, of further starts where the first has no period
+MAX_NOTED_STATES = 64  # states of steady motions that are noted, for further starts to join
+RUNAWAY_LOTS = 16  # averages taken of a part that would run away once it slid all the time, until it does
+ALTERNATING_STATES_GAP = (
+    1e-8  # of two states: a motion that closes in from alternate sides repeats doubly first
+)
+DROP_FLIGHTS = (1.5,)  # flights [periods] of the drops among the starts
+MAX_BOUNCE_PERIODS = 3  # periods of the longest regular bounce among the starts
+BOUNCE_SPEED_FACTOR = (
+    1.001  # such starts are this much too fast: exactly on it, even an unstable bounce would last
+)
 
 
-def steady(rules, state, out):
+def steady(rules, state, out) -> None:
     """Return the steady motion reached from one start.
 
     Source: own; docs/conveying.md, "How it is computed".
@@ -54,10 +326,10 @@ def steady(rules, state, out):
         longest flight [periods], hardest impact [A w], flights a period, velocity in the slowest and in the
         fastest period of the drive [A w].
     """
-    _steady(rules, state, out, np.empty((KNOWN, 3)), 0, TRANSIENT)
+    _steady(rules, state, out, np.empty((MAX_NOTED_STATES, 3)), 0, TRANSIENT)
 
 
-def _steady(rules, state, out, known, count, patience):
+def _steady(rules, state, out, known, count, patience) -> int:
     """The same, noting the states of a steady motion; their number with it, unchanged where it was known."""
     state, repeat = follow(rules, state, known[:count], patience)
     if repeat == RUNS:
@@ -65,20 +337,20 @@ def _steady(rules, state, out, known, count, patience):
     elif repeat > 0:
         return _cycle(rules, state, repeat, out, known, count)
     elif repeat == 0:
-        _long_run(rules, state, out, BLOCKS if patience == TRANSIENT else FEW)
+        _long_run(rules, state, out, AVERAGED_LOTS if patience == TRANSIENT else BRIEF_LOTS)
     return count
 
 
-def _cycle(rules, state, repeat, out, known, noticed):
+def _cycle(rules, state, repeat, out, known, noticed) -> int:
     """Averages over the periods after which the motion repeats; the least of them is its period."""
     tally, start, period = np.zeros(TALLY), state, repeat
     out[SLOWEST], out[FASTEST] = math.inf, -math.inf
     for count in range(1, repeat + 1):
         state = _noted_turn(rules, state, tally, out)
-        if noticed < KNOWN:
+        if noticed < MAX_NOTED_STATES:
             known[noticed, 0], known[noticed, 1], known[noticed, 2] = noted(state)
             noticed += 1
-        if count < period and repeat % count == 0 and _apart(state, start) <= ALIKE:
+        if count < period and repeat % count == 0 and _state_distance(state, start) <= ALTERNATING_STATES_GAP:
             period = count
     out[STATUS], out[PERIOD] = PERIODIC, period
     _averages(out, tally, float(repeat))
@@ -88,19 +360,19 @@ def _cycle(rules, state, repeat, out, known, noticed):
     return noticed
 
 
-def _long_run(rules, state, out, blocks):
+def _long_run(rules, state, out, blocks) -> None:
     """Averages over lots of periods, unless the part slides through them all and gets faster."""
-    for _ in range(LOTS):
+    for _ in range(RUNAWAY_LOTS):
         tally, way, first = np.zeros(TALLY), 0.0, state.speed
         low, high = math.inf, -math.inf
         out[SLOWEST], out[FASTEST] = math.inf, -math.inf
         for _ in range(blocks):
-            for _ in range(BLOCK):
+            for _ in range(AVERAGED_PERIODS):
                 state = _noted_turn(rules, state, tally, out)
-            velocity = (tally[TRAVEL] - way) / (BLOCK * TURN)
+            velocity = (tally[TRAVEL] - way) / (AVERAGED_PERIODS * PERIOD_RAD)
             way, low, high = tally[TRAVEL], min(low, velocity), max(high, velocity)
         out[STATUS], out[PERIOD], out[LOW], out[HIGH] = AVERAGED, 0.0, low, high
-        _averages(out, tally, float(BLOCK * blocks))
+        _averages(out, tally, float(AVERAGED_PERIODS * blocks))
         if _slid(tally) and (state.speed - first) * state.speed > 0.0:
             _nothing(out)
             break
@@ -108,21 +380,21 @@ def _long_run(rules, state, out, blocks):
             break
 
 
-def _noted_turn(rules, state, tally, out):
+def _noted_turn(rules, state, tally, out) -> State:
     """The state a period of the drive on; the range of the velocities in single periods grows by its own."""
     way = tally[TRAVEL]
     state = turn(rules, state, tally)
-    velocity = (tally[TRAVEL] - way) / TURN
+    velocity = (tally[TRAVEL] - way) / PERIOD_RAD
     out[SLOWEST], out[FASTEST] = min(out[SLOWEST], velocity), max(out[FASTEST], velocity)
     return state
 
 
-def _slid(tally):
+def _slid(tally) -> bool:
     """Whether the part slid one way whenever it touched the plate."""
     return tally[STOPS] == 0.0 and (tally[UPWARD] == 0.0) != (tally[DOWNWARD] == 0.0)
 
 
-def escape(rules):
+def escape(rules) -> float:
     """Return the greatest growth of the speed of a part that slides all the time, up or down the track.
 
     Source: own; docs/conveying.md, "How it is computed": what a period of sliding adds.
@@ -140,19 +412,19 @@ def escape(rules):
     return max(rules.slip.level, rules.slip_back.level)
 
 
-def _apart(one, other):
+def _state_distance(one, other) -> float:
     return max(abs(one.speed - other.speed), abs(one.height - other.height), abs(one.rising - other.rising))
 
 
-def _averages(out, tally, periods):
-    out[VELOCITY] = tally[TRAVEL] / (periods * TURN)
+def _averages(out, tally, periods) -> None:
+    out[VELOCITY] = tally[TRAVEL] / (periods * PERIOD_RAD)
     for phase in range(4):
-        out[FRACTIONS + phase] = tally[TIMES + phase] / (periods * TURN)
-    out[FLIGHT_TIME], out[IMPACT] = tally[LONGEST] / TURN, tally[HARDEST]
+        out[FRACTIONS + phase] = tally[TIMES + phase] / (periods * PERIOD_RAD)
+    out[FLIGHT_TIME], out[IMPACT] = tally[LONGEST] / PERIOD_RAD, tally[HARDEST]
     out[HOPS] = tally[FLIGHTS] / periods
 
 
-def survey(setting, out):
+def survey(setting, out) -> None:
     """Fill a row: steady motion from rest and, where impacts rebound, from throws; their range of velocity.
 
     Source: own; docs/conveying.md, "How it is computed".
@@ -166,7 +438,7 @@ def survey(setting, out):
     """
     rules = law(setting)
     out[THROW], out[REGIME] = throw_number(rules), regime(rules)
-    known = np.empty((KNOWN, 3))
+    known = np.empty((MAX_NOTED_STATES, 3))
     count = _steady(rules, at_rest(rules), out, known, 0, TRANSIENT)
     if out[STATUS] == NO_STEADY_STATE:
         out[RUNAWAY] = 1.0
@@ -176,27 +448,27 @@ def survey(setting, out):
         _widen(rules, out, known, count)
 
 
-def _nothing(out):
+def _nothing(out) -> None:
     for place in range(THROW):
         out[place] = np.nan
     out[STATUS], out[PERIOD] = NO_STEADY_STATE, 0.0
 
 
-def regime(rules):
+def regime(rules) -> int:
     """Return what a part held by static friction does within a cycle, a place [1] in ``limits.REGIMES``.
 
     Source: Coulomb's law before the first slip; docs/conveying.md, "The model".
     """
-    if throw_number(rules) >= 1.0 - limits.ROUNDING:
+    if throw_number(rules) >= 1.0 - limits.HOP_ROUNDING:
         return limits.HOP
     forward = limits.FORWARD if peak(rules.onset) > 0.0 else limits.RIDE
     return forward + (limits.BACKWARD if peak(rules.onset_back) > 0.0 else limits.RIDE)
 
 
-def _widen(rules, out, known, count):
+def _widen(rules, out, known, count) -> None:
     other = np.zeros(COLUMNS)
-    patience = TRANSIENT if out[STATUS] == PERIODIC else BRIEF
-    for start in range(2 * BOUNCES + len(DROPS)):
+    patience = TRANSIENT if out[STATUS] == PERIODIC else BRIEF_PERIODS
+    for start in range(2 * MAX_BOUNCE_PERIODS + len(DROP_FLIGHTS)):
         state = thrown(rules, start)
         if state.rising > 0.0:
             other[STATUS], other[LOW], other[HIGH] = PERIODIC, out[LOW], out[HIGH]
@@ -207,7 +479,7 @@ def _widen(rules, out, known, count):
                 out[LOW], out[HIGH] = min(out[LOW], other[LOW]), max(out[HIGH], other[HIGH])
 
 
-def thrown(rules, start):
+def thrown(rules, start) -> State:
     """Return start number ``start``: near a regular bounce, or dropped onto the plate at mid stroke.
 
     Parameters
@@ -223,7 +495,7 @@ def thrown(rules, start):
         In flight; with ``rising`` zero where there is no such bounce.
     """
     weight = -rules.lift.level
-    if start < 2 * BOUNCES:
+    if start < 2 * MAX_BOUNCE_PERIODS:
         flight = start // 2 + 1.0
         needed = math.pi * flight * weight * (1.0 - rules.restitution) / (1.0 + rules.restitution)
         falls = plate_speed(rules.lift, needed).falls
@@ -231,9 +503,9 @@ def thrown(rules, start):
         if angle == math.inf:
             return State(0.0, FLIGHT, 0.0, 0.0, 0.0, 0.0)
     else:
-        flight, angle = DROPS[start - 2 * BOUNCES], math.pi
+        flight, angle = DROP_FLIGHTS[start - 2 * MAX_BOUNCE_PERIODS], math.pi
     rising = math.pi * flight * weight - value(plate_speed(rules.lift, 0.0), angle)
-    return State(angle, FLIGHT, 0.0, 0.0, OFF * rising, 0.0)
+    return State(angle, FLIGHT, 0.0, 0.0, BOUNCE_SPEED_FACTOR * rising, 0.0)
 
 
 def plate_speed(lift, less):
@@ -241,3 +513,74 @@ def plate_speed(lift, less):
     once, twice, half = lift.phase, lift.second_phase, 0.5 * lift.second
     sine, cosine = -lift.swing * math.sin(once), lift.swing * math.cos(once)
     return harmonic(Wave(-less, sine, cosine, -half * math.sin(twice), half * math.cos(twice)))
+
+
+MAX_TRACED_PERIODS = 4  # periods at most
+TRACE_SAMPLES = 240  # a period; every phase has at least a few
+
+
+@dataclass(frozen=True, eq=False)
+class CycleTrace:
+    """Plate and part over a cycle; ways in units of the amplitude."""
+
+    time: np.ndarray  # (N,) [periods]
+    phase: np.ndarray  # (N,) places in ``setting.PHASES``
+    plate_along: np.ndarray  # (N,) along the track
+    part_along: np.ndarray
+    plate_normal: np.ndarray  # (N,) along its normal
+    part_normal: np.ndarray
+
+
+def trace(setting) -> CycleTrace:
+    """Return the steady cycle a part falls into from rest.
+
+    Parameters
+    ----------
+    setting : OperatingPoint
+
+    Returns
+    -------
+    CycleTrace
+        Of at most four periods; of a motion without a period, the last ones followed.
+    """
+    rules = law(setting)
+    state, period = settle(rules, at_rest(rules))
+    pieces, tally = [], np.zeros(TALLY)
+    for count in range(min(period, MAX_TRACED_PERIODS) if period > 0 else MAX_TRACED_PERIODS):
+        while state.angle < PERIOD_RAD:
+            before = tally[TRAVEL]
+            after = step(rules, state, tally)
+            pieces.append(_piece(rules, state, after.angle, before, count))
+            state = after
+        state = state._replace(angle=0.0)
+    time, phase, slip, height = np.concatenate(pieces, axis=1)
+    return _around_plate(setting, time, phase.astype(int), slip, height)
+
+
+def _piece(rules, state, end, way, count) -> NDArray[np.float64]:
+    """Time, phase, way relative to the plate and height in one phase, sampled to both of its ends."""
+    span = end - state.angle
+    samples = np.linspace(0.0, span, max(2, round(TRACE_SAMPLES * span / PERIOD_RAD)))
+    sign = 1.0 if state.phase in (FORWARD, FLIGHT) else -1.0
+    growth = {STICK: None, FORWARD: rules.slip, FLIGHT: rules.free}.get(state.phase, rules.slip_back)
+    slip, height = np.full_like(samples, way), np.zeros_like(samples)
+    if growth is not None:
+        arc = onward(growth, state.angle)
+        slip += [state.speed * x + sign * travel(arc, x) for x in samples]
+    if state.phase == FLIGHT:
+        arc = onward(rules.lift, state.angle)
+        height += [state.height + state.rising * x + travel(arc, x) for x in samples]
+    time = count + (state.angle + samples) / PERIOD_RAD
+    return np.stack([time, np.full_like(samples, state.phase), slip, height])
+
+
+def _around_plate(setting, time, phase, slip, height) -> CycleTrace:
+    along = np.cos(setting.angle) * _displacement(setting, PERIOD_RAD * time + setting.lead)
+    normal = np.sin(setting.angle) * _displacement(setting, PERIOD_RAD * time)
+    ways = (time, phase, along, along + slip, normal, normal + height)
+    return CycleTrace(*(check.frozen(array) for array in ways))
+
+
+def _displacement(setting, angle) -> NDArray[np.float64]:
+    """Of the plate along its direction of vibration [A]."""
+    return np.sin(angle) + setting.second * np.sin(2.0 * angle + setting.second_phase)

@@ -5,45 +5,52 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
-from feederscrew.conveying import events, harmonic, law, point_motion, settling, steady, waves
-from feederscrew.conveying.setting import OperatingPoint, checked
+from feederscrew.conveying import operating_point, point_motion, steady, waves
+from feederscrew.conveying.operating_point import OperatingPoint, checked
 from feederscrew.conveying.steady import COLUMNS, survey
 from feederscrew.geometry.compiled import apart, entry, on_disk
 from feederscrew.geometry.compiled import compiled as inlined
 
 IN_A_PERIOD = (  # what follows a part through a period of the drive: compiled into one piece
-    *(harmonic.value, harmonic.after, harmonic.above, harmonic.onward, harmonic.reached),
-    *(harmonic.gain, harmonic._beyond_sine, harmonic._beyond_cosine),
-    *(law.contact, events.later, events.slip_end, events._stop, events.landing),
-    *(events._descent, events._beyond_bounce, events._dip),
+    *(waves.value, waves.after, waves.above, waves.onward, waves.reached),
+    *(waves.gain, waves._beyond_sine, waves._beyond_cosine),
+    *(
+        operating_point.contact,
+        point_motion.later,
+        point_motion.slip_end,
+        point_motion._stop,
+        point_motion.landing,
+    ),
+    *(point_motion._descent, point_motion._beyond_bounce, point_motion._dip),
     *(point_motion.step, point_motion._ride, point_motion._slide, point_motion._fly, point_motion.land),
 )
 KERNEL = (
-    *(waves.height, waves.slope, waves._knots, waves.bends, waves.crest),
-    *(waves.crossings, waves._insert, waves._zero, harmonic.harmonic, harmonic.peak, harmonic.travel),
+    *(waves.height, waves.slope, waves._knots, waves.find_bends, waves.crest),
+    *(waves.crossings, waves._insert, waves._zero, waves.harmonic, waves.peak, waves.travel),
     *(
-        law.law,
-        law.lift_wave,
-        law.pull_wave,
-        law._pull,
-        law.throw_number,
+        operating_point.law,
+        operating_point.lift_wave,
+        operating_point.pull_wave,
+        operating_point._pull,
+        operating_point.throw_number,
         point_motion.at_rest,
         point_motion.turn,
     ),
-    *(settling.settle, settling.follow, settling.noted, settling.evenly, settling._joins, settling._leap),
-    *(settling._slid, settling._repeats, settling._normal_apart, settling._grows),
-    *(settling._period_of_normal, settling._hasten, settling._closed_in, settling._at_speed),
-    *(settling._on, settling._runs),
+    *(steady.settle, steady.follow, steady.noted, steady.evenly, steady._joins, steady._leap),
+    *(steady._slid_forward, steady._repeats, steady._normal_apart, steady._grows),
+    *(steady._period_of_normal, steady._hasten, steady._closed_in, steady._at_speed),
+    *(steady._on, steady._runs),
     *(steady.steady, steady._steady, steady._cycle, steady._long_run, steady._noted_turn, steady._slid),
-    *(steady.escape, steady._apart, steady._averages, steady.survey, steady.regime, steady._nothing),
+    *(steady.escape, steady._state_distance, steady._averages, steady.survey, steady.regime, steady._nothing),
     *(steady._widen, steady.thrown, steady.plate_speed),
 )
-LOT = 256  # settings handed to a core at a time: their costs differ a hundredfold
+SETTINGS_A_LOT = 256  # settings handed to a core at a time: their costs differ a hundredfold
 
 
-def sweep(settings, workers=None):
+def sweep(settings, workers=None) -> NDArray[np.float64]:
     """Compute the steady motion of many settings, as ``steady.survey`` does for one.
 
     Source: docs/conveying.md, "How it is computed".
@@ -74,20 +81,24 @@ def sweep(settings, workers=None):
     for row in settings[np.unique(_suspects(settings))]:
         checked(OperatingPoint(*row))
     out = np.empty((len(settings), COLUMNS))
-    starts = range(0, len(settings), LOT)
+    starts = range(0, len(settings), SETTINGS_A_LOT)
     run = _compiled()
     run(settings[:0], out[:0])
     with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
-        list(pool.map(lambda at: run(settings[at : at + LOT], out[at : at + LOT]), starts))
+        list(
+            pool.map(
+                lambda at: run(settings[at : at + SETTINGS_A_LOT], out[at : at + SETTINGS_A_LOT]), starts
+            )
+        )
     return out
 
 
-def compiled():
+def compiled() -> bool:
     """Tell whether the compiled functions are already on disk, or numba is set not to compile."""
     return on_disk(_compiled())
 
 
-def _suspects(settings):
+def _suspects(settings) -> NDArray[np.int64]:
     """Rows that could fail ``setting.checked``, found at once."""
     s = OperatingPoint(*settings.T)
     bad = (s.ratio <= 0.0) | (s.angle < 0.0) | (s.angle > np.pi / 2)
@@ -106,7 +117,7 @@ def _compiled():
     return entry(_loop, arrays=True)
 
 
-def _loop(settings, out):
+def _loop(settings, out) -> None:
     for row in range(len(settings)):
         s = settings[row]
         drive = s[8], s[9], s[10]

@@ -9,13 +9,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from feederscrew.conveying.setting import TURN
-
-MOST = 4  # zeros in a period
+PERIOD_RAD = 2.0 * math.pi  # one period of the drive
+MAX_ZEROS = 4  # zeros in a period
 OUTWEIGHS = math.sqrt(5.0)  # then the slope keeps its sign between the first harmonic's zeros and this one's
-PRECISION = 4e-16  # [rad]
-STEPS = 200
+ZERO_PRECISION_RAD = 4e-16  # [rad]
+MAX_ZERO_STEPS = 200
 
 
 class Wave(NamedTuple):
@@ -28,7 +28,7 @@ class Wave(NamedTuple):
     cosine_2: float
 
 
-def height(wave, angle):
+def height(wave, angle) -> float:
     """Return the wave at an angle [rad], in its own unit.
 
     Source: the double angles of sine and cosine.
@@ -38,12 +38,12 @@ def height(wave, angle):
     return wave.level + once + 2.0 * wave.sine_2 * s * c + wave.cosine_2 * (c - s) * (c + s)
 
 
-def slope(wave):
+def slope(wave) -> Wave:
     """Return its derivative, a wave again, in its own unit over [rad]."""
     return Wave(0.0, -wave.cosine, wave.sine, -2.0 * wave.cosine_2, 2.0 * wave.sine_2)
 
 
-def bends(wave):
+def find_bends(wave) -> NDArray[np.float64]:
     """Find where a wave turns.
 
     Source: own; docs/conveying.md, "How it is computed", and the Notes.
@@ -70,29 +70,29 @@ def bends(wave):
     second = slope(rate)
     third = slope(second)
     top = 0.5 * math.atan2(third.sine_2, third.cosine_2)
-    knots = _knots(top, 0.5 * math.pi, MOST)
+    knots = _knots(top, 0.5 * math.pi, MAX_ZEROS)
     return crossings(rate, crossings(second, crossings(third, knots, 0), 0), 0)
 
 
-def _knots(first, apart, count):
+def _knots(first, apart, count) -> NDArray[np.float64]:
     """(4,) float [rad]: so many angles, this far apart, then inf."""
-    angles = np.empty(MOST)
-    for k in range(MOST):
+    angles = np.empty(MAX_ZEROS)
+    for k in range(MAX_ZEROS):
         angles[k] = first + apart * k if k < count else math.inf
     return angles
 
 
-def crest(wave):
+def crest(wave) -> float:
     """Return the angle [rad] of its greatest value; the wave has a harmonic."""
     best, found = -math.inf, 0.0
-    angles = bends(wave)
-    for k in range(MOST):
+    angles = find_bends(wave)
+    for k in range(MAX_ZEROS):
         if angles[k] < math.inf and height(wave, angles[k]) > best:
             best, found = height(wave, angles[k]), angles[k]
     return found
 
 
-def crossings(wave, knots, sense):
+def crossings(wave, knots, sense) -> NDArray[np.float64]:
     """Find the zeros of a wave that has at most one between neighbouring knots.
 
     Source: own; docs/conveying.md, "How it is computed".
@@ -112,19 +112,19 @@ def crossings(wave, knots, sense):
         From 0 to 2 pi, ascending, then inf.
     """
     found = _knots(0.0, 0.0, 0)
-    for k in range(MOST):
+    for k in range(MAX_ZEROS):
         if knots[k] == math.inf:
             break
-        low, high = knots[k], knots[0] + TURN
-        if k + 1 < MOST and knots[k + 1] < math.inf:
+        low, high = knots[k], knots[0] + PERIOD_RAD
+        if k + 1 < MAX_ZEROS and knots[k + 1] < math.inf:
             high = knots[k + 1]
         before, after = height(wave, low) > 0.0, height(wave, high) > 0.0
         if (after and not before and sense >= 0) or (before and not after and sense <= 0):
-            _insert(found, _zero(wave, low, high, after) % TURN % TURN)
+            _insert(found, _zero(wave, low, high, after) % PERIOD_RAD % PERIOD_RAD)
     return found
 
 
-def _insert(ascending, number):
+def _insert(ascending, number) -> None:
     """Put a number into its place; the last of them, an inf, gives way."""
     place = len(ascending) - 1
     while place > 0 and ascending[place - 1] > number:
@@ -133,11 +133,11 @@ def _insert(ascending, number):
     ascending[place] = number
 
 
-def _zero(wave, low, high, rises):
+def _zero(wave, low, high, rises) -> float:
     """The zero between two angles: Newton, halving where that leaves the bracket or is slow."""
     rate = slope(wave)
     x, last = 0.5 * (low + high), high - low
-    for _ in range(STEPS):
+    for _ in range(MAX_ZERO_STEPS):
         left, steep = height(wave, x), height(rate, x)
         if (left > 0.0) == rises:
             high = x
@@ -148,6 +148,154 @@ def _zero(wave, low, high, rises):
             new = 0.5 * (low + high)
         last = abs(new - x)
         x = new
-        if last <= PRECISION:
+        if last <= ZERO_PRECISION_RAD:
             break
     return x
+
+
+SERIES = 0.5  # [rad] below it the integrals use their series: the differences would lose digits
+GRAZE = 1e-14  # of the swing: a level passed by less is not passed; its two zeros would round to one
+INF = math.inf
+
+
+class Harmonic(NamedTuple):
+    """level + swing sin(angle + phase) + second sin(2 angle + second_phase)."""
+
+    level: float
+    swing: float
+    phase: float  # [rad]
+    second: float
+    second_phase: float  # [rad]
+    rises: tuple[float, float]  # [rad] where it rises through zero, from 0 to 2 pi, ascending; then inf
+    falls: tuple[float, float]  # [rad] where it falls through zero
+
+
+def harmonic(wave) -> Harmonic:
+    """Return a wave by its amplitudes and phases, with its zeros."""
+    level = wave.level
+    swing, phase = math.hypot(wave.sine, wave.cosine), math.atan2(wave.cosine, wave.sine)
+    second, twice = math.hypot(wave.sine_2, wave.cosine_2), math.atan2(wave.cosine_2, wave.sine_2)
+    if second > 0.0:
+        bends = find_bends(wave)
+        up, down = crossings(wave, bends, 1), crossings(wave, bends, -1)
+        return Harmonic(level, swing, phase, second, twice, (up[0], up[1]), (down[0], down[1]))
+    if abs(level) >= swing * (1.0 - GRAZE):
+        return Harmonic(level, swing, phase, 0.0, 0.0, (INF, INF), (INF, INF))
+    crossing = math.asin(-level / swing)
+    rise, fall = (crossing - phase) % PERIOD_RAD, (math.pi - crossing - phase) % PERIOD_RAD
+    return Harmonic(level, swing, phase, 0.0, 0.0, (rise, INF), (fall, INF))
+
+
+def peak(a) -> float:
+    """Return the greatest value of a harmonic, in its own unit: here accelerations [A w2].
+
+    Source: own; docs/conveying.md, "Elliptical drives".
+    """
+    if a.second == 0.0:
+        return a.level + a.swing
+    once, twice = a.phase, a.second_phase
+    sines = a.swing * math.cos(once), a.swing * math.sin(once)
+    twofold = a.second * math.cos(twice), a.second * math.sin(twice)
+    return value(a, crest(Wave(a.level, sines[0], sines[1], twofold[0], twofold[1])))
+
+
+def value(a, angle) -> float:
+    """Return the harmonic at an angle [rad], in its own unit.
+
+    Source: docs/conveying.md, "Elliptical drives".
+    """
+    once = a.level + a.swing * math.sin(angle + a.phase)
+    return once if a.second == 0.0 else once + a.second * math.sin(2.0 * angle + a.second_phase)
+
+
+def after(zeros, angle) -> float:
+    """Return the first of two angles [rad], ascending, beyond another; inf where neither is."""
+    if zeros[0] > angle:
+        return zeros[0]
+    return zeros[1] if zeros[1] > angle else INF
+
+
+def above(a, angle) -> bool:
+    """Tell by its zeros whether it is positive from an angle [rad] on: at one, its value is only rounding."""
+    rise, fall = after(a.rises, angle), after(a.falls, angle)
+    if rise == fall:  # neither is to come in this period
+        rise, fall = a.rises[0], a.falls[0]
+    return fall < rise
+
+
+class Arc(NamedTuple):
+    """A harmonic as it goes on from one angle, by the sines and cosines of the span and of twice the span."""
+
+    level: float
+    sine: float  # times cos(span)
+    cosine: float  # times sin(span)
+    second: float
+    sine_2: float
+    cosine_2: float
+
+
+def onward(a, start) -> Arc:
+    """Return the harmonic from ``start`` [rad] on."""
+    sine, cosine = a.swing * math.sin(start + a.phase), a.swing * math.cos(start + a.phase)
+    if a.second == 0.0:
+        return Arc(a.level, sine, cosine, 0.0, 0.0, 0.0)
+    angle = 2.0 * start + a.second_phase
+    return Arc(a.level, sine, cosine, a.second, a.second * math.sin(angle), a.second * math.cos(angle))
+
+
+def reached(arc, span) -> float:
+    """Return the harmonic after a span [rad], in its own unit.
+
+    Source: the addition theorems, as products of the half span.
+    """
+    s, c = math.sin(0.5 * span), math.cos(0.5 * span)
+    once = arc.level + arc.sine + 2.0 * s * (arc.cosine * c - arc.sine * s)
+    if arc.second == 0.0:
+        return once
+    s, c = math.sin(span), math.cos(span)
+    return once + arc.sine_2 + 2.0 * s * (arc.cosine_2 * c - arc.sine_2 * s)
+
+
+def gain(arc, span) -> float:
+    """Integrate over a span [rad]: the velocity gained [A w]. As a product, short spans keep their digits.
+
+    Source: the integral of ``value``; docs/conveying.md, "How it is computed".
+    """
+    s, c = math.sin(0.5 * span), math.cos(0.5 * span)
+    once = arc.level * span + 2.0 * s * (arc.sine * c + arc.cosine * s)
+    if arc.second == 0.0:
+        return once
+    s, c = math.sin(span), math.cos(span)
+    return once + s * (arc.sine_2 * c + arc.cosine_2 * s)
+
+
+def travel(arc, span) -> float:
+    """Integrate twice over a span [rad]: the way made from rest [A].
+
+    Source: the integral of ``gain``; docs/conveying.md, "How it is computed".
+    """
+    curved = arc.cosine * _beyond_sine(span) - arc.sine * _beyond_cosine(span)
+    once = 0.5 * (arc.level + arc.sine) * span * span + curved
+    if arc.second == 0.0:
+        return once
+    x = 2.0 * span
+    curved = arc.cosine_2 * _beyond_sine(x) - arc.sine_2 * _beyond_cosine(x)
+    return once + 0.5 * arc.sine_2 * span * span + 0.25 * curved
+
+
+def _beyond_sine(x) -> float:
+    """x - sin x."""
+    if abs(x) > SERIES:
+        return x - 2.0 * math.sin(0.5 * x) * math.cos(0.5 * x)
+    y = x * x
+    tail = 1.0 - y / 72.0 * (1.0 - y / 110.0 * (1.0 - y / 156.0))
+    return x * y / 6.0 * (1.0 - y / 20.0 * (1.0 - y / 42.0 * tail))
+
+
+def _beyond_cosine(x) -> float:
+    """x^2 / 2 - 1 + cos x."""
+    if abs(x) > SERIES:
+        return 0.5 * x * x - 2.0 * math.sin(0.5 * x) ** 2
+    y = x * x
+    tail = 1.0 - y / 90.0 * (1.0 - y / 132.0 * (1.0 - y / 182.0))
+    return y * y / 24.0 * (1.0 - y / 30.0 * (1.0 - y / 56.0 * tail))

@@ -12,7 +12,7 @@ from feederscrew.bowl.record import Bowl, Track, vibration_angle
 from feederscrew.bowl.settings import has_machine
 from feederscrew.conveying import answer
 from feederscrew.conveying.hop import hop
-from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ConfigError
 from feederscrew.machine import drive_sizing, sizing
 from feederscrew.machine.drive_sizing import is_two_axis

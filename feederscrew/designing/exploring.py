@@ -14,7 +14,7 @@ from feederscrew.designing import calm_drive, proposals, trying
 from feederscrew.designing.record import DEVICE, DRIVE, PART, Attempt
 from feederscrew.designing.robust import denied, robust_run
 from feederscrew.designing.searching import Candidate
-from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.dropping.plate_test import throw_number
 from feederscrew.rates import arrivals, stream
 from feederscrew.rates.tipping import FLAT_KIND
 from feederscrew.studies import solidbowl

@@ -33,11 +33,11 @@ from feederscrew.designing.record import (
 )
 from feederscrew.designing.robust import robust_run
 from feederscrew.designing.searching import Candidate, Progress, Search
-from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
-from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
+from feederscrew.part.size_limits import refuse_many_facets
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.tooling import may_be_left_out, may_be_up

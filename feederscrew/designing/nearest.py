@@ -19,7 +19,7 @@ from feederscrew.designing.record import (
     NearestDesign,
 )
 from feederscrew.designing.searching import Candidate, Search
-from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.dropping.plate_test import throw_number
 
 MINUTE = 60.0
 PROOFS = 3  # designs beside those of the search that go through draws and queues

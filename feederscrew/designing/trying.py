@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.mechanics.wall.outline import rests
+from feederscrew.mechanics.headings import rests
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import Aspects

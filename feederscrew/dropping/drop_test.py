@@ -3,20 +3,21 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
-from feederscrew.dropping import conditions, ensemble
+from feederscrew.dropping import ensemble, launch_conditions
 from feederscrew.dropping.ensemble import Aim, Drops, Tally
 from feederscrew.dropping.kernel import one_drop
-from feederscrew.dropping.launches import sample
-from feederscrew.dropping.rigid_body import principal_axes, shape_of_part
+from feederscrew.dropping.launch_conditions import sample
+from feederscrew.dropping.rounded_hull import principal_axes, shape_of_part
 from feederscrew.dropping.traces import DropTrace, follow
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.tumbling.by_class import Ground, ground
+from feederscrew.resting.exact_tumbling import Ground, ground
 from feederscrew.running import USUAL_RUN
 
-USUAL = 10_000  # drops, where the user names neither a number nor a width
+DEFAULT_DROPS = 10_000  # drops, where the user names neither a number nor a width
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +35,9 @@ class Result(ReadableRecord):
     single: float | None = None  # [1] restitution given as one value, which scatters as that of impacts does
 
 
-def test(part, aspects, preset, own, *, drops=None, until=None, traced=0, dropped=None, run=USUAL_RUN):
+def test(
+    part, aspects, preset, own, *, drops=None, until=None, traced=0, dropped=None, run=USUAL_RUN
+) -> Result:
     """Drop a part and count the aspects it rests on.
 
     Parameters
@@ -71,10 +74,13 @@ def test(part, aspects, preset, own, *, drops=None, until=None, traced=0, droppe
     KeyboardInterrupt
         If the user stops it before there is anything to count; later, the result is partial.
     """
-    width = None if until is None else conditions.share(until, "until")
+    width = None if until is None else launch_conditions.share(until, "until")
     found = ground(part, aspects)
     shape, length = shape_of_part(part, found)
-    launch, single = conditions.launch_of(preset, length, own), conditions.single(own.get("restitution"))
+    launch, single = (
+        launch_conditions.launch_of(preset, length, own),
+        launch_conditions.single(own.get("restitution")),
+    )
     launch = launch if single is None else launch.scattering()
     count = len(aspects.names)
     if dropped is None:
@@ -83,7 +89,7 @@ def test(part, aspects, preset, own, *, drops=None, until=None, traced=0, droppe
             shape,
             launch,
             np.random.default_rng(run.seed),
-            count=USUAL if drops is None and until is None else drops,
+            count=DEFAULT_DROPS if drops is None and until is None else drops,
             aim=None if width is None else Aim(width, found.rows, count),
             jobs=run.jobs,
             progress=run.progress,
@@ -93,12 +99,12 @@ def test(part, aspects, preset, own, *, drops=None, until=None, traced=0, droppe
     counted = ensemble.tally(dropped, found.rows, count, surface=own.get("restitution") is not None)
     starts = sample(launch, shape, min(traced, len(dropped.faces)), np.random.default_rng(run.seed))
     traces = follow(shape, length, principal_axes(part.inertia)[1], starts, dropped, found.rows)
-    described = conditions.described(launch, length)
+    described = launch_conditions.described(launch, length)
     heights = check.frozen(_heights(shape, length, found.rows, aspects.heights))
     return Result(described, run.seed, found, dropped, counted, heights, width, traces, single)
 
 
-def _heights(shape, length, rows, heights):
+def _heights(shape, length, rows, heights) -> NDArray[np.float64]:
     """(A,) [m] heights of the classes, from those of the shape's faces; of a class without one as it was."""
     lowest = np.full(len(heights), np.inf)
     np.minimum.at(lowest, rows, length * shape.heights)

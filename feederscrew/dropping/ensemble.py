@@ -2,22 +2,26 @@
 
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.dropping.kernel import one_drop as kernel
-from feederscrew.dropping.launches import sample
+from feederscrew.dropping.launch_conditions import sample
 from feederscrew.dropping.pool import gather
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.rules.recommended import launched
 
-BATCH = 250  # drops a core takes at a time
-ROUND = 8 * BATCH  # drops between two looks at the intervals, whatever the number of jobs
-MOST = 1_000_000  # drops at which ``until`` gives up
-NORMAL = 1.959963984540054  # two-sided 95 % point
-GROUPS = 4  # of drops, by restitution
-NUMERICAL = 0.01  # [1] what steps and tolerances may move a share of a half: 0.009 seen, docs/resting.md
+DROPS_A_BATCH = 250  # drops a core takes at a time
+DROPS_A_LOOK = 8 * DROPS_A_BATCH  # drops between two looks at the intervals, whatever the number of jobs
+MAX_DROPS = 1_000_000  # drops at which ``until`` gives up
+NORMAL_95 = 1.959963984540054  # two-sided 95 % point
+RESTITUTION_GROUPS = 4  # of drops, by restitution
+NUMERICAL_SHARE_ERROR = (
+    0.01  # [1] what steps and tolerances may move a share of a half: 0.009 seen, docs/resting.md
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,18 +89,18 @@ class Aim:
     rows: np.ndarray  # (F,) class of each face
     count: int  # classes
 
-    def widest(self, faces):
+    def widest(self, faces) -> float:
         """Return half the longest interval after drops on (N,) ``faces``."""
         counts = counted(faces, self.rows, self.count)
         return half_width(*wilson(counts, counts.sum()))
 
-    def needed(self, done, widest):
+    def needed(self, done, widest) -> int:
         """Return how many drops it takes: ``done``, or an estimate; intervals narrow with 1 / sqrt(N)."""
         excess = (widest / self.width) ** 2
-        return done if excess <= 1.0 else ROUND * int(np.ceil(excess * done / ROUND))
+        return done if excess <= 1.0 else DROPS_A_LOOK * int(np.ceil(excess * done / DROPS_A_LOOK))
 
 
-def drop(shape, launch, rng, *, count=None, aim=None, jobs=1, steps=None, progress=None):
+def drop(shape, launch, rng, *, count=None, aim=None, jobs=1, steps=None, progress=None) -> Drops:
     """Drop a part again and again.
 
     Parameters
@@ -127,7 +131,7 @@ def drop(shape, launch, rng, *, count=None, aim=None, jobs=1, steps=None, progre
     KeyboardInterrupt
         If no batch was finished.
     """
-    steps, count = steps or kernel.Steps(), MOST if count is None else int(count)
+    steps, count = steps or kernel.Steps(), MAX_DROPS if count is None else int(count)
 
     def starts(size):
         return sample(launch, shape, size, rng)
@@ -138,7 +142,7 @@ def drop(shape, launch, rng, *, count=None, aim=None, jobs=1, steps=None, progre
     return Drops(faces, times, energies, restitutions, interrupted)
 
 
-def tally(drops, rows, count, *, surface=False):
+def tally(drops, rows, count, *, surface=False) -> Any:
     """Count drops by class.
 
     Parameters
@@ -182,7 +186,7 @@ def tally(drops, rows, count, *, surface=False):
     )
 
 
-def counted(faces, rows, count):
+def counted(faces, rows, count) -> NDArray[np.int64]:
     """Count drops by class, (A,) [1], from the faces (N,) they rest on.
 
     Source: docs/resting.md, "The drop test".
@@ -190,7 +194,7 @@ def counted(faces, rows, count):
     return np.bincount(rows[faces[faces != kernel.UNSETTLED]], minlength=count)
 
 
-def shares(counts):
+def shares(counts) -> NDArray[np.float64]:
     """Return the shares (A,) [1] of counts (A,); NaN where all are zero.
 
     Source: docs/resting.md, "The drop test".
@@ -199,31 +203,31 @@ def shares(counts):
     return counts / total if total else np.full(len(counts), np.nan)
 
 
-def _moved_by(values, faces, rows, count):
+def _moved_by(values, faces, rows, count) -> NDArray[np.float64]:
     """(A,) [1] half the 95 % interval of a share that values (N,) of the drops make, beyond their sampling.
 
     In groups of like values the shares differ by more than samples of one share do: that excess is theirs.
     """
-    groups = np.array_split(np.argsort(values, kind="stable"), GROUPS)
+    groups = np.array_split(np.argsort(values, kind="stable"), RESTITUTION_GROUPS)
     counts = np.array([counted(faces[group], rows, count) for group in groups])
     settled = counts.sum(axis=1, keepdims=True)
     if not settled.all() or np.ptp(values) == 0.0:
         return np.zeros(count)
     found, p = counts / settled, counts.sum(axis=0) / settled.sum()
-    sampled = (1.0 - 1.0 / GROUPS) * p * (1.0 - p) * (1.0 / settled).mean()
-    return NORMAL * np.sqrt(np.maximum(((found - p) ** 2).mean(axis=0) - sampled, 0.0))
+    sampled = (1.0 - 1.0 / RESTITUTION_GROUPS) * p * (1.0 - p) * (1.0 / settled).mean()
+    return NORMAL_95 * np.sqrt(np.maximum(((found - p) ** 2).mean(axis=0) - sampled, 0.0))
 
 
-def _wider(counts, end, way, moved):
+def _wider(counts, end, way, moved) -> NDArray[np.float64]:
     """(A,) end of Wilson's interval moved out by numerical error and restitution, as independent errors."""
     p = shares(counts)
     if not counts.any():
         return end
-    numerical = 4.0 * NUMERICAL * p * (1.0 - p)
+    numerical = 4.0 * NUMERICAL_SHARE_ERROR * p * (1.0 - p)
     return np.clip(p + way * np.hypot(np.hypot(end - p, numerical), moved), 0.0, 1.0)
 
 
-def wilson(counts, total):
+def wilson(counts, total) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the ends of the 95 % interval of a share, from counts.
 
     Parameters
@@ -243,13 +247,13 @@ def wilson(counts, total):
     """
     if not total:
         return np.zeros(len(counts)), np.ones(len(counts))
-    p, spread = np.asarray(counts) / total, NORMAL**2 / total
+    p, spread = np.asarray(counts) / total, NORMAL_95**2 / total
     middle = (p + 0.5 * spread) / (1.0 + spread)
     half = np.sqrt(spread * p * (1.0 - p) + 0.25 * spread**2) / (1.0 + spread)
     return np.minimum(np.maximum(middle - half, 0.0), p), np.maximum(np.minimum(middle + half, 1.0), p)
 
 
-def half_width(low, high):
+def half_width(low, high) -> float:
     """Return half the longest of the intervals from ``low`` (A,) to ``high`` (A,) [1].
 
     Source: docs/resting.md, "The drop test".
@@ -257,13 +261,16 @@ def half_width(low, high):
     return float(0.5 * (high - low).max())
 
 
-def _rounds(batch, starts, count, aim, tell, begin):
+def _rounds(batch, starts, count, aim, tell, begin) -> None:
     """Begin round after round and wait for its batches, until there are enough."""
-    tasks, done, total, widest = [], 0, min(count, ROUND) if aim else count, None
+    tasks, done, total, widest = [], 0, min(count, DROPS_A_LOOK) if aim else count, None
     while done < total:
-        sampled = starts(min(ROUND, count - done))
+        sampled = starts(min(DROPS_A_LOOK, count - done))
         size = len(sampled.energies)
-        fresh = [begin(batch, sampled, slice(first, first + BATCH)) for first in range(0, size, BATCH)]
+        fresh = [
+            begin(batch, sampled, slice(first, first + DROPS_A_BATCH))
+            for first in range(0, size, DROPS_A_BATCH)
+        ]
         for task in fresh:
             done += len(task.result()[0])
             tell(done, total, widest)
@@ -274,7 +281,9 @@ def _rounds(batch, starts, count, aim, tell, begin):
             tell(done, total, widest)
 
 
-def _batch(shape, steps, starts, part):
+def _batch(
+    shape, steps, starts, part
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Faces, times, energies and restitutions of some drops."""
     energies = starts.energies[part]
     faces, times = np.full(len(energies), kernel.UNSETTLED), np.zeros(len(energies))
@@ -282,5 +291,5 @@ def _batch(shape, steps, starts, part):
     return faces, times, energies, starts.restitutions[part]
 
 
-def _unheard(*told):
+def _unheard(*told) -> None:
     """Progress that nobody wants to see."""

@@ -2,11 +2,12 @@
 
 from concurrent.futures import ThreadPoolExecutor
 from itertools import takewhile
+from typing import Any
 
 import numpy as np
 
 
-def gather(work, jobs):
+def gather(work, jobs) -> Any:
     """Return the results of batches, in order.
 
     Parameters
@@ -47,7 +48,7 @@ def gather(work, jobs):
     return [task.result() for task in tasks], partial
 
 
-def in_batches(batch, count, size, jobs, progress=None):
+def in_batches(batch, count, size, jobs, progress=None) -> Any:
     """Return what a function makes of many items, a batch of them at a time.
 
     Parameters
@@ -76,7 +77,7 @@ def in_batches(batch, count, size, jobs, progress=None):
         If no batch was finished.
     """
 
-    def work(begin):
+    def work(begin) -> None:
         cuts = [slice(first, min(first + size, count)) for first in range(0, count, size)]
         for cut, task in [(cut, begin(batch, cut)) for cut in cuts]:
             task.result()
@@ -87,5 +88,5 @@ def in_batches(batch, count, size, jobs, progress=None):
     return [np.concatenate(column) for column in zip(*results)], partial
 
 
-def _finished(task):
+def _finished(task) -> Any:
     return task.done() and not task.cancelled() and task.exception() is None

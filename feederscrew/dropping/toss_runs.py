@@ -1,25 +1,175 @@
-"""Tosses followed one by one from a given state, over small changes of what is not known of each."""
+"""Tosses read from a file of launches, each followed over small changes of what is not known of it."""
 
+import hashlib
+import math
+import re
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from feederscrew import check
+from feederscrew import check, documents
 from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
 from feederscrew.dropping.kernel import body, one_drop
-from feederscrew.dropping.launch_file import FACES
-from feederscrew.dropping.launches import lowest_points
+from feederscrew.dropping.launch_conditions import lowest_points
 from feederscrew.dropping.pool import in_batches
-from feederscrew.dropping.rigid_body import principal_axes, shape_of_part
+from feederscrew.dropping.rounded_hull import principal_axes, shape_of_part
 from feederscrew.errors import FeederError
-from feederscrew.units import GRAVITY
+from feederscrew.resting.counts.count_files import FaultList, split_cells
+from feederscrew.units import GRAVITY, QuantityError, decimal, quantity_text
 
-USUAL = 64  # runs of each toss
-BATCH = 4  # tosses a core takes at a time
-DRAWS = 11  # normal numbers a run takes: 3 velocity, 3 spin, 3 attitude, restitution, friction
-SUNK = 0.02  # [1] of the part's length: a launch may begin so far below the plane, by the error of its pose
-FRICTION = 0.2  # relative standard deviation of a coefficient of friction (assumption)
+POSITION_COLUMNS, ATTITUDE_COLUMNS = ("x0_m", "y0_m", "z0_m"), ("qw0", "qx0", "qy0", "qz0")
+VELOCITY_COLUMNS, SPIN_COLUMNS = ("vx0", "vy0", "vz0"), ("wx0", "wy0", "wz0")
+STATE_COLUMNS = (*POSITION_COLUMNS, *ATTITUDE_COLUMNS, *VELOCITY_COLUMNS, *SPIN_COLUMNS)
+END_COLUMNS, FACE_COLUMN = ("xe_m", "ye_m"), "face_up_end"
+FACE_NAMES = ("-x", "+x", "-y", "+y", "-z", "+z")  # sides of a part by the axes of its file
+CAMERA_PATTERN = re.compile(r"frames_(\d+(?:\.\d+)?)Hz")
+QUATERNION_TOLERANCE = 0.02  # [1] that the length of a quaternion may differ from 1 by
+MAX_SPEED_M_S, MAX_SPIN_RAD_S, MAX_DISTANCE_M = (
+    1e3,
+    1e4,
+    1e3,
+)  # [m/s], [rad/s], [m]: beyond, the unit is not SI
+MAX_LAUNCHES_BYTES, MAX_TOSSES = 5_000_000, 5_000  # [bytes], tosses
+STATE_EXAMPLE = f"give the columns toss,{','.join(STATE_COLUMNS)} in SI units"
+
+
+@dataclass(frozen=True, eq=False)
+class LaunchFile:
+    """N launches of one part, each a state over the plane z = 0, and their measured ends."""
+
+    source: str  # the path as given
+    sha256: str  # of the file's bytes
+    names: tuple[str, ...]  # of the tosses, as they stand in the file
+    lines: tuple[int, ...]  # of the file
+    positions: np.ndarray  # (N, 3) [m] of the centre of mass
+    attitudes: np.ndarray  # (N, 4) unit quaternions w x y z, from the file's axes to the plane's
+    velocities: np.ndarray  # (N, 3) [m/s] of the centre of mass
+    spins: np.ndarray  # (N, 3) [rad/s] in the axes of the part file
+    frame: float  # [s] from one picture of the camera to the next; 0 where the file does not say
+    ends: np.ndarray | None  # (N, 2) [m] where the centre of mass came to rest, as measured
+    faces: tuple[str, ...] | None  # (N,) of FACES: what points up at rest, as measured
+
+
+def read_launches(path) -> LaunchFile:
+    """Read a file of launches.
+
+    Parameters
+    ----------
+    path : str or Path
+        CSV in SI units: a column ``toss`` and those of STATE; ``xe_m``, ``ye_m`` and ``face_up_end`` where
+        the end was measured; a column ``frames_148Hz`` says how many pictures a second the camera took.
+        Lines that begin with '#' and other columns are left out.
+
+    Returns
+    -------
+    LaunchFile
+
+    Raises
+    ------
+    Faults
+        Every fault of the file, one a line.
+    FeederError
+        If it cannot be read, is empty, too large or lacks a column.
+    """
+    data = documents.content(path, MAX_LAUNCHES_BYTES, "a CSV file of launches", FeederError)
+    if len(data) > MAX_LAUNCHES_BYTES:
+        raise FeederError(path, f"has more than {MAX_LAUNCHES_BYTES // 1_000_000} MB", "split the file")
+    header, rows = _table(documents.decoded(data, str(path)), str(path))
+    few = FaultList(str(path))
+    for number, row in rows:
+        _checked(header, row, f"{path}:{number}", few)
+    few.raise_any()
+    return _launches(header, rows, str(path), hashlib.sha256(data).hexdigest())
+
+
+def _table(text, where):
+    """Header, and rows with the numbers of their lines, each a dict of cells by column."""
+    lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if line.strip(", \t")]
+    lines = [(k, line) for k, line in lines if not line.lstrip().startswith("#")]
+    if len(lines) < 2:
+        raise FeederError(where, "has no launch", STATE_EXAMPLE)
+    if len(lines) > MAX_TOSSES + 1:
+        raise FeederError(where, f"has more than {MAX_TOSSES} launches", "split the file")
+    first, header = lines[0][0], split_cells(where, *lines[0], STATE_EXAMPLE)
+    lacking = [name for name in ("toss", *STATE_COLUMNS) if name not in header]
+    if lacking:
+        raise FeederError(f"{where}:{first}", f"there is no column {lacking[0]}", STATE_EXAMPLE)
+    twice = [name for name in header if name and header.count(name) > 1]
+    if twice:
+        raise FeederError(f"{where}:{first}", f"column {twice[0]} is given twice", "keep one of them")
+    split = [(number, split_cells(where, number, line, STATE_EXAMPLE)) for number, line in lines[1:]]
+    return header, [(number, dict(zip(header, row))) for number, row in split]
+
+
+def _checked(header, row, where, few) -> None:
+    """Add what is wrong with one launch to the faults."""
+    wanted = (*STATE_COLUMNS, *(END_COLUMNS if set(END_COLUMNS) <= set(header) else ()))
+    bad = [name for name in wanted if not _is_number(row.get(name, ""))]
+    for name in bad:
+        few.add(
+            where, f"{name}: {quantity_text(row.get(name, ''))} is not a number", "give a number in SI units"
+        )
+    if not row["toss"]:
+        few.add(where, "the toss has no name", "give each launch a name or number of its own")
+    if FACE_COLUMN in header and row.get(FACE_COLUMN, "") not in FACE_NAMES:
+        what = f"{FACE_COLUMN}: {quantity_text(row.get(FACE_COLUMN, ''))} is not a side of the part"
+        few.add(where, what, f"give one of {', '.join(FACE_NAMES)}")
+    if bad:
+        return
+    size = math.hypot(*(float(row[name]) for name in ATTITUDE_COLUMNS))
+    if abs(size - 1.0) > QUATERNION_TOLERANCE:
+        few.add(where, f"the quaternion has the length {size:.3g}", "give one of length 1, as w x y z")
+    for names, most, what in (
+        (POSITION_COLUMNS, MAX_DISTANCE_M, "m"),
+        (VELOCITY_COLUMNS, MAX_SPEED_M_S, "m/s"),
+        (SPIN_COLUMNS, MAX_SPIN_RAD_S, "rad/s"),
+    ):
+        for name in names:
+            if abs(float(row[name])) > most:
+                few.add(where, f"{name} is {row[name]}", f"give {what}, from {-most:g} to {most:g}")
+
+
+def _is_number(text) -> bool:
+    try:
+        decimal(text)
+    except QuantityError:
+        return False
+    return True
+
+
+def _launches(header, rows, source, digest) -> Any:
+    """The record of a table without faults."""
+
+    def columns(names) -> NDArray[np.float64]:
+        return check.frozen(np.array([[float(row[name]) for name in names] for _, row in rows]))
+
+    attitudes = columns(ATTITUDE_COLUMNS)
+    rate = next((float(match[1]) for match in map(CAMERA_PATTERN.fullmatch, header) if match), 0.0)
+    return LaunchFile(
+        source=source,
+        sha256=digest,
+        names=tuple(row["toss"] for _, row in rows),
+        lines=tuple(number for number, _ in rows),
+        positions=columns(POSITION_COLUMNS),
+        attitudes=check.frozen(attitudes / np.sqrt((attitudes**2).sum(axis=1))[:, None]),
+        velocities=columns(VELOCITY_COLUMNS),
+        spins=columns(SPIN_COLUMNS),
+        frame=1.0 / rate if rate > 0.0 else 0.0,
+        ends=columns(END_COLUMNS) if set(END_COLUMNS) <= set(header) else None,
+        faces=tuple(row[FACE_COLUMN] for _, row in rows) if FACE_COLUMN in header else None,
+    )
+
+
+DEFAULT_RUNS = 64  # runs of each toss
+TOSSES_A_BATCH = 4  # tosses a core takes at a time
+DRAWS_A_RUN = 11  # normal numbers a run takes: 3 velocity, 3 spin, 3 attitude, restitution, friction
+MAX_SUNK_SHARE = (
+    0.02  # [1] of the part's length: a launch may begin so far below the plane, by the error of its pose
+)
+FRICTION_SPREAD = 0.2  # relative standard deviation of a coefficient of friction (assumption)
 MODEL_DOUBT = 2.4  # [1] what the model leaves out, as so many times what a picture of the camera leaves open
 
 
@@ -47,7 +197,7 @@ class Tosses:
     partial: bool  # stopped by the user before all were done
 
 
-def follow(part, found, launches, surface, rng, *, runs=USUAL, jobs=1, progress=None):
+def follow(part, found, launches, surface, rng, *, runs=DEFAULT_RUNS, jobs=1, progress=None) -> Tosses:
     """Follow each launch of a file until the part lies still, again and again with small changes.
 
     Parameters
@@ -88,11 +238,11 @@ def follow(part, found, launches, surface, rng, *, runs=USUAL, jobs=1, progress=
     principal = principal_axes(part.inertia)[1]
     states = _states(launches, length, principal)
     _above_the_plane(shape, length, launches, states)
-    draws = rng.standard_normal((len(states), runs, DRAWS))
+    draws = rng.standard_normal((len(states), runs, DRAWS_A_RUN))
     draws[:, 0] = 0.0  # as given
     uncertain = _uncertain(launches, length)
 
-    def batch(cut):
+    def batch(cut) -> Any:
         work = one_drop.scratch(shape)
         answers = [
             _toss(shape, work, *_varied(states[n], uncertain[n], surface, draws[n]))
@@ -101,11 +251,11 @@ def follow(part, found, launches, surface, rng, *, runs=USUAL, jobs=1, progress=
         return [np.stack(column) for column in zip(*answers)]
 
     tell = None if progress is None else lambda done: progress(done, len(states))
-    (ends, faces, times), partial = in_batches(batch, len(states), BATCH, jobs, tell)
+    (ends, faces, times), partial = in_batches(batch, len(states), TOSSES_A_BATCH, jobs, tell)
     return _summed(launches, length, principal, found.rows, runs, (ends, faces, times), partial)
 
 
-def _states(launches, length, principal):
+def _states(launches, length, principal) -> NDArray[np.float64]:
     """(N, 13) states as the kernel has them: along the principal axes, without dimensions."""
     turns = _rotations(launches.attitudes) * Rotation.from_matrix(np.array(principal))
     states = np.zeros((len(launches.names), body.STATE))
@@ -116,22 +266,22 @@ def _states(launches, length, principal):
     return states
 
 
-def _rotations(quaternions):
+def _rotations(quaternions) -> Rotation:
     """Rotations from the part's axes to the plane's, of (N, 4) quaternions w x y z."""
     return Rotation.from_quat(np.roll(quaternions, -1, axis=-1))
 
 
-def _above_the_plane(shape, length, launches, states):
+def _above_the_plane(shape, length, launches, states) -> None:
     """Raise a fault for the first launch that begins in the plane."""
     lowest = states[:, body.Z] + lowest_points(shape, states[:, body.Q : body.W])
-    below = np.flatnonzero(lowest < -SUNK)
+    below = np.flatnonzero(lowest < -MAX_SUNK_SHARE)
     if len(below):
         where = f"{launches.source}:{launches.lines[below[0]]}"
         what = f"the launch begins {-1e3 * length * lowest[below[0]]:.3g} mm below the plane"
         raise FeederError(where, what, "give x0_m, y0_m, z0_m of the centre of mass over the plane z = 0")
 
 
-def _uncertain(launches, length):
+def _uncertain(launches, length) -> NDArray[np.float64]:
     """(N, 3) standard deviations, without dimensions: of velocities, spins and the attitude [rad]."""
     quick = MODEL_DOUBT * launches.frame / np.sqrt(12.0)
     velocity = GRAVITY * quick / np.sqrt(GRAVITY * length)
@@ -139,7 +289,9 @@ def _uncertain(launches, length):
     return np.stack([np.full_like(turning, velocity), np.full_like(turning, 2.0 * velocity), turning], axis=1)
 
 
-def _varied(state, uncertain, surface, draws):
+def _varied(
+    state, uncertain, surface, draws
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """(K, 13) states, (K,) restitutions and (K,) frictions of the runs of one toss."""
     states = np.repeat(state[None], len(draws), axis=0)
     states[:, body.VX : body.Q] += uncertain[0] * draws[:, 0:3]
@@ -147,10 +299,10 @@ def _varied(state, uncertain, surface, draws):
     turns = _rotations(states[:, body.Q : body.W]) * Rotation.from_rotvec(uncertain[2] * draws[:, 6:9])
     states[:, body.Q : body.W] = np.roll(turns.as_quat(), 1, axis=1)
     bounce = scattered(surface.restitution, RESTITUTION_DOUBT, draws[:, 9])
-    return states, np.clip(bounce, 0.0, 1.0), scattered(surface.friction, FRICTION, draws[:, 10])
+    return states, np.clip(bounce, 0.0, 1.0), scattered(surface.friction, FRICTION_SPREAD, draws[:, 10])
 
 
-def scattered(ends, relative, draws):
+def scattered(ends, relative, draws) -> NDArray[np.float64]:
     """Return values of what is known as one value or as a range.
 
     Source: docs/validation.md, "Restitution is a spread".
@@ -175,7 +327,9 @@ def scattered(ends, relative, draws):
     return low + (high - low) / (1.0 + np.exp(-1.702 * draws))  # the normal distribution to 0.01
 
 
-def _toss(shape, work, states, restitutions, frictions):
+def _toss(
+    shape, work, states, restitutions, frictions
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
     """(K, 13) ends, (K,) faces and (K,) times of the runs of one toss."""
     steps, count = one_drop.Steps(early=False), len(states)
     ends, faces, times = np.zeros_like(states), np.zeros(count, int), np.zeros(count)
@@ -186,19 +340,19 @@ def _toss(shape, work, states, restitutions, frictions):
     return ends, faces, times
 
 
-def _summed(launches, length, principal, rows, runs, answers, partial):
+def _summed(launches, length, principal, rows, runs, answers, partial) -> Tosses:
     """The runs of each toss as one answer."""
     ends, faces, times = answers
     count = len(ends)
     ups = _upward(ends[:, :, body.Q : body.W], principal)
-    shares, best = np.zeros((count, len(FACES))), np.full(count, -1)
+    shares, best = np.zeros((count, len(FACE_NAMES))), np.full(count, -1)
     sides = [np.full(count, -1), np.full((count, 2), np.nan), np.full(count, np.nan), np.full(count, np.nan)]
     second = np.sqrt(length / GRAVITY)
     for n in range(count):
         calm = faces[n] != one_drop.UNSETTLED
         if not calm.any():
             continue
-        counts = np.bincount(ups[n][calm], minlength=len(FACES))
+        counts = np.bincount(ups[n][calm], minlength=len(FACE_NAMES))
         shares[n] = counts / calm.sum()
         first = ups[n][np.argmax(calm)]
         best[n] = first if counts[first] == counts.max() else np.argmax(counts)
@@ -216,7 +370,7 @@ def _summed(launches, length, principal, rows, runs, answers, partial):
     return Tosses(runs, shares, best, lain, places, spreads, seconds, settled, released, partial)
 
 
-def _upward(quaternions, principal):
+def _upward(quaternions, principal) -> Any:
     """Index into FACES of the side that points up most, for (..., 4) attitudes along principal axes."""
     w, x, y, z = np.moveaxis(quaternions, -1, 0)
     up = np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)], axis=-1)

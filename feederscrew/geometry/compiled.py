@@ -14,8 +14,9 @@ SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loa
 SOURCES = (
     "geometry/compiled.py",
     "conveying/*.py",
-    "resting/basins/forest.py",
-    "resting/tumbling/*.py",
+    "resting/landscape.py",
+    "resting/half_edges.py",
+    "resting/walks.py",
     "dropping/kernel/*.py",
     "tooling/kernel/*.py",
     "trial/kernel/*.py",

@@ -1,9 +1,13 @@
-"""Which nodes of a graph hang together."""
+"""Which nodes of a graph hang together; groups of unlike lengths in one array."""
+
+import itertools
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 
-def components(i, j, count):
+def components(i, j, count) -> tuple[int, NDArray[np.int64]]:
     """Return the components of a graph.
 
     Parameters
@@ -31,7 +35,53 @@ def components(i, j, count):
     return number, component.astype(int)
 
 
-def component_of(pairs, count):
+def component_of(pairs, count) -> NDArray[np.int64]:
     """Return of each node its component (count,) int; pairs (N, 2) int are the two ends of each link."""
     first, second = pairs.T
     return components(first, second, count)[1]
+
+
+def join_groups(groups) -> tuple[np.ndarray, np.ndarray]:
+    """Return the members of groups in one array, and to which of them each belongs.
+
+    Parameters
+    ----------
+    groups : sequence of G int arrays
+        At least one.
+
+    Returns
+    -------
+    members, owners : (N,) int
+        The owners ascend.
+    """
+    counts = np.fromiter(map(len, groups), int, len(groups))
+    return np.concatenate(groups), np.repeat(np.arange(len(groups)), counts)
+
+
+def group_starts(owners, count) -> NDArray[np.int64]:
+    """Return the place (G,) of the first member of each of ``count`` groups, by ascending owners (N,)."""
+    return np.searchsorted(owners, np.arange(count))
+
+
+def split_groups(members, owners, count) -> list[np.ndarray]:
+    """Return the members (N, ...) of each of ``count`` groups, by ascending owners (N,): a list of arrays."""
+    bounds = group_starts(owners, count + 1).tolist()
+    return [members[start:stop] for start, stop in itertools.pairwise(bounds)]
+
+
+def group_sums(values, owners, count) -> Any:
+    """Return the sums over the members of each of ``count`` groups, none of them empty.
+
+    Parameters
+    ----------
+    values : (N,) or (K, N) float
+        Of one quantity, or of several, a row each.
+    owners : (N,) int
+        Ascending.
+    count : int
+
+    Returns
+    -------
+    (G,) or (G, K) float
+    """
+    return np.add.reduceat(values, group_starts(owners, count), axis=-1).T

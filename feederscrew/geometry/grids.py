@@ -1,6 +1,7 @@
 """Grids over two quantities: values, regime codes, NaN where there is no answer."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -57,7 +58,7 @@ def axis(span):
     return GridAxis(key.column, check.frozen(np.array(span.values)), units.factor(key.unit, key.dimension))
 
 
-def evaluate(first, second, function, names=(), rows=None):
+def evaluate(first, second, function, names=(), rows=None) -> Any:
     """Evaluate a function of two quantities on a grid.
 
     Parameters
@@ -82,7 +83,7 @@ def evaluate(first, second, function, names=(), rows=None):
     return Grid(first, second, full, codes, tuple(names) or ("",))
 
 
-def _by_rows(first, second, function, rows):
+def _by_rows(first, second, function, rows) -> Any:
     """Arrays of a function of two quantities by name, some values of the first at a time."""
     parts = [function(first[k : k + rows, None], second[None, :]) for k in range(0, len(first), rows)]
     if len(parts) == 1:

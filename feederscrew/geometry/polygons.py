@@ -1,12 +1,15 @@
 """Polygons in the floor: outlines seen from above, their centroids, what lies inside them."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
-FLAT = 1e-6  # of the outline's size: a corner that stands out by less is none
-RIPPLE = 2e-3  # of its size: a lower barrier is one of a round side cut into facets
+FLAT_CORNER_SHARE = 1e-6  # of the outline's size: a corner that stands out by less is none
+BARRIER_RIPPLE_SHARE = 2e-3  # of its size: a lower barrier is one of a round side cut into facets
 
 
-def outline(points):
+def outline(points) -> NDArray[np.float64]:
     """Return the convex outline of points in a plane, without corners in the middle of a straight side.
 
     Parameters
@@ -22,7 +25,7 @@ def outline(points):
     from scipy.spatial import ConvexHull
 
     corners = points[ConvexHull(points).vertices]
-    least = FLAT * np.ptp(corners, axis=0).max()
+    least = FLAT_CORNER_SHARE * np.ptp(corners, axis=0).max()
     while len(corners) > 3:  # one at a time: of two corners in one place one must stay
         standing_out = _standing_out(corners)
         k = int(np.argmin(standing_out))
@@ -32,14 +35,14 @@ def outline(points):
     return corners
 
 
-def _standing_out(corners):
+def _standing_out(corners) -> NDArray[np.float64]:
     """Distance of each corner from the line through its neighbours."""
     before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
     chord = after - before
     return cross(corners - before, chord) / np.hypot(*chord.T)
 
 
-def centroid(polygon):
+def centroid(polygon) -> Any:
     """Return the centroid of the area of a polygon; of its corners where it has no area.
 
     Parameters
@@ -59,12 +62,12 @@ def centroid(polygon):
     return start + (twice[:, None] * (a + b)).sum(axis=0) / (3.0 * twice.sum())
 
 
-def sides(polygon):
+def sides(polygon) -> NDArray[np.float64]:
     """Return vectors from each corner to the next, (K, 2)."""
     return np.roll(polygon, -1, axis=0) - polygon
 
 
-def inset(polygon, points):
+def inset(polygon, points) -> Any:
     """Return how far points lie inside a convex polygon.
 
     Parameters
@@ -86,7 +89,7 @@ def inset(polygon, points):
     return cross(along, np.asarray(points)[..., None, :] - polygon).min(axis=-1)
 
 
-def surrounds(points):
+def surrounds(points) -> bool:
     """Return whether the origin lies inside the convex hull of points (V, 2); not on its border."""
     if len(points) == 0:
         return False
@@ -94,7 +97,7 @@ def surrounds(points):
     return bool(np.diff(angles, append=angles[0] + 2.0 * np.pi).max() < np.pi)
 
 
-def turned(points, angle):
+def turned(points, angle) -> NDArray[np.float64]:
     """Return points in a plane turned counter-clockwise; ``points`` (..., 2), ``angle`` [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     return np.stack(
@@ -102,7 +105,7 @@ def turned(points, angle):
     )
 
 
-def cross(u, v):
+def cross(u, v) -> Any:
     """Return the third component of u x v, over the last axis."""
     return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
 
@@ -127,7 +130,7 @@ def barrier(points):
     turn = np.where(turn < 0.0, turn + 2.0 * np.pi, turn)
     heights = (np.sin(turn)[:, None] * ring[:, 0] + np.cos(turn)[:, None] * ring[:, 1]).max(axis=1)
     stands = heights <= far * (1.0 + 1e-9)  # no other corner is lower there
-    high = far >= ring[:, 1].max() + RIPPLE * far.max()
+    high = far >= ring[:, 1].max() + BARRIER_RIPPLE_SHARE * far.max()
     some = np.flatnonzero(stands & high)
     some = some if len(some) else np.flatnonzero(stands)
     first = some[np.argmin(turn[some])]

@@ -2,8 +2,9 @@
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
-LEAST = 1e-14  # [m2] twice the area of a facet that counts
+LEAST_AREA_M2 = 1e-14  # [m2] twice the area of a facet that counts
 
 
 def area(corners, faces):
@@ -24,7 +25,7 @@ def area(corners, faces):
     """
     a, b, c = corners[faces].transpose(1, 0, 2)
     twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    first, last, times = _rims(faces[twice > LEAST], len(corners))
+    first, last, times = _rims(faces[twice > LEAST_AREA_M2], len(corners))
     long = (corners[first] != corners[last]).any(axis=1)
     here, there, times = corners[first[long]], corners[last[long]], times[long]
     sides = shapely.union_all(shapely.linestrings(np.stack([here, there], axis=1)))
@@ -33,7 +34,7 @@ def area(corners, faces):
     return shapely.union_all(pieces[_rounds(inside, here, there, times) > 0])
 
 
-def _rims(faces, count):
+def _rims(faces, count) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
     """Sides (E,), (E,) int of facets that no facet beside them undoes, and how often each is left, (E,)."""
     first, last = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     keys, own = np.unique(np.minimum(first, last) * count + np.maximum(first, last), return_inverse=True)
@@ -42,7 +43,7 @@ def _rims(faces, count):
     return keys[left] // count, keys[left] % count, times[left]
 
 
-def _rounds(places, here, there, times):
+def _rounds(places, here, there, times) -> NDArray[np.int64]:
     """How often (P,) directed sides go round places (P, 2), each of them so many times (E,)."""
     x, y = places[:, None, 0], places[:, None, 1]
     aside = (there - here)[:, 0] * (y - here[:, 1]) - (there - here)[:, 1] * (x - here[:, 0])

@@ -7,21 +7,25 @@ optimisation, which adds in one order.
 """
 
 import math
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-PRODUCTS = {  # by whether each factor is a matrix
+from feederscrew import check
+
+PRODUCT_SUBSCRIPTS = {  # by whether each factor is a matrix
     (False, False): "k,k->",
     (False, True): "k,...km->...m",
     (True, False): "...nk,k->...n",
     (True, True): "...nk,...km->...nm",
 }
-NOTHING = 1e-15  # [1] of the largest entry: an entry off the diagonal that is rounding
-SWEEPS = 50  # of Jacobi rotations: six suffice for any 3 x 3 matrix
-DEPENDENT = 1e-6  # [1] of its length: what is left of a column that depends on those before it
+OFF_DIAGONAL_ROUNDING = 1e-15  # [1] of the largest entry: an entry off the diagonal that is rounding
+MAX_JACOBI_SWEEPS = 50  # of Jacobi rotations: six suffice for any 3 x 3 matrix
+DEPENDENT_COLUMN_SHARE = 1e-6  # [1] of its length: what is left of a column that depends on those before it
 
 
-def product(a, b):
+def product(a, b) -> NDArray[np.float64]:
     """Return the matrix product, like ``a @ b``.
 
     Parameters
@@ -34,15 +38,15 @@ def product(a, b):
     float, or float array
         Of the shape ``a @ b`` has.
     """
-    return np.einsum(PRODUCTS[np.ndim(a) > 1, np.ndim(b) > 1], a, b)
+    return np.einsum(PRODUCT_SUBSCRIPTS[np.ndim(a) > 1, np.ndim(b) > 1], a, b)
 
 
-def dot(u, v):
+def dot(u, v) -> Any:
     """Return the scalar products (...,) of vectors (..., K)."""
     return np.einsum("...k,...k->...", u, v)
 
 
-def cross(u, v):
+def cross(u, v) -> Any:
     """Return the vector products (..., 3) of vectors (..., 3).
 
     The digits are those of ``numpy.cross``, whose own checks take four times as long as a few products.
@@ -57,13 +61,13 @@ def cross(u, v):
     return products
 
 
-def length(vectors):
+def length(vectors) -> Any:
     """Return the lengths (...,) of vectors (..., K), in their unit."""
     vectors = np.asarray(vectors, float)
     return np.sqrt(dot(vectors, vectors))
 
 
-def norm(vectors):
+def norm(vectors) -> Any:
     """Return the lengths (...,) of vectors (..., 3), in their unit.
 
     The digits are those of ``numpy.linalg.norm`` along the last axis, which takes seven times as long.
@@ -72,18 +76,18 @@ def norm(vectors):
     return np.sqrt(x * x + y * y + z * z)
 
 
-def unit(vectors):
+def unit(vectors) -> Any:
     """Return vectors (..., K) divided by their lengths; none may be zero."""
     return np.asarray(vectors, float) / length(vectors)[..., None]
 
 
-def determinant(matrix):
+def determinant(matrix) -> Any:
     """Return the determinant of a (3, 3) matrix, or of a stack (..., 3, 3) of them."""
     a, b, c = np.moveaxis(np.asarray(matrix, float), -2, 0)
     return dot(a, cross(b, c))
 
 
-def covariance(vectors, weights):
+def covariance(vectors, weights) -> NDArray[np.float64]:
     """Return the unbiased covariance of weighted vectors.
 
     Parameters
@@ -103,7 +107,7 @@ def covariance(vectors, weights):
     return np.einsum("in,jn->ij", weights * off, off) / share
 
 
-def eigen(matrix):
+def eigen(matrix) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return eigenvalues and eigenvectors of a symmetric matrix.
 
     Parameters
@@ -135,12 +139,12 @@ def eigen(matrix):
     entries = np.array(matrix, float)
     if not np.isfinite(entries).all():
         raise ValueError("matrix: every entry must be finite")
-    small = NOTHING * np.abs(entries).max(initial=0.0)
+    small = OFF_DIAGONAL_ROUNDING * np.abs(entries).max(initial=0.0)
     a, turned = (
         entries.tolist(),
         np.eye(len(entries)).tolist(),
     )  # lists: a dozen numbers are no work for numpy
-    for _ in range(SWEEPS):
+    for _ in range(MAX_JACOBI_SWEEPS):
         pairs = [(p, q) for p in range(len(a)) for q in range(p + 1, len(a)) if abs(a[p][q]) > small]
         if not pairs:
             break
@@ -151,7 +155,7 @@ def eigen(matrix):
     return values[order], np.array(turned)[:, order]
 
 
-def _rotate(a, turned, p, q):
+def _rotate(a, turned, p, q) -> None:
     """Turn axes p and q (in place) until the entry between them is zero; lists of rows."""
     if a[p][q] == 0.0:
         return
@@ -167,7 +171,7 @@ def _rotate(a, turned, p, q):
     a[p][q] = a[q][p] = 0.0
 
 
-def solve(matrix, right):
+def solve(matrix, right) -> NDArray[np.float64]:
     """Return the solutions of systems of linear equations.
 
     Parameters
@@ -203,7 +207,7 @@ def solve(matrix, right):
     return rows[:, -1].T.reshape(shape)
 
 
-def _pivot(rows, k):
+def _pivot(rows, k) -> None:
     """Swap row k (in place) with the one below that is largest in column k, in each system."""
     best = k + np.abs(rows[k:, k]).argmax(axis=0)
     swapped = np.flatnonzero(best != k)
@@ -212,7 +216,7 @@ def _pivot(rows, k):
     rows[k][:, swapped] = lower.T
 
 
-def misfit(columns, right):
+def misfit(columns, right) -> NDArray[np.float64]:
     """Return what least squares leave of the right side.
 
     Parameters
@@ -236,7 +240,7 @@ def misfit(columns, right):
         free = column
         for axis in basis * 2:
             free = free - dot(free, axis) * axis
-        if length(free) > DEPENDENT * length(column):
+        if length(free) > DEPENDENT_COLUMN_SHARE * length(column):
             basis.append(unit(free))
     for axis in basis * 2:
         left = left - dot(left, axis) * axis
@@ -261,3 +265,68 @@ def carried(axis, start, end):
     turned = axis - 2.0 * dot(axis, middle) * middle
     turned = turned - 2.0 * dot(turned, end) * end  # two mirrors make the turn
     return unit(turned - end * dot(turned, end))
+
+
+def columns_at(rows, places) -> NDArray[np.float64]:
+    """Return the vectors at some places as columns.
+
+    Parameters
+    ----------
+    rows : (M, 3) float
+    places : (N, K) int
+
+    Returns
+    -------
+    (K, 3, N) float
+    """
+    return np.ascontiguousarray(rows.T)[:, places.T].swapaxes(0, 1)
+
+
+def dot_columns(u, v) -> NDArray[np.float64]:
+    """Return the scalar products (N,) of columns (3, N)."""
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+def cross_columns(u, v) -> NDArray[np.float64]:
+    """Return the vector products (3, N) of columns (3, N)."""
+    return np.stack([u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2] for k in range(3)])
+
+
+def solid_angles(apex, triangles) -> Any:
+    """Return the solid angle of each triangle, seen from one point.
+
+    Parameters
+    ----------
+    apex : (3,) float [m]
+        Viewpoint; for resting aspects, the part's centre of mass.
+    triangles : (T, 3, 3) float [m]
+        Corners by triangle, counter-clockwise seen from outside.
+
+    Returns
+    -------
+    (T,) float [sr]
+        Positive where the outer side faces away from ``apex``; triangles closed around it sum to
+        4 pi. On a triangle, plus or minus 2 pi by rounding.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong or an entry is not finite.
+
+    References
+    ----------
+    A. van Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng.
+    BME-30(2), 125-126, 1983.
+    """
+    apex = check.shaped("apex", apex, (3,))
+    triangles = check.shaped("triangles", triangles, (-1, 3, 3))
+
+    a, b, c = np.moveaxis(triangles - apex, 1, 0)  # corners from the apex, each (T, 3)
+    la, lb, lc = (norm(corner) for corner in (a, b, c))
+    triple = _dot(a, cross(b, c))
+    rest = la * lb * lc + _dot(a, b) * lc + _dot(b, c) * la + _dot(c, a) * lb
+    return 2.0 * np.arctan2(triple, rest)  # arctan would fold past half a sphere
+
+
+def _dot(u, v) -> NDArray[np.float64]:
+    return np.einsum("ti,ti->t", u, v)

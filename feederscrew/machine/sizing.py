@@ -13,7 +13,7 @@ from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.geometry.polygons import turned
 from feederscrew.machine.springs import analyse_springs, gain
 from feederscrew.machine.stroke import greatest_amplitude
-from feederscrew.mechanics.wall.stable_headings import headings
+from feederscrew.mechanics.headings import headings
 from feederscrew.part.record import Part
 from feederscrew.rates import well_oriented
 from feederscrew.resting.aspects import Aspects

@@ -4,28 +4,36 @@ The part is a point on a surface that vibrates harmonically. At phase s = sin(w 
 weight, the normal force is cos(climb) - G s sin(beta) and the force that friction must supply along
 the track is sin(climb) - G s cos(beta) cos(alpha - theta), with G = A w^2 / g. A wall carries what is
 across the track; cos(alpha - theta) is 1 where there is none. A banked track with a wall is a level
-one of another friction (``mechanics.wedge``). What friction must
+one of another friction (`effective`). What friction must
 supply over the normal force is monotone in s, so the limits lie at the reversals, s = +1 (the
 part is lightest) and s = -1 (heaviest).
 
 Every function takes numbers or arrays that broadcast together.
 
+The bowl moves along the tangent of its track and along its own axis, whatever the bank: so the drive, the
+weight and every impact press a part down square to the tangent, and floor and wall share that. Per unit of it
+the floor carries 1 / cos(bank) and an upright wall tan(bank), at every instant of the cycle; both press at
+the same times, and a part leaves both at once. Left out is the centripetal force.
+
 References
 ----------
+The balance of forces in a wedge with Coulomb's friction; docs/conveying.md.
 The thesis, section 4.3, for [4.27] and [4.28]: a level floor at s = +1. The track's limits are
 derived here from the two forces above.
 """
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from feederscrew.bowl.record import Friction
 from feederscrew.errors import ConfigError
 
-REGIMES = ("stick", "forward", "backward", "both", "hop")  # a regime code is a place in this list
-RIDE, FORWARD, BACKWARD, BOTH, HOP = range(len(REGIMES))
-ROUNDING = 1e-9  # [1] a throw number this near 1 counts as hopping: there the forces hang on rounding
+POINT_REGIMES = ("stick", "forward", "backward", "both", "hop")  # a regime code is a place in this list
+RIDE, FORWARD, BACKWARD, BOTH, HOP = range(len(POINT_REGIMES))
+HOP_ROUNDING = 1e-9  # [1] a throw number this near 1 counts as hopping: there the forces hang on rounding
 
 USE = "leave it out, or use feeder convey"
 STRAIGHT_DRIVE_KEYS = ("phase", "second_harmonic")  # of the drive: zero where it is straight and harmonic
@@ -127,7 +135,7 @@ def throw_number(ratio, beta, climb=0.0) -> Any:
 
 def hops(ratio, beta, climb=0.0) -> Any:
     """Return whether contact is lost within the cycle; at k = 1 [1] within rounding it counts as lost."""
-    return throw_number(ratio, beta, climb) >= 1.0 - ROUNDING
+    return throw_number(ratio, beta, climb) >= 1.0 - HOP_ROUNDING
 
 
 def hop_ratio(beta, climb=0.0) -> Any:
@@ -273,3 +281,51 @@ def _onset(friction, along, resist, beta, climb) -> NDArray[np.float64]:
         ratio = np.maximum(friction * weight + resist, 0.0) / np.abs(gain)
     ratio = np.where(gain == 0.0, np.inf, ratio)
     return np.where((gain > 0.0) & hops(ratio, beta, climb), np.inf, ratio)
+
+
+def effective(friction, wall, bank) -> Any:
+    """Return the friction of the level track that holds a part as floor and wall together do.
+
+    Source: docs/conveying.md, "The model".
+
+    Parameters
+    ----------
+    friction, wall : array_like [1]
+        Coefficients of the floor and of the upright wall.
+    bank : array_like [rad]
+        Less than a quarter turn.
+
+    Returns
+    -------
+    array [1]
+        friction / cos(bank) + wall tan(bank).
+    """
+    return friction / np.cos(bank) + wall * np.tan(bank)
+
+
+def of_floor(friction, wall, bank) -> Any:
+    """Return the coefficient of the floor that makes, with the wall, an effective one: the inverse [1].
+
+    Source: ``effective`` solved for the floor.
+    """
+    return friction * np.cos(bank) - wall * np.sin(bank)
+
+
+def level(bowl) -> Any:
+    """Return a bowl without bank on which a part travels as in this one.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its fields may be arrays that broadcast together.
+
+    Returns
+    -------
+    Bowl
+        With the effective friction, of rest and of sliding, up and down the track.
+    """
+    mu, bank = bowl.friction, bowl.track.bank
+    held = (effective(coefficient, mu.wall, bank) for coefficient in (mu.static, mu.kinetic, *mu.backward))
+    static, kinetic, static_back, kinetic_back = held
+    surfaces = Friction(static, kinetic, mu.wall, static_back, kinetic_back)
+    return replace(bowl, friction=surfaces, track=replace(bowl.track, bank=0.0 * bank))

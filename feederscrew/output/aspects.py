@@ -11,7 +11,7 @@ from feederscrew.output import offers as offer
 from feederscrew.output.columns import G_MM2, MM2, UJ
 from feederscrew.output.heavy import heavy
 from feederscrew.resting import names_file
-from feederscrew.resting.forms import postures
+from feederscrew.resting.aspects import postures
 from feederscrew.units import DEG, MM, quantity_text
 
 shading = heavy("feederscrew.output.shading")

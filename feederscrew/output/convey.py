@@ -3,8 +3,8 @@
 import numpy as np
 
 from feederscrew.conveying import answer, sensitivity, steady
-from feederscrew.conveying.flights import throw_of_flight
-from feederscrew.conveying.setting import PHASES
+from feederscrew.conveying.answer import throw_of_flight
+from feederscrew.conveying.operating_point import PHASES
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.heavy import heavy
@@ -29,7 +29,7 @@ LIMITS = {"forward": "slip up the track", "backward": "slip down the track"}
 
 def document(study):
     """Return a ConveyStudy as the JSON document, without the bowl's values."""
-    found, change = study.answer, sensitivity.CHANGE
+    found, change = study.answer, sensitivity.SENSITIVITY_CHANGE
     return {
         "status": found.status,
         "period": found.period,
@@ -102,10 +102,10 @@ def remarks(document):
         said.append(RUNS_AWAY)
     if document["status"] == "averaged":
         said.append(
-            f"not periodic: an average; means over {steady.BLOCK} periods span {between(low, high)} mm/s, "
-            f"single periods {_slowest_to_fastest(document)}"
+            f"not periodic: an average; means over {steady.AVERAGED_PERIODS} periods span "
+            f"{between(low, high)} mm/s, single periods {_slowest_to_fastest(document)}"
         )
-    elif high - low > answer.COEXIST * abs(high):
+    elif high - low > answer.COEXISTING_VELOCITY_GAP * abs(high):
         said.append(
             f"several steady velocities, {between(low, high)} mm/s, depending on how the part arrives"
         )
@@ -129,7 +129,7 @@ def points(study):
         {
             **{axis.column: axis.shown for axis in study.axes},
             **{column: found[column] for column in VELOCITIES.values()},
-            "regime": np.asarray(answer.REGIMES)[found["regime"]],
+            "regime": np.asarray(answer.SWEEP_REGIMES)[found["regime"]],
             "throw_number": found["throw_number"],
             "status": study.statuses,
         }

@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.dropping.key_moments import chosen
-from feederscrew.dropping.traces import DropTrace
+from feederscrew.dropping.traces import DropTrace, chosen
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.aspects import MARKS

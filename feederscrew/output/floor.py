@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from feederscrew.geometry.polygons import centroid, turned
-from feederscrew.mechanics.floor.balance import HOP, MOTION_STATES, ON_THE_LINE, regime, rolls, stable_heading
+from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, ON_THE_LINE, regime, rolls, stable_heading
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.heavy import heavy

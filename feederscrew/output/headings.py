@@ -7,7 +7,7 @@ from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.floor import CONTACT, PART
 from feederscrew.output.heavy import heavy
-from feederscrew.part.smallness import small_part_remarks
+from feederscrew.part.size_limits import small_part_remarks
 from feederscrew.units import MM
 
 mpl_patches = heavy("matplotlib.patches")

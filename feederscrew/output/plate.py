@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.dropping.plate.occupancy import FEW
+from feederscrew.dropping.occupancy import MIN_TRANSITIONS
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.heavy import heavy
@@ -101,7 +101,7 @@ def remarks(study):
             listed.append(f"{where}: {plate.unsettled} of {plate.parts} parts lay on no aspect to the end")
         if plate.lost:
             listed.append(f"{where}: {counted(plate.lost, 'part')} could not be followed, not counted")
-        if 0 < plate.transitions < FEW:
+        if 0 < plate.transitions < MIN_TRANSITIONS:
             few = f"too few transitions ({plate.transitions}) for p_limit"
             listed.append(f"{where}: {few}; give more `drops` or `seconds`")
     if study.partial:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.errors import ArgumentError
-from feederscrew.mechanics.floor.balance import MOTION_STATES
+from feederscrew.mechanics.floor_balance import MOTION_STATES
 from feederscrew.output import offers, tables
 from feederscrew.units import DEGREE, MINUTE, MM, counted, listed, printable
 

@@ -7,13 +7,13 @@ import numpy as np
 
 from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
 from feederscrew.dropping import toss_runs
-from feederscrew.dropping.launch_file import FACES
+from feederscrew.dropping.toss_runs import FACE_NAMES
 from feederscrew.output import columns, style, tables
 from feederscrew.output import offers as offer
 from feederscrew.units import MM
 
 NONE = "none"  # the side that points up where no run came to rest
-BY_SIDE = tuple(f"p_{'plus' if side[0] == '+' else 'minus'}_{side[1]}" for side in FACES)
+BY_SIDE = tuple(f"p_{'plus' if side[0] == '+' else 'minus'}_{side[1]}" for side in FACE_NAMES)
 HIDDEN = ("p_low", "p_high", *BY_SIDE, "settled_runs", "time_s", "x_measured_mm", "y_measured_mm")
 
 
@@ -43,7 +43,7 @@ def tosses(study):
         {
             "toss": _numbered(launches.names[:count]),
             "aspect": [names[row] if row >= 0 else NONE for row in found.rows],
-            "face_up": [FACES[face] if face >= 0 else NONE for face in found.faces],
+            "face_up": [FACE_NAMES[face] if face >= 0 else NONE for face in found.faces],
             "p": study.p,
             "p_low": low,
             "p_high": high,
@@ -83,7 +83,7 @@ def document(study):
         "restitution": list(study.surface.restitution),
         "friction": list(study.surface.friction),
         "restitution_scatter": RESTITUTION_DOUBT,
-        "friction_scatter": toss_runs.FRICTION,
+        "friction_scatter": toss_runs.FRICTION_SPREAD,
         "partial": study.result.partial,
         "measured": measured,
         "tosses": tosses(study),
@@ -192,5 +192,5 @@ def _kinds(study):
     faces = study.result.faces
     if study.launches.faces is None:
         return np.full(len(faces), 2)
-    measured = [FACES.index(face) for face in study.launches.faces[: len(faces)]]
+    measured = [FACE_NAMES.index(face) for face in study.launches.faces[: len(faces)]]
     return np.where(faces == measured, 0, 1)

@@ -4,8 +4,8 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.geometry.polygons import outline, turned
-from feederscrew.mechanics.floor.balance import HOP, MOTION_STATES, regime
-from feederscrew.mechanics.track.frame import frame
+from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, regime
+from feederscrew.mechanics.track_balance import frame
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.floor import (

@@ -3,17 +3,18 @@
 import hashlib
 import re
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from feederscrew import documents, units
 from feederscrew.errors import ConfigError
 
-LONGEST = 12  # letters of a name
-MARKS = "-_."  # that may stand between the letters and digits of a name
-TAKEN = ("none",)  # what tables say where there is no aspect
-SAME = 1e-4  # [rad] directions closer than this are one
-EXAMPLE = "write a line an aspect such as 'head_up: [0, 0, -1]' below 'aspects:'"
+MAX_NAME_LETTERS = 12  # letters of a name
+NAME_MARKS = "-_."  # that may stand between the letters and digits of a name
+RESERVED_NAMES = ("none",)  # what tables say where there is no aspect
+EQUAL_DIRECTIONS_RAD = 1e-4  # [rad] directions closer than this are one
+ASPECT_LINE_EXAMPLE = "write a line an aspect such as 'head_up: [0, 0, -1]' below 'aspects:'"
 
 
 @dataclass(frozen=True)
@@ -25,12 +26,12 @@ class AspectNames:
     directions: tuple[tuple[str, tuple[float, float, float]], ...]  # unit vectors; down on that aspect
 
     @property
-    def names(self):
+    def names(self) -> tuple[str, ...]:
         """The names in the order of the file."""
         return tuple(name for name, _ in self.directions)
 
 
-def read(path):
+def read_aspect_names(path) -> Any:
     """Read a file of names.
 
     Parameters
@@ -53,22 +54,24 @@ def read(path):
         raise ConfigError("-", "standard input is for the part", "save the names and give the file")
     data = documents.content(path, documents.MAX_DOCUMENT_BYTES, "a YAML file of names")
     root, faults = documents.load(data, str(path))
-    directions = _directions(_block(root, faults), faults)
+    directions = _directions(_aspect_entries(root, faults), faults)
     documents.raise_all(faults)
     return AspectNames(str(path), hashlib.sha256(data).hexdigest(), directions)
 
 
-def _block(root, faults):
+def _aspect_entries(root, faults):
     """The entries below 'aspects:'."""
     if root.kind != "mapping":
-        raise ConfigError(root.where, "is not a block of names", EXAMPLE)
+        raise ConfigError(root.where, "is not a block of names", ASPECT_LINE_EXAMPLE)
     for entry in root.entries:
         if entry.key != "aspects":
             what = f"unknown key {units.quantity_text(entry.key)}"
             faults.append(ConfigError(entry.where, what, documents.hint(entry.key, ["aspects"])))
     block = root.find("aspects")
     if block is None or block.value.kind != "mapping" or not block.value.entries:
-        faults.append(ConfigError(root.where if block is None else block.where, "names no aspect", EXAMPLE))
+        faults.append(
+            ConfigError(root.where if block is None else block.where, "names no aspect", ASPECT_LINE_EXAMPLE)
+        )
         return ()
     return block.value.entries
 
@@ -79,28 +82,32 @@ def _directions(entries, faults):
     for entry in entries:
         try:
             name, down = _name(entry, known), _direction(entry)
-            _unlike(entry, down, known)
+            _refuse_repeated_direction(entry, down, known)
             known[name.casefold()] = name, down
         except ConfigError as fault:
             faults.append(fault)
     return tuple(known.values())
 
 
-def _name(entry, known):
+def _name(entry, known) -> str:
     """The name of one line, fit for tables, files and pictures."""
     name = entry.key
-    shape = rf"[^\W_](?:[\w{re.escape(MARKS)}]{{0,{LONGEST - 2}}}\w)?"
-    if not re.fullmatch(shape, name) or name.casefold() in TAKEN:
+    shape = rf"[^\W_](?:[\w{re.escape(NAME_MARKS)}]{{0,{MAX_NAME_LETTERS - 2}}}\w)?"
+    if not re.fullmatch(shape, name) or name.casefold() in RESERVED_NAMES:
         what = f"{units.quantity_text(entry.key)} cannot be the name of an aspect"
-        mend = f"give 1 to {LONGEST} letters, digits, '-', '_' and '.', the first a letter or a digit"
-        raise ConfigError(entry.where, what, mend if name.casefold() not in TAKEN else "choose another")
+        mend = (
+            f"give 1 to {MAX_NAME_LETTERS} letters, digits, '-', '_' and '.', the first a letter or a digit"
+        )
+        raise ConfigError(
+            entry.where, what, mend if name.casefold() not in RESERVED_NAMES else "choose another"
+        )
     if name.casefold() in known:
         what = f"{units.quantity_text(name)} and '{known[name.casefold()][0]}' differ in case only"
         raise ConfigError(entry.where, what, "give each its own name")
     return name
 
 
-def _direction(entry):
+def _direction(entry) -> tuple[float, float, float]:
     """(3,) the unit vector of one line."""
     node, mend = entry.value, "write three numbers, as [0, 0, -1]"
     what = f"the direction of {units.quantity_text(entry.key)}"
@@ -117,9 +124,9 @@ def _direction(entry):
     return tuple((down / np.sqrt((down**2).sum())).tolist())
 
 
-def _unlike(entry, down, known):
+def _refuse_repeated_direction(entry, down, known) -> None:
     """Refuse a direction that another name has."""
     for name, other in known.values():
-        if np.abs(np.subtract(down, other)).max() < SAME:
+        if np.abs(np.subtract(down, other)).max() < EQUAL_DIRECTIONS_RAD:
             what = f"{units.quantity_text(entry.key)} has the direction of '{name}'"
             raise ConfigError(entry.where, what, "keep one of them")

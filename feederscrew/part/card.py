@@ -1,5 +1,6 @@
-"""Part cards: parts known by published data only, as YAML with the units in the text."""
+"""Part cards: parts known by published data only, as YAML with units in the text; every key of one."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -7,22 +8,77 @@ import numpy as np
 from feederscrew import check, documents, units
 from feederscrew.errors import ConfigError
 from feederscrew.part import mass
-from feederscrew.part.card_schema import ASPECT, CARD, FLOOR, TRACK
 from feederscrew.part.record import CardAspect, Part
 
-SLIP = 1e-9  # [1] of an entry: closer magnitudes are equal
-ROUNDING = 1e-3  # [1] by which rounded moments may miss the triangle inequality
-BLOCKS = (("floor", FLOOR), ("track", TRACK))
-RELATIVE = "relative"  # in place of sr, where a source states no unit
-SMALLEST, LARGEST = 1e-18, 1e9  # in SI units: between lies every length, area, mass and moment of a part
+
+@dataclass(frozen=True)
+class CardKey:
+    """One key of a part card."""
+
+    word: str
+    dimension: str  # of feederscrew.units, or 'text', 'section', 'rows'
+    example: str
+    required: bool = False
+    shape: tuple[int, ...] = ()  # of a list; () for one value
+    positive: bool = True
+    choices: tuple[str, ...] = ()  # of a text; any text where it is empty
 
 
-def part(file):
+MATRIX_EXAMPLE = "three rows of three, as in [95.3 g mm2, 0 g mm2, -24.5 g mm2]"
+
+TRACK_EQUATION_AXES = ("tilted", "level")  # by the bank of the track, or not: of the printed track equations
+
+CARD_KEYS = (
+    CardKey("mass", "mass", "1.98 g", required=True),
+    CardKey("centre_of_mass", "length", "[3.3 mm, 0 mm, 9 mm]", required=True, shape=(3,), positive=False),
+    CardKey("inertia", "inertia", MATRIX_EXAMPLE, required=True, shape=(3, 3), positive=False),
+    CardKey("aspects", "rows", "- {aspect: 1, height: 6.9 mm}", required=True),
+    CardKey("floor", "section", "{aspect: 1, drive_offset: 3.2 mm}"),
+    CardKey("track", "section", "{wall_lever: 8 mm, wall_lever_angle: 64 deg}"),
+)
+ASPECT_KEYS = (
+    CardKey("aspect", "text", "1", required=True),
+    CardKey("height", "length", "6.9 mm", required=True),
+    CardKey("faces", "number", "2"),
+    CardKey("polar_inertia", "inertia", "90.8 g mm2"),
+    CardKey("contact_area", "area", "100 mm2"),
+    CardKey("solid_angle", "solid angle", "1.8 sr"),
+    CardKey("csa_height", "length", "10.1 mm"),
+    CardKey("stability_height", "length", "10.1 mm"),
+)
+FLOOR_KEYS = (
+    CardKey("aspect", "text", "5"),
+    CardKey("drive_offset", "length", "3.2 mm", positive=False),
+    CardKey("centroid_height", "length", "3.3 mm"),
+    CardKey("polar_inertia", "inertia", "95.3 g mm2"),
+)
+TRACK_KEYS = (
+    *FLOOR_KEYS,
+    CardKey("wall_lever", "length", "8 mm"),
+    CardKey("wall_lever_angle", "angle", "64 deg"),
+    CardKey("wall_x", "length", "[6.7 mm, 9 mm]", shape=(2,)),
+    CardKey("wall_y", "length", "4 mm"),
+    CardKey("wall_friction_y", "length", "4 mm"),
+    CardKey("axes", "text", "tilted", choices=TRACK_EQUATION_AXES),
+)
+
+
+SYMMETRY_TOLERANCE = 1e-9  # [1] of an entry: closer magnitudes are equal
+TRIANGLE_TOLERANCE = 1e-3  # [1] by which rounded moments may miss the triangle inequality
+PRINTED_BLOCKS = (("floor", FLOOR_KEYS), ("track", TRACK_KEYS))
+RELATIVE_UNIT = "relative"  # in place of sr, where a source states no unit
+SMALLEST_QUANTITY_SI, LARGEST_QUANTITY_SI = (
+    1e-18,
+    1e9,
+)  # in SI units: between lies every length, area, mass and moment of a part
+
+
+def read_card(file) -> Part | None:
     """Read a part from a part card.
 
     Parameters
     ----------
-    file : feederscrew.part.reading.source.File
+    file : feederscrew.part.loading.File
 
     Returns
     -------
@@ -43,12 +99,12 @@ def part(file):
     """
     root, faults = documents.load(file.data, file.where)
     if root.kind != "mapping":
-        needed = ", ".join(key.word for key in CARD if key.required)
+        needed = ", ".join(key.word for key in CARD_KEYS if key.required)
         raise ConfigError(root.where, "no 'key: value' line", f"write {needed}")
-    shown = _mapping(root, CARD, faults)
+    shown = _mapping(root, CARD_KEYS, faults)
     aspects = _aspects(shown.get("aspects"), faults)
-    printed = {key: _mapping(shown[key], keys, faults) for key, keys in BLOCKS if key in shown}
-    faults += _strangers(root, printed, aspects)
+    printed = {key: _mapping(shown[key], keys, faults) for key, keys in PRINTED_BLOCKS if key in shown}
+    faults += _unlisted_aspects(root, printed, aspects)
     inertia, said = _inertia(root, shown.get("inertia"), faults)
     documents.raise_all(faults)
     return Part(
@@ -112,9 +168,9 @@ def _listed(key, node, shape):
     return node.text if key.dimension == "text" else _quantity(key, node)
 
 
-def _quantity(key, node):
+def _quantity(key, node) -> float:
     try:
-        if key.dimension == "solid angle" and units.split(node.text)[1] == RELATIVE:
+        if key.dimension == "solid angle" and units.split(node.text)[1] == RELATIVE_UNIT:
             value = units.split(node.text)[0]
         else:
             value = units.quantity(node.text, key.dimension)
@@ -122,7 +178,7 @@ def _quantity(key, node):
         raise ConfigError(node.where, f"{key.word}: {fault.what}", fault.mend) from None
     if key.positive and not value > 0.0:
         raise ConfigError(node.where, f"{key.word} is {units.one_line(node.text)}", "give more than zero")
-    if value and not SMALLEST < abs(value) < LARGEST:
+    if value and not SMALLEST_QUANTITY_SI < abs(value) < LARGEST_QUANTITY_SI:
         what = f"{key.word} is {units.one_line(node.text)}, which no fed part has"
         raise ConfigError(node.where, what, f"check its digits and its unit, as in {key.example}")
     if key.dimension == "number" and value % 1.0:
@@ -139,7 +195,7 @@ def _aspects(rows, faults):
         return []
     aspects, seen = [], dict[Any, str]()
     for row in rows.items:
-        shown = _mapping(row, ASPECT, faults)
+        shown = _mapping(row, ASPECT_KEYS, faults)
         name = shown.get("aspect")
         if name in seen:
             what = f"aspect {units.quantity_text(name)} is already in line {seen[name].rsplit(':', 2)[1]}"
@@ -150,14 +206,14 @@ def _aspects(rows, faults):
     return aspects
 
 
-def _keywords(shown, row):
+def _keywords(shown, row) -> Any:
     angle = row.find("solid_angle")
-    in_sr = angle is None or not angle.value.text.strip().endswith(RELATIVE)
+    in_sr = angle is None or not angle.value.text.strip().endswith(RELATIVE_UNIT)
     renamed = {"name" if word == "aspect" else word: value for word, value in shown.items()}
     return renamed | {"faces": int(shown.get("faces", 1)), "solid_angle_in_sr": in_sr}
 
 
-def _strangers(root, printed, aspects):
+def _unlisted_aspects(root, printed, aspects):
     """Faults of blocks that name an aspect the card does not list."""
     names = [aspect.get("name") for aspect in aspects]
     return [
@@ -177,15 +233,15 @@ def _inertia(root, rows, faults):
         return np.zeros((3, 3)), ()
     printed, where = np.array(rows), root.find("inertia").value.where
     upper = np.triu(printed) + np.triu(printed, 1).T
-    if np.allclose(printed, upper, rtol=SLIP, atol=0.0):
+    if np.allclose(printed, upper, rtol=SYMMETRY_TOLERANCE, atol=0.0):
         said: tuple[str, ...] = ()
-    elif np.allclose(np.abs(printed), np.abs(upper), rtol=SLIP, atol=0.0):
+    elif np.allclose(np.abs(printed), np.abs(upper), rtol=SYMMETRY_TOLERANCE, atol=0.0):
         said = (f"{where}: the inertia matrix is not symmetric (signs differ): its upper half is used",)
     else:
         faults.append(ConfigError(where, "the inertia matrix is not symmetric", "make its halves equal"))
         return upper, ()
-    moments, _ = mass.principal(upper)
-    if moments[0] <= 0.0 or moments[0] + moments[1] < moments[2] * (1.0 - ROUNDING):
+    moments, _ = mass.principal_inertia(upper)
+    if moments[0] <= 0.0 or moments[0] + moments[1] < moments[2] * (1.0 - TRIANGLE_TOLERANCE):
         text = ", ".join(f"{moment / units.factor('g mm2', 'inertia'):.4g}" for moment in moments)
         what = f"no body has the principal moments {text} g mm2"
         faults.append(ConfigError(where, what, "the largest must not exceed the sum of the others"))

@@ -1,14 +1,18 @@
 """Materials and densities: what ``density`` means."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from feederscrew import documents, units
 from feederscrew.errors import ArgumentError
 
-LIGHTEST, HEAVIEST = 10.0, 23_000.0  # [kg/m3] the lightest rigid foams; osmium has 22,590
-DEFAULT = "steel"
-DEFAULT_MATERIAL = f"{DEFAULT} (default)"  # of a part of which nobody said it
-ARGUMENT = "density"
+LIGHTEST_SOLID_KG_M3, HEAVIEST_SOLID_KG_M3 = (
+    10.0,
+    23_000.0,
+)  # [kg/m3] the lightest rigid foams; osmium has 22,590
+DEFAULT_MATERIAL_NAME = "steel"
+DEFAULT_MATERIAL = f"{DEFAULT_MATERIAL_NAME} (default)"  # of a part of which nobody said it
+DENSITY_ARGUMENT = "density"
 EN_1991 = "EN 1991-1-1, table A.4"
 EN_10088 = "EN 10088-1, annex E"
 EN_1999 = "EN 1999-1-1, 3.2.5"
@@ -69,7 +73,7 @@ MATERIALS = (
 )
 
 
-def density(text=None):
+def find_density(text=None) -> Any:
     """Return a density and what to call it.
 
     Parameters
@@ -89,46 +93,51 @@ def density(text=None):
         If the text names no known material, is not a density, or is one that no solid has.
     """
     if text is None:
-        return _named()[DEFAULT].density, DEFAULT_MATERIAL
+        return _materials_by_name()[DEFAULT_MATERIAL_NAME].density, DEFAULT_MATERIAL
     plain = " ".join(text.lower().replace("_", " ").split())
-    material = _named().get(plain)
+    material = _materials_by_name().get(plain)
     if material:
         return material.density, material.name
     if not plain or not (plain[0].isdigit() or plain[0] in "+-.\N{MINUS SIGN}"):
-        raise ArgumentError(ARGUMENT, f"no material is called {units.quantity_text(text)}", _nearest(plain))
-    return _typed(text), " ".join(text.split())
+        raise ArgumentError(
+            DENSITY_ARGUMENT, f"no material is called {units.quantity_text(text)}", _suggest_material(plain)
+        )
+    return _read_density(text), " ".join(text.split())
 
 
-def _named():
+def _materials_by_name() -> dict[str, Material]:
     return {name: material for material in MATERIALS for name in (material.name, *material.aliases)}
 
 
-def _nearest(plain):
-    near = documents.hint(plain, list(_named()))
+def _suggest_material(plain) -> str:
+    near = documents.hint(plain, list(_materials_by_name()))
     if near.startswith("did you mean"):
         return near
     return f'give a value, as in "7.85 g/cm3", or one of {", ".join(material.name for material in MATERIALS)}'
 
 
-def _typed(text):
+def _read_density(text) -> float:
     try:
         number, unit = units.split(text)
         if number <= 0.0:
-            raise ArgumentError(ARGUMENT, "must be above 0", "e.g. 7.85 g/cm3")
-        value = units.quantity(text, "density", suggest=_plausible(number) or "g/cm3")
+            raise ArgumentError(DENSITY_ARGUMENT, "must be above 0", "e.g. 7.85 g/cm3")
+        value = units.quantity(text, "density", suggest=_plausible_unit(number) or "g/cm3")
     except units.QuantityError as error:
-        raise ArgumentError(ARGUMENT, error.what, error.mend) from None
-    if not LIGHTEST <= value <= HEAVIEST:
+        raise ArgumentError(DENSITY_ARGUMENT, error.what, error.mend) from None
+    if not LIGHTEST_SOLID_KG_M3 <= value <= HEAVIEST_SOLID_KG_M3:
         what = f"{units.quantity_text(text)} is the density of no solid"
-        meant = _plausible(number, but=unit)
+        meant = _plausible_unit(number, but=unit)
         mend = f"did you mean {number:g} {meant}?" if meant else "steel has 7.85 g/cm3"
-        raise ArgumentError(ARGUMENT, what, mend)
+        raise ArgumentError(DENSITY_ARGUMENT, what, mend)
     return value
 
 
-def _plausible(number, but=None):
+def _plausible_unit(number, but=None) -> Any:
     """The unit, other than ``but``, that makes this number a solid's density, or None."""
     for unit in ("g/cm3", "kg/m3"):
-        if unit != but and LIGHTEST <= number * units.factor(unit, "density") <= HEAVIEST:
+        if (
+            unit != but
+            and LIGHTEST_SOLID_KG_M3 <= number * units.factor(unit, "density") <= HEAVIEST_SOLID_KG_M3
+        ):
             return unit
     return None

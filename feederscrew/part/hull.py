@@ -2,17 +2,21 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.errors import MeshError
 from feederscrew.geometry import vectors
-from feederscrew.geometry.solid_angle import solid_angles
+from feederscrew.geometry.vectors import solid_angles
 
-STRAIGHT = 3e-4  # [rad] a corner at which edges or facets turn by less is one of the file's rounding
-MANY = 24  # edges at a corner from which it is the tip of a cone, and never on a straight edge
-KEPT = 1e-5  # [1] of the volume: what leaving such corners out may change
+STRAIGHT_ANGLE_RAD = (
+    3e-4  # [rad] a corner at which edges or facets turn by less is one of the file's rounding
+)
+CONE_TIP_EDGES = 24  # edges at a corner from which it is the tip of a cone, and never on a straight edge
+HULL_VOLUME_TOLERANCE = 1e-5  # [1] of the volume: what leaving such corners out may change
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,12 +33,12 @@ class Hull:
     radius: float  # [m] largest distance from the centre of mass to a corner
 
     @property
-    def corners(self):
+    def corners(self) -> NDArray[np.float64]:
         """(T, 3, 3) [m] corners by triangle."""
         return self.vertices[self.triangles]
 
     @cached_property
-    def solid_angles(self):
+    def solid_angles(self) -> Any:
         """(T,) [sr] of each triangle, seen from the centre of mass."""
         return check.frozen(solid_angles(np.zeros(3), self.corners))
 
@@ -43,7 +47,7 @@ class CentreOutsideError(MeshError):
     """A centre of mass that is on or outside the part's convex hull."""
 
 
-def convex_hull(points, centre, where="part", given=True):
+def convex_hull(points, centre, where="part", given=True) -> Hull:
     """Return the convex hull of a point set about a centre of mass inside it.
 
     Parameters
@@ -82,13 +86,13 @@ def convex_hull(points, centre, where="part", given=True):
     points = check.shaped("points", points, (-1, 3)) - centre
     try:
         qhull = ConvexHull(points)
-        triangles, neighbours, areas = _outward(points, qhull)
-        real = _real(points, triangles)
+        triangles, neighbours, areas = _orient_triangles(points, qhull)
+        real = _turning_corners(points, triangles)
         if not real[triangles].all():
             fewer = ConvexHull(points[real])
-            if abs(fewer.volume - qhull.volume) < KEPT * qhull.volume:
+            if abs(fewer.volume - qhull.volume) < HULL_VOLUME_TOLERANCE * qhull.volume:
                 points, qhull = points[real], fewer
-                triangles, neighbours, areas = _outward(points, qhull)
+                triangles, neighbours, areas = _orient_triangles(points, qhull)
     except (QhullError, ValueError) as error:
         raise MeshError(where, "the part has no volume", "export it as a closed solid") from error
     used = np.zeros(len(points), dtype=bool)  # Qhull lists points in the middle of a facet among its vertices
@@ -114,7 +118,7 @@ def convex_hull(points, centre, where="part", given=True):
     )
 
 
-def _outward(points, qhull):
+def _orient_triangles(points, qhull) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
     """Triangles turned counter-clockwise seen from outside, their neighbours with them; and their areas."""
     a, b, c = (points[corner] for corner in qhull.simplices.T)
     cross = vectors.cross(b - a, c - a)
@@ -126,22 +130,24 @@ def _outward(points, qhull):
     return triangles, neighbours, 0.5 * vectors.norm(cross)
 
 
-def _real(points, triangles):
+def _turning_corners(points, triangles) -> NDArray[np.bool_]:
     """(V,) bool: corners of the hull at which it turns, by more than rounding."""
     origins, targets = triangles[:, [1, 2, 0]].ravel(), triangles[:, [2, 0, 1]].ravel()
     degrees = np.bincount(origins, minlength=len(points))
-    some = np.flatnonzero(degrees[origins] < MANY)
+    some = np.flatnonzero(degrees[origins] < CONE_TIP_EDGES)
     some = some[np.argsort(origins[some], kind="stable")]
     origins, ways = origins[some], vectors.unit(points[targets[some]] - points[origins[some]])
     real = degrees > 0
-    for shift in range(1, MANY - 1):  # every pair of edges of a corner, those so many apart in its list
+    for shift in range(
+        1, CONE_TIP_EDGES - 1
+    ):  # every pair of edges of a corner, those so many apart in its list
         pairs = np.flatnonzero(origins[shift:] == origins[:-shift])
         bent = vectors.norm(ways[pairs] + ways[pairs + shift])
-        real[origins[pairs[bent < STRAIGHT]]] = False
-    return real & ~_in_a_plane(points, triangles)
+        real[origins[pairs[bent < STRAIGHT_ANGLE_RAD]]] = False
+    return real & ~_coplanar_corners(points, triangles)
 
 
-def _in_a_plane(points, triangles):
+def _coplanar_corners(points, triangles) -> NDArray[np.bool_]:
     """(V,) bool: corners whose triangles all lie in one plane, but for rounding."""
     a, b, c = (points[corner] for corner in triangles.T)
     normals, corners, tiny = vectors.cross(b - a, c - a), triangles.ravel(), np.finfo(float).tiny
@@ -150,4 +156,4 @@ def _in_a_plane(points, triangles):
     each, mean = (some / np.maximum(vectors.norm(some), tiny)[:, None] for some in (each, mean))
     off = np.zeros(len(points))
     np.maximum.at(off, corners, vectors.norm(each - mean[corners]))
-    return off < STRAIGHT
+    return off < STRAIGHT_ANGLE_RAD

@@ -1,13 +1,18 @@
-"""Volume, mass, centre of mass and inertia of a solid from its surface."""
+"""Volume, mass, inertia and higher moments of a solid from its surface; which rotations leave it alone."""
 
 from dataclasses import dataclass
+from functools import cache, cached_property
+from itertools import product
+from math import factorial
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.geometry import vectors
 
-SAME = 1e-6  # [1] principal moments closer than this, by the largest, count as equal
+EQUAL_MOMENTS_TOLERANCE = 1e-6  # [1] principal moments closer than this, by the largest, count as equal
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,16 +24,16 @@ class Solid:
     inertia: np.ndarray  # (3, 3) [m5] about the centroid; times the density, [kg m2]
 
     @property
-    def reversed(self):
+    def reversed(self) -> "Solid":
         """The same solid with its surface turned inside out."""
         return Solid(-self.volume, self.centre, -self.inertia)
 
-    def scaled(self, factor):
+    def scaled(self, factor) -> Any:
         """Return the same solid measured in a unit of ``factor`` metres."""
         return Solid(self.volume * factor**3, self.centre * factor, self.inertia * factor**5)
 
 
-def solid(corners):
+def integrate_solid(corners) -> Solid:
     """Return volume, centroid and inertia enclosed by triangles.
 
     Parameters
@@ -57,7 +62,7 @@ def solid(corners):
     """
     corners = check.shaped("corners", corners, (-1, 3, 3))
 
-    near, (a, b, c), six = _spanned(corners)
+    near, (a, b, c), six = _spanned_tetrahedra(corners)
     volume = float(six.sum()) / 6.0
     total = a + b + c
     first = vectors.product(six, total) / 24.0
@@ -68,7 +73,7 @@ def solid(corners):
     return Solid(volume, near + offset, np.trace(second) * np.eye(3) - second)
 
 
-def tetrahedra(corners):
+def tetrahedron_volumes(corners) -> NDArray[np.float64]:
     """Return the signed volume between each triangle and the middle of them all.
 
     Parameters
@@ -80,17 +85,23 @@ def tetrahedra(corners):
     (F,) float [m3]
         The sum over a closed surface is its volume.
     """
-    return _spanned(corners)[2] / 6.0
+    return _spanned_tetrahedra(corners)[2] / 6.0
 
 
-def _spanned(corners):
+def _spanned_tetrahedra(
+    corners,
+) -> tuple[
+    NDArray[np.float64],
+    tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    NDArray[np.float64],
+]:
     """A point in the midst of triangles, their corners from there, six times the volumes between."""
     near = np.array([0.5 * (corners[..., k].min() + corners[..., k].max()) for k in range(3)])
     a, b, c = (corners[:, k] - near for k in range(3))
     return near, (a, b, c), np.einsum("fi,fi->f", a, vectors.cross(b, c))
 
 
-def shifted(inertia, mass, offset):
+def shift_inertia(inertia, mass, offset) -> NDArray[np.float64]:
     """Return the inertia about a point other than the centre of mass.
 
     Parameters
@@ -112,7 +123,7 @@ def shifted(inertia, mass, offset):
     )
 
 
-def principal(inertia):
+def principal_inertia(inertia) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return principal moments and axes.
 
     Parameters
@@ -129,26 +140,265 @@ def principal(inertia):
         are equal, and any axes would do, those nearest to the file's.
     """
     moments, columns = vectors.eigen(check.shaped("inertia", inertia, (3, 3)))
-    same = np.diff(moments) <= SAME * abs(moments[2])
+    same = np.diff(moments) <= EQUAL_MOMENTS_TOLERANCE * abs(moments[2])
     axes = columns.T
     if same.all():
         return moments, np.eye(3)
     if same[0]:
-        axes = np.array([*_across(axes[2]), axes[2]])
+        axes = np.array([*_perpendicular_axes(axes[2]), axes[2]])
     elif same[1]:
-        axes = np.array([axes[0], *_across(axes[0])])
-    first, second = (_pointing(axis) for axis in axes[:2])
+        axes = np.array([axes[0], *_perpendicular_axes(axes[0])])
+    first, second = (_point_axis(axis) for axis in axes[:2])
     return moments, np.array([first, second, vectors.cross(first, second)])
 
 
-def _across(axis):
+def _perpendicular_axes(axis) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Two unit vectors across an axis, the first as near to a file axis as can be."""
     nearest = np.eye(3)[np.argmin(np.abs(axis).round(9))]
     first = vectors.unit(nearest - vectors.dot(nearest, axis) * axis)
     return first, vectors.cross(axis, first)
 
 
-def _pointing(axis):
+def _point_axis(axis) -> NDArray[np.float64]:
     """The axis or its opposite: the one whose largest component is positive."""
     largest = np.argmax(np.abs(axis).round(9))
     return axis if axis[largest] > 0.0 else -axis
+
+
+@dataclass(frozen=True, eq=False)
+class MassBalance:
+    """How a part's mass and shape are spread; None where a part card is silent."""
+
+    inertia_at_origin: np.ndarray  # (3, 3) [kg m2] along the file's axes
+    moments: np.ndarray  # (3,) [kg m2] principal, about the centre of mass, ascending
+    axes: np.ndarray  # (3, 3) [1] principal axes, one a row, right-handed
+    hull_volume: float | None  # [m3]
+    corner: np.ndarray | None  # (3,) [m] of the bounding box, the lowest
+    extents: np.ndarray | None  # (3,) [m] of the bounding box
+
+
+def mass_balance(part):
+    """Return the mass properties of a part.
+
+    Parameters
+    ----------
+    part : Part
+
+    Returns
+    -------
+    Balance
+    """
+    moments, axes = principal_inertia(part.inertia)
+    at_origin = shift_inertia(part.inertia, part.mass, part.centre_of_mass)
+    if part.vertices is None:
+        return MassBalance(at_origin, moments, axes, None, None, None)
+    corner, extents = part.vertices.min(axis=0), np.ptp(part.vertices, axis=0)
+    hull_volume = part.hull and part.hull.volume
+    return MassBalance(at_origin, moments, axes, hull_volume, corner, extents)
+
+
+MOMENT_ORDER = 6
+HALF_ORDER_MONOMIALS = [
+    powers for powers in product(range(4), repeat=3) if sum(powers) <= MOMENT_ORDER // 2
+]  # 20 monomials
+MONOMIAL_FACTORS = [  # of each but the first: the earlier monomial that makes it with one more factor; which
+    (HALF_ORDER_MONOMIALS.index(tuple(power - (k == axis) for k, power in enumerate(powers))), axis)
+    for powers in HALF_ORDER_MONOMIALS[1:]
+    for axis in [max(k for k in range(3) if powers[k])]
+]
+MONOMIAL_PRODUCTS = {  # powers up to the order: two of those monomials that make them
+    tuple(int(power) for power in np.add(p, q)): (i, j)
+    for (i, p), (j, q) in product(enumerate(HALF_ORDER_MONOMIALS), repeat=2)
+}
+MOMENT_POWERS = np.array(
+    sorted(
+        (p for p in product(range(MOMENT_ORDER + 1), repeat=3) if 1 <= sum(p) <= MOMENT_ORDER),
+        key=sum,
+    )
+).T
+MULTINOMIAL_COEFFICIENTS = np.array(
+    [factorial(sum(p)) // (factorial(p[0]) * factorial(p[1]) * factorial(p[2])) for p in MOMENT_POWERS.T]
+)
+MIDDLE_FACET_SIZE, SMALL_FACET_SIZE = (
+    0.5,
+    0.16,
+)  # of the part: on facets with shorter edges a rule of order four, or two, will do
+QUADRATURE_BLOCK = 1 << 13  # points at a time: what a processor's cache holds
+
+
+class Moments:
+    """What a solid looks like from its centre of mass, blind to how its surface is cut into triangles.
+
+    The d-th directional moment, the integral of (x . u)^d over the solid, is a polynomial in u. A rotation
+    is a symmetry of the solid only if it leaves all of them alone; up to order six they tell any features
+    apart but those repeated seven times or more about one axis.
+    """
+
+    def __init__(self, vertices, faces, centre) -> None:
+        """Moments of a closed surface, integrated when they are first asked for.
+
+        Parameters
+        ----------
+        vertices : (V, 3) float [m]
+        faces : (F, 3) int
+            Counter-clockwise seen from outside.
+        centre : (3,) float [m]
+            Centre of mass.
+        """
+        self._surface = np.asarray(vertices) - centre, np.asarray(faces)
+        self.error = 1e-4  # [1] of the quadrature, of float32 files and of uneven tessellation
+
+    @cached_property
+    def _integrated(self) -> tuple[NDArray[np.float64], float]:
+        table, volume, size = _moment_integrals(*self._surface)
+        return table / volume, size
+
+    @property
+    def size(self) -> float:
+        """Root mean square distance from the centre of mass [m], the unit of length."""
+        return self._integrated[1]
+
+    def directional(self, directions) -> NDArray[np.float64]:
+        """Return directional moments of every order from 1 to 6.
+
+        Parameters
+        ----------
+        directions : (..., 3) float [1]
+            Unit vectors.
+
+        Returns
+        -------
+        (..., 6) float [1]
+            In units of the size to the power of the order.
+        """
+        moments, _ = self._integrated
+        a, b, c = MOMENT_POWERS
+        power = np.ones((*directions.shape[:-1], MOMENT_ORDER + 1, 3))
+        power[..., 1:, :] = directions[..., None, :]
+        power = np.cumprod(power, axis=-2)
+        terms = (
+            MULTINOMIAL_COEFFICIENTS
+            * moments[a, b, c]
+            * power[..., a, 0]
+            * power[..., b, 1]
+            * power[..., c, 2]
+        )
+        return np.add.reduceat(
+            terms, np.searchsorted(MOMENT_POWERS.sum(axis=0), np.arange(1, MOMENT_ORDER + 1)), axis=-1
+        )
+
+    def mismatch(self, rotations) -> NDArray[np.float64]:
+        """Return how far rotations are from being symmetries of the solid.
+
+        Parameters
+        ----------
+        rotations : (N, 3, 3) float [1]
+
+        Returns
+        -------
+        (N,) float [1]
+            Largest change of a directional moment by its order; a feature of 1e-3 of the volume, as far out
+            as the size, that finds no counterpart gives about 1e-3.
+        """
+        directions = _half_sphere(24)
+        turned = np.einsum("nij,kj->nki", np.asarray(rotations), directions)
+        change = np.abs(self.directional(turned) - self.directional(directions))
+        return (change / np.arange(1, MOMENT_ORDER + 1)).max(axis=(1, 2))
+
+
+def _moment_integrals(points, faces) -> tuple[NDArray[np.float64], float, float]:
+    """(7, 7, 7) integrals of x^a y^b z^c over the solid, scaled by its size; its volume; its size.
+
+    From surface integrals of x^a y^b z^c (x . n): by Euler's theorem they are (a + b + c + 3) times the
+    solid's.
+    """
+    scale = vectors.norm(points).mean()
+    places, weights = _quadrature(np.ascontiguousarray(points.T) / scale, faces.T)
+    table = np.zeros((MOMENT_ORDER + 1, MOMENT_ORDER + 1, MOMENT_ORDER + 1))
+    for start in range(0, len(weights), QUADRATURE_BLOCK):
+        half = _monomials(places[:, start : start + QUADRATURE_BLOCK])
+        weighted = half * weights[start : start + QUADRATURE_BLOCK]
+        for powers, (i, j) in MONOMIAL_PRODUCTS.items():
+            table[powers] += np.einsum("n,n->", weighted[i], half[j])
+    volume, second = table[0, 0, 0] / 3.0, (table[2, 0, 0] + table[0, 2, 0] + table[0, 0, 2]) / 5.0
+    size = np.sqrt(abs(second / volume))  # facets that overlap may leave either negative
+    order = np.indices(table.shape).sum(axis=0)
+    return table / (order + 3.0) / size**order, volume, scale * size
+
+
+def _monomials(places) -> NDArray[np.float64]:
+    """(20, N) products of coordinates (3, N) up to half the order."""
+    half = np.ones((len(HALF_ORDER_MONOMIALS), places.shape[1]))
+    for row, (before, axis) in zip(half[1:], MONOMIAL_FACTORS):
+        np.multiply(half[before], places[axis], out=row)
+    return half
+
+
+def _quadrature(points, facets) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Nodes (3, N) and weights (N,) of the surface, each weight times the distance of its facet's plane.
+
+    Of points (3, V) and facets (3, F).
+    """
+    a, b, c = (points[:, corner] for corner in facets)
+    ab, bc, ca = b - a, c - b, a - c
+    flux = 0.5 * vectors.dot_columns(a, vectors.cross_columns(ca, ab))
+    extent = np.abs([ab, bc, ca]).max(axis=(0, 1))
+    large, small = extent >= MIDDLE_FACET_SIZE, extent < SMALL_FACET_SIZE
+    by_nodes = ((large, _sixth_order), (~(large | small), _fourth_order))
+    rules = [
+        _interior_rule([p[:, some] for p in (a, b, c)], flux[some], *rule())
+        for some, rule in by_nodes
+        if some.any()
+    ]
+    if small.any():
+        rules.append(_second_order(points, facets[:, small], flux[small]))
+    nodes, weights = zip(*rules)
+    return np.concatenate(nodes, axis=1), np.concatenate(weights)
+
+
+def _interior_rule(corners, flux, barycentric, shares) -> Any:
+    """Nodes and weights of a rule whose nodes are inside each facet."""
+    i, j, k = barycentric.T[:, :, None]
+    a, b, c = (corner[:, None] for corner in corners)
+    return (i * a + j * b + k * c).reshape(3, -1), (shares[:, None] * flux).ravel()
+
+
+@cache
+def _sixth_order() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(16, 3) and (16,) Gauss's rule on the square, folded to triangles."""
+    x, w = np.polynomial.legendre.leggauss(4)
+    u, v = (g.ravel() for g in np.meshgrid(0.5 * (x + 1.0), 0.5 * (x + 1.0), indexing="ij"))
+    shares = 0.5 * np.outer(w, w).ravel() * (1.0 - u)
+    barycentric = np.column_stack([u, v * (1.0 - u), (1.0 - u) * (1.0 - v)])
+    return check.frozen(barycentric), check.frozen(shares)
+
+
+@cache
+def _fourth_order() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(6, 3) and (6,) rule of six nodes.
+
+    G. R. Cowper, "Gaussian quadrature formulas for triangles", Int. J. Numer. Methods Eng. 7(3), 1973.
+    """
+    root, sign = np.sqrt(10.0), np.array([1.0, -1.0])
+    near = (8.0 - root + sign * np.sqrt(38.0 - 44.0 * np.sqrt(0.4))) / 18.0
+    shares = (620.0 + sign * np.sqrt(213125.0 - 53320.0 * root)) / 3720.0
+    barycentric = near[:, None, None] + (1.0 - 3.0 * near[:, None, None]) * np.eye(3)
+    return check.frozen(barycentric.reshape(-1, 3)), check.frozen(np.repeat(shares, 3))
+
+
+def _second_order(points, facets, flux) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Exact to order two: three quarters at the centroid, the rest at the corners."""
+    a, b, c = (points[:, corner] for corner in facets)
+    shared = np.bincount(facets.ravel(), np.tile(flux / 12.0, 3))
+    used = np.flatnonzero(shared)
+    nodes = np.concatenate([(a + b + c) / 3.0, points[:, used]], axis=1)
+    return nodes, np.concatenate([0.75 * flux, shared[used]])
+
+
+@cache
+def _half_sphere(count) -> NDArray[np.float64]:
+    """(count, 3) directions spread over half the sphere."""
+    k = np.arange(count) + 0.5
+    z, turn = k / count, np.pi * (1.0 + np.sqrt(5.0)) * k
+    r = np.sqrt(1.0 - z * z)
+    return check.frozen(np.column_stack([r * np.cos(turn), r * np.sin(turn), z]))

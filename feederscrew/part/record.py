@@ -1,6 +1,7 @@
 """What a part is, in SI units."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -49,7 +50,7 @@ class Part(ReadableRecord):
     file_sha256: str | None = None  # of the file's bytes; None: as ``sha256``
 
     @property
-    def inputs(self):
+    def inputs(self) -> Any:
         """The sha256 of each file it was read from, by its path."""
         named = {} if self.names is None else {self.names.source: self.names.sha256}
         return {self.source: self.file_sha256 or self.sha256} | named

@@ -16,7 +16,7 @@ from feederscrew.resting.rules.recommended import LAUNCH, Recommended, launched
 from feederscrew.tooling.devices.orientation_names import place
 
 if TYPE_CHECKING:
-    from feederscrew.dropping.plate.arrival import Arrival
+    from feederscrew.dropping.arrival import Arrival
 
 UNDECIDED = "the shares at the track's entry are undecided: {}"
 STOPPED = "the parts on the floor were stopped after {}"
@@ -55,9 +55,9 @@ def arrived(aspects: Aspects, arrival: "Arrival", seed: int) -> Aspects:
 
 def too_long(aspects: Aspects, bowl: Bowl) -> bool:
     """Whether a part would take more steps on the floor of a bowl than one is followed for."""
-    from feederscrew.dropping.plate.arrival import MOST_STEPS, steps_needed
+    from feederscrew.dropping.arrival import MAX_ARRIVAL_STEPS, steps_needed
 
-    return aspects.ground is not None and steps_needed(aspects.ground.hull, bowl) > MOST_STEPS
+    return aspects.ground is not None and steps_needed(aspects.ground.hull, bowl) > MAX_ARRIVAL_STEPS
 
 
 def not_fed(aspects: Aspects) -> Aspects:

@@ -63,7 +63,7 @@ class Solution:
     def order(self) -> tuple[int, bool, float]:
         """Sorts the gentle ones first: regime, one velocity before several, softest impact."""
         order = self.answer
-        several = order.high - order.low > answer.COEXIST * order.speed
+        several = order.high - order.low > answer.COEXISTING_VELOCITY_GAP * order.speed
         return REGIMES_BY_GENTLENESS.index(order.regime), several, order.hardest_impact
 
 

@@ -14,11 +14,10 @@ from feederscrew.conveying import answer
 from feederscrew.conveying.hop import hop
 from feederscrew.errors import ConfigError
 from feederscrew.geometry.polygons import convex, cross, inset, sides
-from feederscrew.mechanics import limits
+from feederscrew.mechanics import limits, track_balance
 from feederscrew.mechanics.cycle import phases
-from feederscrew.mechanics.floor.balance import HOP, TIP
-from feederscrew.mechanics.track import balance
-from feederscrew.mechanics.track.frame import Seat, seat
+from feederscrew.mechanics.floor_balance import HOP, TIP
+from feederscrew.mechanics.track_balance import Seat, seat
 from feederscrew.tooling import footprints
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.falling import surely_gone
@@ -140,14 +139,14 @@ def over_period(place: Seat, bowl: Bowl) -> tuple[np.ndarray, np.ndarray]:
         Force of the track over the mass, and where it acts from the foot of the centre of mass.
     """
     phase = phases(ROCKING_STEPS)
-    motions = [balance.motion(place, bowl, phase, np.full(ROCKING_STEPS, sense)) for sense in SENSES]
+    motions = [track_balance.motion(place, bowl, phase, np.full(ROCKING_STEPS, sense)) for sense in SENSES]
     senses = _senses(motions, 1.0 / bowl.drive.frequency / ROCKING_STEPS)
     rows = np.arange(ROCKING_STEPS)
     force = np.array([motion.normal_force for motion in motions])[senses, rows] / place.mass
     return force, np.nan_to_num(np.array([motion.offset for motion in motions])[senses, rows])
 
 
-def _senses(motions: list[balance.TrackMotion], step: float) -> np.ndarray:
+def _senses(motions: list[track_balance.TrackMotion], step: float) -> np.ndarray:
     """How the part slides at each instant of a settled period, (INSTANTS,) int: places in ``SENSES``."""
     gains = [step * motion.acceleration[:, 0] for motion in motions]
     loose, speed = motions[0].slides, 0.0
@@ -431,10 +430,12 @@ def _tips_over(orientation: Orientation, bowl: Bowl) -> tuple[bool, float, float
     ):
         return _NO_TIPPING
     place, phase = seat_in_groove(orientation, bowl.track.bank), phases(TIPPING_PHASES)
-    rest = balance.motion(place, bowl, phase)
+    rest = track_balance.motion(place, bowl, phase)
     if (rest.state == HOP).any() or not (rest.state == TIP).any():
         return _NO_TIPPING
-    motions = [rest] + [balance.motion(place, bowl, phase, np.full(TIPPING_PHASES, s)) for s in (-1.0, 1.0)]
+    motions = [rest] + [
+        track_balance.motion(place, bowl, phase, np.full(TIPPING_PHASES, s)) for s in (-1.0, 1.0)
+    ]
     force = np.concatenate([motion.normal_force for motion in motions])
     offset = np.concatenate([motion.offset for motion in motions])
     moment = force * np.maximum(-inset(place.contact, offset), 0.0)
@@ -554,7 +555,7 @@ def _steady(devices: Sequence[Device], orientation: Orientation, bowl: Bowl, mar
     if orientation.kind != FLAT_KIND and rolls_across(orientation):
         return not any(_takes(device, orientation) for device in _touched(devices))
     place = seat_in_groove(orientation, bowl.track.bank)
-    if (balance.motion(place, bowl, phases(STEADINESS_PHASES)).state == HOP).any():
+    if (track_balance.motion(place, bowl, phases(STEADINESS_PHASES)).state == HOP).any():
         return True
     force, offset = over_period(place, bowl)
     for device in _touched(devices):

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew.conveying import answer, sensitivity
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError, FeederError
-from feederscrew.mechanics.wall.stable_headings import headings, stable_row
+from feederscrew.mechanics.headings import headings, stable_row
 from feederscrew.rates.stream import Orientations
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.posture import posture

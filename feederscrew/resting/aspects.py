@@ -1,4 +1,4 @@
-"""The resting aspects of a part: equal ones joined into classes, named and ranked.
+"""The resting aspects of a part: equal ones joined into classes, named and ranked; their forms in words.
 
 Equal faces are those that a rotation symmetry of the part carries into each other. Names are letters by
 rank, or those a user has given, matched by direction. Facets on which the part stands, but which are merged
@@ -18,17 +18,115 @@ from feederscrew.errors import ConfigError
 from feederscrew.geometry import compiled, vectors
 from feederscrew.geometry.graphs import component_of
 from feederscrew.part.hull import Hull, convex_hull
-from feederscrew.part.moments import Moments
+from feederscrew.part.mass import Moments
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.basins.landscape import SMOOTH_ANGLE, Landscape, angle, landscape
-from feederscrew.resting.faces import Face, stable_faces, unstable_faces
-from feederscrew.resting.flats import ONE_PLANE
-from feederscrew.resting.forms import FLAT, LEVEL_SLOPE, form_remarks, forms
-from feederscrew.resting.rules import published, recommended, registry, surface
-from feederscrew.resting.rules.quantities import ClassQuantities
+from feederscrew.resting import exact_tumbling, walks
+from feederscrew.resting.faces import EQUAL_HEIGHT_SHARE, ONE_PLANE, Face, stable_faces, unstable_faces
+from feederscrew.resting.landscape import SMOOTH_ANGLE, Landscape, angle, landscape
+from feederscrew.resting.rules import formulas, recommended, registry
 from feederscrew.resting.rules.recommended import Recommended
-from feederscrew.resting.tumbling import by_class, walk
+from feederscrew.resting.rules.registry import ClassQuantities
 from feederscrew.units import MM
+
+FLAT, CYLINDER, CONE = "flat", "cylinder", "cone"
+BALL, OFF_CENTRE, WITH_A_FLAT = "ball", "off-centre ball", "ball with a flat"
+ROLLING_POSTURE = "on side (rolls)"
+SAME_SIZE = 0.02  # share by which two sizes of a part may differ and count as one, for a posture's words
+OPPOSITE = -0.9999  # cosine between the normals of two faces that lie back to back
+LEVEL_SLOPE = 1e-3  # [1] slope of an axis that counts as level: a file's noise on a short cylinder
+BALL_REMARK = "the part is a ball: it rests on no aspect, its one class rolls in every direction"
+CENTRED_BALL_REMARK = (
+    "a rolling class is the side of a ball about the centre of mass: it rolls in every direction"
+)
+ROCKING_REMARK = (
+    "a rolling class is the side of {}, whose middle is not the centre of mass: it rests on one point of it"
+    " and rocks in every direction"
+)
+
+
+def forms(groups, hull) -> list[str]:
+    """Return what each class is by its form.
+
+    Parameters
+    ----------
+    groups : sequence of list of Face
+        The faces of each class.
+    hull : Hull
+
+    Returns
+    -------
+    list of str
+        'flat'; 'cylinder', which rolls straight; 'cone', which rolls in a circle, as parts on two unlike
+        circles do; 'ball', about the centre of mass; 'off-centre ball' and 'ball with a flat', which rest on
+        one point of a ball's side and rock: of a part that has no other class, or that has flats as well.
+    """
+    flats = any(group[0].kind == FLAT for group in groups)
+    return [_form(group[0], hull, flats) for group in groups]
+
+
+def _form(face, hull, flats) -> str:
+    if face.kind == FLAT:
+        return FLAT
+    if np.isfinite(face.axis).all():
+        return CYLINDER if abs(vectors.dot(face.axis, face.normal)) < LEVEL_SLOPE else CONE
+    if np.ptp(hull.heights[face.triangles]) < EQUAL_HEIGHT_SHARE * face.height:
+        return BALL
+    return WITH_A_FLAT if flats else OFF_CENTRE
+
+
+def postures(normals, contact_areas, kinds, hull) -> list[str]:
+    """Return in words how a part lies on each class: its height there beside its least and greatest height.
+
+    Parameters
+    ----------
+    normals : (A, 3) float [1]
+        Outward normal of the side that is down.
+    contact_areas : (A,) float [m2]
+    kinds : sequence of str
+        'flat' or 'rolling'.
+    hull : Hull
+
+    Returns
+    -------
+    list of str
+        'flat', 'on end' or 'on side'. A flat class adds that the face that is down is the larger or smaller
+        of two back to back, or the largest of the part; a rolling class says that it rolls.
+    """
+    reach = (hull.vertices[:, None, :] * normals[None, :, :]).sum(axis=-1)  # (V, A)
+    sizes = np.ptp(reach, axis=0)
+    return [
+        _posture(row, sizes, contact_areas, normals, hull.radius) if kinds[row] == FLAT else ROLLING_POSTURE
+        for row in range(len(normals))
+    ]
+
+
+def _posture(row, sizes, areas, normals, radius) -> str:
+    """The words of one flat class."""
+    if np.ptp(sizes) <= SAME_SIZE * sizes.max():
+        words = "flat" if sizes[row] < radius else "on a face"
+    elif sizes[row] <= sizes.min() * (1.0 + SAME_SIZE):
+        words = "flat"
+    else:
+        words = "on end" if sizes[row] >= sizes.max() * (1.0 - SAME_SIZE) else "on side"
+    opposite = np.flatnonzero((normals * normals[row]).sum(axis=-1) < OPPOSITE)
+    unlike = opposite[np.abs(areas[opposite] - areas[row]) > SAME_SIZE * areas[row]]
+    if len(unlike):
+        return f"{words} ({'larger' if areas[row] > areas[unlike[0]] else 'smaller'} face)"
+    if areas[row] >= areas.max() * (1.0 - SAME_SIZE) and np.ptp(areas) > SAME_SIZE * areas.max():
+        return f"{words} (largest face)"
+    return words
+
+
+def form_remarks(forms_of_classes) -> tuple[str, ...]:
+    """Say of forms, (A,) str, what a user must know, a sentence each."""
+    if list(forms_of_classes) == [BALL]:
+        return (BALL_REMARK,)
+    rocks = dict.fromkeys(form for form in forms_of_classes if form in (OFF_CENTRE, WITH_A_FLAT))
+    listed = (CENTRED_BALL_REMARK,) if BALL in forms_of_classes else ()
+    return listed + tuple(
+        ROCKING_REMARK.format(f"{'an' if form[0] == 'o' else 'a'} {form}") for form in rocks
+    )
+
 
 CONVEX = 1e-6  # [1] of the hull's volume: a smaller difference breaks no symmetry
 CHANCE_TIE = 1e-4  # probabilities that differ by less of themselves are equal but for rounding
@@ -66,7 +164,7 @@ class Aspects(ReadableRecord):
     tip_angles: np.ndarray | None = None  # (A,) [rad] of a floor that tips a part that does not slide
     recommended: Recommended | None = None  # the one answer to take; None for a card
     closed: Recommended | None = None  # the closed form nearest to it
-    ground: by_class.Ground | None = None  # faces, basins and barriers behind the rows
+    ground: exact_tumbling.Ground | None = None  # faces, basins and barriers behind the rows
     complete: dict[str, np.ndarray] = field(default_factory=dict)  # (A,) [1] by published rule, all facets
     warnings: tuple[str, ...] = ()
 
@@ -155,8 +253,8 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
             *shallow_remark(shallow, names, *(_in_order(of, order) for of in (chances, complete))),
         ),
     )
-    ground = by_class.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
-    weighted = surface.EXPONENTS["hard"] if exponent is None else exponent
+    ground = exact_tumbling.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
+    weighted = formulas.EXPONENTS["hard"] if exponent is None else exponent
     return _answered(_tumbled(named, ground, part, weighted), launch, exponent)
 
 
@@ -164,12 +262,12 @@ def waits(part):
     """Return whether `find` must compile first: on a machine's first large hull, for some seconds."""
     if part.hull is None:
         return False
-    return compiled.due(walk.trace_saddles, 3 * len(part.hull.triangles))
+    return compiled.due(walks.trace_saddles, 3 * len(part.hull.triangles))
 
 
 def _tumbled(named, ground, part, exponent) -> Aspects:
     """The record with all that exact tumbling adds to it."""
-    more = by_class.exact(ground, part, named, exponent)
+    more = exact_tumbling.exact(ground, part, named, exponent)
     doubts = tuple(f"exact tumbling is doubtful: {doubt}" for doubt in more.doubts)
     return replace(
         named,
@@ -184,7 +282,7 @@ def _tumbled(named, ground, part, exponent) -> Aspects:
 
 def _answered(aspects, launch, exponent) -> Aspects:
     """The record with the closed form that is recommended for a launch, or for the user's own surface."""
-    own = None if exponent is None else surface.named(exponent)
+    own = None if exponent is None else formulas.named(exponent)
     form = recommended.closed_form(aspects.probabilities, aspects.stable, aspects.kinds, launch, own)
     return replace(aspects, recommended=form, closed=form)
 
@@ -263,7 +361,7 @@ def _quantities(table, as_published) -> ClassQuantities:
 def _normalised(quantities, stable) -> dict[Any, Any]:
     """Probabilities by every rule that weighs classes."""
     weights = registry.weights(quantities)
-    return {rule: published.normalised(weight, stable) for rule, weight in weights.items()}
+    return {rule: formulas.normalised(weight, stable) for rule, weight in weights.items()}
 
 
 def _ranked(table, chance, part, moments) -> NDArray[np.int64]:
@@ -693,9 +791,9 @@ def published_changes(
         once = np.zeros_like(ones)
         once[first] = 1
     more = {
-        "pmi": published.pmi(once, moments, shallow.heights),
-        "csa": published.csa(ones, shallow.solid_angles, shallow.heights),
-        "stability": published.stability(ones, shallow.areas, shallow.heights),
+        "pmi": formulas.pmi(once, moments, shallow.heights),
+        "csa": formulas.csa(ones, shallow.solid_angles, shallow.heights),
+        "stability": formulas.stability(ones, shallow.areas, shallow.heights),
     }
     changed = {}
     for rule in PUBLISHED_RULES:

@@ -6,23 +6,69 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from feederscrew.geometry import groups, vectors
-from feederscrew.geometry.graphs import component_of, components
-from feederscrew.resting import flats
-from feederscrew.resting.basins.landscape import (
-    GENTLE_COSINE,
-    RIPPLE_OF_RADIUS,
-    SMOOTH_ANGLE,
-    angle,
-    edges,
-    gentle,
+from feederscrew.geometry import vectors
+from feederscrew.geometry.graphs import (
+    component_of,
+    components,
+    group_starts,
+    group_sums,
+    join_groups,
+    split_groups,
 )
+from feederscrew.resting.landscape import GENTLE_COSINE, RIPPLE_OF_RADIUS, SMOOTH_ANGLE, angle, edges, gentle
+
+ONE_PLANE = np.radians(0.2)  # between triangles of one facet
+LARGER = 1.5  # times the bend round most of a side: a facet between sharper bends was not cut by chance
+LONE_BEND_FACTOR = 1.2  # times the bend that 95 % of a side do not exceed: such a facet is alone
+MAJORITY_SHARE = 0.95  # of a side, by area
+
+
+def intended_flats(hull, basins) -> NDArray[np.bool_]:
+    """Return which sinks lie on facets much wider than the others of their smooth side.
+
+    Parameters
+    ----------
+    hull : Hull
+    basins : Landscape
+
+    Returns
+    -------
+    (B,) bool
+        Where even the gentlest bend round the sink's facet is ``LARGER`` than that round half of the side, by
+        area, or ``LONE_BEND_FACTOR`` of that round ``MAJORITY_SHARE`` of it: a facet of a tessellated ball or
+        cylinder is not, a flat cut into it is.
+    """
+    first, second = basins.pairs.T
+    bends = angle(hull.normals[first], hull.normals[second])
+    facets = component_of(basins.pairs[bends < ONE_PLANE], len(hull.triangles))
+    gentlest = np.full(facets.max() + 1, np.inf)
+    border = facets[first] != facets[second]
+    for side in (first, second):
+        np.minimum.at(gentlest, facets[side[border]], bends[border])
+    sides = component_of(basins.pairs[bends < SMOOTH_ANGLE], len(hull.triangles))
+    about = gentlest[facets]
+    half, most = (_quantiles(about, hull.areas, sides, share) for share in (0.5, MAJORITY_SHARE))
+    limit = np.minimum(LARGER * half, LONE_BEND_FACTOR * most)
+    return (about > limit[sides])[basins.sinks] & np.isfinite(about[basins.sinks])
+
+
+def _quantiles(values, weights, owners, share) -> NDArray[np.float64]:
+    """(N,) quantiles of (T,) values by weight, of each owner."""
+    order = np.lexsort((values, owners))
+    mass = np.cumsum(weights[order])
+    last = np.flatnonzero(np.append(np.diff(owners[order]) != 0, True))
+    whole = mass[last]
+    begun = np.concatenate([[0.0], whole[:-1]])
+    return values[order][np.searchsorted(mass, begun + share * (whole - begun))]
+
 
 MAX_RIPPLE_SHARE = (
     1.0 / np.cos(0.5 * SMOOTH_ANGLE) - 1.0
 )  # the ripple a smooth edge leaves at most, as a share of the height
 CURVED = np.sinc(np.radians(15.0) / np.pi)  # mean resultant of normals over an arc of 30 deg; below: no plane
-EQUAL = 5e-3  # of the height: strips of one curve about the centre of mass are as high as each other
+EQUAL_HEIGHT_SHARE = (
+    5e-3  # of the height: strips of one curve about the centre of mass are as high as each other
+)
 MAX_CONE_VARIANCE = (
     1e-2  # of their variance along the curve: how far normals of a rocker may leave their plane or cone
 )
@@ -113,14 +159,14 @@ def _coarse_curves(hull, basins, members) -> NDArray[np.int64]:
     place, sinks = np.searchsorted(basins.sinks, basins.ripples), basins.ripples
     levels = hull.heights[sinks]
     step = np.abs(np.diff(levels, axis=1))[:, 0] / levels.max(axis=1, initial=0.0)  # whichever comes first
-    flat_pairs = flats.intended_flats(hull, basins)[place].any(axis=1)
+    flat_pairs = intended_flats(hull, basins)[place].any(axis=1)
     strips = (
         ~flat_pairs
         & (basins.rises < MAX_RIPPLE_SHARE)
         & (basins.bends < SMOOTH_ANGLE)
-        & (step < EQUAL + basins.bends**2)
+        & (step < EQUAL_HEIGHT_SHARE + basins.bends**2)
     )
-    level = ~flat_pairs & (step < EQUAL)
+    level = ~flat_pairs & (step < EQUAL_HEIGHT_SHARE)
     labels = component_of(place[level & strips], len(basins.sinks))
     for label in np.flatnonzero(np.bincount(labels) > 1):
         group = np.flatnonzero(labels == label)
@@ -155,14 +201,14 @@ def _strips(hull, basins, group, sides) -> tuple[NDArray[np.int64], list[NDArray
     at = np.searchsorted(sinks, basins.basins)
     triangles = np.lexsort((at, group[at]))
     owners, heights = group[at][triangles], hull.heights
-    lowest = sinks[np.lexsort((heights[sinks], group))[groups.starts(np.sort(group), count)]]
+    lowest = sinks[np.lexsort((heights[sinks], group))[group_starts(np.sort(group), count)]]
     level = (
         heights[triangles] <= heights[basins.basins[triangles]] * (1.0 + 1e-9) + FLATNESS * hull.radius / 2
     )
     on_side = sides[triangles] == sides[lowest][owners]
-    strips = groups.split(triangles[level], owners[level], count)
-    aside = groups.split(triangles[on_side], owners[on_side], count)
-    rocking, own = _may_roll(hull, aside), groups.split(triangles, owners, count)
+    strips = split_groups(triangles[level], owners[level], count)
+    aside = split_groups(triangles[on_side], owners[on_side], count)
+    rocking, own = _may_roll(hull, aside), split_groups(triangles, owners, count)
     for k in np.flatnonzero(rocking):
         rocking[k] = _rocks(hull, aside[k], lowest[k])
         strips[k] = aside[k] if rocking[k] else strips[k]
@@ -224,7 +270,7 @@ def _round(hull, triangles) -> bool:
     weights, height = np.sqrt(hull.areas[triangles]), hull.heights[triangles]
     around = np.column_stack([np.ones(len(triangles)), hull.normals[triangles]])
     off = vectors.misfit(around * weights[:, None], height * weights)
-    return bool(vectors.length(off) < EQUAL * height.mean() * vectors.length(weights))
+    return bool(vectors.length(off) < EQUAL_HEIGHT_SHARE * height.mean() * vectors.length(weights))
 
 
 def _described(hull, triangles, lowest, stable) -> list[Face]:
@@ -235,14 +281,14 @@ def _described(hull, triangles, lowest, stable) -> list[Face]:
     some = np.flatnonzero(curved)
     for k, foot in zip(some, planes(hull, lowest[some], [triangles[k] for k in some], of_curves=True)):
         feet[k] = foot
-    standing = groups.joined(feet)
+    standing = join_groups(feet)
     normals, heights, roughness = _seats(hull, *standing, count)
     polygons = contact_outlines(hull.vertices, *_corners(hull, *standing), normals)
-    members, owners = groups.joined(triangles)
-    middles = groups.sums(
+    members, owners = join_groups(triangles)
+    middles = group_sums(
         hull.areas[members] * np.ascontiguousarray(hull.normals.T)[:, members], owners, count
     )
-    areas, angles = (groups.sums(of[members], owners, count) for of in (hull.areas, hull.solid_angles))
+    areas, angles = (group_sums(of[members], owners, count) for of in (hull.areas, hull.solid_angles))
     axes = np.full((count, 3), np.nan)
     for k in some:
         axes[k] = _axis(hull.normals[triangles[k]], hull.areas[triangles[k]], normals[k])
@@ -270,13 +316,13 @@ def _seats(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """(F, 3) normals, (F,) [m] heights and roughness of the triangles that F faces stand on."""
     weights = np.maximum(hull.areas[triangles], SMALLEST_NORMAL)
-    whole = groups.sums(weights, owners, count)
-    normals = vectors.unit(groups.sums(weights * hull.normals[triangles].T, owners, count))
+    whole = group_sums(weights, owners, count)
+    normals = vectors.unit(group_sums(weights * hull.normals[triangles].T, owners, count))
     above = vectors.dot(hull.vertices[hull.triangles[triangles]], normals[owners][:, None])
-    middle = groups.sums(above.sum(axis=1), owners, count) / (3 * np.bincount(owners, minlength=count))
+    middle = group_sums(above.sum(axis=1), owners, count) / (3 * np.bincount(owners, minlength=count))
     off = np.abs(above - middle[owners][:, None]).max(axis=1)
     heights, roughness = (
-        groups.sums(depths * weights, owners, count) / whole for depths in (hull.heights[triangles], off)
+        group_sums(depths * weights, owners, count) / whole for depths in (hull.heights[triangles], off)
     )
     return normals, heights, roughness
 
@@ -308,11 +354,11 @@ def _curved(hull, triangles) -> NDArray[np.bool_]:
     """(F,) whether the triangles of each face, a list of F arrays, are strips of a curve and not a plane."""
     if not len(triangles):
         return np.empty(0, dtype=bool)
-    (members, owners), count = groups.joined(triangles), len(triangles)
+    (members, owners), count = join_groups(triangles), len(triangles)
     areas = hull.areas[members]
-    mean = groups.sums(areas * np.ascontiguousarray(hull.normals.T)[:, members], owners, count)
+    mean = group_sums(areas * np.ascontiguousarray(hull.normals.T)[:, members], owners, count)
     several = np.bincount(owners, minlength=count) > 2
-    bent = several & (vectors.norm(mean) < CURVED * groups.sums(areas, owners, count))
+    bent = several & (vectors.norm(mean) < CURVED * group_sums(areas, owners, count))
     for k in np.flatnonzero(bent):
         bent[k] = _even(hull.normals[triangles[k]], hull.areas[triangles[k]]) > MAX_BEND_STRIPS
     return bent
@@ -354,7 +400,7 @@ def planes(hull, sinks, members, of_curves=False) -> list[Any]:
     if not len(sinks):
         return []
     fewest = [1 if of_curves and _is_fan(hull, each) else 2 for each in members]  # triangles of a strip
-    triangles, owners = groups.joined([np.sort(each) for each in members])
+    triangles, owners = join_groups([np.sort(each) for each in members])
     depth = _plane_depth(hull, sinks, triangles, owners)
     lean = vectors.dot(hull.normals[triangles], hull.normals[sinks][owners])
     near = (depth < FLATNESS * hull.radius) & (lean > GENTLE_COSINE)
@@ -362,12 +408,12 @@ def planes(hull, sinks, members, of_curves=False) -> list[Any]:
     if not tight.all():
         in_plane = tight | _in_the_tightest(hull, triangles, owners, tight, np.array(fewest), of_curves)
         triangles, owners = triangles[in_plane], owners[in_plane]
-    return groups.split(triangles, owners, len(sinks))
+    return split_groups(triangles, owners, len(sinks))
 
 
 def _in_the_tightest(hull, members, owners, tight, fewest, of_curves) -> NDArray[np.bool_]:
     """(N,) which members lie in the tightest plane that holds enough, about the largest triangle of each."""
-    first, areas = groups.starts(owners, len(fewest)), hull.areas[members]
+    first, areas = group_starts(owners, len(fewest)), hull.areas[members]
     own = np.where(tight, areas, -1.0) if of_curves else areas
     largest = members[np.lexsort((-own, owners))[first]]
     inside = _plane_depth(hull, largest, members, owners) <= hull.radius * TIGHTEST_FIRST[:, None]
@@ -420,10 +466,10 @@ def contact_outlines(vertices, corners, owners, normals) -> list[NDArray[np.floa
     """
     points, count = vertices[corners], len(normals)
     x, y = (vectors.dot(points, axes[owners]) for axes in _plane_axes(normals))
-    u, v = (along - (groups.sums(along, owners, count) / np.bincount(owners))[owners] for along in (x, y))
+    u, v = (along - (group_sums(along, owners, count) / np.bincount(owners))[owners] for along in (x, y))
     around = np.lexsort((np.arctan2(v, u), owners))
     convex = _turn_at_every_corner(x[around], y[around], owners, count)
-    turned, as_given = (groups.split(of, owners, count) for of in (points[around], points))
+    turned, as_given = (split_groups(of, owners, count) for of in (points[around], points))
     return [
         polygon if sound else _of_extreme_points(own, normal)
         for polygon, sound, own, normal in zip(turned, convex, as_given, normals)
@@ -451,7 +497,7 @@ def _plane_axes(normals) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 def _turn_at_every_corner(x, y, owners, count) -> NDArray[np.bool_]:
     """(F,) whether polygons of corners (N,) and (N,) turn left at every one, none of them on a line."""
-    first = groups.starts(owners, count)
+    first = group_starts(owners, count)
     before = np.arange(len(x)) - 1
     before[first] = np.append(first[1:], len(x)) - 1
     u, v = x - x[before], y - y[before]

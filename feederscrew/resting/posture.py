@@ -14,9 +14,10 @@ from feederscrew.geometry.polygons import centroid, outline, sides, surrounds
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
+from feederscrew.resting.aspects import find as find_aspects
 
 COINCIDE = 1e-5  # of the part's size: a contact centroid nearer to the foot gives no direction
-TOUCHING = 2e-4  # of the part's size: what is lower than that over the floor touches it
+TOUCHING_SHARE = 2e-4  # of the part's size: what is lower than that over the floor touches it
 SIDE_TOLERANCE = 1e-6  # of the part's size: sides whose lengths differ by less are equally long
 
 
@@ -64,7 +65,7 @@ class Posture(ReadableRecord):
         part stands on the whole polygon then.
         """
         points = self.surface
-        low = points[:, 2] < TOUCHING * np.ptp(self.outline, axis=0).max()
+        low = points[:, 2] < TOUCHING_SHARE * np.ptp(self.outline, axis=0).max()
         return low & surrounds(points[low, :2])
 
     @cached_property
@@ -233,3 +234,40 @@ def _analysis(part, block, name) -> dict[Any, Any]:
     """A card's data of the floor or the track, if they are of this aspect."""
     printed = (part.printed or {}).get(block, {})
     return dict(printed) if printed.get("aspect") == name else {}
+
+
+LIKELIEST, LISTED = "the likeliest ({})", "the first of the card"
+
+
+def standing(part, aspect, block, answered=find_aspects) -> tuple[Any, ...]:
+    """Return the part on an aspect.
+
+    Parameters
+    ----------
+    part : Part
+    aspect : str or None
+        Its name; None for the one that a card's block is of, else for the likeliest, of a card the first.
+    block : str
+        Of a part card: 'floor' or 'track'.
+    answered : function
+        From a part to its Aspects with the answer that says which is the likeliest; asked only for that.
+
+    Returns
+    -------
+    tuple of Posture, str or None
+        And why this aspect; None where it was asked for.
+
+    Raises
+    ------
+    FeederError
+        If there is no such aspect.
+    """
+    if aspect is not None:
+        return posture(part, find_aspects(part), aspect), None
+    analysed = (part.printed or {}).get(block, {}).get("aspect")
+    if analysed is not None:
+        return posture(part, find_aspects(part), analysed), f"the one of the card's {block} block"
+    answer = answered(part)
+    if answer.recommended is None:
+        return posture(part, answer, answer.names[0]), LISTED
+    return posture(part, answer, answer.likeliest), LIKELIEST.format(answer.recommended.rule)

@@ -47,7 +47,7 @@ class BowlSolid:
     def unbalance(self):
         """How its mass lies about the axis, over its underside: that lies on the leaves."""
         place = self.centre - [0.0, 0.0, self.plan.underside]
-        about = mass.shifted(self.tensor, self.mass, place)
+        about = mass.shift_inertia(self.tensor, self.mass, place)
         x, y, z = map(float, self.mass * place)
         return Unbalance(
             moment=(x, y, z),
@@ -85,7 +85,7 @@ class BowlSolid:
         if self.segments is None or self.segments.joined is None:
             return self
         vertices, faces = self.segments.joined
-        volume = float(mass.solid(vertices[faces]).volume)
+        volume = float(mass.integrate_solid(vertices[faces]).volume)
         return replace(self, vertices=vertices, faces=faces, volume=volume)
 
     @property
@@ -117,12 +117,12 @@ def body(plan):
     """
     whole, gates = pieces(plan)
     vertices, faces = whole_surface.mesh(facets.placed_as(whole, mirrored=plan.left, turned=plan.turned))
-    solid = mass.solid(vertices[faces])
+    solid = mass.integrate_solid(vertices[faces])
     extra = tuple(
         (name, *whole_surface.mesh(facets.placed_as(gate, mirrored=plan.left, turned=plan.turned)))
         for name, gate in gates
     )
-    total, centre, inertia = _weighed(plan, [solid, *(mass.solid(v[f]) for _, v, f in extra)])
+    total, centre, inertia = _weighed(plan, [solid, *(mass.integrate_solid(v[f]) for _, v, f in extra)])
     return BowlSolid(plan, vertices, faces, extra, float(solid.volume), total, inertia, centre)
 
 
@@ -143,14 +143,14 @@ def screwed(solid, weight):
     if solid.segments.joined is None:
         return solid
     vertices, faces = solid.segments.joined
-    bodies = [mass.solid(v[f]) for v, f in ((vertices, faces), *(gate[1:] for gate in solid.gates))]
+    bodies = [mass.integrate_solid(v[f]) for v, f in ((vertices, faces), *(gate[1:] for gate in solid.gates))]
     bare, middle, tensor = _weighed(solid.plan, bodies)
     at = solid.segments.screws
     total = bare + weight * len(at)
     centre = (bare * middle + weight * at.sum(axis=0)) / total
-    tensor = mass.shifted(tensor, bare, middle - centre)
+    tensor = mass.shift_inertia(tensor, bare, middle - centre)
     for item in at:
-        tensor = mass.shifted(tensor, weight, item - centre)
+        tensor = mass.shift_inertia(tensor, weight, item - centre)
     return replace(solid, mass=float(total), centre=centre, tensor=tensor)
 
 
@@ -161,7 +161,7 @@ def _weighed(plan, parts):
     total = float(sum(weights))
     centre = sum(w * part.centre for w, part in zip(weights, parts)) / total
     inertia = sum(
-        mass.shifted(density * part.inertia, w, part.centre - centre) for w, part in zip(weights, parts)
+        mass.shift_inertia(density * part.inertia, w, part.centre - centre) for w, part in zip(weights, parts)
     )
     return total, centre, inertia
 

@@ -13,11 +13,11 @@ from feederscrew import check, units
 from feederscrew.bowl import Bowl
 from feederscrew.bowl.reading import checked, find_key
 from feederscrew.bowl.schema import BOWL_KEYS, Key
-from feederscrew.dropping import conditions as condition_keys
+from feederscrew.dropping import launch_conditions as condition_keys
 from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.rules.surface import EXPONENTS
+from feederscrew.resting.rules.formulas import EXPONENTS
 from feederscrew.units import QuantityError, listed, quantity
 
 Setting: TypeAlias = str | float | None  # '2 mm', a number in SI units, a word; None: as the bowl has it
@@ -388,7 +388,7 @@ def surface(given: str | float | None) -> str | float | None:
 def _typed(name: str, value: Condition) -> str | None:
     if value is None or isinstance(value, str):
         return value
-    unit = SI[condition_keys.KEYS[name][0]]
+    unit = SI[condition_keys.CONDITION_KEYS[name][0]]
     ends: Sequence[Quantity] = value if isinstance(value, (tuple, list)) else (value,)
     return ":".join(
         end if isinstance(end, str) else f"{check.argument(name, end)!r} {unit}".strip() for end in ends

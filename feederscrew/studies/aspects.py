@@ -9,10 +9,10 @@ import numpy as np
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
+from feederscrew.resting.exact_tumbling import Transition, ground, transitions
 from feederscrew.resting.rules import recommended
+from feederscrew.resting.rules.formulas import EXPONENTS
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
-from feederscrew.resting.rules.surface import EXPONENTS
-from feederscrew.resting.tumbling.by_class import Transition, ground, transitions
 from feederscrew.running import OnCores
 from feederscrew.studies import arguments, simulation_cache
 

@@ -29,7 +29,7 @@ from feederscrew.machine.springs import (
 )
 from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, stroke
 from feederscrew.part.record import Part
-from feederscrew.part.smallness import small_part_remarks
+from feederscrew.part.size_limits import small_part_remarks
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import remark
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE

@@ -6,7 +6,7 @@ from os import PathLike
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.counts import count_rows, passed, profiles
+from feederscrew.resting.counts import count_files, profiles
 from feederscrew.resting.counts.calibration import Fit, fit_counts, fit_passes
 from feederscrew.studies import arguments, passages
 
@@ -17,7 +17,7 @@ class CalibrateStudy(ReadableRecord):
 
     part: Part
     aspects: Aspects
-    measured: profiles.Measured | passed.DeviceCounts
+    measured: profiles.Measured | profiles.DeviceCounts
     fits: tuple[Fit, ...]
 
 
@@ -42,11 +42,11 @@ def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
         they do not tell an exponent.
     """
     part, counts = arguments.a_part(part), arguments.a_file("counts", counts)
-    text, sha256 = count_rows.content(counts)
-    table, found = count_rows.parse(text, str(counts)), find(part)
-    if not passed.by_device(table):
+    text, sha256 = count_files.read_count_text(counts)
+    table, found = count_files.parse_count_sheet(text, str(counts)), find(part)
+    if not profiles.counts_by_device(table):
         measured = profiles.measured(table, str(counts), sha256, found.names)
         return CalibrateStudy(part, found, measured, tuple(fit_counts(part, found, measured)))
-    tested = passed.device_counts(table, str(counts), sha256)
+    tested = profiles.device_counts(table, str(counts), sha256)
     flow, _ = passages.counted_ways(part, found, passages.bowl_of(tested)[1], tested)
     return CalibrateStudy(part, found, tested, (fit_passes(part, found, tested, flow),))

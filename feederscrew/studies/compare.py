@@ -10,7 +10,7 @@ from feederscrew.part import load
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.counts import count_rows, deviation, passed, profiles
+from feederscrew.resting.counts import count_files, deviation, profiles
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.studies import arguments
 from feederscrew.studies.aspects import aspects as resting
@@ -145,10 +145,10 @@ def compare(
         Every fault of the file, each with its line.
     """
     part, counts = arguments.a_part(part), arguments.a_file("counts", counts)
-    text, sha256 = count_rows.content(counts)
-    table = count_rows.parse(text, str(counts))
-    if passed.by_device(table):
-        tested = passed.device_counts(table, str(counts), sha256)
+    text, sha256 = count_files.read_count_text(counts)
+    table = count_files.parse_count_sheet(text, str(counts))
+    if profiles.counts_by_device(table):
+        tested = profiles.device_counts(table, str(counts), sha256)
         return feeding(part, tested, launch=launch, progress=progress, before=before)
     found, rules = _answers(part, table.head, launch, as_published)
     names = [rule.name for rule in rules]
@@ -207,16 +207,16 @@ def _studies(
     path: str, launch: str | None, as_published: bool, inputs: dict[str, str]
 ) -> list[SetStudy | FeedingStudy]:
     """Every profile of one file against every answer; of a file by device one FeedingStudy."""
-    text, sha256 = count_rows.content(path)
-    table = count_rows.parse(text, path)
+    text, sha256 = count_files.read_count_text(path)
+    table = count_files.parse_count_sheet(text, path)
     if not table.head.part:
         raise FeederError(path, "does not say which part was counted", "add a line '# part: FILE' at its top")
     beside = Path(path).parent / table.head.part
     names = str(Path(path).parent / table.head.names) if table.head.names else None
     part = load(str(beside), names=names, **table.head.reading)
     inputs |= {path: sha256} | part.inputs
-    if passed.by_device(table):
-        fed = feeding(part, passed.device_counts(table, path, sha256), launch=launch)
+    if profiles.counts_by_device(table):
+        fed = feeding(part, profiles.device_counts(table, path, sha256), launch=launch)
         inputs |= fed.inputs
         return [fed]
     aspects, rules = _answers(part, table.head, launch, as_published)
@@ -226,12 +226,12 @@ def _studies(
 
 
 def _answers(
-    part: Part, head: count_rows.Head, launch: str | None, as_published: bool
+    part: Part, head: count_files.Head, launch: str | None, as_published: bool
 ) -> tuple[Aspects, tuple[profiles.AspectProfile, ...]]:
     """The aspects of a part with the answer for a launch, and the profiles of all rules and of that."""
     launch = launch or head.launch or LAUNCH
     aspects = resting(part, as_published=as_published, launch=launch).aspects
     rules = profiles.of_rules(aspects)
     if aspects.recommended is not None:
-        rules += (profiles.answer(aspects.recommended.p[aspects.stable]),)
+        rules += (profiles.answer_profile(aspects.recommended.p[aspects.stable]),)
     return aspects, rules

@@ -13,7 +13,7 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl.reading import KeyRange
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting
-from feederscrew.conveying import answer, phase, radius, sensitivity, trace
+from feederscrew.conveying import answer, sensitivity, steady
 from feederscrew.conveying.steady import STATUSES
 from feederscrew.geometry import grids
 from feederscrew.machine import checks
@@ -55,9 +55,9 @@ class ConveyStudy(ReadableRecord):
         """What is odd about the velocity, a tuple of at most one sentence."""
         return tuple(checks.speed_remark(self.answer.velocity, self.bowl.sizing))
 
-    def trace(self) -> trace.CycleTrace:
-        """Follow plate and part over one steady cycle, as a ``conveying.trace.CycleTrace``."""
-        return trace.trace(self.answer.setting)
+    def trace(self) -> steady.CycleTrace:
+        """Follow plate and part over one steady cycle, as a ``conveying.steady.CycleTrace``."""
+        return steady.trace(self.answer.setting)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,14 +78,14 @@ class ConveyCurve(ReadableRecord):
     def several(self) -> np.ndarray:
         """Return where a part has several steady velocities, (N,) bool."""
         spread, high = self.cells["high"] - self.cells["low"], np.abs(self.cells["high"])
-        return (self.statuses == "periodic") & (spread > answer.COEXIST * high)
+        return (self.statuses == "periodic") & (spread > answer.COEXISTING_VELOCITY_GAP * high)
 
 
 @dataclass(frozen=True, eq=False)
 class ConveyPhase(ReadableRecord):
     """What the phase of an elliptical drive does for a bowl."""
 
-    best: phase.BestPhase
+    best: answer.BestPhase
 
     @property
     def curve(self) -> ConveyCurve:
@@ -166,7 +166,7 @@ def along_radius(bowl: Bowl) -> ConveyCurve:
     ConfigError
         If the drive is elliptical.
     """
-    there = radius.inwards(bowl)
+    there = answer.inwards(bowl)
     axes = (
         grids.GridAxis("radius_mm", there.track.radius, MM),
         grids.GridAxis("vibration_angle_deg", there.drive.vibration_angle, DEG),
@@ -192,7 +192,7 @@ def best_phase(bowl: Bowl) -> ConveyPhase:
     ConfigError
         If the bowl cannot convey, or has no steady velocity at any phase.
     """
-    return ConveyPhase(phase.best_phase(bowl))
+    return ConveyPhase(answer.best_phase(bowl))
 
 
 def velocity_map(
@@ -216,7 +216,7 @@ def velocity_map(
     def function(one: np.ndarray, other: np.ndarray) -> dict[str, np.ndarray]:
         return answer.cells(bowls.swept(settings, {first.key.name: one, second.key.name: other}))
 
-    grid = grids.evaluate(grids.axis(first), grids.axis(second), function, answer.REGIMES)
+    grid = grids.evaluate(grids.axis(first), grids.axis(second), function, answer.SWEEP_REGIMES)
     bowl = bowls.record(settings)
-    line = radius.inwards(bowl) if drawn == "radius" else bowl
+    line = answer.inwards(bowl) if drawn == "radius" else bowl
     return ConveyMap((first, second), grid, line if drawn else None)

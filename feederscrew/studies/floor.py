@@ -8,13 +8,11 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.geometry.grids import Grid, evaluate, span
-from feederscrew.mechanics import limits
+from feederscrew.mechanics import floor_balance, limits, motion_maps
 from feederscrew.mechanics.cycle import Cycle
-from feederscrew.mechanics.floor import balance, cells
-from feederscrew.mechanics.standing import standing
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.posture import Posture
+from feederscrew.resting.posture import Posture, standing
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
 from feederscrew.studies.rate import likeliest
@@ -32,8 +30,8 @@ class FloorStudy(ReadableRecord):
     posture: Posture
     bowl: Bowl
     heading: float  # [rad] theta
-    now: balance.FloorMotion  # at the upper reversal, from rest
-    cycle: balance.FloorMotion  # over one settled period
+    now: floor_balance.FloorMotion  # at the upper reversal, from rest
+    cycle: floor_balance.FloorMotion  # over one settled period
     course: Cycle
     why: str | None = None  # this aspect; None where it was asked for
     printed: ClassVar[Any] = None  # the upper reversal by print, in `thesis.motion`
@@ -41,7 +39,7 @@ class FloorStudy(ReadableRecord):
     @property
     def stable_heading(self) -> float:
         """Return the heading [rad] that the part turns to while it slides; NaN for none."""
-        return balance.stable_heading(self.posture, self.bowl)
+        return floor_balance.stable_heading(self.posture, self.bowl)
 
     def cells(self, bowl: Bowl, heading: float | np.ndarray) -> dict[str, np.ndarray]:
         """Compute the upper reversal for arrays of bowl settings and headings.
@@ -56,9 +54,9 @@ class FloorStudy(ReadableRecord):
         Returns
         -------
         dict of str to array
-            As ``mechanics.floor.cells.cells`` names them.
+            As ``mechanics.motion_maps.floor_cells`` names them.
         """
-        return cells.cells(self.posture, bowl, heading)
+        return motion_maps.floor_cells(self.posture, bowl, heading)
 
     def over_angle_and_friction(self, count: int) -> Grid:
         """Compute the upper reversal over vibration angle and friction, as Figure 5-6.
@@ -75,11 +73,11 @@ class FloorStudy(ReadableRecord):
 
         def function(beta: Any, mu: Any) -> dict[str, np.ndarray]:
             varied = replace(self.bowl, drive=replace(self.bowl.drive, vibration_angle=beta))
-            return self.cells(balance.with_friction(varied, mu), self.heading)
+            return self.cells(floor_balance.with_friction(varied, mu), self.heading)
 
         angle = span("beta_deg", 0.0, TOP_ANGLE, count, np.pi / 180.0)
         friction = span("friction", 0.0, TOP_FRICTION, count)
-        return evaluate(angle, friction, function, cells.FLOOR_REGIMES)
+        return evaluate(angle, friction, function, motion_maps.FLOOR_REGIMES)
 
     def over_frequency_and_amplitude(self, count: int) -> Grid:
         """Compute the upper reversal over frequency [Hz] and amplitude [mm], as Figure 5-7.
@@ -102,7 +100,7 @@ class FloorStudy(ReadableRecord):
         widest = max(TOP_AMPLITUDE, ROOM * self.bowl.drive.amplitude)
         frequency = span("frequency_Hz", LEAST_FREQUENCY, highest, count)
         amplitude = span("amplitude_mm", 0.0, widest, count, 1e-3)
-        return evaluate(frequency, amplitude, function, cells.FLOOR_REGIMES)
+        return evaluate(frequency, amplitude, function, motion_maps.FLOOR_REGIMES)
 
     def alignment(self) -> tuple[np.ndarray, dict[str, np.ndarray]]:
         """Compute theta'' over every heading, a degree apart.
@@ -111,7 +109,7 @@ class FloorStudy(ReadableRecord):
         -------
         headings : (361,) float [rad]
         found : dict of str to (361,) float
-            As ``mechanics.floor.cells.cells`` names them.
+            As ``mechanics.motion_maps.floor_cells`` names them.
         """
         headings = np.radians(np.arange(-180.0, 181.0, 1.0))
         return headings, self.cells(self.bowl, headings)
@@ -153,13 +151,13 @@ def floor(
     angle = arguments.amount("heading", heading, "angle")
     limits.plain(bowl)
     stand, why = standing(part, aspect, "floor", partial(likeliest, bowl=bowl))
-    cycle, course = balance.over_cycle(stand, bowl, angle)
+    cycle, course = floor_balance.over_cycle(stand, bowl, angle)
     return FloorStudy(
         part=part,
         posture=stand,
         bowl=bowl,
         heading=angle,
-        now=balance.motion(stand, bowl, angle),
+        now=floor_balance.motion(stand, bowl, angle),
         cycle=cycle,
         course=course,
         why=why,

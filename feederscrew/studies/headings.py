@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Unpack
 
 from feederscrew.bowl.record import Bowl, Track
-from feederscrew.mechanics.wall import stable_headings as wall
+from feederscrew.mechanics import headings as wall
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects

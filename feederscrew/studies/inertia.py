@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from feederscrew.part.mass_balance import Balance, balance
+from feederscrew.part.mass import MassBalance, mass_balance
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.studies import arguments
@@ -13,7 +13,7 @@ class InertiaStudy(ReadableRecord):
     """A part, and what follows from its volume, mass and inertia."""
 
     part: Part
-    balance: Balance
+    balance: MassBalance
 
 
 def inertia(part: Part) -> InertiaStudy:
@@ -28,4 +28,4 @@ def inertia(part: Part) -> InertiaStudy:
     InertiaStudy
     """
     part = arguments.a_part(part)
-    return InertiaStudy(part, balance(part))
+    return InertiaStudy(part, mass_balance(part))

@@ -11,7 +11,7 @@ from feederscrew import part as parts
 from feederscrew.bowl import Bowl
 from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
-from feederscrew.part.density import HEAVIEST, LIGHTEST
+from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3
 from feederscrew.resting import names_file
 from feederscrew.resting import posture as postures
 from feederscrew.resting.aspects import Aspects
@@ -162,7 +162,7 @@ def _density(given: str | float | None) -> str | None:
     if given is None or isinstance(given, str):
         return given
     value = check.argument("density", given)
-    if not LIGHTEST <= value <= HEAVIEST:
+    if not LIGHTEST_SOLID_KG_M3 <= value <= HEAVIEST_SOLID_KG_M3:
         what = f"is {value:g} kg/m3"
         raise ArgumentError("density", what, "give kg/m3, 7850 for steel, or a text, '7.85 g/cm3'")
     return f"{value!r} kg/m3"

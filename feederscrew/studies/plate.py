@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Unpack
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.dropping.plate import bowl_test
+from feederscrew.dropping import plate_test
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
@@ -25,7 +25,9 @@ class PlateStudy(ReadableRecord):
     part: Part
     aspects: Aspects
     seed: int  # of the random launches
-    plates: tuple[bowl_test.Shaken, ...]  # one a bowl; fewer, the last of them partial, after an interrupt
+    plates: tuple[
+        plate_test.PlateResult, ...
+    ]  # one a bowl; fewer, the last of them partial, after an interrupt
     names: tuple[str, ...]  # of the bowl of each plate
 
     @property
@@ -97,11 +99,11 @@ def shake(
     driven = arguments.some_bowls(bowls, overrides, settings)
     launch_named(launch)
     check_run(drops, seed, jobs)
-    pace = bowl_test.EXACT
+    pace = plate_test.EXACT_PACE
     if seconds is not None:
         pace = replace(pace, seconds=arguments.amount("seconds", seconds, "time", LEAST))
     found = find(part)
-    plates = bowl_test.test(
+    plates = plate_test.test(
         part, found, driven, launch, ranges,
         drops=drops, pace=pace, run=RunSettings(seed, jobs, progress, before),
     )  # fmt: skip

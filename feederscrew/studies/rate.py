@@ -14,9 +14,8 @@ from feederscrew.conveying import hop
 from feederscrew.conveying.answer import conveying
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.machine import checks
-from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
-from feederscrew.part.smallness import small_part_remarks
+from feederscrew.part.size_limits import refuse_many_facets, small_part_remarks
 from feederscrew.rates import arrivals, stream, well_oriented
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
@@ -113,7 +112,7 @@ def shares(
     if probabilities is not None:
         probabilities = arguments.a_file("probabilities", probabilities)
         found = resting(part, drops=0).aspects
-        measured = profiles.read(probabilities, found.names)
+        measured = profiles.read_profile(probabilities, found.names)
         return Shares(arrivals.counted(found, measured), measured)
     if launch is not None or rule != RECOMMENDED or part.vertices is None:
         drops = None if rule == RECOMMENDED else 0
@@ -171,7 +170,7 @@ def likeliest(part: Part, bowl: Bowl) -> Aspects:
 
 def _on_the_floor(part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed: int, run: OnCores) -> Any:
     """What lies at the track's entry, followed once in a run."""
-    from feederscrew.dropping.plate import arrival as floor
+    from feederscrew.dropping import arrival as floor
 
     def make() -> Any:
         if run.before:

@@ -11,7 +11,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.geometry.grids import Grid, GridAxis, evaluate
-from feederscrew.mechanics import limits, wedge
+from feederscrew.mechanics import limits
 from feederscrew.records import ReadableRecord
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
@@ -166,9 +166,9 @@ def sliding_map(
     first, second = _headings(direction), _ratios(beta, ratio)
     if shape is not None:
         first, second = _resampled(first, shape[0]), _resampled(second, shape[1])
-    grid = evaluate(first, second, cells, limits.REGIMES, rows=ROWS)
+    grid = evaluate(first, second, cells, limits.POINT_REGIMES, rows=ROWS)
     point = {name: float(value) for name, value in cells(direction, ratio).items()}
-    regime = limits.REGIMES[int(point.pop("regime"))]
+    regime = limits.POINT_REGIMES[int(point.pop("regime"))]
     point["throw_number"] = float(limits.throw_number(ratio, beta, bowl.track.climb))
     hop = float(limits.hop_ratio(beta))
     return SlideMap(
@@ -185,21 +185,21 @@ def _cells(
 ) -> dict[str, np.ndarray]:
     climb, wall = bowl.track.climb, (bowl.friction.wall, bowl.track.bank)
     published = limits.published_limit(ratio, beta, alpha_minus_theta)
-    pole = np.abs(ratio * np.sin(beta) - 1.0) <= limits.ROUNDING
-    reversed_ = np.cos(alpha_minus_theta) < -limits.ROUNDING
+    pole = np.abs(ratio * np.sin(beta) - 1.0) <= limits.HOP_ROUNDING
+    reversed_ = np.cos(alpha_minus_theta) < -limits.HOP_ROUNDING
     hidden = pole if as_published else limits.hops(ratio, beta) | reversed_
     found = {
         "mu_limit": np.where(hidden, np.nan, published),
-        "mu_forward": wedge.of_floor(limits.forward_limit(ratio, beta, alpha_minus_theta, climb), *wall),
-        "mu_backward": wedge.of_floor(limits.backward_limit(ratio, beta, alpha_minus_theta, climb), *wall),
+        "mu_forward": limits.of_floor(limits.forward_limit(ratio, beta, alpha_minus_theta, climb), *wall),
+        "mu_backward": limits.of_floor(limits.backward_limit(ratio, beta, alpha_minus_theta, climb), *wall),
     }
-    held = wedge.effective(bowl.friction.static, *wall)
+    held = limits.effective(bowl.friction.static, *wall)
     regimes = limits.regimes(ratio, beta, held, alpha_minus_theta, climb)
     return {name: np.round(array, NOISE) + 0.0 for name, array in found.items()} | {"regime": regimes}
 
 
 def _onsets(bowl: Bowl, beta: float) -> dict[str, float]:
-    here = wedge.level(bowl)
+    here = limits.level(bowl)
     slip = (here.friction.static, beta, here.drive.direction, here.track.climb)
     return {
         "forward": float(limits.forward_ratio(*slip)),

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.dropping import conditions, launch_file, toss_runs
+from feederscrew.dropping import launch_conditions, toss_runs
 from feederscrew.dropping.ensemble import wilson
-from feederscrew.dropping.launch_file import FACES, LaunchFile
-from feederscrew.dropping.rigid_body import shape_of_part
+from feederscrew.dropping.rounded_hull import shape_of_part
+from feederscrew.dropping.toss_runs import FACE_NAMES, LaunchFile
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.tumbling.by_class import ground
+from feederscrew.resting.exact_tumbling import ground
 from feederscrew.studies.drop import check_run
 
 SURE = 0.95  # [1] from here on an answer is called sure
@@ -70,7 +70,7 @@ class TossStudy(ReadableRecord):
         if self.launches.faces is None:
             return None
         found, p = self.result, self.p
-        measured = np.array([FACES.index(face) for face in self.launches.faces[: len(p)]])
+        measured = np.array([FACE_NAMES.index(face) for face in self.launches.faces[: len(p)]])
         right, known = found.faces == measured, found.faces >= 0
         low, high = wilson(right.sum(), len(right))
         sure = known & (np.nan_to_num(p) >= SURE)
@@ -129,17 +129,17 @@ def follow(
         If the part has no shape, the file has a fault, or a value is out of range.
     """
     check_run(runs, seed, jobs)
-    read = launch_file.read(launches)
+    read = toss_runs.read_launches(launches)
     aspects = find(part)
     found = ground(part, aspects)
     _, length = shape_of_part(part, found)
     given = {key: (own or {}).get(key) for key in ("restitution", "friction")}
-    launch = conditions.launch_of("feed", length, given)
+    launch = launch_conditions.launch_of("feed", length, given)
     surface = toss_runs.SurfaceRanges(launch.restitution, launch.friction)
     if before:
         before()
     result = toss_runs.follow(
         part, found, read, surface, np.random.default_rng(seed),
-        runs=runs or toss_runs.USUAL, jobs=jobs, progress=progress,
+        runs=runs or toss_runs.DEFAULT_RUNS, jobs=jobs, progress=progress,
     )  # fmt: skip
     return TossStudy(part, aspects, read, surface, seed, result)

@@ -12,18 +12,16 @@ from feederscrew.bowl.reading import KeyRange
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting
 from feederscrew.geometry import grids
-from feederscrew.mechanics import limits
+from feederscrew.mechanics import limits, motion_maps, track_balance, track_contacts
 from feederscrew.mechanics.cycle import Cycle
-from feederscrew.mechanics.floor.balance import HOP, SLIDE, STICK, TIP
-from feederscrew.mechanics.standing import standing
-from feederscrew.mechanics.track import balance, cells, equilibrium
-from feederscrew.mechanics.track.frame import Seat, bank_without_radial_friction
-from feederscrew.mechanics.track.opening import Opening, first_to_open
-from feederscrew.mechanics.wall.stable_headings import Headings
+from feederscrew.mechanics.floor_balance import HOP, SLIDE, STICK, TIP
+from feederscrew.mechanics.headings import Headings
+from feederscrew.mechanics.track_balance import Seat, bank_without_radial_friction
+from feederscrew.mechanics.track_contacts import Opening, first_to_open
 from feederscrew.part.record import Part
 from feederscrew.rates import tipping
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.posture import Posture
+from feederscrew.resting.posture import Posture, standing
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
 from feederscrew.studies.rate import likeliest
@@ -42,8 +40,8 @@ class TrackStudy(ReadableRecord):
     seat: Seat
     headings: Headings | None  # None of a part card
     row: int  # of the headings, the one taken
-    now: balance.TrackMotion  # at the upper reversal, from rest
-    cycle: balance.TrackMotion  # over one settled period
+    now: track_balance.TrackMotion  # at the upper reversal, from rest
+    cycle: track_balance.TrackMotion  # over one settled period
     course: Cycle
     opening: Opening
     bank_without_radial_friction: float  # [rad]
@@ -66,15 +64,15 @@ class TrackStudy(ReadableRecord):
         Returns
         -------
         Grid
-            Columns as ``mechanics.track.cells`` names them, in SI; NaN where the part does not fit.
+            Columns as ``mechanics.motion_maps`` names them, in SI; NaN where the part does not fit.
         """
         first, second = ranges or bowls.key_ranges(USUAL)
 
         def function(x: np.ndarray, y: np.ndarray) -> dict[str, np.ndarray]:
             bowl = limits.plain(bowls.swept(settings, {first.key.name: x, second.key.name: y}))
-            return cells.cells(self.posture, bowl, self.laid)
+            return motion_maps.track_cells(self.posture, bowl, self.laid)
 
-        return grids.evaluate(grids.axis(first), grids.axis(second), function, cells.TRACK_REGIMES)
+        return grids.evaluate(grids.axis(first), grids.axis(second), function, motion_maps.TRACK_REGIMES)
 
 
 @with_settings
@@ -115,9 +113,9 @@ def track(
     angle = arguments.angle("heading", heading)
     limits.plain(bowl)
     posture, why = standing(part, aspect, "track", partial(likeliest, bowl=bowl))
-    seat, found, row = cells.seated(posture, bowl, angle)
+    seat, found, row = motion_maps.seated(posture, bowl, angle)
     now, held_across = _from_rest(seat, bowl)
-    cycle, course = balance.over_cycle(seat, bowl)
+    cycle, course = track_balance.over_cycle(seat, bowl)
     return TrackStudy(
         part=part,
         posture=posture,
@@ -138,15 +136,15 @@ def track(
 
 
 def _stands(
-    posture: Posture, found: Headings, row: int, bowl: Bowl, cycle: balance.TrackMotion
+    posture: Posture, found: Headings, row: int, bowl: Bowl, cycle: track_balance.TrackMotion
 ) -> tipping.Stands:
     one = orientations.orientation_at(posture, found, row, {}, bowl.track)
     return tipping.stands(one, bowl, bool((cycle.state == HOP).any()))
 
 
-def _from_rest(seat: Seat, bowl: Bowl) -> tuple[balance.TrackMotion, bool]:
+def _from_rest(seat: Seat, bowl: Bowl) -> tuple[track_balance.TrackMotion, bool]:
     """The upper reversal from rest, and whether the part is held though the least friction would not do."""
-    now = balance.motion(seat, bowl)
-    if now.state not in (SLIDE, TIP) or not equilibrium.exists(seat, bowl):
+    now = track_balance.motion(seat, bowl)
+    if now.state not in (SLIDE, TIP) or not track_contacts.exists(seat, bowl):
         return now, False
-    return replace(balance.motion(seat, bowl, held=True), state=np.array(STICK)), True
+    return replace(track_balance.motion(seat, bowl, held=True), state=np.array(STICK)), True

@@ -11,10 +11,10 @@ from feederscrew.bowl.devices import unknown_aspects
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.documents import hint
-from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
-from feederscrew.part.smallness import small_part_remarks
+from feederscrew.part.size_limits import small_part_remarks
 from feederscrew.rates import arrivals, stream
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import ReadableRecord
@@ -259,7 +259,7 @@ def at_outlet(counts: str | PathLike[str], known: Shares) -> profiles.Measured:
     FeederError
         Every fault of the file, each with its line.
     """
-    return profiles.read(counts, list(known.aspects.names))
+    return profiles.read_profile(counts, list(known.aspects.names))
 
 
 def _after(

@@ -170,6 +170,6 @@ def _tuned(solution: knobs.Solution, bowl: Bowl, ways: _DriveWays) -> Tuned:
         solution=solution,
         velocity=well_oriented.velocity(driven),
         over=tuple(one.name for one in ways.along(driven).lying if one.turns_over),
-        several=bool(found.high - found.low > answer.COEXIST * found.speed),
+        several=bool(found.high - found.low > answer.COEXISTING_VELOCITY_GAP * found.speed),
         driven=driven,
     )

@@ -66,7 +66,7 @@ class FigureGrid:
     @property
     def hops(self) -> NDArray[np.bool_]:
         """(M, N) bool, contact is lost."""
-        return self.throw >= 1.0 - limits.ROUNDING
+        return self.throw >= 1.0 - limits.HOP_ROUNDING
 
 
 Data = Bars | ByRatio | Curves | FigureGrid

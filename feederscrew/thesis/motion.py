@@ -8,10 +8,9 @@ from numpy.typing import NDArray
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.geometry import vectors
-from feederscrew.mechanics.floor.balance import HOP, SLIDE, STICK, UPPER_REVERSAL
+from feederscrew.mechanics.floor_balance import HOP, SLIDE, STICK, UPPER_REVERSAL
 from feederscrew.mechanics.limits import acceleration_ratio, published_limit
-from feederscrew.mechanics.track.balance import TrackMotion
-from feederscrew.mechanics.track.frame import Seat, TrackAxes, frame
+from feederscrew.mechanics.track_balance import Seat, TrackAxes, TrackMotion, frame
 from feederscrew.part.record import Part
 from feederscrew.resting.posture import Posture
 from feederscrew.studies import floor as floor_study

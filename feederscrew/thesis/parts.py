@@ -77,7 +77,7 @@ def t_aspects(ratio: float) -> TShape:
 def t_part(ratio: float) -> Part:
     """Return the T shape as a part of the density that gives Table 3-8."""
     vertices, faces = t_solid(ratio)
-    solid = mass.solid(vertices[faces])
+    solid = mass.integrate_solid(vertices[faces])
     return Part(
         name=f"t_shape_{ratio}",
         source="Table 3-8",

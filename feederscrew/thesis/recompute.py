@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew.resting.counts.deviation import deviation
-from feederscrew.resting.rules import published
+from feederscrew.resting.rules import formulas
 from feederscrew.thesis import parts
 from feederscrew.thesis.tables import TOTAL, Cell, PrintedTable, is_number, last_digit, table
 
@@ -59,7 +59,7 @@ def rounded_shares(
     moments = np.round(aspects.moments / parts.G_MM2, INPUT_DECIMALS)
     heights = np.round(aspects.heights / parts.MM, INPUT_DECIMALS)
     ones = np.ones(len(heights))
-    return moments, heights, published.normalised(published.pmi(ones, moments, heights), ones > 0)
+    return moments, heights, formulas.normalised(formulas.pmi(ones, moments, heights), ones > 0)
 
 
 def _table_3_1(printed: PrintedTable) -> Cells:

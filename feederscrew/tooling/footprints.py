@@ -13,7 +13,7 @@ import shapely
 from feederscrew import check
 from feederscrew.geometry import polygons
 from feederscrew.geometry.polygons import turned
-from feederscrew.resting.posture import TOUCHING
+from feederscrew.resting.posture import TOUCHING_SHARE
 from feederscrew.tooling.devices.openings import WALL_OVERCUT_M, gap
 
 SPOT = 1e-7  # [m] half the length of a single point of contact
@@ -253,11 +253,11 @@ def find_footprint(posture, heading):
         return _of_polygon(turned(posture.contact, heading))
     points, faces = posture.surface, posture.solid.faces
     size = np.ptp(posture.outline, axis=0).max()
-    depth = ROLLING_FOOT_SHARE * posture.height if rolls else TOUCHING * size
+    depth = ROLLING_FOOT_SHARE * posture.height if rolls else TOUCHING_SHARE * size
     plan = turned(points[:, :2], heading)
     area = area_below(plan, points[:, 2], faces, depth, rolls)
     area = area.simplify(FOOT_DETAIL_SHARE * size) if not area.is_empty else area
-    edges, single = _bare(plan, points[:, 2] < depth, faces, area, TOUCHING * size)
+    edges, single = _bare(plan, points[:, 2] < depth, faces, area, TOUCHING_SHARE * size)
     if area.is_empty and len(edges) + len(single) < 1:
         return _of_polygon(turned(posture.contact, heading))
     borders = rings(area, SLIVER * size**2)

@@ -11,12 +11,12 @@ import shapely.affinity
 from feederscrew import check
 from feederscrew.bowl.record import Track
 from feederscrew.conveying import answer
-from feederscrew.conveying.hop import STAYS, hop
+from feederscrew.conveying.hop import NO_HOP, hop
 from feederscrew.errors import ConfigError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import convex, cross, outline, sides, turned
-from feederscrew.mechanics.wall import sameness
-from feederscrew.mechanics.wall.stable_headings import headings
+from feederscrew.mechanics import sameness
+from feederscrew.mechanics.headings import headings
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.tooling import footprints
 from feederscrew.tooling.footprints import Footprint, silhouette
@@ -244,7 +244,7 @@ def travelling(orientations, bowl):
     or even carry it on as it does what slides.
     """
     along, track = travel_speed(bowl), bowl.track
-    thrown = hop(bowl) if along > 0.0 else STAYS
+    thrown = hop(bowl) if along > 0.0 else NO_HOP
     fastest = 2.0 * np.pi * bowl.drive.frequency * bowl.drive.amplitude
     swing = fastest * np.cos(bowl.drive.vibration_angle)
     held = np.tan(track.climb) <= bowl.friction.wall * np.tan(track.bank)
@@ -412,9 +412,9 @@ class Hanging(Orientation):
     def foot(self):
         """What of the head rests on the rails: a Footprint."""
         size = np.ptp(cast(np.ndarray, self.posture.corners), axis=0).max()
-        for depth in (footprints.TOUCHING * size, SEATED * self.height):
+        for depth in (footprints.TOUCHING_SHARE * size, SEATED * self.height):
             rings = footprints.rings(self._rests(depth), footprints.SLIVER * size**2)
-            if len(rings) > 1 or depth > footprints.TOUCHING * size:
+            if len(rings) > 1 or depth > footprints.TOUCHING_SHARE * size:
                 break
         return Footprint(rings=rings, edges=np.empty((0, 2, 2)), points=np.empty((0, 2)))
 
@@ -598,7 +598,7 @@ def _shoulders(lying, height, radius, distance, width):
     points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
     points = points + [0.0, 0.0, height]
     size = float(np.ptp(points, axis=0).max())
-    flat = footprints.TOUCHING * size
+    flat = footprints.TOUCHING_SHARE * size
     foot = points[points[:, 2] < flat]
     stem, middle = float(np.ptp(foot[:, 1])), float(0.5 * (foot[:, 1].min() + foot[:, 1].max()))
     if stem >= width or np.abs(points[:, 1] - middle).max() < 0.5 * width:
@@ -678,7 +678,7 @@ def _neck_of(orientation, held):
     points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
     head = points[
         points[:, 2]
-        > held.drop - orientation.posture.height - footprints.TOUCHING * np.ptp(points, axis=0).max()
+        > held.drop - orientation.posture.height - footprints.TOUCHING_SHARE * np.ptp(points, axis=0).max()
     ]
     wide, lever = float(np.ptp(head[:, 1])), float(points[:, 2].max())
     down = check.frozen(np.einsum("ij,i->j", orientation.axes, [0.0, 0.0, -1.0]))

@@ -11,12 +11,12 @@ from feederscrew import check
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import fitting
 from feederscrew.geometry.polygons import barrier, cross, outline
-from feederscrew.mechanics.wall import sameness
-from feederscrew.mechanics.wall import stable_headings as wall
-from feederscrew.mechanics.wall.lying_in_groove import becomes
+from feederscrew.mechanics import headings as wall
+from feederscrew.mechanics import sameness
+from feederscrew.mechanics.lying_in_groove import becomes
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.tumbling import half_edges as tumbling
-from feederscrew.resting.tumbling import walk
+from feederscrew.resting import half_edges as tumbling
+from feederscrew.resting import walks
 from feederscrew.tooling import footprints, sensor_views
 from feederscrew.tooling.devices.base import GRIP, UNSURE, Verdict, share
 from feederscrew.tooling.devices.ledges import below_ledge
@@ -367,7 +367,7 @@ def _end(hull, down):
     """The direction (3,) down in which a part comes to rest that is let go with another one down."""
     edges = tumbling.half_edges(hull)
     ends = np.empty(1, dtype=np.int64)
-    fitting(walk.rolls, len(edges.origins))(edges, np.array([down]), ends)
+    fitting(walks.rolls, len(edges.origins))(edges, np.array([down]), ends)
     return edges.normals[ends[0]] if ends[0] >= 0 else down
 
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import check
-from feederscrew.dropping.launches import named
-from feederscrew.dropping.plate.bowl_test import EXACT
+from feederscrew.dropping.launch_conditions import named
+from feederscrew.dropping.plate_test import EXACT_PACE
 from feederscrew.running import USUAL_RUN
 from feederscrew.trial import course, runs, starts, stations, whereabouts
 from feederscrew.trial.looks import OTHER, AspectsBelow
@@ -65,7 +65,7 @@ def landing(part, bowl, aspects, every, poses, *, launch, parts, run=USUAL_RUN):
     every, poses : sequence of Orientation
         Of the part, and those in which it may leave.
     launch : str
-        A key of ``dropping.launches.PRESETS``: height, spin and speed.
+        A key of ``dropping.launch_conditions.PRESETS``: height, spin and speed.
     parts : int
     run : RunSettings
         Its progress is told how many parts are done, of how many, first with the landing.
@@ -108,7 +108,7 @@ def _fallen(part, bowl, every, shape, launch, parts, run):
     room = min(length * room, MOST * 2.0 * np.pi * bowl.track.radius)
     first = stations.at_entry(bowl.devices, bowl.track, every)
     stage = replace(stations.plain(bowl.track, every, 2.0 * room, first), exit=np.inf)
-    seconds = known.unit * (flight + EXACT.settling)
+    seconds = known.unit * (flight + EXACT_PACE.settling)
     limits = (seconds, 2.0 * seconds, 0.0, np.inf)
     one = runs.past(known, stage, limits=limits, every=seconds, places=1)
     begun = whereabouts.moved(states, room / length, known.radius)

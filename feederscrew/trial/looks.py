@@ -6,12 +6,12 @@ from typing import cast
 import numpy as np
 
 from feederscrew.dropping.kernel.one_drop import UNSETTLED, face_below
-from feederscrew.dropping.rigid_body import shape_of_part
+from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.geometry import vectors
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.tumbling.by_class import ground
-from feederscrew.resting.tumbling.half_edges import half_edges
-from feederscrew.resting.tumbling.walk import LOST, roll_from_corner, roll_from_facet
+from feederscrew.resting.exact_tumbling import ground
+from feederscrew.resting.half_edges import half_edges
+from feederscrew.resting.walks import LOST_WALK, roll_from_corner, roll_from_facet
 from feederscrew.tooling.orientations import Hanging
 from feederscrew.trial import whereabouts
 
@@ -104,7 +104,7 @@ class Looks:
         down = vectors.product(turn.T, self.down)
         corner = int(np.argmax(vectors.product(self._edges.vertices, down)))
         facet = roll_from_facet(self._edges, roll_from_corner(self._edges, tuple(down), corner))
-        if facet == LOST:
+        if facet == LOST_WALK:
             return None
         return vectors.product(_shortest(vectors.product(turn, self._edges.normals[facet])), turn)
 

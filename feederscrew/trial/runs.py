@@ -6,8 +6,8 @@ from functools import partial
 import numpy as np
 
 from feederscrew import check
+from feederscrew.dropping import plate_test
 from feederscrew.dropping.kernel.floor_motion import Floor
-from feederscrew.dropping.plate import drive
 from feederscrew.dropping.pool import in_batches
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.trial import air
@@ -71,10 +71,10 @@ def setting(solid, length, bowl):
     -------
     BowlOfPart
     """
-    floor, track, friction = drive.floor_of(bowl, length), bowl.track, bowl.friction
+    floor, track, friction = plate_test.floor_of(bowl, length), bowl.track, bowl.friction
     if bowl.drive.amplitude == 0.0:
         floor = floor._replace(along=0.0, up=0.0)
-    steps = HOPPING if drive.throw_number(bowl) > 1.0 else PERIOD
+    steps = HOPPING if plate_test.throw_number(bowl) > 1.0 else PERIOD
     return BowlOfPart(
         solid=solid,
         length=length,
@@ -85,7 +85,7 @@ def setting(solid, length, bowl):
         bank=track.bank,
         friction=np.array([friction.static, friction.kinetic, *friction.backward, friction.wall]),
         restitution=bowl.restitution,
-        threshold=drive.steps_of(floor).threshold,
+        threshold=plate_test.steps_of(floor).threshold,
     )
 
 

@@ -6,11 +6,11 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from feederscrew import check
-from feederscrew.dropping.rigid_body import principal_axes
+from feederscrew.dropping.rounded_hull import principal_axes
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
-from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.hull import convex_hull
+from feederscrew.part.size_limits import refuse_many_facets
 from feederscrew.trial.kernel.near_borders import BLOCK
 
 FLAT = 2e-3  # [rad] facets that meet at a smaller angle are one face

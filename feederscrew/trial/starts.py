@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew.dropping.kernel import body
-from feederscrew.dropping.launches import sample
+from feederscrew.dropping.launch_conditions import sample
 from feederscrew.geometry import vectors
 from feederscrew.trial import whereabouts
 

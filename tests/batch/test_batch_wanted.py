@@ -9,8 +9,8 @@ import shapes
 from feederscrew import batch
 from feederscrew.batch import summary, task, work
 from feederscrew.output import batch as batch_output
-from feederscrew.part import load
-from feederscrew.part.repair import gate, shells
+from feederscrew.part import gate, load
+from feederscrew.part.repair import topology
 from feederscrew.resting.aspects import find
 
 
@@ -72,7 +72,7 @@ def test_tiles_name_the_orientation_and_fill_sheets(count):
     assert next(summary.sheets(Store(), [card]))[0][2] == "a part card has no outline: no rate"
 
 
-@pytest.mark.parametrize("advice", [shells.SPLIT, gate.CLOSE, gate.UNITE])
+@pytest.mark.parametrize("advice", [topology.SAVE_SHELLS, gate.CLOSE_IN_CAD, gate.UNITE_IN_CAD])
 def test_a_failed_part_is_not_advised_what_a_batch_has_no_option_for(block, advice):
     (asked,) = batch.gather([str(block)])
     failed = task.Outcome.failed(task.Task.of(asked, batch.Choices(), b""), f"is not closed - {advice}")

@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 import steady_formulas
 
-from feederscrew.conveying import flights, steady
-from feederscrew.conveying.harmonic import gain, harmonic, onward, reached, travel, value
-from feederscrew.conveying.law import law
+from feederscrew.conveying import answer, steady
+from feederscrew.conveying.operating_point import FLIGHT, FORWARD, STICK, checked, law, plain
 from feederscrew.conveying.point_motion import TALLY, State, at_rest, land, turn
-from feederscrew.conveying.setting import FLIGHT, FORWARD, STICK, TURN, checked, plain
-from feederscrew.conveying.waves import Wave
+from feederscrew.conveying.waves import PERIOD_RAD, Wave, gain, harmonic, onward, reached, travel, value
 from feederscrew.mechanics import limits
 
 DEG = math.pi / 180.0
@@ -47,12 +45,12 @@ def test_two_bursts_that_meet_have_no_formula():
 
 @pytest.mark.parametrize(("periods", "throw"), [(0.5, 1.368461), (1, 3.296908), (2, 6.362265), (3, 9.477681)])
 def test_throw_number_of_a_whole_flight(periods, throw):
-    assert flights.throw_of_flight(periods) == pytest.approx(throw, abs=5e-7)
+    assert answer.throw_of_flight(periods) == pytest.approx(throw, abs=5e-7)
 
 
 @pytest.mark.parametrize("periods", [0.01, 0.1, 0.5, 0.9, 0.999])
 def test_flight_of_a_throw_number(periods):
-    found = travel_of(thrown_at(flights.throw_of_flight(periods)))
+    found = travel_of(thrown_at(answer.throw_of_flight(periods)))
     assert found[steady.FLIGHT_TIME] == pytest.approx(periods, rel=1e-12)
 
 
@@ -65,9 +63,9 @@ def test_flight_over_several_periods():
             state = turn(rules, state, tally)
         while high - low > 1e-14:
             middle = 0.5 * (low + high)
-            longer = flights.throw_of_flight(middle) < throw
+            longer = answer.throw_of_flight(middle) < throw
             low, high = (middle, high) if longer else (low, middle)
-        assert tally[5] / TURN == pytest.approx(low, rel=1e-12)
+        assert tally[5] / PERIOD_RAD == pytest.approx(low, rel=1e-12)
 
 
 @pytest.mark.parametrize("above", [1e-4, 1e-6, 1e-8, 1e-10])
@@ -80,9 +78,11 @@ def test_grazing_flight(above):
 @pytest.mark.parametrize("climb", [0.0, 3 * DEG])
 def test_ideal_throw(periods, climb):
     angle = 30 * DEG
-    throw = flights.throw_of_flight(periods)
+    throw = answer.throw_of_flight(periods)
     setting = thrown_at(throw, angle, climb, friction=1e12)
-    velocity = steady_formulas.ideal_throw_velocity(periods, angle, climb, frequency=1.0 / TURN, gravity=1.0)
+    velocity = steady_formulas.ideal_throw_velocity(
+        periods, angle, climb, frequency=1.0 / PERIOD_RAD, gravity=1.0
+    )
     # with w = g = 1 the amplitude is the ratio itself
     assert travel_of(setting)[steady.VELOCITY] == pytest.approx(velocity / setting.ratio, rel=1e-9)
 

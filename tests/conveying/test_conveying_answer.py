@@ -8,13 +8,13 @@ import pytest
 from mechanics_samples import box_posture
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying import answer, radius, sensitivity
-from feederscrew.conveying.setting import FLIGHT, PHASES, plain
-from feederscrew.conveying.trace import trace
+from feederscrew.conveying import answer, sensitivity
+from feederscrew.conveying.operating_point import FLIGHT, PHASES, plain
+from feederscrew.conveying.steady import trace
 from feederscrew.errors import ConfigError
-from feederscrew.mechanics.floor.balance import HOP
-from feederscrew.mechanics.track import balance
-from feederscrew.mechanics.track.frame import seat
+from feederscrew.mechanics import track_balance
+from feederscrew.mechanics.floor_balance import HOP
+from feederscrew.mechanics.track_balance import seat
 from feederscrew.output import convey
 from feederscrew.studies.slide import slide
 
@@ -81,7 +81,7 @@ def test_cells_are_the_answers():
     )
     alone = answer.answer(one)
     assert found["velocity"][1, 1] == pytest.approx(alone.velocity, rel=1e-12)
-    assert answer.REGIMES[found["regime"][1, 1]] == alone.regime
+    assert answer.SWEEP_REGIMES[found["regime"][1, 1]] == alone.regime
     assert found["throw_number"][1, 1] == pytest.approx(alone.throw_number)
 
 
@@ -159,7 +159,7 @@ def test_slide_and_track_take_the_bank_as_convey_does():
     place = seat(box_posture(height=0.0005), 0.0, np.array([[-0.015, -0.005], [0.015, -0.005]]), 1.0)
     for share, hops in ((0.999, False), (1.001, True)):
         there = banked(f"drive.amplitude={0.15 * share / 0.6381678} mm")
-        state = balance.motion(place, there, np.array([0.5 * np.pi])).state
+        state = track_balance.motion(place, there, np.array([0.5 * np.pi])).state
         assert bool((state == HOP).any()) == hops
 
 
@@ -196,7 +196,7 @@ def test_kinetic_above_static_within_a_map():
 
 def test_one_screw_moves_the_whole_bowl():
     here = driven(50, 1.0, 25, 0.4)
-    inner = radius.at_radius(here, here.track.radius * np.array([0.5, 1.0]))
+    inner = answer.at_radius(here, here.track.radius * np.array([0.5, 1.0]))
     steepness = np.tan(inner.drive.vibration_angle + here.track.climb)
     assert steepness[0] == pytest.approx(2.0 * steepness[1])
     rise = inner.drive.amplitude * np.sin(inner.drive.vibration_angle + here.track.climb)
@@ -221,8 +221,8 @@ def test_sensitivity_is_a_difference_of_answers():
 
 def test_validity_names_its_source_where_parts_hop():
     hopping, sliding = driven(50, 1.0, 25, 0.4), driven(50, 0.1, 25, 0.4)
-    assert answer.SOURCE in answer.validity(answer.answer(hopping), hopping)
-    assert answer.SOURCE not in answer.validity(answer.answer(sliding), sliding)
+    assert answer.VALIDITY_SOURCE in answer.validity(answer.answer(hopping), hopping)
+    assert answer.VALIDITY_SOURCE not in answer.validity(answer.answer(sliding), sliding)
     # (0.5 mm 2 pi 50/s)^2 / (150 mm 9.81 m/s2) is 1.7 %
     assert "1.7 % of the weight" in answer.validity(answer.answer(hopping), hopping)
 
@@ -303,7 +303,7 @@ def test_cells_and_answers_agree_on_an_uneven_drive():
     for k, stroke in enumerate(strokes):
         alone = answer.answer(bowls.read(None, (*keys, f"drive.amplitude={stroke * 1e3} mm")))
         assert found["velocity"][k] == pytest.approx(alone.velocity, rel=1e-9)
-        assert answer.REGIMES[found["regime"][k]] == alone.regime
+        assert answer.SWEEP_REGIMES[found["regime"][k]] == alone.regime
         margins = alone.margins
         if alone.regime != "hop":
             assert (margins["forward"] < 0.0) == (alone.regime in ("forward", "both"))
@@ -313,7 +313,7 @@ def test_cells_and_answers_agree_on_an_uneven_drive():
 
 def test_an_elliptical_drive_is_not_followed_inwards():
     with pytest.raises(ConfigError, match="not a screw motion"):
-        radius.inwards(bowl("drive.phase=20 deg"))
+        answer.inwards(bowl("drive.phase=20 deg"))
 
 
 def test_trace_of_an_uneven_drive_rests_on_its_plate():

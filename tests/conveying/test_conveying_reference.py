@@ -5,8 +5,8 @@ import pytest
 from conveying_agreement import agreed
 from conveying_reference import Reference, random_settings
 
-from feederscrew.conveying.setting import OperatingPoint, plain
-from feederscrew.mechanics.wedge import effective
+from feederscrew.conveying.operating_point import OperatingPoint, plain
+from feederscrew.mechanics.limits import effective
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.3])

@@ -7,13 +7,12 @@ import pytest
 from conveying_agreement import agreed
 from conveying_reference import Reference, random_settings
 
-from feederscrew.conveying import onset, steady, sweep, waves
-from feederscrew.conveying.harmonic import above, harmonic, value
-from feederscrew.conveying.law import contact, law
+from feederscrew.conveying import answer, steady, sweep, waves
+from feederscrew.conveying.operating_point import OperatingPoint, contact, law, plain
 from feederscrew.conveying.point_motion import State
-from feederscrew.conveying.setting import TURN, OperatingPoint, plain
+from feederscrew.conveying.waves import PERIOD_RAD, above, harmonic, value
 from feederscrew.mechanics import limits
-from feederscrew.mechanics.wedge import effective
+from feederscrew.mechanics.limits import effective
 
 DEG = math.pi / 180.0
 
@@ -33,11 +32,11 @@ def random_waves(count):
 
 def test_zeros_and_bends_are_all_there():
     """A dense sampling sees as many sign changes, at the same places."""
-    angles = np.linspace(0.0, TURN, 4001)
+    angles = np.linspace(0.0, PERIOD_RAD, 4001)
     for wave in random_waves(100):
-        for one, found in ((waves.slope(wave), waves.bends(wave)), (wave, None)):
+        for one, found in ((waves.slope(wave), waves.find_bends(wave)), (wave, None)):
             if found is None:
-                found = waves.crossings(wave, waves.bends(wave), 0)
+                found = waves.crossings(wave, waves.find_bends(wave), 0)
             found = found[np.isfinite(found)]
             sampled = np.array([waves.height(one, x) for x in angles]) > 0.0
             seen = angles[np.flatnonzero(sampled[1:] != sampled[:-1])] + 0.5 * angles[1]
@@ -56,7 +55,7 @@ def test_rises_and_falls_alternate():
 
 def test_a_touched_zero_is_no_crossing():
     wave = waves.Wave(-1.0, 1.0, 0.0, 0.0, 0.0)  # sin - 1
-    assert np.isinf(waves.crossings(wave, waves.bends(wave), 0)).all()
+    assert np.isinf(waves.crossings(wave, waves.find_bends(wave), 0)).all()
 
 
 def test_no_second_harmonic_is_the_plain_drive():
@@ -169,14 +168,14 @@ def test_when_the_part_is_put_down_does_not_matter(angle):
 
 def test_whole_turns_change_nothing():
     setting = everything()
-    turned = setting._replace(lead=setting.lead + TURN, second_phase=setting.second_phase - TURN)
+    turned = setting._replace(lead=setting.lead + PERIOD_RAD, second_phase=setting.second_phase - PERIOD_RAD)
     assert travel_of(turned)[steady.VELOCITY] == pytest.approx(travel_of(setting)[steady.VELOCITY], rel=1e-10)
 
 
 def test_limits_of_slip_of_any_drive():
     """Friction at the limit rides, a little less slips; without extras they are the closed forms."""
     setting = everything()._replace(ratio=0.5)
-    forward, backward = onset.limits_of_slip(setting)
+    forward, backward = answer.limits_of_slip(setting)
     for name, limit, phase in (("static", forward, 1), ("static_back", backward, 2)):
         kinetic = name.replace("static", "kinetic")
         held = setting._replace(static=9.0, static_back=9.0, kinetic=0.2, kinetic_back=0.2)
@@ -186,7 +185,7 @@ def test_limits_of_slip_of_any_drive():
         assert travel_of(below_it)[steady.FRACTIONS + phase] > 0.0
     plain_one = setting._replace(lead=0.0, second=0.0)
     barely = plain_one._replace(second=1e-300)
-    assert onset.limits_of_slip(barely) == pytest.approx(onset.limits_of_slip(plain_one), rel=1e-12)
+    assert answer.limits_of_slip(barely) == pytest.approx(answer.limits_of_slip(plain_one), rel=1e-12)
 
 
 def test_regimes_and_throw_numbers_of_a_plain_drive_are_the_closed_forms():

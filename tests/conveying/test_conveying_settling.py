@@ -5,10 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from feederscrew.conveying import settling, steady
-from feederscrew.conveying.law import law
+from feederscrew.conveying import steady
+from feederscrew.conveying.operating_point import FLIGHT, FORWARD, STICK, OperatingPoint, law, plain
 from feederscrew.conveying.point_motion import TALLY, at_rest, turn
-from feederscrew.conveying.setting import FLIGHT, FORWARD, STICK, OperatingPoint, plain
 
 DEG = math.pi / 180.0
 
@@ -94,18 +93,18 @@ def test_a_start_from_rest_that_settles_slowly_settles(friction):
     """The speed that closes in over thousands of periods is a fixed point, found at once."""
     setting = plain(0.9 / math.sin(5 * DEG), 5 * DEG, 0.0, friction)._replace(lead=-1.2)
     rules = law(setting)
-    state, period = settling.settle(rules, at_rest(rules))
+    state, period = steady.settle(rules, at_rest(rules))
     assert period == 1
     assert turn(rules, state, np.zeros(TALLY)).speed == pytest.approx(state.speed, rel=0, abs=1e-12)
     other = at_rest(rules)._replace(speed=-state.speed)
-    again, _ = settling.settle(rules, other._replace(phase=2 if other.speed < 0.0 else 1))
+    again, _ = steady.settle(rules, other._replace(phase=2 if other.speed < 0.0 else 1))
     assert again.speed == pytest.approx(state.speed, rel=0, abs=1e-8)
 
 
 def test_what_settles_slowly_is_what_patience_finds():
     setting = plain(0.9 / math.sin(5 * DEG), 5 * DEG, 0.0, 0.02)._replace(lead=-1.2)
     rules = law(setting)
-    found, _ = settling.settle(rules, at_rest(rules))
+    found, _ = steady.settle(rules, at_rest(rules))
     assert speeds(setting, 12_000)[-1] == pytest.approx(found.speed, rel=0, abs=1e-9)
 
 
@@ -143,13 +142,13 @@ def test_no_leap_out_of_a_steady_slide():
 def test_a_further_start_joins_what_is_known():
     setting = plain(2.5, 0.5, 0.02, 0.3, 0.3)
     rules = law(setting)
-    state, period = settling.settle(rules, at_rest(rules))
+    state, period = steady.settle(rules, at_rest(rules))
     known = []
     for _ in range(period):
         state = turn(rules, state, np.zeros(TALLY))
-        known.append(settling.noted(state))
-    _, joined = settling.follow(rules, at_rest(rules), np.array(known), settling.TRANSIENT)
-    assert joined == settling.JOINS
+        known.append(steady.noted(state))
+    _, joined = steady.follow(rules, at_rest(rules), np.array(known), steady.TRANSIENT)
+    assert joined == steady.JOINS
     alone, other = np.empty(steady.COLUMNS), surveyed(setting)
     velocities = []
     for start in range(7):

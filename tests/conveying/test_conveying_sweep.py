@@ -5,7 +5,7 @@ import pytest
 from conveying_reference import random_settings
 
 from feederscrew.conveying import steady, sweep
-from feederscrew.conveying.setting import OperatingPoint, plain
+from feederscrew.conveying.operating_point import OperatingPoint, plain
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from feederscrew import bowl as bowls
 from feederscrew.conveying.hop import hop
 from feederscrew.designing import calm_drive
 from feederscrew.designing.record import DesignRequest
-from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.machine.stroke import greatest_amplitude
 from feederscrew.resting.aspects import find

@@ -20,7 +20,7 @@ from feederscrew.designing.record import (
     RobustRun,
 )
 from feederscrew.designing.searching import Candidate, Search
-from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.dropping.plate_test import throw_number
 from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
 from feederscrew.resting.aspects import find

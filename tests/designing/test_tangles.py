@@ -8,7 +8,7 @@ import trimesh
 
 from feederscrew.designing.hazards import nesting, tangling
 from feederscrew.geometry import vectors
-from feederscrew.geometry.cells import cells, chords, handles
+from feederscrew.geometry.lattice import cells, chords, handles
 
 RUBBED = 0.6, 0.5
 ASKEW = trimesh.transformations.rotation_matrix(0.9, (1.0, -2.0, 0.7), (5.0, 1.0, -3.0))

@@ -9,8 +9,8 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew.dropping.kernel import body, floor_contacts, impulses, one_drop, touch
 from feederscrew.dropping.kernel.one_drop import Steps, scratch, settle
-from feederscrew.dropping.launches import PRESETS, sample
-from feederscrew.dropping.rigid_body import shape_of_part
+from feederscrew.dropping.launch_conditions import PRESETS, sample
+from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 
@@ -195,7 +195,7 @@ def test_opposite_sides_are_alike_and_a_turned_file_too():
 
 def test_a_body_set_down_rests_where_it_tumbles_to():
     placed = np.bincount(run(BOX, 3000, Steps(), preset="place") // 2) / 3000
-    from feederscrew.geometry.solid_angle import solid_angles
+    from feederscrew.geometry.vectors import solid_angles
     from feederscrew.part.hull import convex_hull
 
     hull = convex_hull(drop_bodies.CUBE * (1.0, 1.3, 1.7), np.zeros(3))

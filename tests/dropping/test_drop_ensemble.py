@@ -9,10 +9,10 @@ import shapes
 from scipy.spatial.transform import Rotation
 from scipy.stats import binom
 
-from feederscrew.dropping import conditions, drop_test, ensemble
+from feederscrew.dropping import drop_test, ensemble, launch_conditions
 from feederscrew.dropping.ensemble import Aim, Drops, drop, tally, wilson
 from feederscrew.dropping.kernel.one_drop import UNSETTLED
-from feederscrew.dropping.launches import LEAN, PRESETS, named, sample
+from feederscrew.dropping.launch_conditions import FLIP_LEAN_RAD, PRESETS, named, sample
 from feederscrew.dropping.pool import gather
 from feederscrew.errors import ArgumentError, ConfigError
 from feederscrew.resting.aspects import find
@@ -21,7 +21,7 @@ from feederscrew.running import RunSettings
 
 BOX, LENGTH = drop_bodies.box((1.0, 1.3, 1.7))
 ROWS = np.array([0, 0, 1, 1, 2, 2])
-NOTHING = dict.fromkeys(conditions.KEYS)
+NOTHING = dict.fromkeys(launch_conditions.CONDITION_KEYS)
 
 
 def seeded(**more):
@@ -36,7 +36,7 @@ def test_counts_do_not_depend_on_the_number_of_jobs():
 def test_fewer_drops_are_the_first_of_many(monkeypatch):
     few, many = seeded(count=300), seeded(count=2500)
     assert (few.faces == many.faces[:300]).all()
-    monkeypatch.setattr(ensemble, "ROUND", 500)
+    monkeypatch.setattr(ensemble, "DROPS_A_LOOK", 500)
     assert (seeded(count=2500).faces == many.faces).all()
 
 
@@ -45,7 +45,9 @@ def test_until_ends_when_every_interval_is_narrow():
     drops = seeded(aim=aim)
     counted = tally(drops, ROWS, 3)
     assert counted.widest == aim.widest(drops.faces) <= 0.015
-    assert len(drops.faces) > ensemble.ROUND and aim.widest(drops.faces[: -ensemble.ROUND]) > 0.015
+    assert (
+        len(drops.faces) > ensemble.DROPS_A_LOOK and aim.widest(drops.faces[: -ensemble.DROPS_A_LOOK]) > 0.015
+    )
 
 
 def test_until_gives_up_at_the_count():
@@ -72,8 +74,8 @@ def test_an_interrupt_keeps_what_is_finished(jobs, batches):
 
     drops = seeded(count=20_000, jobs=jobs, progress=stop)
     count = len(drops.faces)
-    assert drops.partial and told[-1] == batches * ensemble.BATCH <= count < 20_000
-    assert count % ensemble.BATCH == 0
+    assert drops.partial and told[-1] == batches * ensemble.DROPS_A_BATCH <= count < 20_000
+    assert count % ensemble.DROPS_A_BATCH == 0
     whole = seeded(count=count)
     assert not whole.partial
     for name in ("faces", "times", "energies"):
@@ -145,7 +147,7 @@ def test_a_tally_of_drops_that_never_settle_knows_nothing():
 def test_the_interval_holds_the_numerical_error_beside_the_sampling():
     faces = np.tile([0, 2], 200_000)
     counted = tally(Drops(faces, *np.zeros((3, len(faces))), False), ROWS, 3)
-    known = np.hypot(ensemble.NUMERICAL, counted.widest)
+    known = np.hypot(ensemble.NUMERICAL_SHARE_ERROR, counted.widest)
     assert counted.high[0] - 0.5 == pytest.approx(np.hypot(known, recommended.LAUNCH_WIDTH), rel=1e-3)
     rare = recommended.LAUNCH_WIDTH * recommended.shape(0.0)
     assert counted.low[2] == 0.0 and counted.high[2] == pytest.approx(rare, abs=1e-4)
@@ -155,7 +157,7 @@ def test_the_wilson_interval():
     low, high = wilson(np.array([0, 10, 40]), 40)  # ends solve (p - x)^2 = z^2 x (1 - x) / n
     for count, ends in ((10, (low[1], high[1])),):
         for x in ends:
-            assert (count / 40 - x) ** 2 == pytest.approx(ensemble.NORMAL**2 * x * (1 - x) / 40)
+            assert (count / 40 - x) ** 2 == pytest.approx(ensemble.NORMAL_95**2 * x * (1 - x) / 40)
     assert low[0] == 0.0 and high[2] == 1.0 and high[0] > 0.0 and low[2] < 1.0
 
 
@@ -203,7 +205,9 @@ def test_a_flip_is_held_level_to_its_lean_and_alike_all_round(rng):
     size = np.linalg.norm(spin, axis=1)
     assert size.min() >= 6.0 and size.max() <= 14.0
     rise, ahead = np.arcsin(spin[:, 2] / size), np.arctan2(spin[:, 1], spin[:, 0])
-    assert np.abs(rise).max() <= LEAN and np.quantile(np.abs(rise), 0.5) == pytest.approx(LEAN / 2, rel=0.03)
+    assert np.abs(rise).max() <= FLIP_LEAN_RAD and np.quantile(np.abs(rise), 0.5) == pytest.approx(
+        FLIP_LEAN_RAD / 2, rel=0.03
+    )
     assert np.abs([np.cos(ahead).mean(), np.sin(ahead).mean(), np.cos(2 * ahead).mean()]).max() < 0.03
     around = np.arctan2(states[:, 11], states[:, 10])  # in the plane of the box's greatest face
     assert np.abs([np.cos(around).mean(), np.sin(around).mean(), np.cos(2 * around).mean()]).max() < 0.03
@@ -219,7 +223,7 @@ def test_thick_coins_flipped_by_hand(thick, measured):
     part = shapes.part(shapes.cylinder(10.0, 20.0 * thick, 96))
     aspects = find(part)
     found = drop_test.test(
-        part, aspects, "flip", dict.fromkeys(conditions.KEYS), drops=4000, run=RunSettings(5)
+        part, aspects, "flip", dict.fromkeys(launch_conditions.CONDITION_KEYS), drops=4000, run=RunSettings(5)
     )
     edge = found.tally.p[np.abs(aspects.heights - 0.01) < 1e-4].sum()
     assert edge == pytest.approx(measured, abs=0.03)
@@ -264,18 +268,18 @@ def test_one_value_of_restitution_becomes_a_range_of_the_deviation_of_impacts(va
 
 
 def test_own_conditions_replace_the_presets():
-    launch = conditions.launch_of("feed", 0.01, NOTHING | {"fall": "20 mm", "friction": "0.2:0.3"})
+    launch = launch_conditions.launch_of("feed", 0.01, NOTHING | {"fall": "20 mm", "friction": "0.2:0.3"})
     assert launch.name == "own" and launch.fall == pytest.approx((2.0, 2.0))
     assert launch.friction == (0.2, 0.3) and launch.spin == PRESETS["feed"].spin
-    told = conditions.described(launch, 0.01)
+    told = launch_conditions.described(launch, 0.01)
     assert told["height_mm"] == pytest.approx([20.0, 20.0]) and told["friction"] == [0.2, 0.3]
-    assert conditions.launch_of("drop", 0.01, NOTHING) == PRESETS["drop"]
+    assert launch_conditions.launch_of("drop", 0.01, NOTHING) == PRESETS["drop"]
 
 
 def test_units_cancel_in_described_conditions():
     texts = NOTHING | {"spin": "30 rad/s", "speed": "0.4 m/s"}
     for length in (0.002, 0.05):
-        told = conditions.described(conditions.launch_of("drop", length, texts), length)
+        told = launch_conditions.described(launch_conditions.launch_of("drop", length, texts), length)
         assert told["spin_rad_s"] == pytest.approx([30.0, 30.0])
         assert told["speed_mm_s"] == pytest.approx([400.0, 400.0])
 
@@ -296,11 +300,11 @@ def test_units_cancel_in_described_conditions():
 )
 def test_conditions_that_are_none(key, text, line):
     with pytest.raises(ConfigError) as fault:
-        conditions.launch_of("feed", 0.01, NOTHING | {key: text})
+        launch_conditions.launch_of("feed", 0.01, NOTHING | {key: text})
     assert str(fault.value) == line
 
 
 def test_a_width_that_is_none():
-    assert conditions.share("1%", "until") == pytest.approx(0.01)
+    assert launch_conditions.share("1%", "until") == pytest.approx(0.01)
     with pytest.raises(ConfigError, match="until: '0%' is out of range"):
-        conditions.share("0%", "until")
+        launch_conditions.share("0%", "until")

@@ -9,11 +9,11 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
+from feederscrew.dropping import plate_test
 from feederscrew.dropping.kernel import body, falling, floor_motion, one_drop
 from feederscrew.dropping.kernel import ride as shaken
 from feederscrew.dropping.kernel.floor_motion import Floor, at_rest
-from feederscrew.dropping.launches import PRESETS, sample
-from feederscrew.dropping.plate import drive
+from feederscrew.dropping.launch_conditions import PRESETS, sample
 
 BOX, _ = drop_bodies.box((1.0, 1.3, 1.7))
 PLATE, _ = drop_bodies.box((3.0, 3.0, 0.6))
@@ -35,7 +35,7 @@ def ride(shape, plate, state, looks, friction, restitution=0.0, steps=None):
     """Faces and places of one ride."""
     work = falling.scratch(shape)
     work.state[:] = state
-    steps = steps or drive.steps_of(plate)
+    steps = steps or plate_test.steps_of(plate)
     seen = shaken.ride(shape, work, plate, falling.Pairing(restitution, friction), steps, looks)
     assert seen.taken[0] == len(looks)
     return seen.faces[0], seen.places[0]
@@ -116,7 +116,7 @@ def bowl_of(ratio, *more, degrees=20.0, friction=0.4, restitution=0.0):
 )
 def test_a_flat_part_travels_like_a_point(ratio, more):
     bowl = bowl_of(ratio, *more)
-    plate, unit = drive.floor_of(bowl, LENGTH), math.sqrt(LENGTH / bowl.gravity)
+    plate, unit = plate_test.floor_of(bowl, LENGTH), math.sqrt(LENGTH / bowl.gravity)
     looks = np.array([40.0, 160.0]) / 60.0 / unit
     quickest, speeds = 2.0 * math.pi * 60.0 * LENGTH * plate.along, []
     for turn in (0.0, 0.4):
@@ -127,8 +127,8 @@ def test_a_flat_part_travels_like_a_point(ratio, more):
 
 def test_the_error_of_the_velocity_falls_with_the_steps():
     bowl = bowl_of(0.9)
-    plate, unit = drive.floor_of(bowl, LENGTH), math.sqrt(LENGTH / bowl.gravity)
-    looks, steps = np.array([30.0, 60.0]) / 60.0 / unit, drive.steps_of(plate)
+    plate, unit = plate_test.floor_of(bowl, LENGTH), math.sqrt(LENGTH / bowl.gravity)
+    looks, steps = np.array([30.0, 60.0]) / 60.0 / unit, plate_test.steps_of(plate)
     errors = []
     for finer in (0.5, 4.0):
         finest = steps._replace(
@@ -144,7 +144,7 @@ def test_the_error_of_the_velocity_falls_with_the_steps():
 def test_a_part_without_friction_stays_where_it_is_in_the_room():
     """Below the hop nothing pushes it along: it stays in the room, and the floor moves below it."""
     bowl = bowl_of(0.8)
-    plate, unit = drive.floor_of(bowl, LENGTH), math.sqrt(LENGTH / bowl.gravity)
+    plate, unit = plate_test.floor_of(bowl, LENGTH), math.sqrt(LENGTH / bowl.gravity)
     state = lying_flat(PLATE)
     state[body.VX] = -floor_motion.speed(plate, plate.along, 0.0)
     _, places = ride(PLATE, plate, state, np.arange(10, 60) / 60.0 / unit, 0.0)
@@ -153,7 +153,7 @@ def test_a_part_without_friction_stays_where_it_is_in_the_room():
 
 @pytest.mark.parametrize("ratio", [0.5, 0.95])
 def test_below_the_hop_no_part_leaves_its_face(ratio):
-    plate = drive.floor_of(bowl_of(ratio), LENGTH)
+    plate = plate_test.floor_of(bowl_of(ratio), LENGTH)
     for turn in (0.0, 1.1):
         faces, _ = ride(PLATE, plate, lying_flat(PLATE, turn), np.arange(1.0, 90.0), 0.4)
         assert len(set(faces)) == 1 and faces[0] != one_drop.UNSETTLED

@@ -6,7 +6,7 @@ import shapes
 
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.one_drop import Steps, scratch, settle
-from feederscrew.dropping.rigid_body import shape_of_part
+from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.resting.aspects import find
 
 

@@ -11,11 +11,18 @@ from feederscrew.dropping import ensemble
 from feederscrew.dropping.kernel import body, falling, touch
 from feederscrew.dropping.kernel.floor_motion import at_rest
 from feederscrew.dropping.kernel.one_drop import Steps
-from feederscrew.dropping.launches import PRESETS
-from feederscrew.dropping.rigid_body import principal_axes, shape_of_part
-from feederscrew.dropping.rims import MIDDLE, OPENING, RADIUS, lowest_on, rims_of
+from feederscrew.dropping.launch_conditions import PRESETS
+from feederscrew.dropping.rounded_hull import (
+    MIDDLE,
+    OPENING,
+    RADIUS,
+    lowest_on,
+    principal_axes,
+    rims_of,
+    shape_of_part,
+)
 from feederscrew.resting.aspects import find
-from feederscrew.resting.tumbling.half_edges import half_edges
+from feederscrew.resting.half_edges import half_edges
 
 MM = 1e-3
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import shapes
 
-from feederscrew.dropping import conditions, drop_test
+from feederscrew.dropping import drop_test, launch_conditions
 from feederscrew.resting.aspects import find
 from feederscrew.resting.rules import recommended
 
-NOTHING = dict.fromkeys(conditions.KEYS)
+NOTHING = dict.fromkeys(launch_conditions.CONDITION_KEYS)
 FILE = Path(__file__).parents[2] / "docs/measured/held_out/cuboids.csv"
 ROWS = csv.DictReader(line for line in FILE.read_text().splitlines() if line[0] != "#")
 MEASURED = {float(row["x_over_y"]): (float(row["p_square"]), int(row["n"])) for row in ROWS}

@@ -8,11 +8,11 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
+from feederscrew.dropping import plate_test
 from feederscrew.dropping.kernel.one_drop import UNSETTLED
-from feederscrew.dropping.launches import PRESETS, sample
-from feederscrew.dropping.plate import bowl_test, drive
-from feederscrew.dropping.plate.occupancy import lasting, limit_of, occupancy
-from feederscrew.dropping.plate.rides import BATCH, ride
+from feederscrew.dropping.launch_conditions import PRESETS, sample
+from feederscrew.dropping.occupancy import lasting, limit_of, occupancy
+from feederscrew.dropping.plate_test import PARTS_A_BATCH, ride
 from feederscrew.resting.aspects import find
 
 BOX, _ = drop_bodies.box((1.0, 1.3, 1.7))
@@ -40,12 +40,12 @@ def test_every_transition_is_counted_once():
 def test_restitution_scatters_where_the_plate_throws_parts_up():
     """A value of the bowl file stood as it was, 0.2 for all; a range as typed stays what it is."""
 
-    def came(amplitude, pace=bowl_test.EXACT, **own):
+    def came(amplitude, pace=plate_test.EXACT_PACE, **own):
         bowl = bowls.read(None, (f"drive.amplitude={amplitude} mm",))
-        return bowl_test._surfaced(PRESETS["feed"], bowl, own, pace).restitution
+        return plate_test._surfaced(PRESETS["feed"], bowl, own, pace).restitution
 
     assert came(0.4) == pytest.approx((0.1446, 0.2554), abs=1e-4)
-    assert came(0.2) == (0.2, 0.2) and came(0.4, bowl_test.Pace()) == (0.2, 0.2)
+    assert came(0.2) == (0.2, 0.2) and came(0.4, plate_test.PlatePace()) == (0.2, 0.2)
     assert came(0.4, restitution="0.2:0.2") == PRESETS["feed"].restitution  # as it came, with that range
 
 
@@ -133,34 +133,34 @@ def bowl(*own):
 
 def followed(seconds):
     """How plates are told to follow their parts."""
-    return replace(bowl_test.EXACT, seconds=seconds)
+    return replace(plate_test.EXACT_PACE, seconds=seconds)
 
 
 def shaken(part, *bowl_list, preset="drop", seconds=1.0, **more):
     given = dict.fromkeys(("fall", "spin", "speed", "restitution", "friction"))
     more = {"drops": 40} | more
-    return bowl_test.test(part, find(part), bowl_list, preset, given, pace=followed(seconds), **more)
+    return plate_test.test(part, find(part), bowl_list, preset, given, pace=followed(seconds), **more)
 
 
 def test_the_outcome_does_not_depend_on_the_jobs():
-    floor = drive.floor_of(bowl("drive.amplitude=0.5 mm"), 0.01)
+    floor = plate_test.floor_of(bowl("drive.amplitude=0.5 mm"), 0.01)
     starts = sample(PRESETS["drop"], BOX, 25, np.random.default_rng(1))
     looks = np.arange(30.0, 60.0)
-    one, two = (ride(BOX, floor, starts, looks, drive.steps_of(floor), jobs=jobs) for jobs in (1, 2))
+    one, two = (ride(BOX, floor, starts, looks, plate_test.steps_of(floor), jobs=jobs) for jobs in (1, 2))
     assert (one.faces == two.faces).all() and (one.places == two.places).all() and one.lost == 0
 
 
 def test_an_interrupt_keeps_the_batches_that_are_done():
-    floor = drive.floor_of(bowl(), 0.01)
+    floor = plate_test.floor_of(bowl(), 0.01)
     starts = sample(PRESETS["drop"], BOX, 200, np.random.default_rng(1))
 
     def stop(done):
         raise KeyboardInterrupt
 
     looks = np.arange(1.0, 20.0)
-    part = ride(BOX, floor, starts, looks, drive.steps_of(floor), progress=stop)
-    whole = ride(BOX, floor, starts, looks, drive.steps_of(floor))
-    assert part.partial and 0 < len(part.faces) < 200 and len(part.faces) % BATCH == 0
+    part = ride(BOX, floor, starts, looks, plate_test.steps_of(floor), progress=stop)
+    whole = ride(BOX, floor, starts, looks, plate_test.steps_of(floor))
+    assert part.partial and 0 < len(part.faces) < 200 and len(part.faces) % PARTS_A_BATCH == 0
     assert (part.faces == whole.faces[: len(part.faces)]).all()
 
 
@@ -183,7 +183,7 @@ def test_the_plate_is_the_bowls_and_the_surface_too_unless_given():
     rough = [bowl("friction.static=0.8", "drive.amplitude=0.2 mm")]
     given = {"drops": 10, "pace": followed(0.5)}
     speeds = [
-        bowl_test.test(part, find(part), bowls_of, "place", texts, **given)[0].occupancy.velocity[0]
+        plate_test.test(part, find(part), bowls_of, "place", texts, **given)[0].occupancy.velocity[0]
         for bowls_of, texts in ((slippery, own), (rough, own), (slippery, own | {"friction": "0.8"}))
     ]
     assert speeds[0] < 0.5 * speeds[1] and speeds[1] == pytest.approx(speeds[2])
@@ -191,12 +191,12 @@ def test_the_plate_is_the_bowls_and_the_surface_too_unless_given():
 
 @pytest.mark.parametrize(("frequency", "seconds", "apart"), [(60.0, 5.0, 1 / 60), (100.0, 60.0, 0.1)])
 def test_looks_are_whole_periods_apart(frequency, seconds, apart):
-    assert bowl_test.looks_apart(frequency, seconds) == pytest.approx(apart)
+    assert plate_test.looks_apart(frequency, seconds) == pytest.approx(apart)
 
 
 def test_the_throw_number_of_a_plate():
     given = bowl("drive.amplitude=0.3 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")
-    assert drive.throw_number(given) == pytest.approx(0.3e-3 * (120 * np.pi) ** 2 * 0.5 / 9.81)
+    assert plate_test.throw_number(given) == pytest.approx(0.3e-3 * (120 * np.pi) ** 2 * 0.5 / 9.81)
 
 
 def test_a_part_that_never_lies_counts_for_no_class():
@@ -227,7 +227,7 @@ def test_the_velocity_of_one_part_has_no_interval():
 def test_the_throw_number_counts_the_second_harmonic():
     """Its acceleration is sin x + 4 r sin(2 x + psi): 1 + 4 r at x = 90 deg for psi = -90 deg."""
     own = ("drive.second_harmonic=0.2", "drive.second_harmonic_phase=-90 deg")
-    assert drive.throw_number(bowl(*own)) == pytest.approx(1.8 * drive.throw_number(bowl()))
+    assert plate_test.throw_number(bowl(*own)) == pytest.approx(1.8 * plate_test.throw_number(bowl()))
 
 
 def test_a_launch_keeps_its_speed_whatever_the_gravity():
@@ -235,7 +235,7 @@ def test_a_launch_keeps_its_speed_whatever_the_gravity():
     part = shapes.part(shapes.box(12.0, 12.0, 3.0))
     own = dict.fromkeys(("fall", "spin", "restitution")) | {"speed": "0.1 m/s", "friction": "0"}
     plates = [bowl("drive.amplitude=0 mm", f"gravity={gravity} m/s2") for gravity in (9.81, 1.0)]
-    earth, moon = bowl_test.test(part, find(part), plates, "place", own, drops=16, pace=followed(0.2))
+    earth, moon = plate_test.test(part, find(part), plates, "place", own, drops=16, pace=followed(0.2))
     assert earth.launch["speed_mm_s"] == moon.launch["speed_mm_s"] == pytest.approx([100.0, 100.0])
     assert abs(earth.occupancy.velocity[0]) > 1e-3  # not all ways cancel
     assert moon.occupancy.velocity[0] == pytest.approx(earth.occupancy.velocity[0], rel=1e-3)

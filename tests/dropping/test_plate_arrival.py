@@ -8,13 +8,13 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.dropping.plate import arrival, bowl_test
+from feederscrew.dropping import arrival, plate_test
 from feederscrew.errors import FeederError
 from feederscrew.rates import arrivals
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import shares
 
-HALF = replace(bowl_test.EXACT, seconds=0.5)
+HALF = replace(plate_test.EXACT_PACE, seconds=0.5)
 
 
 def plate(amplitude):
@@ -26,7 +26,7 @@ def shaken():
     """Few parts on a gentle floor."""
     part = shapes.part(shapes.box(8.0, 12.0, 15.0))
     aspects = find(part)
-    return part, aspects, bowl_test.test(part, aspects, [plate(0.02)], "feed", {}, drops=30, pace=HALF)[0]
+    return part, aspects, plate_test.test(part, aspects, [plate(0.02)], "feed", {}, drops=30, pace=HALF)[0]
 
 
 def changed(shaken, **values):
@@ -40,12 +40,12 @@ def test_a_gentle_floor_settles_the_shares(shaken):
     found = arrival.arrival(part, aspects, plate(0.02), drops=30)
     assert found.settled and found.reason == "" and found.p.sum() == pytest.approx(1.0)
     assert (found.low <= found.p).all() and (found.p <= found.high).all()
-    assert found.shaken.seconds == pytest.approx(arrival.SPELLS[0], rel=0.05)
+    assert found.shaken.seconds == pytest.approx(arrival.FLOOR_TIMES_S[0], rel=0.05)
 
 
 def test_shares_that_still_change_are_undecided(shaken):
     found = arrival.judged(changed(shaken[2], changing=[True, False, False]))
-    assert not found.settled and found.reason == arrival.MOVING.format(shaken[2].seconds)
+    assert not found.settled and found.reason == arrival.MOVING_REMARK.format(shaken[2].seconds)
 
 
 def test_rates_that_lead_elsewhere_are_undecided_and_in_the_interval(shaken):
@@ -66,7 +66,7 @@ def test_rates_that_lead_elsewhere_are_undecided_and_in_the_interval(shaken):
 def test_parts_that_lie_on_nothing_are_told(shaken):
     found = arrival.judged(changed(shaken[2], plate=[0.3, 0.2, 0.1]))
     assert not found.settled and found.p == pytest.approx([1 / 2, 1 / 3, 1 / 6])
-    assert found.reason == arrival.UNSEEN.format(12, 30)
+    assert found.reason == arrival.UNSEEN_REMARK.format(12, 30)
     nothing = arrival.judged(changed(shaken[2], plate=[0.0, 0.0, 0.0]))
     assert np.isnan(nothing.p).all() and nothing.low.tolist() == [0.0] * 3
 
@@ -79,22 +79,22 @@ def test_a_part_too_small_to_be_followed_on_its_floor_ends_at_once():
     assert known.aspects.recommended.rule == known.aspects.closed.rule
     assert known.aspects.warnings[-1] == arrivals.TOO_LONG
     with pytest.raises(FeederError, match=r"a part so small takes .* steps at this drive for so long"):
-        bowl_test.test(part, known.aspects, [bowl], "feed", {})
+        plate_test.test(part, known.aspects, [bowl], "feed", {})
 
 
 def test_the_parts_that_choose_the_spell_are_followed_once(monkeypatch):
     """They were followed again as the first of those that decide: a sixth of the time of each answer."""
     part, followed = shapes.part(shapes.box(8.0, 12.0, 20.0)), []
-    every = arrival.bowl_test.ride
-    monkeypatch.setattr(arrival, "FIRST", 40)
-    monkeypatch.setattr(arrival, "MOST", 120)
-    monkeypatch.setattr(bowl_test, "ROUND", 40)
+    every = arrival.plate_test.ride
+    monkeypatch.setattr(arrival, "FIRST_PARTS", 40)
+    monkeypatch.setattr(arrival, "MAX_ARRIVALS", 120)
+    monkeypatch.setattr(plate_test, "PARTS_A_LOOK", 40)
 
     def counting(shape, floor, starts, *rest, **more):
         followed.append(len(starts.energies))
         return every(shape, floor, starts, *rest, **more)
 
-    monkeypatch.setattr(arrival.bowl_test, "ride", counting)
+    monkeypatch.setattr(arrival.plate_test, "ride", counting)
     found = arrival.arrival(part, find(part), plate(0.2))
     assert found.shaken.parts == sum(followed) > 40
     assert found.shaken.rides is None
@@ -112,16 +112,16 @@ def test_on_a_floor_that_throws_parts_as_many_are_followed_as_the_share_needs(mo
         runs.append((drops, pace.seconds, pace.done))
         error = np.array([0.4, 0.4, 0.0]) / np.sqrt(drops)
         seen = SimpleNamespace(error=error, plate_low=np.full(3, 0.3), plate_high=np.full(3, 0.4))
-        return [bowl_test.Shaken(bowl, {}, 1.7, drops, pace.seconds, seen, 0, False, rides="kept")]
+        return [plate_test.PlateResult(bowl, {}, 1.7, drops, pace.seconds, seen, 0, False, rides="kept")]
 
     def judged(run):
-        return arrival.Arrival(0, 0, 0, run.seconds == arrival.SPELLS[1], "", run)
+        return arrival.Arrival(0, 0, 0, run.seconds == arrival.FLOOR_TIMES_S[1], "", run)
 
-    for name, count in (("FIRST", 400), ("LONGEST", 800), ("MOST", 4000)):
+    for name, count in (("FIRST_PARTS", 400), ("LONGER_TIME_PARTS", 800), ("MAX_ARRIVALS", 4000)):
         monkeypatch.setattr(arrival, name, count)
-    monkeypatch.setattr(bowl_test, "test", test)
+    monkeypatch.setattr(plate_test, "test", test)
     monkeypatch.setattr(arrival, "judged", judged)
     arrival.arrival(part, find(part), bowl)
-    short, long = arrival.SPELLS
+    short, long = arrival.FLOOR_TIMES_S
     assert runs == [(400, short, None), (800, long, None), (1600, long, "kept")]
-    assert 1.96 * 0.4 / np.sqrt(1600) <= arrival.WIDTH < 1.96 * 0.4 / np.sqrt(1200)
+    assert 1.96 * 0.4 / np.sqrt(1600) <= arrival.ARRIVAL_HALF_WIDTH < 1.96 * 0.4 / np.sqrt(1200)

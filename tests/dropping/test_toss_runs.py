@@ -7,8 +7,8 @@ import pytest
 import shapes
 from scipy.spatial.transform import Rotation
 
-from feederscrew.dropping import launch_file, toss_runs
-from feederscrew.dropping.launch_file import FACES, STATE
+from feederscrew.dropping import toss_runs
+from feederscrew.dropping.toss_runs import FACE_NAMES, STATE_COLUMNS
 from feederscrew.errors import Faults, FeederError
 from feederscrew.part import load
 from feederscrew.studies.tosses import follow
@@ -27,7 +27,7 @@ def box(tmp_path):
 def written(tmp_path, states, extra=""):
     """A file of launches, one for each (13,) state in the order of STATE."""
     path = tmp_path / "launches.csv"
-    lines = [f"toss,{','.join(STATE)}{extra and ',' + extra}"]
+    lines = [f"toss,{','.join(STATE_COLUMNS)}{extra and ',' + extra}"]
     lines += [
         ",".join([str(k), *map(repr, map(float, state))]) + "," * bool(extra)
         for k, state in enumerate(states)
@@ -45,7 +45,7 @@ def test_a_box_that_slides_flat_stops_where_friction_says(box, tmp_path):
     path = written(tmp_path, [state((0.1, -0.2, 0.010001), velocity=(0.6, 0.8, 0.0))])
     told = follow(box, path, {"friction": "0.3", "restitution": "0.1"}, runs=1).result
     way = 1.0**2 / (2.0 * 0.3 * 9.81)
-    assert FACES[told.faces[0]] == "+z"
+    assert FACE_NAMES[told.faces[0]] == "+z"
     assert told.places[0] == pytest.approx([0.1 + 0.6 * way, -0.2 + 0.8 * way], abs=0.003 * way)
     assert told.times[0] == pytest.approx(1.0 / (0.3 * 9.81), rel=0.05)
 
@@ -56,7 +56,7 @@ def test_the_side_set_up_is_the_side_told(box, tmp_path, side, axis):
     up = turn.inv().apply([0.0, 0.0, 1.0])
     assert np.abs(up).argmax() == "xyz".index(side[1]) and (up.sum() > 0.0) == (side[0] == "+")
     told = follow(box, written(tmp_path, [state(turn=turn)]), CUBE, runs=3).result
-    assert FACES[told.faces[0]] == side == FACES[told.released[0]]
+    assert FACE_NAMES[told.faces[0]] == side == FACE_NAMES[told.released[0]]
     assert told.shares[0].sum() == pytest.approx(1.0)
 
 
@@ -135,12 +135,15 @@ def test_values_scatter_about_a_value_and_fill_a_range(ends, rng):
         assert np.percentile(values, [25, 50, 75]) == pytest.approx([0.3, 0.4, 0.5], abs=0.01)
 
 
-HEAD = f"toss,{','.join(STATE)}"
+HEAD = f"toss,{','.join(STATE_COLUMNS)}"
 WHOLE = ",".join(["0", *map(str, state())])
 FAULTS = [
     ("", "has no launch - give the columns toss,"),
     (HEAD + "\n", "has no launch - give the columns toss,"),
-    (f"toss,{','.join(STATE[:-1])}\n{WHOLE}\n", ":1: there is no column wz0 - give the columns toss,"),
+    (
+        f"toss,{','.join(STATE_COLUMNS[:-1])}\n{WHOLE}\n",
+        ":1: there is no column wz0 - give the columns toss,",
+    ),
     (f"{HEAD},x0_m\n{WHOLE},1\n", ":1: column x0_m is given twice - keep one of them"),
     (HEAD + "\n" + WHOLE.replace("0.05", "high") + "\n", "z0_m: 'high' is not a number"),
     (HEAD + "\n" + WHOLE.replace("0.05", "1_0") + "\n", "z0_m: '1_0' is not a number"),
@@ -155,7 +158,7 @@ FAULTS = [
 def test_each_fault_of_a_file_is_a_line(tmp_path, text, line):
     (tmp_path / "bad.csv").write_text(text)
     with pytest.raises((FeederError, Faults)) as caught:
-        launch_file.read(tmp_path / "bad.csv")
+        toss_runs.read_launches(tmp_path / "bad.csv")
     assert line in str(caught.value) and "\n" not in str(caught.value)
 
 

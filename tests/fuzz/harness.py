@@ -166,10 +166,10 @@ def _warm():
 
 def _few():
     """Drop and feed few parts: it is the files that are looked at."""
-    from feederscrew.dropping.plate import arrival
+    from feederscrew.dropping import arrival
     from feederscrew.studies import aspects
 
-    aspects.MOST = arrival.FIRST = arrival.MOST = arrival.LONGEST = 20
+    aspects.MOST = arrival.FIRST_PARTS = arrival.MAX_ARRIVALS = arrival.LONGER_TIME_PARTS = 20
 
 
 def _child(context):

@@ -93,13 +93,13 @@ def _hole(name):
 def _counts(name):
     from feederscrew.resting.counts import profiles
 
-    profiles.read(name, ("A", "B", "C", "D", "E"))
+    profiles.read_profile(name, ("A", "B", "C", "D", "E"))
 
 
 def _names(name):
     from feederscrew.part import aspect_names
 
-    aspect_names.read(name)
+    aspect_names.read_aspect_names(name)
 
 
 def _gather(name):
@@ -109,9 +109,9 @@ def _gather(name):
 
 
 def _launches(name):
-    from feederscrew.dropping import launch_file
+    from feederscrew.dropping import toss_runs
 
-    launch_file.read(name)
+    toss_runs.read_launches(name)
 
 
 def _cache(name):

@@ -17,7 +17,7 @@ def facets(corners, faces):
     """The union of the facets whose outer side is seen."""
     a, b, c = corners[faces].transpose(1, 0, 2)
     twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    return shapely.union_all(shapely.polygons(corners[faces][twice > shaded.LEAST]))
+    return shapely.union_all(shapely.polygons(corners[faces][twice > shaded.LEAST_AREA_M2]))
 
 
 def alike(one, other):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapes
 
-from feederscrew.geometry.solid_angle import solid_angles
+from feederscrew.geometry.vectors import solid_angles
 
 
 @pytest.mark.parametrize(("a", "b", "h"), [(1.0, 1.0, 0.5), (10.0, 20.0, 15.0), (3.0, 0.1, 40.0)])

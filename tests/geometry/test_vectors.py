@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from feederscrew.geometry import coordinates, vectors
+from feederscrew.geometry import vectors
 
 SEEDS = st.integers(0, 2**31)
 FEW = {"max_examples": 60, "deadline": None, "derandomize": True}
@@ -27,10 +27,10 @@ def test_products_have_the_shape_and_value_of_the_matrix_product(shapes):
 
 def test_columns_have_the_digits_of_rows():
     u, v = drawn(1, 50, 3), drawn(2, 50, 3)
-    assert np.array_equal(coordinates.cross(u.T, v.T).T, vectors.cross(u, v))
-    assert coordinates.dot(u.T, v.T) == pytest.approx(vectors.dot(u, v), rel=1e-14, abs=1e-15)
+    assert np.array_equal(vectors.cross_columns(u.T, v.T).T, vectors.cross(u, v))
+    assert vectors.dot_columns(u.T, v.T) == pytest.approx(vectors.dot(u, v), rel=1e-14, abs=1e-15)
     places = np.array([[0, 7], [7, 3], [49, 0]])
-    assert np.array_equal(coordinates.at(u, places).transpose(2, 0, 1), u[places])
+    assert np.array_equal(vectors.columns_at(u, places).transpose(2, 0, 1), u[places])
 
 
 def test_lengths_units_and_determinants():

@@ -8,7 +8,7 @@ import pytest
 from feederscrew import bowl as bowls
 from feederscrew.bowl.reading import settings_of_text
 from feederscrew.designing import calm_drive
-from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.machine import drive_units
 from feederscrew.machine.drive_sizing import can_make

@@ -9,7 +9,7 @@ import pytest
 from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
 from feederscrew.machine import sizing
-from feederscrew.mechanics.wall.stable_headings import headings
+from feederscrew.mechanics.headings import headings
 from feederscrew.rates import stream
 from feederscrew.resting.posture import posture
 

@@ -10,9 +10,9 @@ from mechanics_samples import DEG, bowl, box_posture, random_bowl, random_seat, 
 from feederscrew.bowl.record import Bowl, Drive, Friction, Track
 from feederscrew.conveying import answer
 from feederscrew.mechanics import cycle
-from feederscrew.mechanics.floor import balance as floor
-from feederscrew.mechanics.track import balance as track
-from feederscrew.mechanics.track.frame import frame, seat
+from feederscrew.mechanics import floor_balance as floor
+from feederscrew.mechanics import track_balance as track
+from feederscrew.mechanics.track_balance import frame, seat
 
 FLAT = box_posture(height=0.0005)  # low enough not to tip
 

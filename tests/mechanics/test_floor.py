@@ -7,10 +7,9 @@ import pytest
 from mechanics_samples import DEG, bowl, box_posture, rolling_posture
 from scipy.optimize import brentq
 
-from feederscrew.mechanics import cycle
-from feederscrew.mechanics.floor import balance
-from feederscrew.mechanics.floor import cells as floor_cells
-from feederscrew.mechanics.floor.balance import solve_rolling
+from feederscrew.mechanics import cycle, floor_balance
+from feederscrew.mechanics import motion_maps as floor_cells
+from feederscrew.mechanics.floor_balance import solve_rolling
 from feederscrew.screw import Wrench
 
 G = 9.81
@@ -24,7 +23,7 @@ def test_normal_force_at_both_reversals():
     """Eqs. [4.14], [4.20]."""
     posture, settings = box_posture(), bowl()
     lift = drive_acceleration(settings) * np.sin(20 * DEG)
-    found = balance.motion(posture, settings, 0.0, np.array([0.5, 1.5]) * np.pi)
+    found = floor_balance.motion(posture, settings, 0.0, np.array([0.5, 1.5]) * np.pi)
     assert found.normal_force == pytest.approx(posture.mass * np.array([G - lift, G + lift]))
 
 
@@ -32,19 +31,19 @@ def test_sliding_against_kinetic_friction():
     """Eqs. [4.16], [4.26], [4.28]."""
     settings = bowl(static=0.4, kinetic=0.25)
     push, lift = (drive_acceleration(settings) * f(20 * DEG) for f in (np.cos, np.sin))
-    found = balance.motion(box_posture(), settings, 0.0)
-    assert balance.MOTION_STATES[found.state] == "slide"
+    found = floor_balance.motion(box_posture(), settings, 0.0)
+    assert floor_balance.MOTION_STATES[found.state] == "slide"
     assert found.acceleration == pytest.approx([push - 0.25 * (G - lift), 0.0])
     assert found.limiting_friction == pytest.approx(push / (G - lift))
 
 
 def test_static_friction_holds_up_to_the_limit():
     posture = box_posture()
-    limit = float(balance.motion(posture, bowl(), 0.0).limiting_friction)
+    limit = float(floor_balance.motion(posture, bowl(), 0.0).limiting_friction)
     for static, state in ((limit * (1 + 1e-9), "stick"), (limit * (1 - 1e-9), "slide")):
-        found = balance.motion(posture, bowl(static=static, kinetic=0.1), 0.0)
-        assert balance.MOTION_STATES[found.state] == state
-    held = balance.motion(posture, bowl(static=2.0), 0.7)
+        found = floor_balance.motion(posture, bowl(static=static, kinetic=0.1), 0.0)
+        assert floor_balance.MOTION_STATES[found.state] == state
+    held = floor_balance.motion(posture, bowl(static=2.0), 0.7)
     assert held.acceleration == pytest.approx([0.0, 0.0], abs=1e-15)
     assert held.turning == 0.0
 
@@ -52,8 +51,8 @@ def test_static_friction_holds_up_to_the_limit():
 def test_friction_is_a_vector_against_the_drive():
     """A free part slides along the drive however it is turned; only its own axes turn."""
     settings = bowl(direction=25 * DEG)
-    aligned = balance.motion(box_posture(), settings, 25 * DEG)
-    turned = balance.motion(box_posture(), settings, -40 * DEG)
+    aligned = floor_balance.motion(box_posture(), settings, 25 * DEG)
+    turned = floor_balance.motion(box_posture(), settings, -40 * DEG)
     size = np.hypot(*turned.acceleration)
     assert size == pytest.approx(np.hypot(*aligned.acceleration))
     assert np.arctan2(turned.acceleration[1], turned.acceleration[0]) == pytest.approx(65 * DEG)
@@ -64,14 +63,14 @@ def test_alignment_turns_towards_the_drive():
     """Eqs. [4.17], [4.23]."""
     posture, settings = box_posture(offset=2e-3), bowl(direction=30 * DEG)
     headings = np.radians(np.linspace(-170, 170, 35))
-    turning = balance.motion(posture, settings, headings).turning
+    turning = floor_balance.motion(posture, settings, headings).turning
     push = posture.mass * drive_acceleration(settings) * np.cos(20 * DEG)
     want = 2e-3 * push * np.sin(30 * DEG - headings) / posture.turning_inertia
     np.testing.assert_allclose(turning, want, rtol=1e-12, atol=1e-9)
-    assert balance.stable_heading(posture, settings) == pytest.approx(30 * DEG)
+    assert floor_balance.stable_heading(posture, settings) == pytest.approx(30 * DEG)
     behind = replace(posture, offset=-2e-3)
-    assert balance.stable_heading(behind, settings) == pytest.approx(30 * DEG + np.pi)
-    assert np.isnan(balance.stable_heading(box_posture(), settings))
+    assert floor_balance.stable_heading(behind, settings) == pytest.approx(30 * DEG + np.pi)
+    assert np.isnan(floor_balance.stable_heading(box_posture(), settings))
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -88,8 +87,8 @@ def test_newton_and_euler(seed):
         direction=rng.uniform(-3, 3), vibration_angle=rng.uniform(0, 0.5), static=rng.uniform(0.1, 0.9)
     )
     heading, phase = rng.uniform(-3, 3), cycle.phases(36)
-    found = balance.motion(posture, settings, heading, phase)
-    drive = balance.drive_force(posture, settings, heading, phase)
+    found = floor_balance.motion(posture, settings, heading, phase)
+    drive = floor_balance.drive_force(posture, settings, heading, phase)
     nothing, weight = np.zeros((36, 1)), np.array([0.0, 0.0, -posture.mass * settings.gravity])
     normal = np.column_stack([np.zeros((36, 2)), found.normal_force])
     at_d = np.column_stack([found.offset, np.full(36, -posture.height)])
@@ -113,48 +112,48 @@ def test_newton_and_euler(seed):
 def test_a_tall_part_tips_before_it_slides():
     """Tips where h R / N leaves the contact polygon: mu > half length / h."""
     tall = box_posture(length=0.004, width=0.004, height=0.02)
-    state = balance.motion(tall, bowl(static=0.9, kinetic=np.array([0.19, 0.21])), 0.0).state
-    assert [balance.MOTION_STATES[code] for code in state] == ["slide", "tip"]
-    found = balance.motion(tall, bowl(static=0.9, kinetic=0.15), 0.0)
+    state = floor_balance.motion(tall, bowl(static=0.9, kinetic=np.array([0.19, 0.21])), 0.0).state
+    assert [floor_balance.MOTION_STATES[code] for code in state] == ["slide", "tip"]
+    found = floor_balance.motion(tall, bowl(static=0.9, kinetic=0.15), 0.0)
     assert found.offset[0] == pytest.approx(0.01 * 0.15)
     assert found.inside == pytest.approx(0.002 - 0.0015)
 
 
 def test_past_the_hop_there_is_no_contact():
-    found = balance.motion(box_posture(), bowl(amplitude=0.5e-3), 0.0)
-    assert balance.MOTION_STATES[found.state] == "hop"
+    found = floor_balance.motion(box_posture(), bowl(amplitude=0.5e-3), 0.0)
+    assert floor_balance.MOTION_STATES[found.state] == "hop"
     assert found.normal_force == 0.0
     assert np.isnan(found.limiting_friction)
-    over, _ = balance.over_cycle(box_posture(), bowl(amplitude=0.5e-3), 0.0)
-    assert balance.regime(over.state) == "hop"
+    over, _ = floor_balance.over_cycle(box_posture(), bowl(amplitude=0.5e-3), 0.0)
+    assert floor_balance.regime(over.state) == "hop"
 
 
 def test_a_rolling_cylinder_needs_a_third_of_the_drive():
     posture, settings = rolling_posture(), bowl(direction=90 * DEG, static=0.4)
     push = posture.mass * drive_acceleration(settings) * np.cos(20 * DEG)
-    found = balance.motion(posture, settings, 0.0)
+    found = floor_balance.motion(posture, settings, 0.0)
     assert found.friction == pytest.approx([0.0, -push / 3], abs=1e-15)
     assert found.acceleration == pytest.approx([0.0, push / posture.mass * 2 / 3], abs=1e-12)
     assert found.limiting_friction == pytest.approx(push / 3 / found.normal_force)
-    assert balance.MOTION_STATES[found.state] == "stick"
+    assert floor_balance.MOTION_STATES[found.state] == "stick"
     assert np.abs(found.friction).max() < 0.4 * found.normal_force
 
 
 def test_a_rolling_part_slips_beyond_its_limit_without_a_jump():
     posture = rolling_posture()
-    limit = float(balance.motion(posture, bowl(direction=60 * DEG), 0.0).limiting_friction)
+    limit = float(floor_balance.motion(posture, bowl(direction=60 * DEG), 0.0).limiting_friction)
     above, below = (
-        balance.motion(posture, bowl(direction=60 * DEG, static=mu, kinetic=mu), 0.0)
+        floor_balance.motion(posture, bowl(direction=60 * DEG, static=mu, kinetic=mu), 0.0)
         for mu in (limit * (1 + 1e-9), limit * (1 - 1e-9))
     )
-    assert [balance.MOTION_STATES[f.state] for f in (above, below)] == ["stick", "slide"]
+    assert [floor_balance.MOTION_STATES[f.state] for f in (above, below)] == ["stick", "slide"]
     np.testing.assert_allclose(above.friction, below.friction, rtol=1e-6)
 
 
 def test_slip_of_a_rolling_part_opposes_its_friction():
     """The contact line accelerates exactly against friction of mu N."""
     posture, settings = rolling_posture(), bowl(direction=35 * DEG, static=0.2, kinetic=0.15)
-    force = balance.drive_force(posture, settings, 0.0)
+    force = floor_balance.drive_force(posture, settings, 0.0)
     normal = np.array(posture.mass * 9.81 - force[2])
     found = solve_rolling(posture, settings.friction, force[:2], normal)
     spin = found.rolling_acceleration
@@ -168,10 +167,10 @@ def test_slip_of_a_rolling_part_opposes_its_friction():
 def test_a_rolling_part_swings_with_the_drive():
     """v = -(2/3) A w cos(b) cos(w t) across its axis."""
     settings = bowl(direction=90 * DEG, static=0.9)
-    over, course = balance.over_cycle(rolling_posture(), settings, 0.0)
+    over, course = floor_balance.over_cycle(rolling_posture(), settings, 0.0)
     want = -2 / 3 * 0.05e-3 * 2 * np.pi * 60 * np.cos(20 * DEG) * np.cos(cycle.phases())
     np.testing.assert_allclose(course.velocity, want, rtol=0, atol=1e-4 * want.max())
-    assert balance.regime(over.state) == "stick"
+    assert floor_balance.regime(over.state) == "stick"
 
 
 def two_burst_velocity(mu, beta, ratio):
@@ -191,31 +190,31 @@ def two_burst_velocity(mu, beta, ratio):
 
 @pytest.mark.parametrize("mu", [0.5, 0.6, 0.7])
 def test_cycle_follows_the_two_burst_velocity(mu):
-    settings = balance.with_friction(bowl(), mu)
+    settings = floor_balance.with_friction(bowl(), mu)
     ratio = drive_acceleration(settings) / G
     want = two_burst_velocity(mu, 20 * DEG, ratio) * settings.drive.amplitude * 2 * np.pi * 60
     for samples in (60, 360):
-        _, course = balance.over_cycle(box_posture(), settings, 0.0, samples)
+        _, course = floor_balance.over_cycle(box_posture(), settings, 0.0, samples)
         assert course.settled
         assert course.mean == pytest.approx(want, rel=1e-9)
 
 
 def test_a_part_that_rides_has_no_velocity():
-    over, course = balance.over_cycle(box_posture(), balance.with_friction(bowl(), 2.0), 0.0)
-    assert balance.regime(over.state) == "stick"
+    over, course = floor_balance.over_cycle(box_posture(), floor_balance.with_friction(bowl(), 2.0), 0.0)
+    assert floor_balance.regime(over.state) == "stick"
     assert not course.velocity.any()
 
 
 def test_cycle_does_not_depend_on_the_heading_of_a_free_part():
-    first, second = (balance.over_cycle(box_posture(), bowl(), heading)[1] for heading in (0.0, 1.1))
+    first, second = (floor_balance.over_cycle(box_posture(), bowl(), heading)[1] for heading in (0.0, 1.1))
     np.testing.assert_allclose(first.velocity, second.velocity, rtol=1e-9, atol=1e-15)
 
 
 def test_a_map_cell_is_the_single_answer():
     beta, mu = np.radians([10.0, 20.0, 30.0])[:, None], np.array([[0.1, 0.3]])
     posture, settings = box_posture(offset=1e-3), bowl(direction=10 * DEG, vibration_angle=beta)
-    cells = floor_cells.cells(posture, balance.with_friction(settings, mu), 0.2)
-    one = balance.motion(
+    cells = floor_cells.floor_cells(posture, floor_balance.with_friction(settings, mu), 0.2)
+    one = floor_balance.motion(
         posture, bowl(direction=10 * DEG, vibration_angle=30 * DEG, static=0.1, kinetic=0.1), 0.2
     )
     assert cells["acceleration_z_m_s2"][2, 0] == pytest.approx(float(one.acceleration[0]))
@@ -225,6 +224,6 @@ def test_a_map_cell_is_the_single_answer():
 def test_a_map_past_the_hop_is_empty():
     """Figure 5-6's own values hop above asin(g / A w^2) = 7.9 deg."""
     settings = bowl(amplitude=0.5e-3, gravity=9.8, vibration_angle=np.radians([7.8, 8.0]))
-    cells = floor_cells.cells(box_posture(), settings, 0.0)
+    cells = floor_cells.floor_cells(box_posture(), settings, 0.0)
     assert np.isnan(cells["acceleration_z_m_s2"]).tolist() == [False, True]
-    assert [balance.MOTION_STATES[code] for code in cells["regime"]][1] == "hop"
+    assert [floor_balance.MOTION_STATES[code] for code in cells["regime"]][1] == "hop"

@@ -79,14 +79,14 @@ def test_no_backward_slip_before_the_hop_on_a_steep_drive():
 
 def test_a_steeper_track_than_friction_slides_at_rest():
     assert limits.backward_ratio(0.1, 20 * DEG, climb=10 * DEG) == 0.0
-    assert limits.REGIMES[limits.regimes(0.0, 20 * DEG, 0.1, climb=10 * DEG)] == "backward"
+    assert limits.POINT_REGIMES[limits.regimes(0.0, 20 * DEG, 0.1, climb=10 * DEG)] == "backward"
 
 
 def test_regimes_of_one_row():
     codes = limits.regimes(np.array([0.2, 0.6, 1.2, 3.0]), 30 * DEG, 0.5, climb=3 * DEG)
-    assert [limits.REGIMES[code] for code in codes] == ["stick", "forward", "both", "hop"]
+    assert [limits.POINT_REGIMES[code] for code in codes] == ["stick", "forward", "both", "hop"]
     turned = limits.regimes(np.array([0.2, 0.6, 1.2, 3.0]), 30 * DEG, 0.5, np.pi, climb=-3 * DEG)
-    assert [limits.REGIMES[code] for code in turned] == ["stick", "backward", "both", "hop"]
+    assert [limits.POINT_REGIMES[code] for code in turned] == ["stick", "backward", "both", "hop"]
 
 
 def test_friction_at_a_limit_rides():

@@ -12,8 +12,7 @@ from mechanics_samples import DEG, box_posture, rectangle
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import outline, turned
-from feederscrew.mechanics.wall.outline import rests
-from feederscrew.mechanics.wall.stable_headings import headings, stable_row
+from feederscrew.mechanics.headings import headings, rests, stable_row
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.posture import Posture, posture

@@ -8,12 +8,11 @@ from mechanics_samples import BOWL, DEG, bowl, box_posture, random_bowl, random_
 
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
-from feederscrew.mechanics import cycle
-from feederscrew.mechanics.floor import balance
-from feederscrew.mechanics.track import balance as track
-from feederscrew.mechanics.track import cells as track_cells
-from feederscrew.mechanics.track.frame import bank_without_radial_friction, card_seat, frame, loads, seat
-from feederscrew.mechanics.track.opening import contact_wrenches, first_to_open
+from feederscrew.mechanics import cycle, floor_balance
+from feederscrew.mechanics import motion_maps as track_cells
+from feederscrew.mechanics import track_balance as track
+from feederscrew.mechanics.track_balance import bank_without_radial_friction, card_seat, frame, loads, seat
+from feederscrew.mechanics.track_contacts import contact_wrenches, first_to_open
 from feederscrew.screw import Point, Twist, Wrench, reactions, tipping_twists
 
 PHASE = cycle.phases(24)
@@ -80,7 +79,10 @@ def test_the_floor_is_its_limit():
     """A straight, smooth wall, no bank, no climb: the wall carries nothing and all is as on the floor."""
     posture, settings = box_posture(), bowl(radius=1e9, bank=0.0, climb=0.0, wall=0.0, kinetic=0.25)
     part = seat(posture, 0.0, rectangle(0.03, 0.01)[:2], 0.0)
-    on_track, on_floor = track.motion(part, settings, PHASE), balance.motion(posture, settings, 0.0, PHASE)
+    on_track, on_floor = (
+        track.motion(part, settings, PHASE),
+        floor_balance.motion(posture, settings, 0.0, PHASE),
+    )
     assert (on_track.state == on_floor.state).all()
     weight = posture.mass * 9.81
     assert np.abs(on_track.walls).max() < 1e-9 * weight
@@ -90,7 +92,7 @@ def test_the_floor_is_its_limit():
     )
     np.testing.assert_allclose(on_track.offset, on_floor.offset, rtol=1e-9, atol=1e-12)
     ridden = [over(*args)[1].velocity for over, args in ((track.over_cycle, (part, settings)),
-              (balance.over_cycle, (posture, settings, 0.0)))]  # fmt: skip
+              (floor_balance.over_cycle, (posture, settings, 0.0)))]  # fmt: skip
     np.testing.assert_allclose(*ridden, rtol=1e-9, atol=1e-12)
 
 
@@ -120,7 +122,7 @@ def test_rest_goes_over_into_sliding_without_a_jump():
         track.motion(part, bowl(static=mu, kinetic=mu, wall=mu))
         for mu in (limit * (1 + 1e-7), limit * (1 - 1e-7))
     )
-    assert [balance.MOTION_STATES[f.state] for f in (above, below)] == ["stick", "slide"]
+    assert [floor_balance.MOTION_STATES[f.state] for f in (above, below)] == ["stick", "slide"]
     for name in ("normal_force", "walls", "traction", "wall_friction", "offset"):
         np.testing.assert_allclose(getattr(above, name), getattr(below, name), rtol=1e-5)
 
@@ -129,7 +131,7 @@ def test_friction_at_rest_uses_one_share_of_every_limit():
     found = track.motion(
         seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0), bowl(static=1.5, kinetic=1.0, wall=0.6)
     )
-    assert balance.MOTION_STATES[found.state] == "stick"
+    assert floor_balance.MOTION_STATES[found.state] == "stick"
     used = found.wall_friction / found.walls
     assert used == pytest.approx(found.needed[1:])
     assert used / 0.6 == pytest.approx([found.needed[0] / 1.5] * 2)
@@ -249,7 +251,7 @@ def test_cycle_presses_hardest_while_the_bowl_moves_fastest():
 def test_a_map_cell_is_the_single_answer():
     posture = box_posture()
     bank, climb = np.radians([5.0, 15.0])[:, None], np.radians([[0.0, 2.0, 4.0]])
-    cells = track_cells.cells(posture, replace(BOWL, track=Track(climb, bank, 0.15, 0.025)))
+    cells = track_cells.track_cells(posture, replace(BOWL, track=Track(climb, bank, 0.15, 0.025)))
     part, _, _ = track_cells.seated(posture, bowl(bank=15 * DEG, climb=4 * DEG))
     one = track.motion(part, bowl(bank=15 * DEG, climb=4 * DEG))
     assert cells["acceleration_x_m_s2"][1, 2] == pytest.approx(float(one.acceleration[0]), rel=1e-9)
@@ -259,7 +261,7 @@ def test_a_map_cell_is_the_single_answer():
 
 def test_a_map_says_where_the_part_does_not_fit():
     width = np.array([0.002, 0.025])
-    cells = track_cells.cells(box_posture(), replace(BOWL, track=replace(BOWL.track, width=width)))
+    cells = track_cells.track_cells(box_posture(), replace(BOWL, track=replace(BOWL.track, width=width)))
     assert [track_cells.TRACK_REGIMES[code] for code in cells["regime"]] == ["does not fit", "slide"]
     assert np.isnan(cells["acceleration_x_m_s2"]).tolist() == [True, False]
 

@@ -4,17 +4,16 @@ import numpy as np
 import pytest
 from mechanics_samples import DEG, bowl, box_posture, rectangle
 
-from feederscrew.mechanics import cycle
-from feederscrew.mechanics.floor import balance as floor
-from feederscrew.mechanics.track import balance, system
-from feederscrew.mechanics.track.frame import Seat, frame, loads, seat
+from feederscrew.mechanics import cycle, track_balance
+from feederscrew.mechanics import floor_balance as floor
+from feederscrew.mechanics.track_balance import Seat, frame, loads, seat
 
 PHASE = cycle.phases(24)
 
 
 def test_a_drive_inward_opens_the_wall_and_is_solved_without_it():
     settings = bowl(direction=20 * DEG, bank=0.0)
-    found = balance.motion(seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 0.0), settings)
+    found = track_balance.motion(seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 0.0), settings)
     assert not found.closed.any()
     assert not found.walls.any()
     assert found.acceleration[1] > 0.0
@@ -27,7 +26,7 @@ def test_one_wall_contact_opens_and_the_part_turns_off_it():
     posture = box_posture(length=0.006, width=0.02)
     settings = bowl(wall=1.0, bank=15 * DEG, climb=0.0)
     part = seat(posture, 0.0, rectangle(0.006, 0.02)[:2], 1.0)
-    found = balance.motion(part, settings, 0.5 * np.pi, 1.0)
+    found = track_balance.motion(part, settings, 0.5 * np.pi, 1.0)
     assert found.closed.sum() == 1
     opened = int(np.argmin(found.closed))
     axes = frame(settings, part.walls)
@@ -57,8 +56,8 @@ def test_at_rest_the_contact_opens_that_would_have_to_pull():
     )
     axes = frame(settings, walls)
     load = loads(part, settings, axes, 0.5 * np.pi)
-    both = system.held(part, axes, load, (True, True), 1.0)
-    found = balance.motion(part, settings)
+    both = track_balance.held(part, axes, load, (True, True), 1.0)
+    found = track_balance.motion(part, settings)
     assert both.walls[0] < 0.0 < both.walls[1]
     assert found.closed.tolist() == [False, True]
     assert found.needed[0] == pytest.approx(both.mobilised, rel=0.01)
@@ -69,7 +68,7 @@ def test_wall_friction_takes_power_from_a_part_that_starts_to_turn(rub):
     """One closed contact: it slides ahead, back, or stays in place and the part rolls along the wall."""
     part = seat(box_posture(length=0.002, width=0.02), 0.0, rectangle(0.002, 0.02)[:2], 1.0)
     settings = bowl(static=0.31, wall=rub, bank=15 * DEG, climb=0.0)
-    found, axes = balance.motion(part, settings, PHASE), frame(settings, part.walls)
+    found, axes = track_balance.motion(part, settings, PHASE), frame(settings, part.walls)
     alone = found.slides & (found.closed.sum(axis=-1) == 1)
     assert alone.any()
     for k in (0, 1):
@@ -105,6 +104,6 @@ def test_a_strong_drive_pulls_a_part_that_wedges_itself_ahead_at_every_climb(par
         amplitude=0.125e-3, vibration_angle=25 * DEG, direction=0.0, static=0.35, kinetic=0.3, wall=0.2,
         climb=np.linspace(0.0, 8.0, 4001) * DEG, bank=bank * DEG, radius=0.14,
     )  # fmt: skip
-    found = balance.motion(part, settings)
+    found = track_balance.motion(part, settings)
     assert (found.state == floor.SLIDE).all() and (found.traction > 0.0).all()
     assert (np.diff(found.acceleration[:, 0]) < 0.0).all()

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from mechanics_samples import DEG, bowl, box_posture, random_bowl, random_seat, rectangle
 
-from feederscrew.mechanics.floor import balance as floor
-from feederscrew.mechanics.track import balance, equilibrium
-from feederscrew.mechanics.track.frame import card_seat, frame, seat
+from feederscrew.mechanics import floor_balance as floor
+from feederscrew.mechanics import track_balance, track_contacts
+from feederscrew.mechanics.track_balance import card_seat, frame, seat
 
 
 def at_rest(static, climb=0.0, wall=0.0, bank=0.0):
@@ -22,7 +22,7 @@ def at_rest(static, climb=0.0, wall=0.0, bank=0.0):
 def test_a_smooth_wall_leaves_the_angle_of_friction(climb):
     """Both sides of mu = tan(climb), within what the pyramid leaves of the cone."""
     for share, held in ((1.002, True), (0.998, False)):
-        assert equilibrium.exists(*at_rest(math.tan(climb) * share, climb)) is held
+        assert track_contacts.exists(*at_rest(math.tan(climb) * share, climb)) is held
 
 
 def test_friction_across_the_track_wedges_the_part_against_a_rough_wall():
@@ -31,15 +31,15 @@ def test_friction_across_the_track_wedges_the_part_against_a_rough_wall():
     gain = math.sqrt(1.0 + 0.5**2)
     for share, held in ((1.005, True), (0.9, False)):
         part, settings = at_rest(math.tan(climb) / gain * share, climb, wall=0.5)
-        assert equilibrium.exists(part, settings) is held
-        assert balance.motion(part, settings).state == floor.SLIDE
+        assert track_contacts.exists(part, settings) is held
+        assert track_balance.motion(part, settings).state == floor.SLIDE
 
 
 def test_a_part_that_tips_has_no_equilibrium():
     settings = bowl(amplitude=0.0, static=5.0, kinetic=5.0, wall=0.0, climb=40 * DEG, bank=0.0, radius=1e6)
     tall = box_posture(length=0.006, height=0.02)
-    assert not equilibrium.exists(seat(tall, 0.0, rectangle(0.006, 0.01)[:2], 0.0), settings)
-    assert equilibrium.exists(seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 0.0), settings)
+    assert not track_contacts.exists(seat(tall, 0.0, rectangle(0.006, 0.01)[:2], 0.0), settings)
+    assert track_contacts.exists(seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 0.0), settings)
 
 
 def test_what_the_least_friction_holds_is_an_equilibrium():
@@ -48,8 +48,8 @@ def test_what_the_least_friction_holds_is_an_equilibrium():
     for seed in range(60):
         rng = np.random.default_rng(seed)
         part, settings = random_seat(rng), random_bowl(rng)
-        if balance.motion(part, settings).state == floor.STICK:
-            held.append(equilibrium.exists(part, settings))
+        if track_balance.motion(part, settings).state == floor.STICK:
+            held.append(track_contacts.exists(part, settings))
         if len(held) == 5:
             break
     assert held == [True] * 5
@@ -60,8 +60,8 @@ def test_of_a_card_without_contact_polygon_it_cannot_be_told():
     card = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 0.0)
     posture = box_posture()
     posture = type(posture)(**{**vars(posture), "printed": told, "contact": np.zeros((0, 2))})
-    assert equilibrium.exists(card, bowl(amplitude=0.0))
-    assert not equilibrium.exists(card_seat(posture), bowl(amplitude=0.0))
+    assert track_contacts.exists(card, bowl(amplitude=0.0))
+    assert not track_contacts.exists(card_seat(posture), bowl(amplitude=0.0))
 
 
 @pytest.mark.parametrize(

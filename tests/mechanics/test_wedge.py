@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from feederscrew import bowl as bowls
-from feederscrew.mechanics import wedge
+from feederscrew.mechanics import limits
 
 DEG = np.pi / 180.0
 frictions = st.floats(0.0, 2.0)
@@ -32,8 +32,8 @@ def test_effective_friction_is_that_of_both_normals(friction, wall, bank, climb,
     on_floor, on_wall = shared(bank, climb, push)
     assert on_floor > 0.0 and on_wall > -1e-12
     held = friction * on_floor + wall * on_wall
-    assert wedge.effective(friction, wall, bank) * push == pytest.approx(held, rel=1e-12, abs=1e-12)
-    assert wedge.of_floor(held / push, wall, bank) == pytest.approx(friction, rel=1e-9, abs=1e-12)
+    assert limits.effective(friction, wall, bank) * push == pytest.approx(held, rel=1e-12, abs=1e-12)
+    assert limits.of_floor(held / push, wall, bank) == pytest.approx(friction, rel=1e-9, abs=1e-12)
 
 
 def test_the_level_bowl_of_a_banked_one():
@@ -42,10 +42,10 @@ def test_the_level_bowl_of_a_banked_one():
         ["friction.static=0.4", "friction.kinetic=0.3", "friction.wall=0.8", "track.bank=12 deg",
          "friction.static_backward=0.6", "friction.kinetic_backward=0.5"],
     )  # fmt: skip
-    level = wedge.level(here)
+    level = limits.level(here)
     assert level.friction.static == pytest.approx(0.57898, abs=5e-6)
     assert level.friction.kinetic == pytest.approx(0.57898 - 0.1 / np.cos(12 * DEG), abs=5e-6)
     assert level.friction.backward == pytest.approx((0.57898 + 0.2 / np.cos(12 * DEG), 0.681216), abs=5e-6)
     assert level.track == replace(here.track, bank=0.0)
-    assert wedge.level(level).friction == level.friction
+    assert limits.level(level).friction == level.friction
     assert (level.drive, level.restitution, level.gravity) == (here.drive, here.restitution, here.gravity)

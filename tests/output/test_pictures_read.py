@@ -20,7 +20,7 @@ from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page
 from feederscrew.output.trial.shown import ShownRide
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
-from feederscrew.resting.tumbling.by_class import Transition
+from feederscrew.resting.exact_tumbling import Transition
 from feederscrew.studies import convey as convey_study
 from feederscrew.studies.aspects import aspects as aspects_study
 from feederscrew.studies.floor import floor

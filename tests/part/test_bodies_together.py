@@ -117,7 +117,7 @@ def test_no_damaged_mesh_gives_moments_that_no_body_has(tmp_path):
             assert len(error.lines) == 1
             continue
         taken += 1
-        low, middle, high = mass.principal(part.inertia)[0]
+        low, middle, high = mass.principal_inertia(part.inertia)[0]
         assert low > 0.0, k
         assert low + middle >= high * (1.0 - 1e-6), k
         assert 0.0 < part.volume <= part.hull.volume * (1.0 + 1e-5), k

@@ -8,7 +8,7 @@ import part_files as files
 import pytest
 
 from feederscrew.part import load, mass
-from feederscrew.part.repair import crossings, sight, weld
+from feederscrew.part.repair import crossings, topology
 
 PARTS = Path(__file__).parents[2] / "parts"
 
@@ -63,9 +63,9 @@ def test_crossings_do_not_hang_on_place_and_turn(rng):
     places = np.einsum("nx,yx->ny", corners, turn) + rng.normal(size=3)
     faces = np.arange(len(corners)).reshape(-1, 3)
     for vertices in (corners, places):
-        joined = weld.welded(np.round(vertices, 9), faces)
-        assert len(crossings.crossings(*joined, 1e-6).pairs) == 4
-    assert crossings.crossings(*joined, 1e-6).depths == pytest.approx([10.0 * 4.0 / 14.0] * 4, abs=1e-6)
+        joined = topology.weld_corners(np.round(vertices, 9), faces)
+        assert len(crossings.find_crossings(*joined, 1e-6).pairs) == 4
+    assert crossings.find_crossings(*joined, 1e-6).depths == pytest.approx([10.0 * 4.0 / 14.0] * 4, abs=1e-6)
 
 
 def double_cone(turns, corners=7):
@@ -80,7 +80,7 @@ def double_cone(turns, corners=7):
 
 def unseen(vertices, faces):
     """Facets that the axis of what they enclose does not see alone."""
-    return sight.unseen(vertices, faces, mass.solid(vertices[faces]))
+    return crossings.unseen_facets(vertices, faces, mass.integrate_solid(vertices[faces]))
 
 
 def test_what_is_seen_whole_from_its_axis_is_not_searched(rng):
@@ -88,9 +88,9 @@ def test_what_is_seen_whole_from_its_axis_is_not_searched(rng):
     once, faces = double_cone(1)
     for vertices in (once, once * rng.uniform(1.0, 1.3, (len(once), 1))):
         assert len(unseen(vertices, faces)) == 0
-        assert len(crossings.crossings(vertices, faces, 1e-9).pairs) == 0
+        assert len(crossings.find_crossings(vertices, faces, 1e-9).pairs) == 0
     twice, _ = double_cone(2)
-    assert len(crossings.crossings(twice, faces[unseen(twice, faces)], 1e-9).pairs) > 0
+    assert len(crossings.find_crossings(twice, faces[unseen(twice, faces)], 1e-9).pairs) > 0
 
 
 def lathed(radii, around=9):
@@ -120,7 +120,7 @@ def test_what_is_left_out_of_the_search_cuts_nothing(rng, turns):
     for corner in rng.integers(90, 250, 6):
         drawn = vertices.copy()
         drawn[corner, :2] *= rng.uniform(-2.0, -1.0)
-        cut = np.unique(crossings.crossings(drawn, faces, 1e-9).pairs)
+        cut = np.unique(crossings.find_crossings(drawn, faces, 1e-9).pairs)
         left = unseen(drawn, faces)
         assert len(cut)
         assert set(cut) <= set(left)
@@ -152,10 +152,10 @@ def test_nothing_that_cuts_is_left_out_of_random_tubes_with_a_shaft(rng):
             vertices = np.concatenate([vertices, (shaft - [0, 0, 3.5]) * rng.uniform(0.2, 3.0)])
             faces = np.concatenate([faces, of_shaft + faces.max() + 1])
         vertices[:, 2] *= rng.choice([0.3, 1.0, 5.0])
-        volume = mass.solid(vertices[faces]).volume
+        volume = mass.integrate_solid(vertices[faces]).volume
         faces = faces if volume > 0.0 else faces[:, ::-1]
         left = unseen(vertices, faces)
-        assert np.isin(crossings.crossings(vertices, faces, 1e-6).pairs, left).all()
+        assert np.isin(crossings.find_crossings(vertices, faces, 1e-6).pairs, left).all()
         searched.append(len(left))
         of.append(len(faces))
     assert (np.array(searched) < of).sum() > 10

@@ -3,18 +3,18 @@
 import pytest
 
 from feederscrew.errors import ConfigError
-from feederscrew.part.density import HEAVIEST, LIGHTEST, MATERIALS, density
+from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3, MATERIALS, find_density
 
 
 def refused(text):
     with pytest.raises(ConfigError) as error:
-        density(text)
+        find_density(text)
     return str(error.value)
 
 
 def test_default_is_steel_and_says_so():
-    assert density() == (7850.0, "steel (default)")
-    assert density("steel") == (7850.0, "steel")
+    assert find_density() == (7850.0, "steel (default)")
+    assert find_density("steel") == (7850.0, "steel")
 
 
 @pytest.mark.parametrize(
@@ -36,7 +36,7 @@ def test_default_is_steel_and_says_so():
     ],
 )
 def test_density_as_typed(text, value, label):
-    found, told = density(text)
+    found, told = find_density(text)
     assert found == pytest.approx(value, rel=1e-12)
     assert told == label
 
@@ -74,7 +74,7 @@ def test_the_table_is_sound():
     names = [name for material in MATERIALS for name in (material.name, *material.aliases)]
     assert len(names) == len(set(names))
     for material in MATERIALS:
-        assert LIGHTEST < material.density < HEAVIEST
+        assert LIGHTEST_SOLID_KG_M3 < material.density < HEAVIEST_SOLID_KG_M3
         assert material.source
         assert material.name == material.name.lower()
-        assert density(material.name) == (material.density, material.name)
+        assert find_density(material.name) == (material.density, material.name)

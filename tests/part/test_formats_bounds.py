@@ -9,8 +9,8 @@ import zipfile
 import pytest
 
 from feederscrew.errors import MeshError
-from feederscrew.part import load
-from feederscrew.part.reading import source, step
+from feederscrew.part import load, loading
+from feederscrew.part.reading import scenes
 
 NEEDS_3MF = pytest.mark.needs("lxml", "networkx")
 
@@ -69,8 +69,8 @@ def test_a_part_of_one_component_is_read(tmp_path):
 
 @pytest.mark.needs("cascadio")
 def test_a_step_file_that_takes_too_long_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(step, "PATIENCE", 1)
-    monkeypatch.setattr(step, "CONVERT", "import time; time.sleep(30)")
+    monkeypatch.setattr(scenes, "STEP_TIMEOUT_S", 1)
+    monkeypatch.setattr(scenes, "CONVERT_STEP_SCRIPT", "import time; time.sleep(30)")
     path = tmp_path / "part.step"
     path.write_bytes(b"ISO-10303-21;")
     with pytest.raises(MeshError) as caught:
@@ -89,8 +89,8 @@ def test_a_stream_without_end_is_given_up_at_half_a_gigabyte(monkeypatch):
             self.given += count
             return bytes(count)
 
-    assert source.LARGEST == 512 << 20
-    monkeypatch.setattr(source, "LARGEST", 3 << 20)
+    assert loading.MAX_MESH_BYTES == 512 << 20
+    monkeypatch.setattr(loading, "MAX_MESH_BYTES", 3 << 20)
     stream = Endless()
     with pytest.raises(MeshError, match="standard input: is larger than 3 MB - export it with fewer facets"):
         load("-", stdin=stream)
@@ -99,7 +99,10 @@ def test_a_stream_without_end_is_given_up_at_half_a_gigabyte(monkeypatch):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="asks Linux for it")
 def test_the_converter_of_step_ends_with_its_parent():
-    waits = step.CONVERT.partition("import cascadio")[0] + "print(1, flush=True); import time; time.sleep(50)"
+    waits = (
+        scenes.CONVERT_STEP_SCRIPT.partition("import cascadio")[0]
+        + "print(1, flush=True); import time; time.sleep(50)"
+    )
     parent = (
         "import subprocess, sys, time;"
         "child = subprocess.Popen([sys.executable, '-c', sys.argv[1]], stdout=subprocess.PIPE);"

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from feederscrew.part import load, mass
-from feederscrew.part.mass_balance import balance
+from feederscrew.part.mass import mass_balance
 
 PARTS = Path(__file__).parents[2] / "parts"
 CAD = {  # volume of the mesh and of the exact B-rep [mm3], as their maker printed them: parts/README.md
@@ -32,7 +32,7 @@ def cuboid(a, b, c, corner=(0.0, 0.0, 0.0)):
 @given(a=SIDE, b=SIDE, c=SIDE, corner=st.tuples(*[st.floats(-1e4, 1e4)] * 3))
 @settings(max_examples=60, deadline=None)
 def test_box(a, b, c, corner):
-    found = mass.solid(cuboid(a, b, c, corner))
+    found = mass.integrate_solid(cuboid(a, b, c, corner))
     volume = a * b * c
     noise = 1e-11 * (1.0 + max(map(abs, corner)) / min(a, b, c))  # of the corners themselves
     assert found.volume == pytest.approx(volume, rel=noise)
@@ -44,7 +44,7 @@ def test_box(a, b, c, corner):
 def test_tetrahedron():
     a, b, c = 3.0, 5.0, 7.0
     corners = np.array([[0, 0, 0], [a, 0, 0], [0, b, 0], [0, 0, c]])
-    found = mass.solid(corners[[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]])
+    found = mass.integrate_solid(corners[[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]])
     volume = a * b * c / 6.0
     assert found.volume == pytest.approx(volume, rel=1e-14)
     np.testing.assert_allclose(found.centre, [a / 4, b / 4, c / 4], rtol=1e-14)
@@ -57,7 +57,7 @@ def test_tetrahedron():
 def test_cylinder_converges_with_the_square_of_the_sections(sections):
     radius, height = 3.0, 8.0
     mesh = shapes.cylinder(radius, height, sections)
-    found = mass.solid(mesh.vertices[mesh.faces])
+    found = mass.integrate_solid(mesh.vertices[mesh.faces])
     volume = np.pi * radius**2 * height
     across = volume * (3.0 * radius**2 + height**2) / 12.0
     want = np.array([across, across, volume * radius**2 / 2.0])
@@ -67,7 +67,7 @@ def test_cylinder_converges_with_the_square_of_the_sections(sections):
 
 
 def test_inside_out_is_the_negative():
-    found, turned = (mass.solid(t) for t in (cuboid(1, 2, 3), files.inside_out(cuboid(1, 2, 3))))
+    found, turned = (mass.integrate_solid(t) for t in (cuboid(1, 2, 3), files.inside_out(cuboid(1, 2, 3))))
     assert turned.volume == -found.volume
     np.testing.assert_allclose(turned.reversed.inertia, found.inertia, rtol=1e-14)
     np.testing.assert_allclose(turned.centre, found.centre, rtol=1e-14)
@@ -76,7 +76,7 @@ def test_inside_out_is_the_negative():
 def test_tetrahedra_add_up_to_the_volume(rng):
     mesh = shapes.prism(shapes.l_profile(), 15.0)
     triangles = mesh.vertices[mesh.faces]
-    assert mass.tetrahedra(triangles).sum() == pytest.approx((30 * 2 + 18 * 2) * 15.0)
+    assert mass.tetrahedron_volumes(triangles).sum() == pytest.approx((30 * 2 + 18 * 2) * 15.0)
 
 
 @given(
@@ -90,11 +90,11 @@ def test_turning_moving_scaling_shuffling(turn, shift, scale, seed):
     rng = np.random.default_rng(seed)
     mesh = shapes.prism(shapes.l_profile(), 15.0)
     triangles = mesh.vertices[mesh.faces]
-    found = mass.solid(triangles)
+    found = mass.integrate_solid(triangles)
     rotation = Rotation.from_rotvec(turn).as_matrix()
     order = rng.permutation(len(triangles))
     moved = np.roll(triangles[order] @ rotation.T * scale + shift, rng.integers(3), axis=1)
-    again = mass.solid(moved)
+    again = mass.integrate_solid(moved)
     assert again.volume == pytest.approx(found.volume * scale**3, rel=1e-7)
     np.testing.assert_allclose(again.centre, rotation @ found.centre * scale + shift, rtol=1e-7, atol=1e-7)
     want = scale**5 * rotation @ found.inertia @ rotation.T
@@ -104,13 +104,13 @@ def test_turning_moving_scaling_shuffling(turn, shift, scale, seed):
 def test_other_triangles_of_the_same_surface():
     mesh = shapes.prism(shapes.l_profile(), 15.0)
     fine = shapes.subdivided(mesh, 3)
-    found, again = (mass.solid(m.vertices[m.faces]) for m in (mesh, fine))
+    found, again = (mass.integrate_solid(m.vertices[m.faces]) for m in (mesh, fine))
     assert again.volume == pytest.approx(found.volume, rel=1e-13)
     np.testing.assert_allclose(again.inertia, found.inertia, rtol=0, atol=1e-12 * found.inertia.max())
 
 
 def test_parallel_axes():
-    inertia = mass.shifted(np.zeros((3, 3)), 2.0, [1.0, 2.0, 3.0])
+    inertia = mass.shift_inertia(np.zeros((3, 3)), 2.0, [1.0, 2.0, 3.0])
     np.testing.assert_allclose(inertia, 2.0 * np.array([[13, -2, -3], [-2, 10, -6], [-3, -6, 5]]))
 
 
@@ -120,14 +120,14 @@ def test_at_the_origin_agrees_with_integrals_there():
     part = load("-", density="1 g/cm3", stdin=io.BytesIO(files.binary_stl(cuboid(a, b, c))))
     want = np.diag([b * b + c * c, a * a + c * c, a * a + b * b]) / 3.0
     want -= np.array([[0, a * b, a * c], [a * b, 0, b * c], [a * c, b * c, 0]]) / 4.0
-    np.testing.assert_allclose(balance(part).inertia_at_origin, part.mass * want * 1e-6, rtol=1e-6)
+    np.testing.assert_allclose(mass_balance(part).inertia_at_origin, part.mass * want * 1e-6, rtol=1e-6)
 
 
 def test_principal_axes_are_right_handed_and_diagonal(rng):
     for _ in range(50):
         root = rng.normal(size=(3, 3))
         inertia = np.trace(root @ root.T) * np.eye(3) - root @ root.T
-        moments, axes = mass.principal(inertia)
+        moments, axes = mass.principal_inertia(inertia)
         assert (np.diff(moments) >= 0.0).all()
         np.testing.assert_allclose(axes @ inertia @ axes.T, np.diag(moments), rtol=0, atol=1e-12 * moments[2])
         assert np.linalg.det(axes) == pytest.approx(1.0)
@@ -149,7 +149,7 @@ def test_principal_axes_are_right_handed_and_diagonal(rng):
 def test_equal_moments_take_the_axes_of_the_file(rng, moments, axes, noise):
     inertia = np.diag(np.array(moments, dtype=float))
     jitter = noise * rng.normal(size=(3, 3))
-    _, found = mass.principal(inertia + jitter + jitter.T)
+    _, found = mass.principal_inertia(inertia + jitter + jitter.T)
     np.testing.assert_allclose(found, axes, atol=1e-8)
 
 
@@ -166,7 +166,7 @@ def test_washer_against_its_formula():
     outer, inner, thick = 6.0e-3, 3.2e-3, 1.8e-3
     volume = np.pi * (outer**2 - inner**2) * thick
     assert part.volume == pytest.approx(volume, rel=2e-3)
-    moments = balance(part).moments
+    moments = mass_balance(part).moments
     assert moments[2] == pytest.approx(1000.0 * volume * (outer**2 + inner**2) / 2.0, rel=4e-3)
     assert moments[0] == pytest.approx(
         1000.0 * volume * (3.0 * (outer**2 + inner**2) + thick**2) / 12.0, rel=4e-3

@@ -7,7 +7,7 @@ import pytest
 import shapes
 import trimesh
 
-from feederscrew.part import moments
+from feederscrew.part import mass
 
 
 def turn(axis, degrees):
@@ -15,7 +15,7 @@ def turn(axis, degrees):
 
 
 def of(mesh):
-    return moments.Moments(mesh.vertices, mesh.faces, mesh.center_mass)
+    return mass.Moments(mesh.vertices, mesh.faces, mesh.center_mass)
 
 
 @pytest.mark.parametrize("refine", [0, 7])  # 12 facets, and 196,608: both rules of quadrature
@@ -57,7 +57,7 @@ def test_the_cut_into_triangles_does_not_matter():
         np.testing.assert_allclose(cut, whole.directional(directions), rtol=0, atol=0.05 * whole.error)
 
 
-@pytest.mark.parametrize(("rule", "order"), [(moments._fourth_order, 4), (moments._sixth_order, 6)])
+@pytest.mark.parametrize(("rule", "order"), [(mass._fourth_order, 4), (mass._sixth_order, 6)])
 def test_a_rule_is_exact_to_its_order(rule, order):
     """The mean of u^i v^j over a triangle, u and v barycentric, is 2 i! j! / (i + j + 2)!."""
     nodes, shares = rule()

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from feederscrew.errors import FeederError
 from feederscrew.part import Part, load
 from feederscrew.part.reading import scenes
-from feederscrew.part.reading.formats import detect
+from feederscrew.part.reading.formats import detect_format
 
 PARTS = Path(__file__).parents[2] / "parts"
 BOX = files.box()
@@ -337,7 +337,7 @@ def test_damaged_file_writes_nothing_to_stderr(tmp_path, capfd):
 def test_comments_cannot_slow_down_the_detection():
     start = time.perf_counter()
     for text in (b"/*a*/" * 10_000, b"#a\n" * 20_000, b"<!-- -->" * 8_000, b" " * 60_000):
-        detect(text + b"x", "stl")
+        detect_format(text + b"x", "stl")
     assert time.perf_counter() - start < 1.0
 
 
@@ -393,8 +393,8 @@ def test_a_bug_of_ours_is_not_told_as_a_damaged_file(tmp_path, monkeypatch, name
     def broken(*_):
         raise fault("module 'x' has no attribute 'y'")
 
-    monkeypatch.setattr("feederscrew.part.reading.facets.triangles", broken)
-    monkeypatch.setattr("feederscrew.part.reading.scenes.refuse_crowds", broken)
+    monkeypatch.setattr("feederscrew.part.reading.soup.split_facets", broken)
+    monkeypatch.setattr("feederscrew.part.reading.scenes.refuse_size", broken)
     path = files.written(tmp_path, exported(name[2:]), name)
     with pytest.raises(fault, match="has no attribute"):
         load(path)

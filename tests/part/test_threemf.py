@@ -9,8 +9,8 @@ import pytest
 from test_bodies import refused
 from test_formats import loaded, mm3
 
-from feederscrew.part.reading import archives, threemf
-from feederscrew.part.repair import weld
+from feederscrew.part.reading import formats, threemf
+from feederscrew.part.repair import topology
 
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 PRODUCTION = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06"
@@ -27,7 +27,9 @@ def mesh(*bodies):
     """The mesh element of triangles, each body's corners its own."""
     corners, faces, count = [], [], 0
     for triangles in bodies:
-        vertices, own = weld.welded(triangles.reshape(-1, 3), np.arange(len(triangles) * 3).reshape(-1, 3))
+        vertices, own = topology.weld_corners(
+            triangles.reshape(-1, 3), np.arange(len(triangles) * 3).reshape(-1, 3)
+        )
         corners += vertices.tolist()
         faces += (own + count).tolist()
         count += len(vertices)
@@ -223,13 +225,13 @@ def test_bombs_are_refused(root, word):
 
 
 def test_an_archive_of_very_many_files_is_refused(monkeypatch):
-    monkeypatch.setattr(archives, "MOST_MEMBERS", 50)
+    monkeypatch.setattr(formats, "MAX_ARCHIVE_MEMBERS", 50)
     assert "50 files" in refused(package("", **{f"{k}.txt": "" for k in range(51)}))
 
 
 def test_reading_stops_at_the_limit_of_corners(monkeypatch):
     """0.97 MB of 3MF took 5.9 GB: it was read whole before anything was counted."""
-    monkeypatch.setattr(threemf, "MOST_FACETS", 1000)
+    monkeypatch.setattr(threemf, "MAX_READ_FACETS", 1000)
     taken = []
     begin = threemf.ModelReader.begin
     monkeypatch.setattr(threemf.ModelReader, "begin", lambda *given: taken.append(1) or begin(*given))

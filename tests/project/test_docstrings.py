@@ -37,7 +37,7 @@ NOT_QUANTITIES = (
     "np.array_equal",
 )
 WITHOUT = {  # what returns a sum that is a text
-    "bowl.documentation.template", "bowl.documentation.schema_text", "resting.forms.form_remarks",
+    "bowl.documentation.template", "bowl.documentation.schema_text", "resting.aspects.form_remarks",
 }  # fmt: skip
 
 

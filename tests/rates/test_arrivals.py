@@ -100,7 +100,7 @@ def test_a_bowl_of_its_own_feeds_parts_onto_its_floor(part, plain):
 
 
 def test_a_stop_before_the_longer_spell_keeps_the_shorter(part, plain, monkeypatch):
-    from feederscrew.dropping.plate import arrival as floor
+    from feederscrew.dropping import arrival as floor
 
     monkeypatch.setattr(floor, "judged", lambda _: floor.Arrival(0, 0, 0, False, "open", ran[0]))
     ran = []
@@ -108,16 +108,18 @@ def test_a_stop_before_the_longer_spell_keeps_the_shorter(part, plain, monkeypat
     def test(*_, pace, **__):
         if ran:
             raise KeyboardInterrupt
-        ran.append(floor.bowl_test.Shaken(plain, {}, 1.0, 5, pace.seconds, None, 0, False))
+        ran.append(floor.plate_test.PlateResult(plain, {}, 1.0, 5, pace.seconds, None, 0, False))
         return ran
 
-    monkeypatch.setattr(floor.bowl_test, "test", test)
+    monkeypatch.setattr(floor.plate_test, "test", test)
     found = floor.arrival(part, None, plain)
     assert found.shaken.partial and not found.settled
 
 
 def test_a_measured_file_without_counts_has_no_interval(part):
     aspects = find(part)
-    made = profiles.Measured("c.csv", "", profiles.parse("aspect,x\nA,0.5\nB,0.25\nC,0.25\n", "c", "ABC"))
+    made = profiles.Measured(
+        "c.csv", "", profiles.parse_profile("aspect,x\nA,0.5\nB,0.25\nC,0.25\n", "c", "ABC")
+    )
     answer = arrivals.counted(aspects, made).recommended
     np.testing.assert_array_equal(answer.low, answer.high)

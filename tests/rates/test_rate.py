@@ -10,7 +10,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer, sensitivity
 from feederscrew.errors import FeederError
-from feederscrew.part.reading.from_file import load
+from feederscrew.part.loading import load
 from feederscrew.rates import well_oriented
 from feederscrew.rates.stream import follow_orientations
 from feederscrew.rates.well_oriented import Range

@@ -7,7 +7,7 @@ import awkward
 import numpy as np
 import pytest
 
-from feederscrew.mechanics.track.frame import seat
+from feederscrew.mechanics.track_balance import seat
 from feederscrew.rates import stream, tipping, well_oriented
 from feederscrew.rates.well_oriented import Range
 from feederscrew.tooling.devices.kinds import make_device

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 import shapes
 
+from feederscrew.mechanics import track_balance
 from feederscrew.mechanics.cycle import phases
-from feederscrew.mechanics.track import balance
-from feederscrew.mechanics.track.frame import seat
+from feederscrew.mechanics.track_balance import seat
 from feederscrew.rates import stream, tipping
 from feederscrew.rates.tipping import ROCKING_STEPS, Rocker, goes_over
 from feederscrew.resting.aspects import find
@@ -49,7 +49,9 @@ def test_seen_at_any_instant_a_settled_part_slides_as_the_point_mass_does():
     one = next(one for one in awkward.lying("track.radius=100 m", "track.bank=0 deg") if one.kind == "flat")
     place = seat(one.posture, one.heading, one.touching, 0.0)
     phase = phases(ROCKING_STEPS)
-    motions = [balance.motion(place, bowl, phase, np.full(ROCKING_STEPS, sense)) for sense in tipping.SENSES]
+    motions = [
+        track_balance.motion(place, bowl, phase, np.full(ROCKING_STEPS, sense)) for sense in tipping.SENSES
+    ]
     found = tipping._senses(motions, 1.0 / bowl.drive.frequency / ROCKING_STEPS)
     assert {0, 1, 2} >= set(found) and (found == 1).any()
     drive, climb = bowl.drive, bowl.track.climb

@@ -7,7 +7,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.mechanics.track.frame import seat
+from feederscrew.mechanics.track_balance import seat
 from feederscrew.rates import stream, tipping
 from feederscrew.rates.tipping import over_period, steady
 from feederscrew.resting.aspects import find

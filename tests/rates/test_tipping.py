@@ -10,7 +10,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
-from feederscrew.mechanics.floor.balance import TIP
+from feederscrew.mechanics.floor_balance import TIP
 from feederscrew.output import rate as rate_output
 from feederscrew.output.tooling_tables import passages as passage_table
 from feederscrew.rates import drive_settings as knobs

@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 
 from feederscrew.part.hull import convex_hull
 from feederscrew.resting.aspects import find
-from feederscrew.resting.basins.barriers import UNNAMED, adopted_shares, named
-from feederscrew.resting.tumbling.by_class import transitions
-from feederscrew.resting.tumbling.exact import tumble
+from feederscrew.resting.barriers import UNNAMED, adopted_shares, named
+from feederscrew.resting.exact_tumbling import transitions, tumble
 
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2.0
 

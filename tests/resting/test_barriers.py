@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.basins.barriers import (
+from feederscrew.resting.barriers import (
     UNNAMED,
     balance,
     barriers,
@@ -14,7 +14,7 @@ from feederscrew.resting.basins.barriers import (
     tip_angles,
     tipping,
 )
-from feederscrew.resting.tumbling.exact import tumble
+from feederscrew.resting.exact_tumbling import tumble
 
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2.0
 

@@ -7,8 +7,8 @@ import pytest
 import shapes
 
 from feederscrew.resting.aspects import find
-from feederscrew.resting.basins.barriers import Tipping
-from feederscrew.resting.rules.tumbled import KEPT_ENERGY_EXPONENT, hop_shares
+from feederscrew.resting.barriers import Tipping
+from feederscrew.resting.rules.formulas import KEPT_ENERGY_EXPONENT, hop_shares
 
 SHARES = np.array([0.5, 0.3, 0.2])
 HEIGHTS = np.array([0.3, 0.45, 0.6])
@@ -97,7 +97,7 @@ def test_faces_as_high_as_the_part_reaches_keep_their_basins():
 def test_a_finer_ladder_changes_little(monkeypatch):
     body = find(shapes.part(shapes.box(4.0, 7.0, 11.0))).ground
     coarse = hop_shares(body.tips, body.hull.radius)
-    monkeypatch.setattr("feederscrew.resting.rules.tumbled.ENERGY_LEVELS", 3000)
+    monkeypatch.setattr("feederscrew.resting.rules.formulas.ENERGY_LEVELS", 3000)
     assert hop_shares(body.tips, body.hull.radius) == pytest.approx(coarse, abs=1e-3)
 
 

@@ -5,7 +5,7 @@ import pytest
 import shapes
 
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.basins.landscape import MIN_BARRIER_SHARE, RIPPLE_OF_RADIUS, edges, landscape, passes
+from feederscrew.resting.landscape import MIN_BARRIER_SHARE, RIPPLE_OF_RADIUS, edges, landscape, passes
 
 
 def hull_of(mesh, centre=None):

@@ -9,7 +9,7 @@ import shapes
 from feederscrew import batch, load, write_names
 from feederscrew.batch import task, work
 from feederscrew.errors import FeederError
-from feederscrew.part.aspect_names import read
+from feederscrew.part.aspect_names import read_aspect_names
 from feederscrew.resting import aspects
 from feederscrew.resting.aspects import find
 from feederscrew_cli.main import feeder
@@ -131,7 +131,7 @@ LETTERS = "give 1 to 12 letters, digits, '-', '_' and '.', the first a letter or
 )  # fmt: skip
 def test_every_fault_of_a_file_of_names_has_its_line(box, text, line):
     with pytest.raises(FeederError) as caught:
-        read(written(text))
+        read_aspect_names(written(text))
     assert f"n.yaml:{line}" in caught.value.lines
 
 

@@ -8,8 +8,7 @@ import shapes
 
 from feederscrew.part import load
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.aspects import find
-from feederscrew.resting.forms import postures
+from feederscrew.resting.aspects import find, postures
 
 PARTS = Path(__file__).parents[2] / "parts"
 

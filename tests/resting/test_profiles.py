@@ -12,7 +12,7 @@ NAMES = ("A", "B", "C")
 
 
 def parsed(text, names=NAMES):
-    return profiles.parse(text, "c.csv", names, taken=("PMI", "CSA"))
+    return profiles.parse_profile(text, "c.csv", names, taken=("PMI", "CSA"))
 
 
 def fault(text, names=NAMES):
@@ -123,20 +123,20 @@ def test_a_near_miss_is_hinted_at():
 
 def test_a_file_that_is_not_there(tmp_path):
     with pytest.raises(FeederError, match=r"no.csv: no such file - check the path"):
-        profiles.read(tmp_path / "no.csv", NAMES)
+        profiles.read_profile(tmp_path / "no.csv", NAMES)
     with pytest.raises(FeederError, match=r"cannot be read \(Is a directory\)"):
-        profiles.read(tmp_path, NAMES)
+        profiles.read_profile(tmp_path, NAMES)
 
 
 def test_bytes_that_are_no_text(tmp_path):
     (tmp_path / "c.csv").write_bytes(b"aspect,x\nA,\xff\n")
     with pytest.raises(FeederError, match=r"c.csv:2: byte 0xff is not UTF-8"):
-        profiles.read(tmp_path / "c.csv", NAMES)
+        profiles.read_profile(tmp_path / "c.csv", NAMES)
 
 
 def test_a_spreadsheets_file_reads_as_well(tmp_path):
     (tmp_path / "c.csv").write_bytes(b"\xef\xbb\xbfaspect,x\r\nA,1\r\nB,2\r\nC,3\r\n")
-    found = profiles.read(tmp_path / "c.csv", NAMES)
+    found = profiles.read_profile(tmp_path / "c.csv", NAMES)
     np.testing.assert_array_equal(found.profiles[0].values, [1, 2, 3])
     assert len(found.sha256) == 64
 
@@ -144,7 +144,7 @@ def test_a_spreadsheets_file_reads_as_well(tmp_path):
 def test_what_columns_are_taken_for_is_said(tmp_path):
     (tmp_path / "c.csv").write_text("aspect,n,p,q\nA,1,50.0,0.5\nB,2,25,0.25\nC,3,24.9,0.25\n")
     where = str(tmp_path / "c.csv")
-    assert profiles.read(where, NAMES).notes == (
+    assert profiles.read_profile(where, NAMES).notes == (
         f"{where}: counts: n (sum 6)",
         f"{where}: fractions: q",
         f"{where}: percent: p (sum 99.9)",
@@ -161,7 +161,7 @@ def test_a_rule_without_data_is_left_out():
 
 def test_of_a_drop_table_the_counts_are_taken():
     text = "aspect,height_mm,count,p_drop,p_drop_low\nA,1.5,30,0.75,0.6\nB,2.5,10,0.25,0.1\n"
-    (found,) = profiles.parse(text, "drop.csv", ["B", "A"])
+    (found,) = profiles.parse_profile(text, "drop.csv", ["B", "A"])
     assert (found.name, found.kind, found.values.tolist()) == ("count", "counts", [10.0, 30.0])
 
 
@@ -170,7 +170,7 @@ ORIENTED = "orientation,tray\nA@0,5\nA@90,3\nB@-180,2\nC@0,0\n"
 
 def test_orientations_are_kept_and_summed_up_by_aspect(tmp_path):
     (tmp_path / "c.csv").write_text(ORIENTED)
-    found = profiles.read(tmp_path / "c.csv", NAMES)
+    found = profiles.read_profile(tmp_path / "c.csv", NAMES)
     assert found.profiles[0].values.tolist() == [8.0, 2.0, 0.0] and found.profiles[0].counted
     assert [name for name, _ in found.lying] == ["A", "A", "B", "C"]
     np.testing.assert_allclose([turn for _, turn in found.lying], np.radians([0.0, 90.0, -180.0, 0.0]))
@@ -190,7 +190,7 @@ HEAD = "# part: a.stl\n# Mesh: sha256:0123ABCDef\n# launch: roll\n# Tossed: neve
 
 def test_the_head_says_what_was_launched_how(tmp_path):
     (tmp_path / "c.csv").write_text(HEAD + "# centre of mass: 0,0,1\naspect,x\nA,1\n# when: now\nB,2\nC,3\n")
-    head = profiles.read(tmp_path / "c.csv", NAMES).head
+    head = profiles.read_profile(tmp_path / "c.csv", NAMES).head
     assert (head.part, head.mesh, head.launch, head.who) == ("a.stl", "0123abcdef", "roll", "me")
     assert head.reading == {"centre_of_mass": "0,0,1"} and head.when == ""
 
@@ -229,8 +229,8 @@ def test_a_file_has_limits(text, line):
 def test_a_stream_without_an_end_is_refused_after_a_megabyte(tmp_path):
     line = "/dev/zero: has more than 1 MB - name a CSV file with one row an aspect"
     with pytest.raises(FeederError) as caught:
-        profiles.read("/dev/zero", NAMES)
+        profiles.read_profile("/dev/zero", NAMES)
     assert str(caught.value) == line
     (tmp_path / "c.csv").write_text("aspect,x\n" + "nobody,1\n" * 1_300_000)
     with pytest.raises(FeederError, match="has more than 1 MB"):
-        profiles.read(tmp_path / "c.csv", NAMES)
+        profiles.read_profile(tmp_path / "c.csv", NAMES)

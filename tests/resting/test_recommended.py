@@ -6,7 +6,7 @@ import shapes
 from drop_bodies import cuboids
 
 from feederscrew.dropping import ensemble
-from feederscrew.dropping.launches import PRESETS
+from feederscrew.dropping.launch_conditions import PRESETS
 from feederscrew.errors import ArgumentError
 from feederscrew.resting.aspects import find
 from feederscrew.resting.rules import recommended, registry
@@ -92,7 +92,7 @@ def test_a_drop_test_holds_its_sampling():
     assert found.p == pytest.approx([0.5, 0.5])
     sampling, _ = ensemble.wilson(np.array([450, 450]), 900)
     assert found.low == pytest.approx(
-        0.5 - np.sqrt((0.5 - sampling) ** 2 + ensemble.NUMERICAL**2 + recommended.LAUNCH_WIDTH**2)
+        0.5 - np.sqrt((0.5 - sampling) ** 2 + ensemble.NUMERICAL_SHARE_ERROR**2 + recommended.LAUNCH_WIDTH**2)
     )
     assert found.high == pytest.approx(1.0 - found.low)
 

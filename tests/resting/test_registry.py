@@ -11,7 +11,7 @@ from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules import registry
-from feederscrew.resting.rules.quantities import ClassQuantities
+from feederscrew.resting.rules.registry import ClassQuantities
 
 ROOT = Path(__file__).parent.parent.parent
 BRACKET = ROOT / "parts/lbracket_30x20x15.stl"

@@ -13,13 +13,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from feederscrew import bowl
-from feederscrew.mechanics.floor import balance
+from feederscrew.mechanics import floor_balance
 from feederscrew.part import load, mass
 from feederscrew.part.hull import convex_hull
 from feederscrew.resting import aspects
+from feederscrew.resting.exact_tumbling import tumble
+from feederscrew.resting.half_edges import facet_borders, half_edges
 from feederscrew.resting.posture import posture
-from feederscrew.resting.tumbling.exact import tumble
-from feederscrew.resting.tumbling.half_edges import facet_borders, half_edges
 
 # Seeds of bodies that had a doubt, or some of whose walks arrived nowhere.
 WENT_WRONG = (11, 80, 83, 161, 174, 209, 299, 100430, 101374, 101382, 102273)
@@ -28,7 +28,7 @@ FRUSTA = (15, 18, 24, 54)
 
 def hull_of(triangles):
     triangles = 1e-3 * triangles
-    return convex_hull(np.unique(triangles.reshape(-1, 3), axis=0), mass.solid(triangles).centre)
+    return convex_hull(np.unique(triangles.reshape(-1, 3), axis=0), mass.integrate_solid(triangles).centre)
 
 
 def assert_sound(triangles):
@@ -199,8 +199,8 @@ def test_a_ball_on_the_floor_rolls_with_two_sevenths_of_the_friction_of_sliding(
     part, found = aspects_of(ball())
     settings = bowl.default()
     for heading in (0.0, 1.0):
-        now = balance.motion(posture(part, found, "A"), settings, heading)
-        push = balance.drive_force(posture(part, found, "A"), settings, heading)
+        now = floor_balance.motion(posture(part, found, "A"), settings, heading)
+        push = floor_balance.drive_force(posture(part, found, "A"), settings, heading)
         sliding = np.hypot(push[0], push[1]) / float(now.normal_force)
         assert float(now.limiting_friction) == pytest.approx(2.0 / 7.0 * sliding, rel=2e-3)
-        assert balance.MOTION_STATES[int(now.state)] != "tip"
+        assert floor_balance.MOTION_STATES[int(now.state)] != "tip"

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from feederscrew.resting.rules import published
+from feederscrew.resting.rules import formulas
 
-RULES = (published.pmi, published.csa, published.stability)
+RULES = (formulas.pmi, formulas.csa, formulas.stability)
 
 
 def test_each_rule_divides_its_quantity_by_the_height():
@@ -16,13 +16,13 @@ def test_each_rule_divides_its_quantity_by_the_height():
 
 
 def test_unstable_aspects_are_left_out_and_the_rest_renormalised():
-    got = published.normalised(np.array([3.0, 9.0, 1.0]), np.array([True, False, True]))
+    got = formulas.normalised(np.array([3.0, 9.0, 1.0]), np.array([True, False, True]))
     assert got.tolist() == [0.75, 0.0, 0.25]
 
 
 def test_an_unknown_weight_leaves_no_probability():
-    assert np.isnan(published.normalised(np.array([3.0, np.nan]), np.array([True, True]))).all()
-    assert np.isnan(published.normalised(np.zeros(2), np.array([True, True]))).all()  # without a warning
+    assert np.isnan(formulas.normalised(np.array([3.0, np.nan]), np.array([True, True]))).all()
+    assert np.isnan(formulas.normalised(np.zeros(2), np.array([True, True]))).all()  # without a warning
 
 
 @pytest.mark.parametrize("rule", RULES)

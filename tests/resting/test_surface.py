@@ -5,7 +5,7 @@ import pytest
 
 from feederscrew.resting.counts.calibration import HIGHEST, calibrate
 from feederscrew.resting.counts.deviation import chi_square
-from feederscrew.resting.rules.surface import EXPONENTS, surface_shares, surface_weights
+from feederscrew.resting.rules.formulas import EXPONENTS, surface_shares, surface_weights
 
 SHARES = np.array([0.5, 0.3, 0.15, 0.05])
 HEIGHTS = np.array([1.0, 1.4, 1.9, 2.5])

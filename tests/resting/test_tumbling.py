@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.tumbling.exact import tumble
+from feederscrew.resting.exact_tumbling import tumble
 
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2.0
 ONCE = {"max_examples": 300, "deadline": None, "derandomize": True}
@@ -64,7 +64,7 @@ def test_a_cube_rests_one_time_in_six_on_each_face():
 
 @pytest.mark.parametrize("centre", [(0.1, 0.2, 0.3), (0.0, 0.0, -0.49), (0.49, 0.49, 0.49)])
 def test_a_loaded_box_rests_by_the_solid_angles_from_its_centre_of_mass(centre):
-    from feederscrew.geometry.solid_angle import solid_angles
+    from feederscrew.geometry.vectors import solid_angles
 
     hull = convex_hull(CUBE, np.array(centre))
     result = tumble(hull)
@@ -206,15 +206,15 @@ def test_an_independent_monte_carlo_of_the_flow(seed, offset):
 @pytest.mark.parametrize("seed", range(4))
 def test_rolls_agree_with_basin_areas(seed):
     from feederscrew.geometry.compiled import SMALL, fitting
-    from feederscrew.resting.tumbling import walk
-    from feederscrew.resting.tumbling.half_edges import half_edges, sinks
+    from feederscrew.resting import walks
+    from feederscrew.resting.half_edges import half_edges, sinks
 
     points, centre = random_body(seed)
     hull = convex_hull(points, centre)
     result, edges = tumble(hull), half_edges(hull)
     starts = np.random.default_rng(seed).normal(size=(20000, 3))
     ends = np.empty(len(starts), int)
-    rolls = fitting(walk.rolls, SMALL + 1)
+    rolls = fitting(walks.rolls, SMALL + 1)
     rolls(edges, starts / np.linalg.norm(starts, axis=1, keepdims=True), ends)
     found = np.bincount(np.searchsorted(sinks(edges), ends), minlength=len(result.sinks)) / len(starts)
     spread = np.sqrt(result.shares * (1 - result.shares) / len(starts))
@@ -222,7 +222,7 @@ def test_rolls_agree_with_basin_areas(seed):
 
 
 def test_a_failed_check_is_said():
-    from feederscrew.resting.tumbling.exact import _doubts
+    from feederscrew.resting.exact_tumbling import _doubts
 
     assert _doubts(np.array([2 * np.pi, 2 * np.pi]), 2, True) == ()
     doubts = _doubts(np.array([2 * np.pi, 3 * np.pi, -0.1]), 1, False)
@@ -259,12 +259,12 @@ def test_the_walks_give_the_same_plain_and_compiled(monkeypatch):
 
 @pytest.mark.parametrize("seed", range(20))
 def test_walks_abreast_give_the_digits_of_walks_one_by_one(seed, monkeypatch):
-    from feederscrew.resting.tumbling import abreast, walk
+    from feederscrew.resting import walks
 
     points, centre = random_body(seed)
     hull = convex_hull(points, centre)
     together = tumble(hull)
-    monkeypatch.setattr(abreast, "trace_saddles", walk.trace_saddles)
+    monkeypatch.setattr(walks, "trace_saddles_together", walks.trace_saddles)
     singly = tumble(hull)
     np.testing.assert_array_equal(together.areas, singly.areas)
     np.testing.assert_array_equal(together.pairs, singly.pairs)

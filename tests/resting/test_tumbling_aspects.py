@@ -9,7 +9,7 @@ from feederscrew.errors import MeshError
 from feederscrew.output import aspects as aspects_output
 from feederscrew.output import tables, tipping_graph
 from feederscrew.resting.aspects import find
-from feederscrew.resting.tumbling.by_class import exact, ground, transitions
+from feederscrew.resting.exact_tumbling import exact, ground, transitions
 from feederscrew.studies.aspects import AspectsStudy
 
 

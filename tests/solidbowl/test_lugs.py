@@ -92,12 +92,12 @@ def test_lugs_stand_outside_the_wall_and_off_the_devices(name):
 def test_a_bowl_weighs_what_it_does_with_its_lugs_and_screws():
     solid, found, _ = cut("cylinder")
     heavy = screwed(replace(solid, segments=found), segments.WEIGHT)
-    joined, at = mass.solid(found.joined[0][found.joined[1]]), found.screws
+    joined, at = mass.integrate_solid(found.joined[0][found.joined[1]]), found.screws
     bare = joined.volume * solid.plan.material.density
     total = bare + 1.5e-3 * len(at)
     assert heavy.mass == pytest.approx(total, rel=1e-12) and heavy.mass > 1.01 * solid.mass
     np.testing.assert_allclose(heavy.centre, (bare * joined.centre + 1.5e-3 * at.sum(axis=0)) / total)
-    turning = mass.shifted(joined.inertia * solid.plan.material.density, bare, joined.centre)[2, 2]
+    turning = mass.shift_inertia(joined.inertia * solid.plan.material.density, bare, joined.centre)[2, 2]
     about = turning + 1.5e-3 * (at[:, :2] ** 2).sum()
     assert heavy.inertia == pytest.approx(about, rel=1e-9)
     assert heavy.volume == solid.volume and screwed(
@@ -112,7 +112,7 @@ def test_screws_are_on_the_parts_list_and_in_the_document():
     assert told["screws"] == len(found.screws) > 0 and told["screw"] == "M3 x 16"
     words = bowl_sheet.draw_sheets(study(solid)).texts(0)
     assert "screws ISO 4762 M3 x 16 with nuts ISO 4032, in lugs of the segments; floor: dowels" in words
-    whole = mass.solid(found.joined[0][found.joined[1]])
+    whole = mass.integrate_solid(found.joined[0][found.joined[1]])
     assert any(f"{1e9 * whole.volume:.6g} mm³" in one for one in words)
     assert whole.volume > 1.005 * solid.volume
     plain = solidbowl.document(replace(solid, segments=segments.segments(solid, BED)))

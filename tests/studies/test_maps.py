@@ -142,7 +142,7 @@ def test_the_bowls_own_point_is_a_cell_like_any_other():
     found = slide(30, *GENTLE)
     nearest = np.abs(found.grid.second.values - found.ratio).argmin()
     middle = len(found.grid.first.values) // 2
-    assert found.regime == limits.REGIMES[found.grid.codes[middle, nearest]] == "forward"
+    assert found.regime == limits.POINT_REGIMES[found.grid.codes[middle, nearest]] == "forward"
     assert found.at_bowl["mu_limit"] == pytest.approx(
         float(limits.published_limit(found.ratio, 30 * DEG)), rel=1e-9
     )

@@ -14,7 +14,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.dropping.plate import arrival
+from feederscrew.dropping import arrival
 from feederscrew.studies import simulation_cache
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.rate import shares

@@ -37,7 +37,9 @@ def test_the_surface_gives_what_two_blocks_give():
 
 def test_the_surface_is_closed_and_of_the_right_volume():
     vertices, faces = parts.t_solid(0.6)
-    assert mass.solid(vertices[faces]).volume == pytest.approx((25 * 13 + 11 * 12) * 15e-9, rel=1e-12)
+    assert mass.integrate_solid(vertices[faces]).volume == pytest.approx(
+        (25 * 13 + 11 * 12) * 15e-9, rel=1e-12
+    )
     edges = {tuple(edge) for face in faces for edge in zip(face, np.roll(face, -1))}
     assert len(edges) == 3 * len(faces)
     assert edges == {edge[::-1] for edge in edges}

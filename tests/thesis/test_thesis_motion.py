@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from mechanics_samples import DEG, bowl, box_posture, rectangle
 
-from feederscrew.mechanics.floor import balance
-from feederscrew.mechanics.track import balance as track
-from feederscrew.mechanics.track.frame import frame, seat
+from feederscrew.mechanics import floor_balance
+from feederscrew.mechanics import track_balance as track
+from feederscrew.mechanics.track_balance import frame, seat
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.posture import posture
@@ -135,7 +135,7 @@ def test_published_floor_on_the_card(printed_card):
 def test_aligned_print_and_complete_agree_but_for_the_line_of_action(printed_card):
     _, card = printed_card
     settings = bowl(direction=10 * DEG)
-    printed, complete = (f(card, settings, 10 * DEG) for f in (solve_floor, balance.motion))
+    printed, complete = (f(card, settings, 10 * DEG) for f in (solve_floor, floor_balance.motion))
     for name in ("normal_force", "turning", "limiting_friction", "acceleration"):
         np.testing.assert_allclose(getattr(printed, name), getattr(complete, name), rtol=1e-12, atol=1e-12)
     gap = card.offset * np.sin(20 * DEG) + card.height * np.cos(20 * DEG) * np.cos(10 * DEG) * np.cos(

@@ -11,7 +11,7 @@ import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import Faults
-from feederscrew.mechanics.wall import lying_in_groove
+from feederscrew.mechanics import lying_in_groove
 from feederscrew.output import tooling_drawing as drawing
 from feederscrew.output import tooling_figures
 from feederscrew.output.rate import remarks

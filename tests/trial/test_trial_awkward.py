@@ -8,7 +8,7 @@ import pytest
 import shapes
 
 from feederscrew.conveying import answer
-from feederscrew.conveying.radius import at_radius
+from feederscrew.conveying.answer import at_radius
 from feederscrew.dropping.kernel import body
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings

@@ -8,7 +8,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
-from feederscrew.dropping.launches import named
+from feederscrew.dropping.launch_conditions import named
 from feederscrew.geometry import vectors
 from feederscrew.output.trial import tables
 from feederscrew.part import load

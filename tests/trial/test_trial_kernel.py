@@ -8,9 +8,9 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
+from feederscrew.dropping import plate_test
 from feederscrew.dropping.kernel import body
-from feederscrew.dropping.launches import named, sample
-from feederscrew.dropping.plate import drive, rides
+from feederscrew.dropping.launch_conditions import named, sample
 from feederscrew.geometry import vectors
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
@@ -155,8 +155,8 @@ def test_the_state_of_a_part_turns_about_the_axis_of_the_bowl(block):
 def lies_on_the_plate(part, bowl, launched, settled):
     """Aspect on which each part of a launch lies after so long on the plate of a drop test."""
     below, length = looks.AspectsBelow(part, find(part)), shape.solid_of(part)[1]
-    floor = drive.floor_of(bowl, length)
-    ride = rides.ride(below.shape, floor, launched, np.array([settled]), drive.steps_of(floor))
+    floor = plate_test.floor_of(bowl, length)
+    ride = plate_test.ride(below.shape, floor, launched, np.array([settled]), plate_test.steps_of(floor))
     return below.rows[ride.faces[:, 0]]
 
 

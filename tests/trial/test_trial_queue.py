@@ -206,7 +206,7 @@ def test_the_track_goes_on_lower_behind_a_step(tmp_path):
 
 def test_what_left_stands_beside_what_was_measured():
     told = replace(queued(BOWL, 1, 0.02), whole=np.array([[9, 3, 0, 2]]))
-    columns = profiles.parse("aspect,MDFT\nA,0.5\nB,0.3\nC,0.2\n", "counts.csv", ASPECTS.names)
+    columns = profiles.parse_profile("aspect,MDFT\nA,0.5\nB,0.3\nC,0.2\n", "counts.csv", ASPECTS.names)
     shares = np.full(len(EVERY), 1.0 / len(EVERY))
     seen = outlet.outlet(told, EVERY, shares, ASPECTS.names, columns)
     assert seen.shares == pytest.approx([0.75, 0.25, 0.0]) and seen.other == 2

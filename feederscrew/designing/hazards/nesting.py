@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.designing.hazards.pulling import WAYS
 from feederscrew.geometry import vectors
-from feederscrew.geometry.cells import chords
+from feederscrew.geometry.lattice import chords
 from feederscrew.part.record import Part
 from feederscrew.trial.shape import solid_of
 

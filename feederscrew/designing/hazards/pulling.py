@@ -9,7 +9,7 @@ from feederscrew.bowl import default
 from feederscrew.bowl.record import Track
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
-from feederscrew.geometry.cells import Cells
+from feederscrew.geometry.lattice import Cells
 from feederscrew.trial import air, arrays, crowd, runs, staging, stations, whereabouts
 from feederscrew.trial.kernel import travel
 from feederscrew.trial.kernel.crowd_records import Together

@@ -8,7 +8,7 @@ from feederscrew import check
 from feederscrew.designing.hazards.pulling import HELD, Pulled
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
-from feederscrew.geometry.cells import Cells, cells, handles
+from feederscrew.geometry.lattice import Cells, cells, handles
 from feederscrew.part.record import Part
 from feederscrew.trial import whereabouts
 from feederscrew.trial.shape import solid_of

@@ -17,7 +17,7 @@ from feederscrew.dropping.kernel.falling import (
 )
 from feederscrew.dropping.kernel.floor_motion import at_rest
 from feederscrew.geometry.compiled import compiled, entry
-from feederscrew.resting.tumbling.walk import LOST, roll_from_corner, roll_from_facet
+from feederscrew.resting.walks import LOST_WALK, roll_from_corner, roll_from_facet
 
 __all__ = ["STEADY", "UNSETTLED", "Launched", "Steps", "face_below", "scratch", "settle", "settle_all"]
 
@@ -32,7 +32,7 @@ def face_below(shape, turn, corner):
     """Return the face [1] the body would roll to if set down as ``turn`` (9,) has it."""
     down = -turn[6], -turn[7], -turn[8]
     facet = roll_from_facet(shape.edges, roll_from_corner(shape.edges, down, corner))
-    return shape.faces[facet] if facet != LOST else UNSETTLED
+    return shape.faces[facet] if facet != LOST_WALK else UNSETTLED
 
 
 @compiled

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.mechanics.floor.balance import HOP
+from feederscrew.mechanics.floor_balance import HOP
 from feederscrew.output.page.numbers import SHORT, number
 from feederscrew.rates import tipping
 from feederscrew.units import MM_S

@@ -1,23 +1,102 @@
-"""GLB and, through it, STEP: instances placed, by trimesh's scenes, once the file's claims add up."""
+"""GLB and, through it, STEP: instances placed by trimesh's scenes, once the claims of the file add up."""
 
 import importlib.util
 import io
 import json
 import logging
+import re
 import struct
+import subprocess
+import sys
+import tempfile
 import warnings
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import units
 from feederscrew.errors import DAMAGE, MeshError
-from feederscrew.part.reading import archives, step
+from feederscrew.part.reading import formats
 from feederscrew.part.reading.formats import FORMATS
-from feederscrew.part.reading.soup import DamageError, Soup, refuse_crowds
+from feederscrew.part.reading.soup import DamageError, Soup, refuse_size
 
-AGAIN = "export the part again"
-LARGEST_SCENE = 1 << 24  # [bytes] of the JSON of a GLB: it names nodes and buffers, the numbers are elsewhere
-WIDTHS = {
+TESSELLATION_MM, TESSELLATION_RAD = (
+    0.01,
+    0.1,
+)  # [mm, rad] between a curved face and its facets, and from facet to facet
+STEP_TIMEOUT_S = 60  # [s]
+STEP_MEMORY_BYTES = 3 << 30  # [bytes]
+CONVERT_STEP_SCRIPT = """
+import ctypes, signal, sys
+if sys.platform == "linux":
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # it ends when its parent does, however that ends
+if hasattr(signal, "alarm"):
+    signal.alarm(PATIENCE + 5)  # and after its time in any case
+try:
+    import resource  # what it needs beyond that is no fed part
+    least = min(bytes for bytes in (MOST_MEMORY, *resource.getrlimit(resource.RLIMIT_AS)) if bytes > 0)
+    resource.setrlimit(resource.RLIMIT_AS, (least, least))
+except (ImportError, ValueError, OSError):
+    pass
+import cascadio
+source, target, *tolerances = sys.argv[1:]
+sys.exit(cascadio.step_to_glb(source, target, *map(float, tolerances), use_parallel=False))
+""".replace("PATIENCE", str(STEP_TIMEOUT_S)).replace("MOST_MEMORY", str(STEP_MEMORY_BYTES))
+STEP_UNIT_PATTERNS = ((rb"CONVERSION_BASED_UNIT\s*\(\s*'INCH", "in"), (rb"\.CENTI\.\s*,\s*\.METRE\.", "cm"))
+STEP_METRE_PATTERN = rb"SI_UNIT\s*\(\s*\$\s*,\s*\.METRE\."
+
+
+def convert_step(data) -> bytes:
+    """Convert a STEP file to GLB, in metres.
+
+    Parameters
+    ----------
+    data : bytes
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    ValueError
+        If it cannot be converted.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        source, target = Path(folder, "part.step"), Path(folder, "part.glb")
+        source.write_bytes(data)
+        call = [
+            sys.executable,
+            "-c",
+            CONVERT_STEP_SCRIPT,
+            str(source),
+            str(target),
+            str(TESSELLATION_MM),
+            str(TESSELLATION_RAD),
+        ]
+        try:
+            done = subprocess.run(call, capture_output=True, timeout=STEP_TIMEOUT_S, check=False)
+        except subprocess.TimeoutExpired:
+            raise DamageError(f"not converted within {STEP_TIMEOUT_S} s") from None
+        if done.returncode != 0 or not target.exists():
+            raise DamageError("OpenCASCADE cannot convert it")
+        return target.read_bytes()
+
+
+def read_step_unit(data) -> str:
+    """Return the length unit a STEP file is drawn in; millimetres where it does not tell."""
+    for pattern, name in STEP_UNIT_PATTERNS:
+        if re.search(pattern, data):
+            return name
+    return "m" if re.search(STEP_METRE_PATTERN, data) else "mm"
+
+
+EXPORT_AGAIN = "export the part again"
+MAX_SCENE_BYTES = (
+    1 << 24
+)  # [bytes] of the JSON of a GLB: it names nodes and buffers, the numbers are elsewhere
+COMPONENT_BYTES = {
     5120: 1,
     5121: 1,
     5122: 2,
@@ -25,14 +104,14 @@ WIDTHS = {
     5125: 4,
     5126: 4,
 }  # [bytes] by component type: glTF 2.0, 3.6.2.2
-MOST_NODES, DEEPEST = 20_000, 50  # instances; nodes within nodes
-NUMBERS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
-NUMBER = (int, float)  # as JSON writes one
-PACKED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
+MAX_SCENE_NODES, MAX_NODE_DEPTH = 20_000, 50  # instances; nodes within nodes
+COMPONENTS_BY_TYPE = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+JSON_NUMBER = (int, float)  # as JSON writes one
+PACKED_EXTENSIONS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
 logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it would log to stderr
 
 
-def soup(data, kind, where):
+def read_scene(data, kind, where) -> Soup:
     """Return the triangles of a GLB or STEP file.
 
     Parameters
@@ -58,23 +137,23 @@ def soup(data, kind, where):
         raise MeshError(where, what, f'pip install "feederscrew[{format.extra}]"')
     unit = "m"
     if kind == "step":
-        text = archives.step(data) if data.startswith(b"PK") else data
-        unit, data = step.unit(text), step.glb(text)
+        text = formats.unpack_step(data) if data.startswith(b"PK") else data
+        unit, data = read_step_unit(text), convert_step(text)
     _refuse_claims(data, where)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
         try:
-            pieces = _pieces(data)
+            pieces = _scene_meshes(data)
         except MemoryError:
             raise
         except DAMAGE:  # trimesh's, of any class
             raise DamageError("its scene does not fit what it holds") from None
-        found = _joined(pieces, kind, unit)
+        found = _join_meshes(pieces, kind, unit)
     return found
 
 
-def _pieces(data):
+def _scene_meshes(data) -> list[tuple[str, NDArray[np.float64], NDArray[np.int64]]]:
     """Name, corners and facets of every mesh of the scene where its instances stand, all by trimesh."""
     import trimesh
 
@@ -91,7 +170,7 @@ def _pieces(data):
     return pieces
 
 
-def _joined(pieces, kind, unit):
+def _join_meshes(pieces, kind, unit) -> Soup:
     names, points, faces, sizes, count = [], [np.empty((0, 3))], [np.empty((0, 3), dtype=int)], [], 0
     for name, vertices, own in pieces:
         if own.min() < 0 or own.max() >= len(vertices):
@@ -108,54 +187,62 @@ def _joined(pieces, kind, unit):
     return Soup(vertices, np.concatenate(faces), kind, unit, names=tuple(names), objects=objects)
 
 
-def _refuse_claims(data, where):
+def _refuse_claims(data, where) -> None:
     """Refuse a GLB whose scene names more numbers, instances or facets than it holds or than are read."""
     _, _, length, chunk = struct.unpack("<4I", data[:16])
     if max(length, 20 + chunk) > len(data):
-        raise MeshError(where, "is a damaged GLB: it announces more than it holds", AGAIN)
-    if chunk > LARGEST_SCENE:
-        raise DamageError(f"a scene of more than {LARGEST_SCENE >> 20} MB")
+        raise MeshError(where, "is a damaged GLB: it announces more than it holds", EXPORT_AGAIN)
+    if chunk > MAX_SCENE_BYTES:
+        raise DamageError(f"a scene of more than {MAX_SCENE_BYTES >> 20} MB")
     try:
-        scene = _of(dict, json.loads(data[20 : 20 + chunk]))
+        scene = _require_kind(dict, json.loads(data[20 : 20 + chunk]))
     except (json.JSONDecodeError, UnicodeDecodeError):
         raise DamageError("its scene is no JSON") from None
-    needed = [name for name in _listed(scene, "extensionsRequired") if name in PACKED]
+    needed = [name for name in _scene_list(scene, "extensionsRequired") if name in PACKED_EXTENSIONS]
     if needed:
         raise MeshError(where, f"is a GLB packed by {needed[0]}, which is not read", "export it unpacked")
-    accessors = [_of(dict, accessor) for accessor in _listed(scene, "accessors")]
-    numbers = [_announced(accessor, scene, len(data), where) for accessor in accessors]
-    refuse_crowds(0, sum(numbers) // 30)  # texture coordinates and normals counted in
-    nodes = [_of(dict, node) for node in _listed(scene, "nodes")]
+    accessors = [_require_kind(dict, accessor) for accessor in _scene_list(scene, "accessors")]
+    numbers = [_announced_numbers(accessor, scene, len(data), where) for accessor in accessors]
+    refuse_size(0, sum(numbers) // 30)  # texture coordinates and normals counted in
+    nodes = [_require_kind(dict, node) for node in _scene_list(scene, "nodes")]
     _refuse_nests(nodes)
     corners = facets = 0
     for node in nodes:
-        mesh = _of(dict, _listed(scene, "meshes")[_of(int, node["mesh"])]) if "mesh" in node else {}
-        for primitive in _listed(mesh, "primitives"):
-            at = _of(int, _of(dict, _of(dict, primitive)["attributes"])["POSITION"])
-            around = _of(int, primitive.get("indices", at))
-            corners += int(_of(NUMBER, accessors[at]["count"]))
-            around_count = int(_of(NUMBER, accessors[around]["count"]))
+        mesh = (
+            _require_kind(dict, _scene_list(scene, "meshes")[_require_kind(int, node["mesh"])])
+            if "mesh" in node
+            else {}
+        )
+        for primitive in _scene_list(mesh, "primitives"):
+            at = _require_kind(
+                int, _require_kind(dict, _require_kind(dict, primitive)["attributes"])["POSITION"]
+            )
+            around = _require_kind(int, primitive.get("indices", at))
+            corners += int(_require_kind(JSON_NUMBER, accessors[at]["count"]))
+            around_count = int(_require_kind(JSON_NUMBER, accessors[around]["count"]))
             facets += around_count // (3 if primitive.get("mode", 4) == 4 else 1)
-            refuse_crowds(corners, facets)
+            refuse_size(corners, facets)
 
 
-def _of(kind, value):
+def _require_kind(kind, value):
     """A value of the scene, which must be of a kind."""
     if not isinstance(value, kind):
         raise DamageError(f"its scene has {json.dumps(value):.30} out of place")
     return value
 
 
-def _listed(holder, name):
-    return _of(list, holder.get(name, []))
+def _scene_list(holder, name):
+    return _require_kind(list, holder.get(name, []))
 
 
-def _refuse_nests(nodes):
+def _refuse_nests(nodes) -> None:
     """Refuse nodes that are no trees, or deep ones."""
-    if len(nodes) > MOST_NODES:
-        raise DamageError(f"more than {MOST_NODES} nodes")
+    if len(nodes) > MAX_SCENE_NODES:
+        raise DamageError(f"more than {MAX_SCENE_NODES} nodes")
     pairs = [
-        (_of(int, child), parent) for parent, node in enumerate(nodes) for child in _listed(node, "children")
+        (_require_kind(int, child), parent)
+        for parent, node in enumerate(nodes)
+        for child in _scene_list(node, "children")
     ]
     parents = dict(pairs)
     if len(parents) != len(pairs):
@@ -164,17 +251,24 @@ def _refuse_nests(nodes):
         depth = 0
         while node in parents:
             node, depth = parents[node], depth + 1
-            if depth > DEEPEST:
-                raise DamageError(f"nodes within nodes more than {DEEPEST} deep")
+            if depth > MAX_NODE_DEPTH:
+                raise DamageError(f"nodes within nodes more than {MAX_NODE_DEPTH} deep")
 
 
-def _announced(accessor, scene, size, where):
+def _announced_numbers(accessor, scene, size, where) -> int:
     """How many numbers an accessor announces; refused where its bytes are not there."""
-    count = int(_of(NUMBER, accessor["count"])) * NUMBERS[_of(str, accessor["type"])]
-    least = count * WIDTHS[_of(int, accessor["componentType"])]
+    count = (
+        int(_require_kind(JSON_NUMBER, accessor["count"]))
+        * COMPONENTS_BY_TYPE[_require_kind(str, accessor["type"])]
+    )
+    least = count * COMPONENT_BYTES[_require_kind(int, accessor["componentType"])]
     view = accessor.get("bufferView")
-    buffer = {} if view is None else _of(dict, _listed(scene, "bufferViews")[_of(int, view)])
-    held = 0 if view is None else int(_of(NUMBER, buffer["byteLength"]))
+    buffer = (
+        {}
+        if view is None
+        else _require_kind(dict, _scene_list(scene, "bufferViews")[_require_kind(int, view)])
+    )
+    held = 0 if view is None else int(_require_kind(JSON_NUMBER, buffer["byteLength"]))
     if count < 0 or held > size or (least > held and "sparse" not in accessor):
-        raise MeshError(where, "is a damaged GLB: it announces more than it holds", AGAIN)
+        raise MeshError(where, "is a damaged GLB: it announces more than it holds", EXPORT_AGAIN)
     return count

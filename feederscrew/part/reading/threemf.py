@@ -13,18 +13,19 @@ from urllib.parse import unquote
 from xml.parsers import expat
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.errors import MeshError
-from feederscrew.part.reading import archives
-from feederscrew.part.reading.soup import LARGEST, MOST_FACETS, DamageError, Soup, refuse_crowds
-from feederscrew.part.repair import weld
+from feederscrew.part.reading import formats
+from feederscrew.part.reading.soup import MAX_MESH_BYTES, MAX_READ_FACETS, DamageError, Soup, refuse_size
+from feederscrew.part.repair import topology
 from feederscrew.units import counted, listed, quantity_text
 
-MOST, DEEPEST = 5_000, 50  # instances; components within components
-MOST_PLACED = 100_000  # objects, or items and components
-MOST_NAMES = 1_000  # of elements: a dozen, and those of extensions
-MOST_CONFIG = 1 << 24  # [bytes] of what a slicer adds
-UNITS = {  # of the specification: one of ours, and how many of it they are
+MAX_INSTANCES, MAX_COMPONENT_DEPTH = 5_000, 50  # instances; components within components
+MAX_PLACED_OBJECTS = 100_000  # objects, or items and components
+MAX_ELEMENT_NAMES = 1_000  # of elements: a dozen, and those of extensions
+MAX_CONFIG_BYTES = 1 << 24  # [bytes] of what a slicer adds
+UNITS_3MF = {  # of the specification: one of ours, and how many of it they are
     "micron": ("um", 1.0),
     "millimeter": ("mm", 1.0),
     "centimeter": ("cm", 1.0),
@@ -32,33 +33,39 @@ UNITS = {  # of the specification: one of ours, and how many of it they are
     "foot": ("in", 12.0),
     "meter": ("m", 1.0),
 }
-PART, NEGATIVE, MODIFIER, SUPPORT, UNPRINTED = "part", "negative", "modifier", "support", "unprintable"
-TYPES = {
-    "model": PART,
-    "": PART,
-    "support": SUPPORT,
-    "solidsupport": SUPPORT,
-    "surface": SUPPORT,
-    "other": SUPPORT,
-}
-ROLES = (  # pattern of what slicers call a volume, and what it is
-    (re.compile(r"(?i)negative"), NEGATIVE),
-    (re.compile(r"(?i)modifier|infill_mesh|cutting_mesh"), MODIFIER),
-    (re.compile(r"(?i)support|anti_overhang"), SUPPORT),
+PART_ROLE, NEGATIVE_ROLE, MODIFIER_ROLE, SUPPORT_ROLE, UNPRINTED_ROLE = (
+    "part",
+    "negative",
+    "modifier",
+    "support",
+    "unprintable",
 )
-LEFT_OUT = {  # role: noun, what is done
-    SUPPORT: ("support or helper object", "left out"),
-    MODIFIER: ("modifier", "ignored"),
-    UNPRINTED: ("object marked as not printable", "left out"),
+ROLES_BY_TYPE = {
+    "model": PART_ROLE,
+    "": PART_ROLE,
+    "support": SUPPORT_ROLE,
+    "solidsupport": SUPPORT_ROLE,
+    "surface": SUPPORT_ROLE,
+    "other": SUPPORT_ROLE,
 }
-FOREIGN = re.compile(r"(?i)beamlattice|boolean|securecontent|displacement|implicit|volumetric")
-RELATION = re.compile(r"(?i)/3dmodel$")
-CONFIGS = (
+ROLE_PATTERNS = (  # pattern of what slicers call a volume, and what it is
+    (re.compile(r"(?i)negative"), NEGATIVE_ROLE),
+    (re.compile(r"(?i)modifier|infill_mesh|cutting_mesh"), MODIFIER_ROLE),
+    (re.compile(r"(?i)support|anti_overhang"), SUPPORT_ROLE),
+)
+LEFT_OUT_ROLES = {  # role: noun, what is done
+    SUPPORT_ROLE: ("support or helper object", "left out"),
+    MODIFIER_ROLE: ("modifier", "ignored"),
+    UNPRINTED_ROLE: ("object marked as not printable", "left out"),
+}
+UNREAD_EXTENSIONS = re.compile(r"(?i)beamlattice|boolean|securecontent|displacement|implicit|volumetric")
+MODEL_RELATION = re.compile(r"(?i)/3dmodel$")
+SLICER_CONFIGS = (
     "Metadata/model_settings.config",
     "Metadata/Slic3r_PE_model.config",
     "Metadata/Slic3r_model.config",
 )
-WAY_OUT = "subtract it in CAD and export the part again"
+SUBTRACT_IN_CAD = "subtract it in CAD and export the part again"
 
 
 @dataclass
@@ -75,7 +82,7 @@ class Object3MF:
     """One object: a mesh, or components."""
 
     name: str = ""
-    role: str = PART
+    role: str = PART_ROLE
     corners: array = field(default_factory=lambda: array("d"))
     facets: array = field(default_factory=lambda: array("q"))
     components: list[dict[str, str]] = field(default_factory=list)
@@ -101,7 +108,7 @@ class SlicerNotes:
     ranges: dict[str, list[tuple[int, int]]] = field(default_factory=dict)  # of facets, by object
 
 
-def soup(data: bytes, where: str) -> Soup:
+def read_3mf(data: bytes, where: str) -> Soup:
     """Return the parts of a 3MF file, as its build places them.
 
     Parameters
@@ -121,14 +128,14 @@ def soup(data: bytes, where: str) -> Soup:
     ValueError
         If it is damaged, or stands for too much.
     """
-    with archives.opened(data) as archive:
+    with formats.open_archive(data) as archive:
         package = Package3MF(archive, where)
         pieces = package.pieces()
     name = package.root.unit.strip().lower().rstrip("s").replace("metre", "meter") or "millimeter"
-    if name not in UNITS:
-        known = " or ".join(UNITS)
+    if name not in UNITS_3MF:
+        known = " or ".join(UNITS_3MF)
         raise MeshError(where, f"its unit is {quantity_text(package.root.unit)}", f"write {known} there")
-    unit, factor = UNITS[name]
+    unit, factor = UNITS_3MF[name]
     kept, warnings = _by_role(pieces, package.left_out, where)
     names = tuple(piece.name for piece in kept)
     sizes = np.cumsum([0, *(len(piece.vertices) for piece in kept)])
@@ -161,39 +168,39 @@ class Package3MF:
             items = [{"objectid": name} for name in self.root.objects if name not in inner]
         for number, item in enumerate(items):
             if item.get("printable", "1").strip().lower() in ("0", "false"):
-                self.left_out[UNPRINTED] += 1
+                self.left_out[UNPRINTED_ROLE] += 1
                 continue
             path = self._path(item, self.path)
             name = item.get("partnumber", "")
             self._place(path, item["objectid"], _transform(item), number, name, (), pieces)
         return pieces
 
-    def _place(self, path, name, transform, item, title, parents, pieces, role=PART):
+    def _place(self, path, name, transform, item, title, parents, pieces, role=PART_ROLE) -> None:
         """Add the meshes of one object, and of its components."""
         self.instances += 1
-        if self.instances > MOST:
-            raise DamageError(f"its components stand for more than {MOST} bodies")
-        if len(parents) > DEEPEST:
-            raise DamageError(f"components within components more than {DEEPEST} deep")
+        if self.instances > MAX_INSTANCES:
+            raise DamageError(f"its components stand for more than {MAX_INSTANCES} bodies")
+        if len(parents) > MAX_COMPONENT_DEPTH:
+            raise DamageError(f"components within components more than {MAX_COMPONENT_DEPTH} deep")
         here = self._model(path).objects[name]
-        role = here.role if role == PART else role
+        role = here.role if role == PART_ROLE else role
         title = here.name or self.notes.names.get((name, ""), title)
         for parent in parents[-1:]:
             title = self.notes.names.get((parent, name), title)
-            role = self.notes.roles.get((parent, name), role) if role == PART else role
+            role = self.notes.roles.get((parent, name), role) if role == PART_ROLE else role
         for component in here.components:
             matrix = _combined(_transform(component), transform)
             inner = self._path(component, path)
             self._place(inner, component["objectid"], matrix, item, title, (*parents, name), pieces, role)
         if here.facets:
             self.facets += len(here.facets) // 3
-            refuse_crowds(0, self.facets)
+            refuse_size(0, self.facets)
             pieces += self._meshes(here, name, transform, item, title, role, bool(parents))
 
     def _meshes(self, here, name, transform, item, title, role, inner):
         """The mesh of an object; several, where the slicer tells ranges of its facets apart."""
         self.corners += len(here.corners) // 3
-        refuse_crowds(self.corners, self.facets)
+        refuse_size(self.corners, self.facets)
         vertices = _moved(np.frombuffer(here.corners, dtype=float).reshape(-1, 3), transform)
         faces = np.frombuffer(here.facets, dtype=np.int64).reshape(-1, 3)
         if faces.min() < 0 or faces.max() >= len(vertices):
@@ -206,25 +213,27 @@ class Package3MF:
             return
         for first, last in ranges:
             key = (name, str(first))
-            kind = self.notes.roles.get(key, role) if role == PART else role
+            kind = self.notes.roles.get(key, role) if role == PART_ROLE else role
             corners, own = np.unique(faces[first : last + 1], return_inverse=True)
             yield Piece3MF(
                 self.notes.names.get(key, title), kind, item, vertices[corners], own.reshape(-1, 3)
             )
 
-    def _path(self, attributes, path):
+    def _path(self, attributes, path) -> str:
         return attributes["path"].lstrip("/") if "path" in attributes else path
 
-    def _root_path(self):
+    def _root_path(self) -> str:
         """The model that the package's relations name, or what looks like it."""
         targets: list[str] = []
 
-        def begin(name, attributes):
-            if name.rpartition("}")[2] == "Relationship" and RELATION.search(attributes.get("Type", "")):
+        def begin(name, attributes) -> None:
+            if name.rpartition("}")[2] == "Relationship" and MODEL_RELATION.search(
+                attributes.get("Type", "")
+            ):
                 targets.append(posixpath.normpath(unquote(attributes.get("Target", ""))).lstrip("/"))
 
         if "_rels/.rels" in self.files:
-            self._parse(self.files["_rels/.rels"], begin, MOST_CONFIG)
+            self._parse(self.files["_rels/.rels"], begin, MAX_CONFIG_BYTES)
         models = [name for name in self.files if name.endswith(".model")]
         guesses = sorted(models, key=lambda name: ("3d/3dmodel.model" not in name, name.count("/"), name))
         for target in [*targets, *guesses]:
@@ -232,7 +241,7 @@ class Package3MF:
                 return target
         raise DamageError("it holds no model")
 
-    def _model(self, path):
+    def _model(self, path) -> Any:
         if path not in self.models:
             if path.lower() not in self.files:
                 raise DamageError("a component is in a file that is not there")
@@ -241,15 +250,15 @@ class Package3MF:
             self._parse(self.files[path.lower()], reader.begin, reader=reader)
         return self.models[path]
 
-    def _notes(self):
+    def _notes(self) -> SlicerNotes:
         """What slicers say of parts; nothing where they add no file."""
         notes = SlicerNotes()
-        for name in CONFIGS:
+        for name in SLICER_CONFIGS:
             if name.lower() in self.files:
-                self._parse(self.files[name.lower()], NotesReader(notes).begin, MOST_CONFIG)
+                self._parse(self.files[name.lower()], NotesReader(notes).begin, MAX_CONFIG_BYTES)
         return notes
 
-    def _parse(self, member, begin, most=LARGEST, reader=None):
+    def _parse(self, member, begin, most=MAX_MESH_BYTES, reader=None) -> None:
         """Read an XML file piece by piece; a document type, and with it every entity, is refused."""
         parser = expat.ParserCreate(namespace_separator="}")
         parser.StartElementHandler = begin
@@ -257,7 +266,7 @@ class Package3MF:
         if reader is not None:
             reader.parser = parser
         try:
-            for piece in archives.pieces(self.archive, member, most):
+            for piece in formats.unpack_pieces(self.archive, member, most):
                 parser.Parse(piece, False)
             parser.Parse(b"", True)
         except expat.ExpatError as error:
@@ -289,9 +298,9 @@ class ModelReader:
         local = self.locals.get(name)
         if local is None:
             local = self.locals[name] = name.rpartition("}")[2]
-            if len(self.locals) > MOST_NAMES:
-                raise DamageError(f"its XML has more than {MOST_NAMES} kinds of elements")
-            extension = FOREIGN.search(name)
+            if len(self.locals) > MAX_ELEMENT_NAMES:
+                raise DamageError(f"its XML has more than {MAX_ELEMENT_NAMES} kinds of elements")
+            extension = UNREAD_EXTENSIONS.search(name)
             if extension:
                 what = f"is a 3MF in the extension {extension[0].lower()}, which is not read"
                 raise MeshError(self.where, what, "export it as plain triangles")
@@ -302,29 +311,29 @@ class ModelReader:
             self.here.facets.extend((int(attributes["v1"]), int(attributes["v2"]), int(attributes["v3"])))
             self._count("facets")
         elif local == "object":
-            role = TYPES.get(attributes.get("type", "").strip().lower(), SUPPORT)
+            role = ROLES_BY_TYPE.get(attributes.get("type", "").strip().lower(), SUPPORT_ROLE)
             self.here = Object3MF(attributes.get("name") or attributes.get("partnumber", ""), role)
             self.model.objects[attributes["id"]] = self.here
-            self._count("objects", MOST_PLACED)
+            self._count("objects", MAX_PLACED_OBJECTS)
         elif local in ("component", "item"):
             kept = {key.rpartition("}")[2]: value for key, value in attributes.items()}
             (self.here.components if local == "component" else self.model.items).append(kept)
-            self._count("placed", MOST_PLACED)
+            self._count("placed", MAX_PLACED_OBJECTS)
         elif local == "metadata" and "mesh" in attributes.get("name", "") and self.parser is not None:
             self.mark = attributes["name"]  # as Cura marks helpers: its text says whether it is one
             self.parser.CharacterDataHandler = self._marked
         elif local == "model":
             self.model.unit = attributes.get("unit", "millimeter")
 
-    def _marked(self, text):
-        if text.strip().lower() in ("true", "1") and self.here.role == PART:
+    def _marked(self, text) -> None:
+        if text.strip().lower() in ("true", "1") and self.here.role == PART_ROLE:
             self.here.role = _role(self.mark)
 
-    def _count(self, what, most=None):
-        most = most or MOST_FACETS
+    def _count(self, what, most=None) -> None:
+        most = most or MAX_READ_FACETS
         self.size[what] += 1
         if self.size[what] > most:
-            raise archives.BombError(f"has more than {most} {what}")
+            raise formats.BombError(f"has more than {most} {what}")
 
 
 class NotesReader:
@@ -356,12 +365,12 @@ class NotesReader:
             elif key == "name":
                 self.notes.names[self.part] = value
             elif key == "volume_type" or (key == "modifier" and value == "1"):
-                role = _role(value) if key == "volume_type" else MODIFIER
-                if self.notes.roles.get(self.part, PART) == PART:
+                role = _role(value) if key == "volume_type" else MODIFIER_ROLE
+                if self.notes.roles.get(self.part, PART_ROLE) == PART_ROLE:
                     self.notes.roles[self.part] = role
 
 
-def _covers(ranges, count):
+def _covers(ranges, count) -> bool:
     """Whether ranges of facets, first and last, are all of so many, each once."""
     ordered = sorted(ranges)
     ends = [-1, *(last for _, last in ordered)]
@@ -372,28 +381,28 @@ def _covers(ranges, count):
     )
 
 
-def _role(text):
+def _role(text) -> Any:
     """What a slicer's word for a volume stands for."""
-    return next((role for pattern, role in ROLES if pattern.search(text)), PART)
+    return next((role for pattern, role in ROLE_PATTERNS if pattern.search(text)), PART_ROLE)
 
 
-def _refuse_doctype(*_):
+def _refuse_doctype(*_) -> None:
     raise DamageError("its XML declares a document type")
 
 
 def _by_role(pieces, left_out, where):
     """The parts, negative ones cut out of those of the same item, and what to say."""
     warnings = []
-    left_out = left_out + Counter(piece.role for piece in pieces if piece.role in LEFT_OUT)
-    for role, (noun, done) in LEFT_OUT.items():
+    left_out = left_out + Counter(piece.role for piece in pieces if piece.role in LEFT_OUT_ROLES)
+    for role, (noun, done) in LEFT_OUT_ROLES.items():
         names = dict.fromkeys(piece.name for piece in pieces if piece.role == role and piece.name)
         if left_out[role]:
             title = f" ({listed([quantity_text(name) for name in list(names)[:3]])})" if names else ""
             warnings.append(f"{counted(left_out[role], noun)}{title}: {done}")
     kept: list[Piece3MF] = []
     for item in dict.fromkeys(piece.item for piece in pieces):
-        parts = [piece for piece in pieces if piece.item == item and piece.role == PART]
-        tools = [piece for piece in pieces if piece.item == item and piece.role == NEGATIVE]
+        parts = [piece for piece in pieces if piece.item == item and piece.role == PART_ROLE]
+        tools = [piece for piece in pieces if piece.item == item and piece.role == NEGATIVE_ROLE]
         if parts and tools:
             kept += (_cut(part, tools, where) for part in parts)
             warnings.append(f"{counted(len(tools), 'negative part')}: subtracted")
@@ -404,30 +413,32 @@ def _by_role(pieces, left_out, where):
     return [piece for piece in kept if len(piece.faces)], tuple(warnings)
 
 
-def _cut(part, tools, where):
+def _cut(part, tools, where) -> Any:
     """A part without what its negative parts fill."""
     body = _manifold(part, where)
     for tool in tools:
         body -= _manifold(tool, where)
     mesh = body.to_mesh64()
     vertices = np.array(mesh.vert_properties, dtype=float)[:, :3]
-    return Piece3MF(part.name, PART, part.item, vertices, np.array(mesh.tri_verts, dtype=np.int64))
+    return Piece3MF(part.name, PART_ROLE, part.item, vertices, np.array(mesh.tri_verts, dtype=np.int64))
 
 
 def _manifold(piece, where):
     from manifold3d import Error, Manifold, Mesh64
 
-    vertices, faces = weld.welded(*weld.compacted(piece.vertices, piece.faces))
+    vertices, faces = topology.weld_corners(*topology.drop_unused_corners(piece.vertices, piece.faces))
     mesh = Mesh64(np.ascontiguousarray(vertices), np.ascontiguousarray(faces).astype(np.uint64))
     body = Manifold(mesh)
     if body.status() != Error.NoError or not body.volume() > 0.0:
         name = f" {quantity_text(piece.name)}" if piece.name else ""
-        kind = "negative part" if piece.role == NEGATIVE else "part with a negative part"
-        raise MeshError(where, f"has a {kind}{name} that is not one closed solid: not subtracted", WAY_OUT)
+        kind = "negative part" if piece.role == NEGATIVE_ROLE else "part with a negative part"
+        raise MeshError(
+            where, f"has a {kind}{name} that is not one closed solid: not subtracted", SUBTRACT_IN_CAD
+        )
     return body
 
 
-def _transform(attributes):
+def _transform(attributes) -> NDArray[np.float64]:
     """(4, 3) of a component or an item: rows are the images of the axes, and of the origin."""
     text = attributes.get("transform")
     if text is None:
@@ -438,19 +449,19 @@ def _transform(attributes):
     return np.array(numbers).reshape(4, 3)
 
 
-def _moved(points, transform):
+def _moved(points, transform) -> NDArray[np.float64]:
     """(V, 3) points (V, 3) in the axes of what holds them."""
     x, y, z = (points[:, k, None] for k in range(3))
     return x * transform[0] + y * transform[1] + z * transform[2] + transform[3]
 
 
-def _combined(inner, outer):
+def _combined(inner, outer) -> NDArray[np.float64]:
     """(4, 3) of an inner transform within an outer one."""
     axes = _moved(inner[:3], np.vstack([outer[:3], np.zeros(3)]))
     return np.vstack([axes, _moved(inner[3:], outer)])
 
 
-def _mirrors(transform):
+def _mirrors(transform) -> bool:
     a, b, c = transform[:3].tolist()
     return (
         a[0] * (b[1] * c[2] - b[2] * c[1])

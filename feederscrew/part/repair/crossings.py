@@ -1,15 +1,113 @@
 """Where a surface passes through itself: pairs of facets that cut each other along a line."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from feederscrew.geometry import coordinates, vectors
-from feederscrew.part.repair import weld
+from feederscrew.geometry import vectors
+from feederscrew.part.repair import topology
 
-MOST, MOST_PAIRS = 300_000, 20_000_000  # facets, and pairs of boxes that overlap: looked at within seconds
-FINE = 1e7  # steps of a unit in which planes are told apart
-CHUNK = 4_000_000  # pairs of boxes at a time, at most: what a hundred MB hold
+AXIS_END_SHARE = 0.25  # [1] of the part's reach across its axis: how far the axis ends before the part does
+FACING_AWAY_SINE = (
+    1e-12  # [1] sine beyond which rounding does not decide whether a facet faces away from a point
+)
+EQUAL_FEET_SHARE = 1e-9  # [1] of the axis: feet closer than that may be one
+NARROW_STRETCH_SHARE = 1e-2  # [1] of the axis: shorter stretches are not looked at
+
+
+def unseen_facets(vertices, faces, solid) -> NDArray[np.int64]:
+    """Return the facets among which are all that cut each other.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+        Closed: every side has one that runs back along it.
+    solid : Solid
+        What they enclose.
+
+    Returns
+    -------
+    (N,) int
+        Empty for a surface that the axis sees whole; also those for which rounding might decide it.
+
+    Notes
+    -----
+    The axis is a segment of the line about which the part is most slender. Every point off it has a foot, the
+    nearest point of the segment, and the rays from each foot through the points that have it fill space once.
+    Of the facets that a ray meets, those that face away from its foot less those that face it are as many as
+    the turns of the surface round the foot. Where all with a foot there face away and the surface goes round
+    once, every ray meets one facet. Beside a line along which two facets cut each other it would meet both.
+    """
+    along, across = vectors.eigen(solid.inertia)[1].T[:2]
+    axes = np.array([along, across, vectors.cross(along, across)])
+    places = np.einsum("ij,vj->iv", axes, vertices - solid.centre)
+    short = AXIS_END_SHARE * np.sqrt((places[1] ** 2 + places[2] ** 2).max())
+    low, high = min(places[0].min() + short, 0.0), max(places[0].max() - short, 0.0)
+    first, last, away = _feet(places, faces, low, high)
+    near = EQUAL_FEET_SHARE * (high - low)
+    alone = np.zeros(len(faces), dtype=bool)
+    for start, end in _stretches(first[~away] - near, last[~away] + near, low, high):
+        if _goes_round_once(places, faces, 0.5 * (max(start, low) + min(end, high))):
+            alone |= (first > start) & (last < end)
+    return np.flatnonzero(~alone)
+
+
+def _feet(places, faces, low, high) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """(F,) and (F,) first and last foot of each facet, (F,) whether it faces away from all of its feet."""
+    a, b, c = places[:, faces.T].swapaxes(0, 1)
+    u, v = b - a, c - a
+    normal = vectors.cross_columns(u, v)
+    feet = np.clip(places[0], low, high)
+    i, j, k = feet[faces.T]
+    first, last = np.minimum(np.minimum(i, j), k), np.maximum(np.maximum(i, j), k)
+    offset = vectors.dot_columns(normal, a)
+    sure = (
+        FACING_AWAY_SINE
+        * np.abs(places).max()
+        * np.sqrt(vectors.dot_columns(u, u) * vectors.dot_columns(v, v))
+    )
+    away = np.minimum(offset - normal[0] * first, offset - normal[0] * last) > sure
+    return first, last, away
+
+
+def _stretches(first, last, low, high):
+    """Stretches (start, end) of the axis from ``low`` to ``high`` outside all of some intervals."""
+    order = np.argsort(first)
+    starts = np.append(-np.inf, np.maximum.accumulate(last[order]))
+    ends = np.append(first[order], np.inf)
+    wide = np.minimum(ends, high) - np.maximum(starts, low) >= NARROW_STRETCH_SHARE * (high - low)
+    return zip(starts[wide], ends[wide])
+
+
+def _goes_round_once(places, faces, foot) -> bool:
+    """Whether the section of the surface across the axis at a foot goes round it once."""
+    above = places[0] > foot
+    a, b, c = above[faces.T]
+    through = faces[(a != b) | (b != c)]
+    up = above[through]
+    rises = (~up & np.roll(up, -1, axis=1)).argmax(axis=1)
+    falls = (up & ~np.roll(up, -1, axis=1)).argmax(axis=1)
+    (x, y), (z, w) = (_met(places, through, side, foot) for side in (rises, falls))
+    return np.abs(np.arctan2(x * w - y * z, x * z + y * w).sum()) < 3.0 * np.pi  # a whole number of 2 pi
+
+
+def _met(places, faces, side, foot) -> NDArray[np.float64]:
+    """(2, N) where one side of each facet passes through the plane across the axis at a foot."""
+    n = np.arange(len(faces))
+    one, other = places[:, faces[n, side]], places[:, faces[n, (side + 1) % 3]]
+    share = (foot - one[0]) / (other[0] - one[0])
+    return one[1:] + share * (other[1:] - one[1:])
+
+
+MAX_CROSSING_FACETS, MAX_BOX_PAIRS = (
+    300_000,
+    20_000_000,
+)  # facets, and pairs of boxes that overlap: looked at within seconds
+PLANE_STEPS = 1e7  # steps of a unit in which planes are told apart
+BOX_PAIRS_AT_ONCE = 4_000_000  # pairs of boxes at a time, at most: what a hundred MB hold
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,7 +119,7 @@ class Crossings:
     points: np.ndarray  # (N, 3) [unit of the file] one point of each cut
 
 
-def crossings(vertices, faces, tolerance):
+def find_crossings(vertices, faces, tolerance) -> Crossings:
     """Find the facets that cut others they share no side with.
 
     Parameters
@@ -54,7 +152,7 @@ def _candidates(corners, normals):
     """(N, 2) pairs of facets whose boxes overlap, but for many of one plane, some at a time."""
     import shapely
 
-    if len(corners) > MOST:
+    if len(corners) > MAX_CROSSING_FACETS:
         return
     a, b, c = corners.transpose(1, 0, 2)
     low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
@@ -62,11 +160,11 @@ def _candidates(corners, normals):
     boxes = shapely.linestrings(np.stack([low[:, [x, y]], high[:, [x, y]]], axis=1))  # made sooner than boxes
     tree, plane = shapely.STRtree(boxes), _planes(corners, normals)
     floor, top = np.ascontiguousarray(low[:, z]), np.ascontiguousarray(high[:, z])
-    seen, step = 0, max(1, CHUNK // len(boxes))
+    seen, step = 0, max(1, BOX_PAIRS_AT_ONCE // len(boxes))
     for start in range(0, len(boxes), step):
         i, j = tree.query(boxes[start : start + step])
         i, seen = i + start, seen + len(i)
-        if seen > MOST_PAIRS:
+        if seen > MAX_BOX_PAIRS:
             return
         once = i < j
         i, j = i[once], j[once]
@@ -74,31 +172,31 @@ def _candidates(corners, normals):
         yield np.column_stack([i[kept], j[kept]])
 
 
-def _planes(corners, normals):
+def _planes(corners, normals) -> NDArray[np.int64]:
     """(F,) int the plane of each facet, those of one plane mostly the same: they do not cut each other."""
     offsets = np.einsum("fx,fx->f", normals, corners[:, 0]) / np.abs(corners).max()
-    return weld.distinct(np.round(np.column_stack([normals, offsets]) * FINE))[1]
+    return topology.distinct_points(np.round(np.column_stack([normals, offsets]) * PLANE_STEPS))[1]
 
 
 def _in_columns(corners, normals) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(3, 3, F) coordinates of the corners from one of them, (3, F) normals, (F,) offsets of the planes."""
     places = np.ascontiguousarray((corners - corners[0, 0]).transpose(1, 2, 0))
     normals = np.ascontiguousarray(normals.T)
-    return places, normals, coordinates.dot(normals, places[0])
+    return places, normals, vectors.dot_columns(normals, places[0])
 
 
-def _piercing(places, normals, offsets, pairs, tolerance):
+def _piercing(places, normals, offsets, pairs, tolerance) -> NDArray[np.int64]:
     """Those of the pairs of which each has corners on both sides of the other, by half the tolerance."""
     for one, other in ((0, 1), (1, 0)):
         ones, others = pairs[:, one], pairs[:, other]
         normal, offset = normals[:, others], offsets[others]
-        a, b, c = (coordinates.dot(normal, corner[:, ones]) - offset for corner in places)
+        a, b, c = (vectors.dot_columns(normal, corner[:, ones]) - offset for corner in places)
         above, below = np.maximum(np.maximum(a, b), c), np.minimum(np.minimum(a, b), c)
         pairs = pairs[(above > 0.5 * tolerance) & (below < -0.5 * tolerance)]
     return pairs
 
 
-def _through_both(corners, normals, pairs, tolerance):
+def _through_both(corners, normals, pairs, tolerance) -> NDArray[np.int64]:
     """Those of the pairs of which each passes through the plane of the other: none that share a side."""
     for one, other in ((0, 1), (1, 0)):
         through = _through(_sides(corners, normals, pairs[:, one], pairs[:, other], tolerance))
@@ -106,7 +204,7 @@ def _through_both(corners, normals, pairs, tolerance):
     return pairs
 
 
-def _cuts(corners, normals, pairs, tolerance):
+def _cuts(corners, normals, pairs, tolerance) -> Crossings:
     """Those of the pairs that cut each other along a line longer than the tolerance."""
     i, j = pairs.T
     along = vectors.cross(normals[i], normals[j])
@@ -120,7 +218,7 @@ def _cuts(corners, normals, pairs, tolerance):
     return Crossings(pairs[cut], depths[cut], _points(corners[i], of_first, along, start)[cut])
 
 
-def _normals(corners):
+def _normals(corners) -> NDArray[np.float64]:
     """(N, 3) unit normals; zero for a facet without area."""
     a, b, c = np.moveaxis(corners, 1, 0)
     normals = vectors.cross(b - a, c - a)
@@ -128,20 +226,20 @@ def _normals(corners):
     return normals / np.where(length > 0.0, length, 1.0)
 
 
-def _sides(corners, normals, ones, others, tolerance):
+def _sides(corners, normals, ones, others, tolerance) -> NDArray[np.float64]:
     """(N, 3) [unit of the file] how far corners of ``ones`` lie above ``others``; 0 within tolerance."""
     above = np.einsum("nkx,nx->nk", corners[ones] - corners[others, :1], normals[others])
     return np.where(np.abs(above) <= tolerance, 0.0, above)
 
 
-def _through(sides):
+def _through(sides) -> NDArray[np.float64]:
     """(N,) how far facets pass through planes: the less of both sides, 0 where they do not."""
     a, b, c = sides.T
     above, below = np.maximum(np.maximum(a, b), c), np.minimum(np.minimum(a, b), c)
     return np.minimum(above, -below).clip(0.0)
 
 
-def _interval(corners, sides, along):
+def _interval(corners, sides, along) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Where facets meet planes they pass through: from and to, (N,) and (N,), along a direction."""
     t = np.einsum("nkx,nx->nk", corners, along)
     u, s = np.roll(t, -1, axis=1), np.roll(sides, -1, axis=1)
@@ -151,7 +249,7 @@ def _interval(corners, sides, along):
     return np.fmin.reduce(met, axis=1), np.fmax.reduce(met, axis=1)
 
 
-def _points(corners, sides, along, start):
+def _points(corners, sides, along, start) -> Any:
     """(N, 3) the points where cuts begin: on the line of the facet's own crossing, at ``start`` along it."""
     s = np.roll(sides, -1, axis=1)
     k = np.argmax(sides * s < 0.0, axis=1)

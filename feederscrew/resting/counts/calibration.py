@@ -9,8 +9,8 @@ from scipy import optimize, stats
 from feederscrew import check
 from feederscrew.errors import FeederError
 from feederscrew.resting.counts.deviation import ChiSquare, chi_square, chi_square_passes
-from feederscrew.resting.rules.surface import surface_shares
-from feederscrew.resting.tumbling.by_class import ground
+from feederscrew.resting.exact_tumbling import ground
+from feederscrew.resting.rules.formulas import surface_shares
 
 LOWEST, HIGHEST = -2.0, 8.0  # [1] exponents tried
 CONFIDENCE = 0.95

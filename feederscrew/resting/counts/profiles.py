@@ -1,4 +1,4 @@
-"""Probability profiles: what the rules give, and what somebody measured."""
+"""Probability profiles: of the rules, of measured counts by aspect, and of counts by device."""
 
 import re
 from dataclasses import dataclass
@@ -9,15 +9,18 @@ import numpy as np
 from feederscrew import check
 from feederscrew.documents import hint
 from feederscrew.errors import Faults, FeederError
-from feederscrew.resting.counts import count_rows
-from feederscrew.resting.counts.count_rows import COUNTS_EXAMPLE, Few
-from feederscrew.resting.counts.head import NO_HEAD, Head
+from feederscrew.resting.counts import count_files
+from feederscrew.resting.counts.count_files import COUNTS_EXAMPLE, NO_HEAD, FaultList, Head
 from feederscrew.units import quantity_text
 
 SUM_TOLERANCE = 0.005  # of the whole: how far printed fractions may miss their sum
 COLUMN_SUM = {"counts": 0.0, "fractions": 1.0, "percent": 100.0}  # what a column sums to; counts, to anything
 DROPPED = ("height_mm", "count")  # columns by which a table of ``feeder drop`` is known
-ASPECT, ORIENTATION, DEVICE = "aspect", "orientation", "device"  # what a file counts by: its first column
+BY_ASPECT, BY_ORIENTATION, BY_DEVICE = (
+    "aspect",
+    "orientation",
+    "device",
+)  # what a file counts by: its first column
 INTEGER = re.compile(r"\+?\d+", re.ASCII)
 FULL_TURN = 360.0  # [deg]
 MAX_PARTS_COUNTED = 1e12  # of a count
@@ -90,12 +93,12 @@ def of_rules(aspects) -> tuple[Any, ...]:
     return tuple(_profile(rule.upper(), "rule", p) for rule, p in chosen.items() if np.isfinite(p).all())
 
 
-def answer(shares) -> AspectProfile:
+def answer_profile(shares) -> AspectProfile:
     """Return the profile of the recommended answer, (A,) [1]."""
     return _profile("recommended", "rule", shares)
 
 
-def read(path, names, taken=()) -> Measured:
+def read_profile(path, names, taken=()) -> Measured:
     """Read the profiles of a CSV file: first column the aspect, then one column a profile.
 
     Parameters
@@ -116,13 +119,13 @@ def read(path, names, taken=()) -> Measured:
     FeederError
         Faults of the file, each with its line.
     """
-    text, sha256 = count_rows.content(path)
-    return measured(count_rows.parse(text, str(path)), str(path), sha256, names, taken)
+    text, sha256 = count_files.read_count_text(path)
+    return measured(count_files.parse_count_sheet(text, str(path)), str(path), sha256, names, taken)
 
 
-def parse(text, where, names, taken=()) -> tuple[Any, ...]:
+def parse_profile(text, where, names, taken=()) -> tuple[Any, ...]:
     """Read the profiles of a CSV text, as ``measured`` does."""
-    return measured(count_rows.parse(text, where), where, "", names, taken).profiles
+    return measured(count_files.parse_count_sheet(text, where), where, "", names, taken).profiles
 
 
 def measured(table, where, sha256, names, taken=()) -> Measured:
@@ -157,7 +160,7 @@ def measured(table, where, sha256, names, taken=()) -> Measured:
     line = f"{where}:{table.first}"
     columns = _columns(line, header, taken)
     cells: dict[Any, tuple[int, list[str]]] = {}  # by aspect and heading: line and texts
-    by, faults = header[0].lower(), Few(where)
+    by, faults = header[0].lower(), FaultList(where)
     for number, row in rows:
         key = _row(f"{where}:{number}", row, columns, cells, names, by, faults)
         cells.setdefault(key, (number, row[1:]))
@@ -167,7 +170,7 @@ def measured(table, where, sha256, names, taken=()) -> Measured:
     lying = [(name, turn) for name in names for aspect, turn in cells if aspect == name]
     texts = list(zip(*(cells[key][1] for key in lying), strict=True))
     profiles = _profiles(line, columns, texts)
-    if by == ASPECT:
+    if by == BY_ASPECT:
         return Measured(where, sha256, profiles, table.head)
     rows = np.array([names.index(name) for name, _ in lying])
     values = np.column_stack([profile.values for profile in profiles])
@@ -178,7 +181,7 @@ def measured(table, where, sha256, names, taken=()) -> Measured:
 def _profiles(where, columns, texts) -> tuple[Any, ...]:
     columns_read = [_measured(where, name, column) for name, column in zip(columns, texts, strict=True)]
     if faults := [entry for entry in columns_read if isinstance(entry, FeederError)]:
-        raise Faults(faults[: count_rows.TOLD])
+        raise Faults(faults[: count_files.MAX_FAULTS_LISTED])
     return tuple(columns_read)
 
 
@@ -201,10 +204,10 @@ def _columns(where, header, taken) -> list[str]:
     first, *columns = header
     if ";" in first or "\t" in first:
         raise FeederError(where, "the columns are not separated by commas", "separate them by commas")
-    if first.lower() == DEVICE:
+    if first.lower() == BY_DEVICE:
         what = "counts by device, which does not say how often the part lies on each aspect"
         raise FeederError(where, what, "give counts by aspect or by orientation")
-    if first.lower() not in (ASPECT, ORIENTATION):
+    if first.lower() not in (BY_ASPECT, BY_ORIENTATION):
         raise FeederError(where, f"the first column is {quantity_text(first)}, not aspect", COUNTS_EXAMPLE)
     if not columns:
         raise FeederError(where, "has no profile", COUNTS_EXAMPLE)
@@ -222,7 +225,7 @@ def _columns(where, header, taken) -> list[str]:
 def _row(where, row, columns, cells, names, by, faults) -> tuple[Any, ...] | None:
     """Aspect and heading of a row, None where it has none; what is wrong is added to ``faults``."""
     name, values = row[0], row[1:]
-    key = (name, None) if by == ASPECT else _oriented(where, name, faults)
+    key = (name, None) if by == BY_ASPECT else _oriented(where, name, faults)
     if key is None:
         return None
     if key[0] not in names:
@@ -239,7 +242,7 @@ def _row(where, row, columns, cells, names, by, faults) -> tuple[Any, ...] | Non
         faults.add(where, what, "give one value a column")
     else:
         for column, value in zip(columns, values, strict=True):
-            _judge(where, column, value, faults)
+            _judge_aspect_row(where, column, value, faults)
     return key
 
 
@@ -253,7 +256,7 @@ def _oriented(where, name, faults) -> tuple[str, float] | None:
     return aspect, float(np.radians(float(degrees)))
 
 
-def _judge(where, column, value, faults) -> None:
+def _judge_aspect_row(where, column, value, faults) -> None:
     what = f"{column[:MAX_NAME_LETTERS]}: {quantity_text(value)}"
     if not DECIMAL_PATTERN.fullmatch(value):
         faults.add(where, f"{what} is not a number", "write digits with a decimal point")
@@ -290,3 +293,109 @@ def _name_with_sum(profile) -> str:
 
 def _profile(name, kind, values, whole=1.0) -> AspectProfile:
     return AspectProfile(name, kind, check.frozen(values), check.frozen(values / whole))
+
+
+PASSED, REJECTED = "passed", "rejected"  # the columns after the device, in either order
+PASSED_EXAMPLE = "give a header 'device,passed,rejected' and one row a device"
+
+
+@dataclass(frozen=True, eq=False)
+class DeviceCounts:
+    """One feeding test; D devices that were counted, in the order of the file."""
+
+    source: str  # the path as given
+    sha256: str  # of the file's bytes
+    lines: tuple[int, ...]  # (D,) of the file
+    names: tuple[str, ...]  # (D,) as written
+    passed: np.ndarray  # (D,) parts that went on
+    rejected: np.ndarray  # (D,) parts that went back into the bowl
+    head: Head = NO_HEAD
+
+    @property
+    def shares(self):
+        """(D,) [1] share that passed, of the parts that came."""
+        return self.passed / (self.passed + self.rejected)
+
+    @property
+    def notes(self):
+        """What the file was taken for, one line."""
+        return (f"{self.source}: parts at {len(self.names)} device{'s' * (len(self.names) != 1)}",)
+
+    def warnings(self, part):
+        """Say, a sentence each, where the head was not written for a part."""
+        return of_another_part(self.source, self.head, part)
+
+
+def counts_by_device(table) -> bool:
+    """Return whether a CountSheet counts by device."""
+    return table.header[0].lower() == BY_DEVICE
+
+
+def device_counts(table, where, sha256):
+    """Understand the table of a feeding test.
+
+    Parameters
+    ----------
+    table : CountSheet
+        A device a row, whole numbers of the parts that passed and that were rejected.
+    where : str
+        The file, for the fault lines.
+    sha256 : str
+        Of its bytes.
+
+    Returns
+    -------
+    DeviceCounts
+
+    Raises
+    ------
+    FeederError
+        Faults of the text, each with its line; the first of many.
+    """
+    columns = tuple(name.lower() for name in table.header[1:])
+    if sorted(columns) != [PASSED, REJECTED]:
+        result = ", ".join(table.header[1:]) or "missing"
+        raise FeederError(
+            f"{where}:{table.first}", f"the columns after device are {result:.60}", PASSED_EXAMPLE
+        )
+    lines: dict[str, int] = {}
+    faults = FaultList(where)
+    for number, row in table.rows:
+        _judge_device_row(f"{where}:{number}", row, columns, lines, faults)
+        lines.setdefault(row[0], number)
+    if not table.rows:
+        faults.add(where, "has no device", PASSED_EXAMPLE)
+    faults.raise_any()
+    counts = np.array([[float(cell) for cell in row[1:]] for _, row in table.rows])
+    passed, rejected = (check.frozen(counts[:, columns.index(name)]) for name in (PASSED, REJECTED))
+    return DeviceCounts(where, sha256, tuple(lines.values()), tuple(lines), passed, rejected, table.head)
+
+
+def read_device_counts(path):
+    """Read the counts by device of a CSV file, as ``device_counts`` does."""
+    text, sha256 = count_files.read_count_text(path)
+    return device_counts(count_files.parse_count_sheet(text, str(path)), str(path), sha256)
+
+
+def _judge_device_row(where, row, columns, lines, faults) -> None:
+    """Add what is wrong with a row to ``faults``."""
+    name, cells = row[0], row[1:]
+    if name in lines:
+        faults.add(
+            where, f"device {quantity_text(name)} is already in line {lines[name]}", "keep one of them"
+        )
+    elif len(cells) != len(columns):
+        what = f"has {len(cells)} value{'s' * (len(cells) != 1)} after the device"
+        faults.add(where, what, "give the parts that passed and those that were rejected")
+    elif odd := [
+        f"{column}: {quantity_text(cell)}" for column, cell in zip(columns, cells) if not _whole(cell)
+    ]:
+        faults.add(
+            where, f"{odd[0]} is not a number of parts", f"give a whole number up to {MAX_PARTS_COUNTED:g}"
+        )
+    elif not any(float(cell) for cell in cells):
+        faults.add(where, f"no part came to device {quantity_text(name)}", "remove the row")
+
+
+def _whole(cell):
+    return INTEGER.fullmatch(cell) is not None and float(cell) <= MAX_PARTS_COUNTED

@@ -1,4 +1,4 @@
-"""Every probability rule, once.
+"""Every probability rule, once, and the quantities of classes and faces that a rule may weigh.
 
 A rule is a function in a module of this folder and an entry here. Probabilities, tables, pictures, the
 names of rules and the table in ``docs/resting.md`` are made from these entries, in this order.
@@ -13,10 +13,38 @@ from numpy.typing import NDArray
 
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
-from feederscrew.resting.basins import barriers
-from feederscrew.resting.rules import published, surface, tumbled
-from feederscrew.resting.rules.quantities import ClassQuantities, FaceQuantities
+from feederscrew.resting import barriers
+from feederscrew.resting.barriers import Tipping
+from feederscrew.resting.faces import Face
+from feederscrew.resting.rules import formulas
 from feederscrew.units import quantity_text
+
+
+@dataclass(frozen=True, eq=False)
+class ClassQuantities:
+    """Geometry of the classes; A rows, NaN where a part card is silent."""
+
+    faces: np.ndarray  # (A,) int, equal aspects in the class
+    pmi_faces: np.ndarray  # (A,) int, of these as the PMI rule counts them: 1 as published
+    heights: np.ndarray  # (A,) [m] of the centre of mass
+    csa_heights: np.ndarray  # (A,) [m] as the CSA rule takes them: a card's own, else the heights
+    stability_heights: np.ndarray  # (A,) [m] likewise
+    polar_inertias: np.ndarray  # (A,) [kg m2] about the normal through the centre of mass
+    solid_angles: np.ndarray  # (A,) [sr] of one face; of a card in its own unit
+    contact_areas: np.ndarray  # (A,) [m2] of one face
+
+
+@dataclass(frozen=True, eq=False)
+class FaceQuantities:
+    """Exact tumbling of the part; F faces."""
+
+    tips: Tipping  # basins, heights and the saddles between them
+    faces: tuple[Face, ...]
+    shares: np.ndarray  # (F,) [1] quasi-static
+    heights: np.ndarray  # (F,) [m] of the centre of mass; NaN where the share is zero
+    radius: float  # [m] largest distance from the centre of mass to a corner
+    exponent: float  # [1] of the surface-weighted rule
+
 
 RECOMMENDED_ANSWER = "recommended"  # the answer that is made from the rules; a name beside theirs
 
@@ -64,27 +92,27 @@ class Rule:
 RULES = (
     Rule(
         "pmi", "PMI", "#0072b2",
-        ClassQuantities, ("pmi_faces", "polar_inertias", "heights"), published.pmi,
+        ClassQuantities, ("pmi_faces", "polar_inertias", "heights"), formulas.pmi,
         "polar moment of inertia over height", "to compare with published tables", "the thesis, section 3.1",
     ),
     Rule(
         "csa", "CSA", "#e69f00",
-        ClassQuantities, ("faces", "solid_angles", "csa_heights"), published.csa,
+        ClassQuantities, ("faces", "solid_angles", "csa_heights"), formulas.csa,
         "centroid solid angle over height", "to compare with published tables", "Ngoi, Lim and Lee (1995)",
     ),
     Rule(
         "stability", "stability", "#009e73",
-        ClassQuantities, ("faces", "contact_areas", "stability_heights"), published.stability,
+        ClassQuantities, ("faces", "contact_areas", "stability_heights"), formulas.stability,
         "contact area over height", "to compare with published tables", "Chua and Tay (1998)",
     ),
     Rule(
         "quasistatic", "quasi-static", "#cc79a7",
-        FaceQuantities, ("tips",), tumbled.quasistatic,
+        FaceQuantities, ("tips",), formulas.quasistatic,
         "exact tumbling without momentum", "soft, dead landings", "own: exact basins",
     ),
     Rule(
         "crsa", "CRSA", "#56b4e9",
-        FaceQuantities, ("faces",), tumbled.critical,
+        FaceQuantities, ("faces",), formulas.critical,
         "critical solid angle", "hard surfaces, chunky parts", "Ngoi, Lye and Chen (1996), restated",
     ),
     Rule(
@@ -95,13 +123,13 @@ RULES = (
     ),
     Rule(
         "surface", "surface", "#d55e00",
-        FaceQuantities, ("shares", "heights", "radius", "exponent"), surface.surface_weights,
+        FaceQuantities, ("shares", "heights", "radius", "exponent"), formulas.surface_weights,
         "tumbling, weighted for bounces", "hard surfaces; calibrate it with your own counts",
         "own: see below",
     ),
     Rule(
         "hops", "hops", "#5b3a8e",
-        FaceQuantities, ("tips", "radius"), tumbled.hop_shares,
+        FaceQuantities, ("tips", "radius"), formulas.hop_shares,
         "a cascade of hops over the barriers", "beside `p_surface`; parts with shallow faces",
         "own: see below",
     ),

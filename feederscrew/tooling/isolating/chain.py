@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from feederscrew.mechanics.wall import sameness
+from feederscrew.mechanics import sameness
 from feederscrew.tooling.devices.base import STOPPED, UNSURE, Device
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.falling import surely_gone

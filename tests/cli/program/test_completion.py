@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from feederscrew.part import load
-from feederscrew.part.density import density
+from feederscrew.part.density import find_density
 from feederscrew.resting.aspects import find
 from feederscrew.resting.rules.registry import CHOICES
 from feederscrew_cli.main import feeder
@@ -42,7 +42,7 @@ def test_values_are_completed(words, found):
 def test_a_completed_material_is_one_that_is_known():
     names = completed("feeder", "aspects", "--density", "s")
     assert names
-    assert all(density(name)[0] > 0.0 for name in names)
+    assert all(find_density(name)[0] > 0.0 for name in names)
 
 
 def test_the_rules_completed_are_those_a_part_has_probabilities_of():

@@ -201,10 +201,10 @@ def test_the_surface_is_recorded(run, stl, tmp_path, words, told):
 
 
 def test_a_failed_self_check_marks_every_row(run, stl, tmp_path, monkeypatch):
-    from feederscrew.resting.tumbling import exact
+    from feederscrew.resting import exact_tumbling
 
     assert "doubtful" not in run("aspects", stl).output
-    monkeypatch.setattr(exact, "SHARE_SUM_TOLERANCE", -1.0)  # no sum is close enough to 1
+    monkeypatch.setattr(exact_tumbling, "SHARE_SUM_TOLERANCE", -1.0)  # no sum is close enough to 1
     line = "exact tumbling is doubtful: the basins fill 1 of the sphere"
     done = run("aspects", stl, "--format", "json", "-o", "res", "--no-pictures")
     assert document(done)["warnings"] == [line] and f"Warning: {line}" in done.stderr

@@ -22,7 +22,7 @@ def counts(tmp_path, text):
 def test_counts_give_their_exponent_back(run, stl, tmp_path):
     from feederscrew.part import load
     from feederscrew.resting.aspects import find
-    from feederscrew.resting.tumbling.by_class import exact, ground
+    from feederscrew.resting.exact_tumbling import exact, ground
 
     part = load(stl)
     aspects = find(part)

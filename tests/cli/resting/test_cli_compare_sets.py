@@ -10,7 +10,7 @@ import pytest
 import shapes
 
 from feederscrew.errors import FeederError
-from feederscrew.resting.counts import count_rows, passed, profiles
+from feederscrew.resting.counts import count_files, profiles
 
 ROUND = 5e-4  # of a printed share
 
@@ -27,7 +27,7 @@ def rows(text):
 def test_the_files_hold_what_was_published(files, request):
     root = request.config.rootpath
     printed = {row["x_over_y"]: row for row in rows((root / "tests/data/square_cuboids.csv").read_text())}
-    heads = [count_rows.parse(count_rows.content(path)[0], str(path)) for path in files]
+    heads = [count_files.parse_count_sheet(count_files.read_count_text(path)[0], str(path)) for path in files]
     cuboids = [table for table in heads if table.head.series == "square cuboids"]
     assert len(cuboids) == len(printed) == 8
     for table in cuboids:
@@ -111,7 +111,7 @@ def test_floods_are_refused_early(run, request, tmp_path, counts):
     assert (done.exit_code, done.stderr) == (1, f"Error: {line}\n")
     tracemalloc.start()
     with pytest.raises(FeederError, match=line):
-        profiles.read(counts, ["1"])
+        profiles.read_profile(counts, ["1"])
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert most < 10e6
@@ -148,7 +148,7 @@ def test_a_feeding_test_stands_beside_the_static_rules(run, tmp_path):
 
 
 def test_the_example_of_a_feeding_test_is_one(request):
-    known = passed.read(request.config.rootpath / "docs/measured/example/feeding.csv")
+    known = profiles.read_device_counts(request.config.rootpath / "docs/measured/example/feeding.csv")
     assert known.names == ("wiper", "gap") and known.head.config == "bowl.yaml"
     page = (request.config.rootpath / "docs/counts.md").read_text()
     assert all(

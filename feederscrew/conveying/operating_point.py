@@ -1,0 +1,171 @@
+"""One operating point of a track without units: its equations of motion, and what a part can do on it.
+
+An acceleration for every phase, a pull for every onset.
+"""
+
+import math
+from typing import NamedTuple
+
+from feederscrew.conveying.waves import Harmonic, Wave, above, harmonic, peak, value
+
+STICK, FORWARD, BACKWARD, FLIGHT = range(4)
+PHASES = ("stick", "forward", "backward", "flight")
+
+
+class OperatingPoint(NamedTuple):
+    """Everything the velocity in units of A w depends on.
+
+    The plate moves A cos(angle) s(w t + lead) along the track and A sin(angle) s(w t) along its normal, with
+    s(x) = sin x + second sin(2 x + second_phase); A is half the stroke of the first harmonic.
+    """
+
+    ratio: float  # [1] A w^2 / g, the dimensionless vibration parameter
+    angle: float  # [rad] beta, from the track to the direction of vibration
+    climb: float  # [rad] gamma, rise along the track
+    static: float  # [1] friction that holds against slip up the track; of floor and wall together
+    kinetic: float  # [1] friction during slip up the track, never above static
+    static_back: float  # [1] the same against slip down the track; differs for a bristle coating
+    kinetic_back: float  # [1]
+    restitution: float  # [1] of an impact on the track, from 0 to below 1
+    lead: float = 0.0  # [rad] by which the motion along the track leads the one along the normal
+    second: float = 0.0  # [1] second harmonic of the displacement, of the first
+    second_phase: float = 0.0  # [rad]
+
+
+def plain(ratio, angle, climb, friction, restitution=0.0) -> OperatingPoint:
+    """Return a track with one coefficient of friction, as most closed forms assume.
+
+    Source: docs/conveying.md, "The model".
+
+    Parameters
+    ----------
+    ratio : float [1]
+        A w^2 / g.
+    angle, climb : float [rad]
+        Vibration angle to the track; climb of the track.
+    friction, restitution : float [1]
+
+    Returns
+    -------
+    OperatingPoint
+    """
+    return OperatingPoint(ratio, angle, climb, friction, friction, friction, friction, restitution)
+
+
+def checked(setting) -> OperatingPoint:
+    """Return the setting itself, once it describes a track; raise ValueError with a reason otherwise."""
+    if not all(math.isfinite(value) for value in setting):
+        raise ValueError("an entry of the setting is not finite")
+    if setting.ratio <= 0.0:
+        raise ValueError("the amplitude is zero: nothing moves")
+    if not 0.0 <= setting.angle <= math.pi / 2:
+        raise ValueError("the vibration angle is not from 0 to 90 deg")
+    if setting.kinetic > setting.static or setting.kinetic_back > setting.static_back:
+        raise ValueError("kinetic friction is above static friction")
+    if min(setting.kinetic, setting.kinetic_back) < 0.0:
+        raise ValueError("a coefficient of friction is negative")
+    if not 0.0 <= setting.restitution < 1.0:
+        raise ValueError("restitution is not from 0 to below 1")
+    return setting
+
+
+OVERTONE_RATIO = 4.0  # accelerations of the second harmonic over those of the first, for equal ways
+
+
+class Law(NamedTuple):
+    """Accelerations of the part relative to the plate, in units of A w^2."""
+
+    lift: Harmonic  # along the normal; pressed on while negative
+    free: Harmonic  # along the track, in flight
+    onset: Harmonic  # what pulls a sticking part up the track beyond static friction
+    onset_back: Harmonic  # the same down the track
+    slip: Harmonic  # growth of the speed while slipping up the track
+    slip_back: Harmonic  # the same down the track
+    kinetic: float
+    kinetic_back: float
+    restitution: float
+
+
+def law(setting) -> Law:
+    """Return the equations of motion of a setting.
+
+    Parameters
+    ----------
+    setting : OperatingPoint
+
+    Returns
+    -------
+    Law
+    """
+    return Law(
+        harmonic(lift_wave(setting)),
+        _pull(setting, 1.0, 0.0),
+        _pull(setting, 1.0, setting.static),
+        _pull(setting, -1.0, setting.static_back),
+        _pull(setting, 1.0, setting.kinetic),
+        _pull(setting, -1.0, setting.kinetic_back),
+        setting.kinetic,
+        setting.kinetic_back,
+        setting.restitution,
+    )
+
+
+def lift_wave(setting) -> Wave:
+    """Return the acceleration [A w2] along the normal of a part in flight; pressed on, what it lacks."""
+    weight = math.cos(setting.climb) / setting.ratio
+    normal = math.sin(setting.angle)
+    second, phase = normal * OVERTONE_RATIO * setting.second, setting.second_phase
+    return Wave(-weight, normal, 0.0, second * math.cos(phase), second * math.sin(phase))
+
+
+def pull_wave(setting, direction, friction) -> Wave:
+    """Return the acceleration left after friction of a part about to slip.
+
+    Source: Newton's law along the track less Coulomb's friction; docs/conveying.md, "The model".
+
+    Parameters
+    ----------
+    setting : OperatingPoint
+    direction : float [1]
+        Of the slip and of the acceleration: +1 up the track, -1 down.
+    friction : float [1]
+
+    Returns
+    -------
+    Wave
+    """
+    along, normal = direction * math.cos(setting.angle), friction * math.sin(setting.angle)
+    resist = friction * math.cos(setting.climb) / setting.ratio
+    level = -direction * math.sin(setting.climb) / setting.ratio - resist
+    lead, second, phase = setting.lead, OVERTONE_RATIO * setting.second, setting.second_phase
+    turned = phase + 2.0 * lead  # a lead is a shift of the whole motion in time
+    return Wave(
+        level,
+        along * math.cos(lead) + normal,
+        along * math.sin(lead),
+        second * (along * math.cos(turned) + normal * math.cos(phase)),
+        second * (along * math.sin(turned) + normal * math.sin(phase)),
+    )
+
+
+def _pull(setting, direction, friction) -> Harmonic:
+    return harmonic(pull_wave(setting, direction, friction))
+
+
+def throw_number(rules) -> float:
+    """Return the plate's greatest downward acceleration over a part's own [1]; it hops above 1.
+
+    Source: docs/conveying.md, "The model".
+    """
+    return 1.0 - peak(rules.lift) / rules.lift.level
+
+
+def contact(rules, angle, speed) -> int:
+    """Return the phase of a part that touches the plate at ``angle`` [rad], relative ``speed`` [A w]."""
+    if above(rules.lift, angle):
+        return FLIGHT
+    if speed > 0.0 or (speed == 0.0 and value(rules.onset, angle) > 0.0):
+        return FORWARD
+    if speed < 0.0 or value(rules.onset_back, angle) > 0.0:
+        return BACKWARD
+    return STICK

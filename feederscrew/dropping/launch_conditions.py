@@ -1,0 +1,314 @@
+"""How parts arrive on the plane: presets, from which a drop draws, and conditions as a user gives them."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew import check
+from feederscrew.conveying.sensitivity import even_range
+from feederscrew.dropping.kernel import body
+from feederscrew.dropping.kernel.falling import Launched
+from feederscrew.dropping.rounded_hull import lowest_on
+from feederscrew.errors import ArgumentError
+from feederscrew.resting.rules.recommended import launch_named
+from feederscrew.units import GRAVITY, QuantityError, factor, quantity, quantity_text
+
+DRAWS_A_DROP = 11  # uniform numbers a drop takes: 3 attitude, 3 spin, 2 drift, fall, restitution, friction
+ANY_AXIS, LEVEL_AXIS, FLIP_AXIS = "any", "horizontal", "in the greatest face"  # axes a launch spins about
+FLIP_LEAN_RAD = np.radians(40.0)  # of FLIP's axis from the level, at most: see docs/resting.md
+
+
+@dataclass(frozen=True)
+class Launch:
+    """Ranges a drop draws from, uniformly, without dimensions; attitudes and directions are all alike.
+
+    The unit of length is L, the cube root of the hull's volume; of speed sqrt(g L), of rate sqrt(g / L).
+    """
+
+    name: str
+    fall: tuple[float, float]  # from the lowest point to the plane
+    spin: tuple[float, float]  # rate
+    speed: tuple[float, float]  # along the plane
+    restitution: tuple[float, float]  # of a corner hit
+    friction: tuple[float, float]
+    axis: str = ANY_AXIS  # it spins about: ANY, LEVEL, or FLIP
+
+    def but(self, **ranges) -> Any:
+        """Return the launch with some ranges replaced; named 'own' once one is."""
+        given = {name: given for name, given in ranges.items() if given is not None}
+        return replace(self, name="own", **given) if given else self
+
+    def scattering(self) -> Any:
+        """Return the launch with one value of restitution as ``sensitivity.even_range`` round it."""
+        low, high = self.restitution
+        return replace(self, restitution=even_range(low) if low == high else (low, high))
+
+
+SURFACE: dict[str, Any] = {
+    "restitution": (0.2, 0.6),
+    "friction": (0.2, 0.5),
+}  # hard on hard: for every launch
+PRESETS = {
+    launch.name: launch
+    for launch in (
+        Launch("place", (0.0, 0.05), (0.0, 0.0), (0.0, 0.0), **SURFACE),
+        Launch("drop", (1.0, 6.0), (0.0, 0.0), (0.0, 0.0), **SURFACE),
+        Launch("flip", (15.0, 40.0), (6.0, 14.0), (0.0, 2.0), **SURFACE, axis=FLIP_AXIS),
+        Launch("roll", (1.0, 4.0), (1.0, 5.0), (2.0, 6.0), **SURFACE, axis=LEVEL_AXIS),
+        Launch("feed", (2.0, 6.0), (0.0, 2.0), (0.0, 2.0), **SURFACE),
+    )
+}
+"""What was done to the part. place: set down by hand. drop: let fall without spin. flip: spun up by hand, as
+a coin, about an axis in the plane of its greatest face, level to LEAN. roll: cast or poured
+over a table, spinning about a horizontal axis. feed: out of a hopper into a bowl. docs/resting.md says where
+each range comes from."""
+
+
+def named(name) -> Any:
+    """Return the preset of a name, or of a former one."""
+    return PRESETS[launch_named(name)]
+
+
+@dataclass(frozen=True, eq=False)
+class Starts:
+    """Starting conditions of N drops."""
+
+    states: np.ndarray  # (N, 13)
+    restitutions: np.ndarray  # (N,)
+    frictions: np.ndarray  # (N,)
+    energies: np.ndarray  # (N,) fall and kinetic energy, in units of m g L: how violent the launch is
+
+    def some(self, part) -> "Starts":
+        """Return those of a slice."""
+        return Starts(self.states[part], self.restitutions[part], self.frictions[part], self.energies[part])
+
+    def launched(self, part=slice(None)) -> Launched:
+        """Return those of a slice as the kernels take them: a Launched."""
+        return Launched(self.states[part], self.restitutions[part], self.frictions[part])
+
+
+def sample(launch, shape, count, rng) -> Starts:
+    """Draw the starting conditions of some drops.
+
+    Parameters
+    ----------
+    launch : Launch
+    shape : Shape
+    count : int
+    rng : numpy.random.Generator
+        Each drop takes DRAWS numbers, so that drops come out the same however they are batched.
+
+    Returns
+    -------
+    Starts
+    """
+    u = rng.random((count, DRAWS_A_DROP))
+    states = np.zeros((count, body.STATE))
+    attitude, axes = _turns(launch.axis, shape, u)
+    fall, spin = _between(launch.fall, u[:, 8]), _between(launch.spin, u[:, 3])
+    drift = _between(launch.speed, u[:, 6])
+    states[:, body.Q : body.Q + 4] = attitude
+    states[:, body.Z] = fall - lowest_points(shape, attitude)
+    ahead = np.stack([np.cos(2.0 * np.pi * u[:, 7]), np.sin(2.0 * np.pi * u[:, 7])], axis=1)
+    states[:, body.VX : body.VX + 2] = drift[:, None] * ahead
+    states[:, body.W : body.W + 3] = spin[:, None] * axes
+    turning = 0.5 * (states[:, body.W : body.W + 3] ** 2 * shape.inertia).sum(axis=1)
+    return Starts(
+        states=check.frozen(states),
+        restitutions=check.frozen(_between(launch.restitution, u[:, 9])),
+        frictions=check.frozen(_between(launch.friction, u[:, 10])),
+        energies=check.frozen(fall + 0.5 * drift**2 + turning),
+    )
+
+
+def _turns(kind, shape, u) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(N, 4) attitudes and (N, 3) axes of spin, in body axes."""
+    attitude = _attitudes(u[:, :3])
+    if kind == ANY_AXIS:
+        return attitude, _directions(u[:, 4], u[:, 5])
+    turn = 2.0 * np.pi * u[:, 4]
+    if kind == FLIP_AXIS:
+        along = np.cross(shape.flat, np.eye(3)[np.argmin(np.abs(shape.flat))])
+        along /= np.sqrt((along**2).sum())
+        across = np.cross(shape.flat, along)
+        axis = np.cos(turn)[:, None] * along + np.sin(turn)[:, None] * across
+        return _held_level(axis, u[:, :3])
+    level = np.stack([np.cos(turn), np.sin(turn), np.zeros(len(u))], axis=1)
+    return attitude, _in_body(attitude, level)
+
+
+def _held_level(axis, u) -> Any:
+    """(N, 4) attitudes that turn axes of the body (N, 3) to LEAN from the level at most, and the axes.
+
+    An axis and its opposite are as likely: the one that is nearer to where it is turned to is taken.
+    """
+    rise, ahead = FLIP_LEAN_RAD * (2.0 * u[:, 0] - 1.0), 2.0 * np.pi * u[:, 1]
+    level = np.cos(rise)
+    there = np.stack([level * np.cos(ahead), level * np.sin(ahead), np.sin(rise)], axis=1)
+    axis = np.where((axis * there).sum(axis=1)[:, None] < 0.0, -axis, axis)
+    brought = np.column_stack([1.0 + (axis * there).sum(axis=1), np.cross(axis, there)])
+    brought /= np.sqrt((brought**2).sum(axis=1))[:, None]
+    half = np.pi * u[:, 2]
+    return _after(brought, np.column_stack([np.cos(half), np.sin(half)[:, None] * axis])), axis
+
+
+def _after(p, q) -> Any:
+    """(N, 4) quaternion of the turns q (N, 4), then p (N, 4)."""
+    whole = p[:, 0] * q[:, 0] - (p[:, 1:] * q[:, 1:]).sum(axis=1)
+    return np.column_stack([whole, p[:, :1] * q[:, 1:] + q[:, :1] * p[:, 1:] + np.cross(p[:, 1:], q[:, 1:])])
+
+
+def lowest_points(shape, attitudes) -> NDArray[np.float64]:
+    """Return heights (N,) [L] of the lowest point over the centre, for attitudes (N, 4) [1] of the body.
+
+    Source: the support function of a body in the direction down.
+    """
+    up = _in_body(attitudes, np.array([[0.0, 0.0, 1.0]]))
+    lowest = np.einsum("ni,vi->nv", up, shape.vertices).min(axis=1)
+    rims = np.einsum("ni,nri->nr", up, lowest_on(shape, up))
+    return np.minimum(lowest, rims.min(axis=1, initial=np.inf))
+
+
+def _between(ends, share) -> NDArray[np.float64]:
+    return ends[0] + (ends[1] - ends[0]) * share
+
+
+def _attitudes(u) -> NDArray[np.float64]:
+    """(N, 4) unit quaternions, uniform over all attitudes.
+
+    K. Shoemake, "Uniform random rotations", Graphics Gems III, 124-132, 1992.
+    """
+    low, high = np.sqrt(1.0 - u[:, 0]), np.sqrt(u[:, 0])
+    a, b = 2.0 * np.pi * u[:, 1], 2.0 * np.pi * u[:, 2]
+    return np.stack([low * np.sin(a), low * np.cos(a), high * np.sin(b), high * np.cos(b)], axis=1)
+
+
+def _in_body(q, vectors) -> NDArray[np.float64]:
+    """(N, 3) vectors of the floor's axes in body axes, for (N, 4) quaternions."""
+    turned = 2.0 * np.cross(q[:, 1:], vectors)
+    return vectors - q[:, :1] * turned + np.cross(q[:, 1:], turned)
+
+
+def _directions(u, v) -> NDArray[np.float64]:
+    """(N, 3) unit vectors, uniform over the sphere."""
+    z, turn = 2.0 * u - 1.0, 2.0 * np.pi * v
+    flat = np.sqrt(np.maximum(1.0 - z * z, 0.0))
+    return np.stack([flat * np.cos(turn), flat * np.sin(turn), z], axis=1)
+
+
+CONDITION_KEYS = {  # argument: dimension, unit from the part's length and gravity; lowest, highest
+    "fall": ("length", lambda length, gravity: length, 0.0, 1000.0),
+    "spin": ("angular velocity", lambda length, gravity: np.sqrt(gravity / length), 0.0, 100.0),
+    "speed": ("velocity", lambda length, gravity: np.sqrt(gravity * length), 0.0, 100.0),
+    "restitution": ("number", lambda length, gravity: 1.0, 0.0, 1.0),
+    "friction": ("number", lambda length, gravity: 1.0, 0.0, 5.0),
+}
+MIN_HALF_WIDTH, MAX_HALF_WIDTH = 1e-4, 0.5  # [1] half-widths of an interval that drops may go on for
+LIMIT_UNITS = {
+    "length": "mm",
+    "velocity": "mm/s",
+    "angular velocity": "rad/s",
+    "number": "",
+}  # units of limits
+
+
+def launch_of(preset, length, texts, gravity=GRAVITY) -> Launch:
+    """Return a preset with the user's own ranges in it.
+
+    Source: docs/resting.md, "The drop test".
+
+    Parameters
+    ----------
+    preset : str
+        A key of ``launches.PRESETS``, or a former name.
+    length : float [m]
+        Of the part: cube root of its hull's volume.
+    texts : dict of str to (str or None)
+        By key of KEYS: a quantity, or two with a colon between; None keeps the preset's.
+    gravity : float [m/s2]
+
+    Returns
+    -------
+    Launch
+
+    Raises
+    ------
+    ArgumentError
+        If a text is no such quantity, or out of range.
+    """
+    ranges = {
+        key: None if text is None else _range(key, text, length, gravity) for key, text in texts.items()
+    }
+    return named(preset).but(**ranges)
+
+
+def single(text) -> float | None:
+    """Return a number [1] as typed, if it is one value and no range such as '0.3:0.3'; else None."""
+    return None if text is None or ":" in text else _read("restitution", text, "number")
+
+
+def described(launch, length, gravity=GRAVITY) -> Any:
+    """Return the name and ranges of a launch in the units of the shop, for documents.
+
+    Source: docs/resting.md, "The drop test".
+
+    Parameters
+    ----------
+    launch : Launch
+    length : float [m]
+    gravity : float [m/s2]
+
+    Returns
+    -------
+    dict
+    """
+    speed, rate = 1e3 * np.sqrt(gravity * length), np.sqrt(gravity / length)
+    return {
+        "name": launch.name,
+        "height_mm": [1e3 * length * end for end in launch.fall],
+        "spin_rad_s": [rate * end for end in launch.spin],
+        "speed_mm_s": [speed * end for end in launch.speed],
+        "restitution": list(launch.restitution),
+        "friction": list(launch.friction),
+        "axis": launch.axis,
+    }
+
+
+def share(text, where) -> float:
+    """Read a share [1] above 0 and below 1 as typed, '1%' or '0.01'."""
+    value = _read(where, text, "number")
+    if not MIN_HALF_WIDTH <= value <= MAX_HALF_WIDTH:
+        limits = f"give {MIN_HALF_WIDTH:.2%} to {MAX_HALF_WIDTH:.0%}"
+        raise ArgumentError(where, f"{quantity_text(text)} is out of range", limits)
+    return value
+
+
+def _range(key, text, length, gravity) -> tuple[float, float]:
+    """Read (lowest, highest) without dimensions from 'a' or 'a:b'."""
+    dimension, unit, lowest, highest = CONDITION_KEYS[key]
+    size = unit(length, gravity)
+    ends = [_read(key, end, dimension) / size for end in text.split(":")]
+    if len(ends) > 2 or ends[0] > ends[-1]:
+        what = f"{quantity_text(text)} is not a range"
+        raise ArgumentError(key, what, "give one value, or the smaller and the larger as a:b")
+    if not lowest <= ends[0] <= ends[-1] <= highest:
+        limits = f"give {_limit(lowest * size, dimension)} to {_limit(highest * size, dimension)}"
+        of_part = "" if dimension == "number" else " for this part"
+        raise ArgumentError(key, f"{quantity_text(text)} is out of range", limits + of_part)
+    return ends[0], ends[-1]
+
+
+def _limit(value, dimension) -> str:
+    """A limit in SI units as a user would type it, rounded down to three digits."""
+    number = value / factor(LIMIT_UNITS[dimension], dimension)
+    step = 10.0 ** (np.floor(np.log10(number)) - 2.0) if number > 0.0 else 1.0
+    return f"{np.floor(number / step + 1e-9) * step:.6g} {LIMIT_UNITS[dimension]}".strip()
+
+
+def _read(where, text, dimension) -> float:
+    try:
+        return quantity(text, dimension)
+    except QuantityError as fault:
+        raise ArgumentError(where, fault.what, fault.mend) from fault

@@ -1,0 +1,146 @@
+"""A solid as cells of a lattice: what is in it, what in its hull, and how far every cell is from it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import distance_transform_edt
+from scipy.spatial import ConvexHull
+
+from feederscrew import check
+
+COLUMN_OFFSETS = (
+    1.37e-4,
+    2.91e-4,
+)  # of a cell: columns run beside corners and edges of a drawing, not through them
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Cells of a closed surface, N each way at most; lengths as those of its corners."""
+
+    origin: np.ndarray  # (3,) middle of the first cell
+    size: float  # of a cell
+    solid: np.ndarray  # (I, J, K) bool
+    hull: np.ndarray  # (I, J, K) bool: in its convex hull
+    away: np.ndarray  # (I, J, K) from its middle to the nearest one in the solid; 0 in it
+    inside: np.ndarray  # (I, J, K) from its middle to the nearest one outside; 0 outside
+
+    def middles(self, chosen):
+        """Return the middles (N, 3) of chosen cells, (I, J, K) bool."""
+        return self.origin + self.size * np.argwhere(chosen)
+
+    def places(self, points):
+        """Return in which cells points (..., 3) lie, (..., 3) int; those beside the lattice in its rim."""
+        found = np.rint((points - self.origin) / self.size).astype(int)
+        return np.clip(found, 0, np.array(self.solid.shape) - 1)
+
+    def at(self, points):
+        """Return the cells of points (N, 3) as an index of its arrays."""
+        return tuple(self.places(points).T)
+
+    @property
+    def rim(self):
+        """Cells (I, J, K) of the solid beside one that is not of it."""
+        return self.solid & (self.inside < 1.5 * self.size)
+
+
+def cells(corners, triangles, count):
+    """Return the cells of a closed surface.
+
+    Parameters
+    ----------
+    corners : (V, 3) float [any]
+    triangles : (T, 3) int
+    count : int
+        Of cells along its longest side; there are two more all round.
+
+    Returns
+    -------
+    Cells
+    """
+    least, most = corners.min(axis=0), corners.max(axis=0)
+    size = float((most - least).max()) / count
+    shape = np.ceil((most - least) / size).astype(int) + 4
+    origin = 0.5 * (least + most) - 0.5 * size * (shape - 1)
+    solid = _filled(corners[triangles], origin, size, shape)
+    hull = _filled(corners[ConvexHull(corners).simplices], origin, size, shape)
+    return Cells(
+        origin=check.frozen(origin), size=size, solid=check.frozen(solid), hull=check.frozen(hull | solid),
+        away=check.frozen(size * distance_transform_edt(~solid)),
+        inside=check.frozen(size * distance_transform_edt(solid)),
+    )  # fmt: skip
+
+
+def _filled(triangles, origin, size, shape):
+    """Cells (I, J, K) whose middles lie in the surface: those an odd number of facets lies under."""
+    column, height, _ = _met((triangles - origin) / size - [*COLUMN_OFFSETS, 0.0], shape)
+    above = np.clip(np.ceil(height).astype(int), 0, shape[2])
+    turns = np.zeros((*shape[:2], shape[2] + 1), int)
+    np.add.at(turns, (*column.T, above), 1)
+    return np.cumsum(turns, axis=2)[..., :-1] % 2 == 1
+
+
+def chords(corners, triangles, count):
+    """Return, along upright lines through a closed surface, from its lowest place to its highest.
+
+    Parameters
+    ----------
+    corners : (V, 3) float [any]
+    triangles : (T, 3) int
+    count : int
+        Of lines along its longer side seen from above.
+
+    Returns
+    -------
+    length : (M,) float [any]
+    lowest, highest : (M,) int
+        The facets in which each begins and ends.
+    """
+    least, most = corners[:, :2].min(axis=0), corners[:, :2].max(axis=0)
+    size = float((most - least).max()) / count
+    shape = np.ceil((most - least) / size).astype(int) + 1
+    placed = (corners[triangles] - [*least, 0.0]) / size - [*COLUMN_OFFSETS, 0.0]
+    column, height, facet = _met(placed, shape)
+    order = np.lexsort((height, column[:, 1], column[:, 0]))
+    column, height, facet = column[order], height[order], facet[order]
+    first = np.flatnonzero(np.append(True, (column[1:] != column[:-1]).any(axis=1)))
+    last = np.append(first[1:], len(column)) - 1
+    return size * (height[last] - height[first]), facet[first], facet[last]
+
+
+def _met(triangles, shape):
+    """Where upright lines at whole numbers meet triangles (T, 3, 3): which line, how high, which one."""
+    least = np.ceil(triangles[:, :, :2].min(axis=1)).astype(int).clip(0)
+    most = np.floor(triangles[:, :, :2].max(axis=1)).astype(int).clip(None, shape[:2] - 1)
+    wide = (most - least + 1).clip(0)
+    count = wide.prod(axis=1)
+    facet = np.repeat(np.arange(len(triangles)), count)  # each with every line in the box around it
+    place = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    column = least[facet] + np.stack([place // wide[facet, 1], place % wide[facet, 1]], axis=1)
+    a, b, c = np.moveaxis(triangles[facet], 1, 0)
+    x, y = column.T
+    area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    area = np.where(area == 0.0, np.nan, area)  # upright: no line meets it
+    u = ((b[:, 0] - x) * (c[:, 1] - y) - (b[:, 1] - y) * (c[:, 0] - x)) / area
+    v = ((c[:, 0] - x) * (a[:, 1] - y) - (c[:, 1] - y) * (a[:, 0] - x)) / area
+    within = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)
+    height = u * a[:, 2] + v * b[:, 2] + (1.0 - u - v) * c[:, 2]
+    return column[within], height[within], facet[within]
+
+
+def handles(some):
+    """Return how many handles less how many hollows cells (I, J, K) bool have, one body of them.
+
+    By Euler's characteristic of the cells as closed cubes: corners less edges plus faces less cubes.
+    """
+    full = np.pad(some, 1)
+    total = 0
+    for mask in range(8):
+        axes = [k for k in range(3) if mask >> k & 1]
+        found = full
+        for k in axes:  # a corner, edge or face is there where any cube beside it is
+            head = tuple(slice(None, -1) if m == k else slice(None) for m in range(3))
+            tail = tuple(slice(1, None) if m == k else slice(None) for m in range(3))
+            found = found[head] | found[tail]
+        total += (-1) ** (3 - len(axes)) * int(found.sum())
+    return 1 - total

@@ -1,1 +1,0 @@
-"""A part on the bowl floor."""

@@ -1,0 +1,491 @@
+"""How a part lies along the bowl wall: its stable headings, how often each comes, whether it stays on.
+
+Axes of the track: X ahead, Y from the wall towards the bowl's axis, Z up from the surface; the bowl climbs
+counter-clockwise seen from above. For a bowl that climbs clockwise take the mirror image of the part.
+
+A convex outline is pushed against the inside of the wall. Seen from the part, the bowl's axis O may lie
+anywhere within the wall's radius of every corner. Pushed outward, the part moves until O is as far from the
+centre of mass's foot G as that allows: on a corner of this region, where two corners of the outline touch
+the wall. The radius may be infinite: a straight wall.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew import check
+from feederscrew.errors import FeederError
+from feederscrew.geometry import vectors
+from feederscrew.geometry.polygons import cross, inset, sides, turned
+from feederscrew.mechanics import sameness
+from feederscrew.records import ReadableRecord
+
+SAME_TOP_SHARE = 0.1  # of that depth: tops of a curved end that differ by less are one, and halved
+MIN_DIP_SHARE = 1e-2  # of the outline's size: dips between headings shallower than this are facets of a curve
+
+
+@dataclass(frozen=True, eq=False)
+class Rests:
+    """Every way an outline lies against the wall, M of them, by angle of the outward direction."""
+
+    outward: np.ndarray  # (M,) [rad] of the direction to the wall through the foot, in body axes, -pi to pi
+    touching: np.ndarray  # (M, 2, 2) [m] the two corners at the wall, the trailing one first
+    distance: np.ndarray  # (M,) [m] from the foot to the wall along that direction
+    share: np.ndarray  # (M,) [1] of the circle of directions that end there when pushed
+    start: np.ndarray  # (M,) [rad] where that range of directions begins, counter-clockwise
+    rounded: bool = False  # the outline is round as far as is known: every direction is as good
+
+
+def rests(outline, radius, merge=MIN_DIP_SHARE) -> Rests:
+    """Return how an outline can lie against a wall.
+
+    Source: own; docs/mechanics.md, "Headings".
+
+    Parameters
+    ----------
+    outline : (J, 2) float [m]
+        Convex, counter-clockwise seen from above, from the foot of the centre of mass.
+    radius : float [m]
+        Of the wall, not below the outline's greatest extent; infinite for a straight wall.
+    merge : float [1]
+        Headings divided by a lesser rise of the centre of mass's distance, over the outline's size, count
+        as one: the facets of a tessellated curve.
+
+    Returns
+    -------
+    Rests
+        Shares sum to 1. A part laid down in any direction and pushed outward turns to the rest in whose
+        range of directions it was: the plane's counterpart of quasi-static tumbling.
+
+    Raises
+    ------
+    ValueError
+        If the outline is not an array of corners, or the foot is not inside it.
+    """
+    outline = check.shaped("outline", outline, (-1, 2))
+    if not inset(outline, np.zeros(2)) > 0.0:
+        raise ValueError("the outline does not hold the foot of the centre of mass")
+    corners = _touching_corners(outline, radius)
+    after = np.roll(corners, -1, axis=0)
+    outward, distance = _pushed(corners, after, radius)
+    towards = np.arctan2(corners[:, 1], corners[:, 0])
+    stable = (_ahead(towards, outward) > 0.0) & (_ahead(outward, np.roll(towards, -1)) > 0.0)
+    balanced = (_ahead(np.roll(outward, 1), towards) > 0.0) & (_ahead(towards, outward) > 0.0)
+    lowest, highest = np.flatnonzero(stable), np.flatnonzero(balanced)
+    tops = highest[np.searchsorted(highest, lowest, side="right") - 1]  # the corner it tips over backwards
+    merged, start, share, rounded = _merged(
+        distance[lowest], np.hypot(*corners[tops].T), towards[tops], merge * np.hypot(*corners.T).max()
+    )
+    chosen = lowest[merged]
+    return Rests(
+        outward=check.frozen(outward[chosen]),
+        touching=check.frozen(np.stack([corners[chosen], after[chosen]], axis=1)),
+        distance=check.frozen(distance[chosen]),
+        share=check.frozen(share),
+        start=check.frozen(start),
+        rounded=rounded,
+    )
+
+
+def _chord(first, second) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Middle of two corners, unit vector into the outline, half their distance."""
+    along = second - first
+    length = np.hypot(along[..., 0], along[..., 1])
+    inward = np.stack([-along[..., 1], along[..., 0]], axis=-1) / length[..., None]
+    return 0.5 * (first + second), inward, 0.5 * length
+
+
+def _touching_corners(corners, radius) -> NDArray[np.float64]:
+    """The corners that can reach the wall: those its curve does not bridge."""
+    while len(corners) > 2 and np.isfinite(radius):
+        before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
+        middle, inward, half = _chord(before, after)
+        depth = radius - np.sqrt(radius**2 - half**2)  # of the wall behind the chord
+        sideways, behind = cross(inward, corners - middle), -np.einsum("ki,ki->k", inward, corners - middle)
+        gap = depth - behind - (radius - np.sqrt(radius**2 - sideways**2))
+        if gap.max() < 0.0:
+            break
+        corners = np.delete(corners, np.argmax(gap), axis=0)
+    return corners
+
+
+def _pushed(first, second, radius) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Direction to the wall through the foot, and the foot's distance from it, two corners touching."""
+    middle, inward, half = _chord(first, second)
+    in_line = np.einsum("ki,ki->k", middle, inward)
+    if np.isinf(radius):
+        return np.arctan2(-inward[:, 1], -inward[:, 0]), -in_line
+    reach = np.sqrt(radius**2 - half**2)
+    centre = middle + reach[:, None] * inward
+    far = np.hypot(*centre.T)
+    gap = half**2 - np.einsum("ki,ki->k", middle, middle) - 2.0 * reach * in_line  # radius^2 - far^2, exactly
+    return np.arctan2(-centre[:, 1], -centre[:, 0]), gap / (radius + far)
+
+
+def _ahead(start, end) -> NDArray[np.float64]:
+    """Angle from one direction on to another, -pi to pi."""
+    return np.mod(end - start + np.pi, 2.0 * np.pi) - np.pi
+
+
+def _merged(lows, tops, borders, least) -> tuple[Any, ...]:
+    """Join dips with their neighbour over borders that rise less than ``least`` above them.
+
+    Parameters are per dip: its depth, the height of the border before it and where that border lies.
+    """
+    dips = list(range(len(lows)))
+    edges = dict(enumerate(tops))
+    while len(dips) > 1:
+        rises = [min(edges[k], edges[dips[(i + 1) % len(dips)]]) - lows[k] for i, k in enumerate(dips)]
+        i = int(np.argmin(rises))
+        if rises[i] >= least:
+            break
+        _join(dips, edges, i)
+    rounded = bool(max(tops) - min(lows) < 2.0 * least)
+    starts = np.array(
+        [_border(tops, borders, dips[i - 1], k, SAME_TOP_SHARE * least) for i, k in enumerate(dips)]
+    )
+    share = np.mod(np.roll(starts, -1) - starts, 2.0 * np.pi) / (2.0 * np.pi)
+    return np.array(dips), starts, np.where(share > 0.0, share, 1.0), rounded
+
+
+def _join(dips, edges, i) -> None:
+    """Give dip i to the neighbour behind the lower of its two borders."""
+    here, following = dips[i], dips[(i + 1) % len(dips)]
+    edges[following] = max(edges[here], edges[following])
+    dips.pop(i)
+
+
+def _border(tops, borders, before, after, level) -> float:
+    """Middle of the highest tops between two dips that are left, so that an even end is shared evenly."""
+    between = (before + 1 + np.arange((after - before - 1) % len(tops) + 1)) % len(tops)
+    highest = borders[between[tops[between] >= tops[between].max() - level]]
+    return highest[0] + 0.5 * np.mod(highest[-1] - highest[0], 2.0 * np.pi)
+
+
+PLACE_TOLERANCE_M = 1e-12  # [m] places along the track nearer than this are one
+EDGE_TOLERANCE = 1e-6  # of the outline's size: nearer than this to the edge is on it
+
+
+def supported_reaches(headings, posture, track) -> list[NDArray[np.float64]]:
+    """Return how far from the wall a track of some radius and width supports a part in each of its headings.
+
+    Parameters
+    ----------
+    headings : Headings
+    posture : Posture
+    track : Track
+
+    Returns
+    -------
+    list of (K, 2) float [m]
+        Places along the track and how far it reaches there, as seen from the centre of mass; none where it
+        supports nothing.
+    """
+    where = zip(headings.headings, headings.distances)
+    return [_reach(_on_track(turned(posture.feet, angle), wall, track)) for angle, wall in where]
+
+
+def falls_off(posture, reach, track) -> bool:
+    """Return whether the weight's line meets the surface beyond what the track supports, at its free edge.
+
+    Source: own; docs/mechanics.md, "Headings".
+
+    Parameters
+    ----------
+    posture : Posture
+    reach : (K, 2) float [m]
+        Of one heading, from `reaches`.
+    track : Track
+
+    Returns
+    -------
+    bool
+        Towards the wall the part leans on it, and ahead or behind it tips without leaving the track. One
+        that rolls touches along a line through the foot of its centre of mass: it falls where the track
+        ends before that, however wide the strip of its file is.
+    """
+    if len(reach) == 0:
+        return True
+    slope = np.array([np.sin(track.climb), np.cos(track.climb) * np.sin(track.bank)])
+    ahead, inward = -posture.height * slope / (np.cos(track.climb) * np.cos(track.bank))
+    size = np.ptp(posture.outline, axis=0).max()
+    most = reach[:, 1].max()
+    if posture.kind == "rolling":
+        return bool(inward > most + EDGE_TOLERANCE * size)
+    along, off = reach.T
+    return bool(inward > np.interp(ahead, along, off, left=most, right=most) + EDGE_TOLERANCE * size)
+
+
+def _reach(points) -> NDArray[np.float64]:
+    """(K, 2) the side of the hull of points that is away from the wall, along the track."""
+    places = np.column_stack([PLACE_TOLERANCE_M * np.round(points[:, 0] / PLACE_TOLERANCE_M), points[:, 1]])
+    chain: list[np.ndarray] = []
+    for point in places[np.lexsort((-places[:, 1], places[:, 0]))]:
+        if chain and point[0] == chain[-1][0]:
+            continue  # nearer to the wall than the one before
+        while len(chain) > 1 and cross(chain[-1] - chain[-2], point - chain[-1]) >= 0.0:
+            chain.pop()
+        chain.append(point)
+    return np.array(chain).reshape(-1, 2)
+
+
+def _on_track(edges, to_wall, track) -> NDArray[np.float64]:
+    """Ends (K, 2) of what lies over the track of edges (E, 2, 2) that touch it."""
+    corners, edge = edges.reshape(-1, 2), track.radius - track.width
+    if edge <= 0.0:
+        return corners
+    centre = np.array([0.0, track.radius - to_wall])
+    on = corners[np.hypot(*(corners - centre).T) >= edge]
+    return np.concatenate([on, centre + _crossings(edges[:, 0] - centre, edges[:, 1] - centre, edge)])
+
+
+def _crossings(start, end, radius) -> NDArray[np.float64]:
+    """Points (K, 2) where edges cross a circle about the origin."""
+    along = end - start
+    a, b, c = vectors.dot(along, along), vectors.dot(start, along), vectors.dot(start, start) - radius**2
+    meets = (b * b - a * c > 0.0) & (a > 0.0)
+    start, along, a, b, c = start[meets], along[meets], a[meets], b[meets], c[meets]
+    shares = (-b + np.sqrt(b * b - a * c) * np.array([[-1.0], [1.0]])) / a
+    side, edge = np.nonzero((shares >= 0.0) & (shares <= 1.0))
+    return start[edge] + shares[side, edge][:, None] * along[edge]
+
+
+OUTLINE_TOLERANCE = 1e-5  # of the outline's size: outlines that differ by less are the same
+NO_TURN = 1e-5  # [rad] files in single precision turn a part by a hundredth of it
+SHARE_TIE = 1e-4  # shares that differ by less of themselves are equal but for rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Headings(ReadableRecord):
+    """Every stable heading of one posture on one track, the most frequent first, equals from 0 on; M rows."""
+
+    aspect: str
+    headings: (
+        np.ndarray
+    )  # (M,) [rad] of the body's own direction, from the track's, counter-clockwise, 0 to 2 pi
+    shares: np.ndarray  # (M,) [1] of all directions of laying down
+    turns: np.ndarray  # (M,) int, how many turns about the vertical lay the part down the same way
+    ranges: (
+        np.ndarray
+    )  # (N, 2) [rad] where each range of headings begins that settle in a row, how wide it is
+    settles: np.ndarray  # (N,) int, the row they settle in
+    straight_shares: (
+        np.ndarray
+    )  # (M,) [1] of the corresponding heading at a straight wall; NaN for a round outline
+    lengths: np.ndarray  # (M,) [m] along the track
+    widths: np.ndarray  # (M,) [m] of the track it covers
+    distances: np.ndarray  # (M,) [m] from the foot of the centre of mass to the wall
+    overhangs: np.ndarray  # (M,) [m] beyond the track's free edge
+    falls_off: np.ndarray  # (M,) bool
+    touching: np.ndarray  # (M, 2, 2) [m] corners at the wall, trailing one first, in track axes from the foot
+    half_turns: np.ndarray  # (M,) int, the row with the same outline turned by half; -1 where there is none
+    mirrors: np.ndarray  # (M,) int, the row with the mirror image of the outline; -1 for none but itself
+    rounded: bool  # round in plan: it takes any heading
+
+
+def headings(posture, track) -> Headings:
+    """Return the stable headings of a part against the wall.
+
+    Parameters
+    ----------
+    posture : Posture
+        Of a part with an outline.
+    track : Track
+        Radius, width, bank and climb are used.
+
+    Returns
+    -------
+    Headings
+
+    Raises
+    ------
+    FeederError
+        If the bowl is smaller than the part, or the part is a card without an outline.
+    """
+    _check_fits(posture, track)
+    curved, straight = rests(posture.outline, track.radius), rests(posture.outline, np.inf)
+    order, first, shares = _distinct(posture, curved)
+    turn = _heading(curved.outward[order])
+    halves = _angle_between(turn[:, None] + np.pi, turn) + np.pi * np.eye(
+        len(turn)
+    )  # a row is not its own half turn
+    mirrored = _angle_between(np.pi - turn[:, None], turn)  # as the body's own axes are mirrored
+    shapes = [turned(posture.outline, angle) for angle in turn]
+    distances = curved.distance[order]
+    widths = np.array([_width(shape, d, track.radius) for shape, d in zip(shapes, distances)])
+    nothing = np.zeros(len(turn))
+    geometry = Headings(
+        aspect=posture.name,
+        headings=check.frozen(turn),
+        shares=check.frozen(shares[order]),
+        turns=check.frozen(np.bincount(first, minlength=len(shares))[order]),
+        ranges=check.frozen(_ranges(curved)),
+        settles=check.frozen(np.array([np.flatnonzero(order == place)[0] for place in first])),
+        straight_shares=check.frozen(_summed(_at_straight(curved.outward, straight), first)[order]),
+        lengths=check.frozen(np.array([np.ptp(shape[:, 0]) for shape in shapes])),
+        widths=check.frozen(widths),
+        distances=check.frozen(distances),
+        overhangs=check.frozen(nothing),
+        falls_off=check.frozen(nothing > 0.0),
+        touching=check.frozen(turned(curved.touching[order], turn[:, None])),
+        half_turns=check.frozen(_partners(shapes, lambda shape: -shape, halves)),
+        mirrors=check.frozen(_partners(shapes, lambda shape: shape * [-1.0, 1.0], mirrored)),
+        rounded=curved.rounded,
+    )
+    return on_track(geometry, posture, track)
+
+
+def on_track(headings, posture, track, reaches=None) -> Headings:
+    """Return the same headings on a track of other width, climb or bank, but of the same radius.
+
+    Source: own; docs/mechanics.md, "Headings".
+
+    Parameters
+    ----------
+    headings : Headings
+    posture : Posture
+    track : Track
+    reaches : list of (K, 2) float [m], optional
+        What `support.reaches` gives for that width, where it is known already.
+
+    Returns
+    -------
+    Headings
+        With its own overhangs and falls.
+    """
+    reaches = supported_reaches(headings, posture, track) if reaches is None else reaches
+    falls = np.array([falls_off(posture, reach, track) for reach in reaches])
+    overhangs = np.maximum(headings.widths - track.width, 0.0)
+    return replace(headings, overhangs=check.frozen(overhangs), falls_off=check.frozen(falls))
+
+
+def stable_row(headings, heading=None) -> int:
+    """Return the row of the heading that a part ends in, laid on the track and pushed to the wall.
+
+    Source: own; docs/mechanics.md, "Headings".
+
+    Parameters
+    ----------
+    headings : Headings
+    heading : float [rad], optional
+        As laid down; without one, the most frequent heading that stays on the track.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    FeederError
+        If the part falls off the track in that heading, or in every one.
+    """
+    if heading is None:
+        if headings.falls_off.all():
+            what = "the part falls off the track in every heading"
+            raise FeederError(f"aspect {headings.aspect}", what, "give a wider track, or another aspect")
+        return int(np.argmin(headings.falls_off))
+    row = settled(headings, heading)
+    if headings.falls_off[row]:
+        what = f"the part needs {1e3 * headings.widths[row]:.4g} mm of track and falls off"
+        where = f"aspect {headings.aspect}, heading {np.degrees(headings.headings[row]):.4g} deg"
+        raise FeederError(where, what, "give a wider track, or another heading")
+    return row
+
+
+def settled(headings, heading) -> int:
+    """Return the row whose range of headings [rad] holds one; on a border the one nearer in heading."""
+    lowest, width = headings.ranges.T
+    beyond = np.mod(heading - lowest, 2.0 * np.pi) - width
+    middle = _angle_between(lowest + 0.5 * width, heading)
+    return int(headings.settles[np.lexsort((middle, beyond > 1e-9))[0]])
+
+
+def _distinct(posture, headings) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+    """Places of the rests that are each other's like under no turn, ranked; of each rest the like that
+    stands for it; the shares of all its likes together, at its place."""
+    order = _ranked(headings.share, headings.outward)
+    like = sameness.firsts(posture, _heading(headings.outward[order]))
+    first = np.empty(len(order), dtype=int)
+    first[order] = order[like]
+    shares = _summed(headings.share, first)
+    rows = np.unique(first)
+    return rows[_ranked(shares[rows], headings.outward[rows])], first, shares
+
+
+def _summed(shares, first) -> NDArray[Any]:
+    """Shares of all rests that one stands for, at its place."""
+    return np.bincount(first, shares, minlength=len(shares))
+
+
+def _ranges(headings) -> NDArray[np.float64]:
+    """(N, 2) [rad] where the range of headings of each rest begins, and how wide it is."""
+    width = 2.0 * np.pi * headings.share
+    return np.column_stack([_heading(headings.start + width), width])
+
+
+def _ranked(share, outward) -> NDArray[np.int64]:
+    """Places of rests, the most frequent first; those of equal shares by their headings."""
+    order = np.argsort(-share)
+    ordered = share[order]
+    rank = np.zeros(len(order), dtype=int)
+    rank[order[1:]] = np.cumsum(ordered[:-1] - ordered[1:] > SHARE_TIE * ordered[:-1])
+    return np.lexsort((_heading(outward), rank))
+
+
+def _angle_between(first, second) -> NDArray[np.float64]:
+    """Angle between headings, 0 to pi."""
+    return np.abs(np.mod(first - second + np.pi, 2.0 * np.pi) - np.pi)
+
+
+def _check_fits(posture, track) -> None:
+    if len(posture.outline) == 0:
+        what = f"the card of aspect {posture.name} has no outline"
+        raise FeederError("part card", what, "give the part as a mesh")
+    across = np.linalg.norm(posture.outline[:, None] - posture.outline, axis=-1).max()
+    if np.min(track.radius) < across:
+        what = f"{1e3 * np.min(track.radius):.4g} mm is less than the part's {1e3 * across:.4g} mm across"
+        raise FeederError("track.radius", what, "give the radius of a bowl that holds the part")
+
+
+def _heading(outward) -> NDArray[np.float64]:
+    """Turn that brings a body direction to the wall, at -Y; 0 to 2 pi, without the rounding of 0."""
+    turn = np.mod(-0.5 * np.pi - outward, 2.0 * np.pi)
+    return np.where(np.minimum(turn, 2.0 * np.pi - turn) < NO_TURN, 0.0, turn)
+
+
+def _at_straight(outward, straight) -> NDArray[np.float64]:
+    """Shares at a straight wall of the rests whose range holds these directions; NaN of a round outline."""
+    if straight.rounded:
+        return np.full(len(outward), np.nan)
+    into = np.mod(outward[:, None] - straight.start, 2.0 * np.pi)
+    return straight.share[(into / (2.0 * np.pi * straight.share)).argmin(axis=1)]
+
+
+def _width(shape, to_wall, radius) -> float:
+    """Radial extent from the wall to the innermost point of an outline in track axes."""
+    if np.isinf(radius):
+        return to_wall + shape[:, 1].max()
+    centre = np.array([0.0, radius - to_wall])
+    along = sides(shape)
+    part = np.clip(((centre - shape) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
+    nearest = shape + part[:, None] * along - centre
+    return float(radius - np.hypot(*nearest.T).min())
+
+
+def _partners(shapes, image, astray) -> NDArray[np.int64]:
+    """For each outline the row that is its image, of several the least astray; -1 for none but itself."""
+    partner = np.full(len(shapes), -1)
+    for i, shape in enumerate(shapes):
+        like = [j for j, s in enumerate(shapes) if _same_corners(image(shape), s)]
+        partner[i] = min(like, key=lambda j: round(astray[i, j], 3), default=-1)
+    return np.where(partner == np.arange(len(shapes)), -1, partner)
+
+
+def _same_corners(first, second) -> bool:
+    """Whether two outlines have the same corners."""
+    if len(first) != len(second):
+        return False
+    gap = np.linalg.norm(first[:, None] - second, axis=-1).min(axis=1).max()
+    return gap < OUTLINE_TOLERANCE * np.abs(second).max()

@@ -1,0 +1,181 @@
+"""A part on the floor or the track for arrays of settings: maps as those of Figures 5-6 and 5-7.
+
+Source: the thesis, chapter 5.
+"""
+
+from collections.abc import Iterator
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+
+from feederscrew.bowl.record import Track
+from feederscrew.errors import FeederError
+from feederscrew.mechanics import floor_balance, limits, track_balance
+from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES
+from feederscrew.mechanics.headings import headings, on_track, stable_row, supported_reaches
+from feederscrew.mechanics.track_balance import card_seat, seat
+
+FLOOR_REGIMES = MOTION_STATES  # a regime code is a place in this list
+
+
+def floor_cells(posture, bowl, heading) -> dict[Any, Any]:
+    """Return the upper reversal for arrays of bowl settings.
+
+    Source: ``balance.motion``, cell by cell.
+
+    Parameters
+    ----------
+    posture : Posture
+    bowl : Bowl
+        Fields may be arrays.
+    heading : array_like [rad]
+        theta.
+
+    Returns
+    -------
+    dict of str to array [SI, as each name says]
+        ``acceleration_z_m_s2`` V'_z, NaN where the part has lost contact; ``alignment_acceleration_rad_s2``;
+        ``throw_number``, above 1 where it hops; 'regime', places in ``FLOOR_REGIMES``.
+    """
+    motion = floor_balance.motion(posture, bowl, heading)
+    contact = motion.state != HOP
+    ratio = limits.acceleration_ratio(bowl.drive.amplitude, bowl.drive.frequency, bowl.gravity)
+    return {
+        "acceleration_z_m_s2": np.where(contact, motion.acceleration[..., 0], np.nan),
+        "alignment_acceleration_rad_s2": np.where(contact, motion.turning, np.nan),
+        "throw_number": limits.throw_number(ratio, bowl.drive.vibration_angle),
+        "regime": motion.state,
+    }
+
+
+TRACK_REGIMES = (*MOTION_STATES, "leaves the wall", "does not fit")  # a code is a place in this list
+LEAVES_WALL, DOES_NOT_FIT = len(MOTION_STATES), len(MOTION_STATES) + 1
+MAP_COLUMNS = (
+    "acceleration_x_m_s2", "normal_force_N", "wall_1_N", "wall_2_N",
+    "radial_friction_N", "traction_N", "normal_line_offset_m", "normal_line_offset_across_m",
+)  # fmt: skip
+SECTIONS, SINGLE = ("drive", "friction", "track"), ("restitution", "gravity")  # of a bowl, that act on a part
+TRACK_DECIMALS = 12  # decimals that tell two radii, widths or banks apart
+
+
+def seated(posture, bowl, heading=None) -> tuple[Any, ...]:
+    """Return how a part lies against the wall of a bowl.
+
+    Source: docs/mechanics.md, "Headings".
+
+    Parameters
+    ----------
+    posture : Posture
+    bowl : Bowl
+        Single values of its track.
+    heading : float [rad], optional
+        As laid down; without one, the most frequent heading that stays on the track.
+
+    Returns
+    -------
+    tuple of Seat, Headings or None, int
+        The headings of the posture and the row taken; a part card has its printed seat only.
+
+    Raises
+    ------
+    FeederError
+        If the bowl is smaller than the part, the part falls off, or a card lacks what is asked.
+    """
+    if posture.corners is None:
+        return card_seat(posture), None, 0
+    stable = headings(posture, bowl.track)
+    row = stable_row(stable, heading)
+    return seat(posture, float(stable.headings[row]), stable.touching[row], bowl.track.bank), stable, row
+
+
+def track_cells(posture, bowl, heading=None) -> dict[Any, Any]:
+    """Return the upper reversal at every cell of a map.
+
+    Source: ``balance.motion``, cell by cell.
+
+    Parameters
+    ----------
+    posture : Posture
+    bowl : Bowl
+        Fields may be arrays that broadcast together.
+    heading : float [rad], optional
+        As for ``seated``.
+
+    Returns
+    -------
+    dict of str to array [SI, as each column's name says]
+        Columns of the map, ``throw_number``, above 1 where it hops, and 'regime', places in
+        ``TRACK_REGIMES``; NaN where the part does not fit; no acceleration where it hops.
+    """
+    shape = np.broadcast_shapes(*(np.shape(value) for _, _, value in _fields(bowl)))
+    columns = {name: np.full(shape, np.nan) for name in MAP_COLUMNS} | {
+        "regime": np.full(shape, DOES_NOT_FIT)
+    }
+    for place, here in _seats(posture, bowl, heading, shape):
+        there = _answers(track_balance.motion(place, _picked(bowl, shape, here)))
+        for name, values in there.items():
+            columns[name][here] = values
+    drive, track = bowl.drive, bowl.track
+    ratio = limits.acceleration_ratio(drive.amplitude, drive.frequency, bowl.gravity)
+    columns["throw_number"] = limits.throw_number(ratio, drive.vibration_angle, track.climb)
+    return columns
+
+
+def _seats(posture, bowl, heading, shape) -> Iterator[Any]:
+    """Each seat that occurs and the cells, (...) bool, where it does."""
+    names = ("climb", "bank", "radius", "width")
+    values = np.stack([np.broadcast_to(getattr(bowl.track, name), shape).ravel() for name in names])
+    kinds, place = np.unique(np.round(values, TRACK_DECIMALS), axis=1, return_inverse=True)
+    groups: dict[Any, tuple[Any, list[int]]] = {}  # by the name of a seat: itself, and its tracks
+    cache: dict[Any, Any] = {}
+    for k, kind in enumerate(kinds.T):
+        key, seat_there = _seat(posture, bowl, heading, Track(*kind), cache)
+        if seat_there is not None:
+            groups.setdefault(key, (seat_there, []))[1].append(k)
+    for seat_there, members in groups.values():
+        yield seat_there, np.isin(place.reshape(shape), members)
+
+
+def _seat(posture, bowl, heading, there, cache) -> tuple[Any, ...]:
+    """A name for the seat on one track, and the seat; None where the part does not fit."""
+    if posture.corners is None:
+        return "card", card_seat(posture)
+    try:
+        if there.radius not in cache:
+            cache[there.radius] = headings(posture, there)
+        free = cache[there.radius]
+        if (there.radius, there.width) not in cache:
+            cache[there.radius, there.width] = supported_reaches(free, posture, there)
+        stable = on_track(free, posture, there, cache[there.radius, there.width])
+        row = stable_row(stable, heading)
+    except FeederError:
+        return None, None
+    lean = float(np.sign(there.bank))
+    return (there.radius, row, lean), seat(posture, float(stable.headings[row]), stable.touching[row], lean)
+
+
+def _answers(motion) -> dict[Any, Any]:
+    leaves = ~motion.closed.any(axis=-1) & (motion.state != HOP) & (motion.acceleration[..., 1] > 0.0)
+    along = np.where(motion.slides, motion.acceleration[..., 0], 0.0)
+    along = np.where(motion.state == HOP, np.nan, along)
+    walls, offsets = np.moveaxis(motion.walls, -1, 0), np.moveaxis(motion.offset, -1, 0)
+    values = (along, motion.normal_force, *walls, motion.radial_friction, motion.traction, *offsets)
+    return dict(zip(MAP_COLUMNS, values)) | {"regime": np.where(leaves, LEAVES_WALL, motion.state)}
+
+
+def _fields(bowl) -> Iterator[Any]:
+    """Yield every field that acts on a part: its section or '', its name, its value."""
+    for section in SECTIONS:
+        record = getattr(bowl, section)
+        yield from ((section, field.name, getattr(record, field.name)) for field in fields(record))
+    yield from (("", name, getattr(bowl, name)) for name in SINGLE)
+
+
+def _picked(bowl, shape, here) -> Any:
+    """The bowl at chosen cells, every field a (cells,) array."""
+    changed: dict[str, dict[str, Any]] = {}
+    for section, name, value in _fields(bowl):
+        changed.setdefault(section, {})[name] = np.broadcast_to(value, shape)[here]
+    top = changed.pop("")
+    return replace(bowl, **top, **{s: replace(getattr(bowl, s), **inner) for s, inner in changed.items()})

@@ -1,0 +1,124 @@
+"""Whether a part looks the same from another heading: judged by its surfaces, not by corners of its mesh.
+
+Two ways of lying are one where a turn carries the convex hull onto itself, seen by its support function in
+directions all around, and carries the solid onto itself, seen by its moments, which also know of holes.
+"""
+
+import functools
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew.part.mass import Moments
+
+SAME_SURFACE = 1e-3  # of the part's size: support functions that differ by less are equal
+SAME_SOLID = 5e-4  # [1] mismatch of moments; a tessellated turn leaves 1e-6, another shape 1e-2
+LOOK_DIRECTIONS = 750  # on half the sphere; their images by mirroring are the other half
+
+
+def looks(posture, headings) -> tuple[Any, ...]:
+    """Compute what a part looks like in each of some headings.
+
+    Source: own; docs/mechanics.md, "Headings".
+
+    Parameters
+    ----------
+    posture : Posture
+        With hull corners.
+    headings : (M,) float [rad]
+
+    Returns
+    -------
+    supports : (M, 2, N) float [1]
+        Support function about the centre of mass in N directions of the track's axes and in their images
+        under x -> -x, in units of the part's size.
+    moments : (M, 2, n, 6) float [1] or None
+        Directional moments of the solid, likewise; None where only the hull is known.
+    """
+    corners = posture.corners - [0.0, 0.0, posture.height]
+    size = np.ptp(corners, axis=0).max()
+    supports = [_supports(corners, turn) / size for turn in headings]
+    if posture.solid is None:
+        return np.array(supports), None
+    solid = _moments(posture.solid)
+    return np.array(supports), np.array([_moments_of(solid, posture.axes, turn) for turn in headings])
+
+
+def looks_alike(first, second, mirrored=False) -> bool:
+    """Return whether two looks are one and the same, or each other's mirror image.
+
+    Parameters
+    ----------
+    first, second : (supports, moments)
+        Of one heading each, as rows of ``looks``.
+    mirrored : bool
+        Ask whether the second is the mirror image of the first, fore and aft.
+    """
+    (hull, solid), (other_hull, other_solid) = first, second
+    place = 1 if mirrored else 0
+    if np.abs(hull[0] - other_hull[place]).max() > SAME_SURFACE:
+        return False
+    if solid is None or other_solid is None:
+        return True
+    change = np.abs(solid[0] - other_solid[place]) / np.arange(1, solid.shape[-1] + 1)
+    return bool(change.max() < SAME_SOLID)
+
+
+def firsts(posture, headings) -> NDArray[np.int64]:
+    """Return for each of the headings (M,) [rad] the first, (M,) [1], that is the same orientation.
+
+    Source: own; what counts as one is in docs/tooling.md, "1. The method".
+    """
+    if posture.corners is None or len(headings) < 2:
+        return np.arange(len(headings))
+    supports, moments = looks(posture, headings)
+    rows = [(supports[k], None if moments is None else moments[k]) for k in range(len(headings))]
+    first = np.arange(len(headings))
+    for row in range(len(headings)):
+        earlier = (k for k in np.unique(first[:row]) if looks_alike(rows[row], rows[k]))
+        first[row] = next(earlier, row)
+    return first
+
+
+def _supports(corners, turn) -> NDArray[np.float64]:
+    """(2, N) greatest extent of corners, turned about the vertical, along directions and their images."""
+    there = directions()
+    both = np.stack([there, there * [-1.0, 1.0, 1.0]])
+    x, y, z = np.moveaxis(_turned_back(both, turn), -1, 0)
+    greatest = np.full(x.shape, -np.inf)
+    for corner in corners:
+        np.maximum(greatest, corner[0] * x + corner[1] * y + corner[2] * z, out=greatest)
+    return greatest
+
+
+def _moments_of(solid, axes, turn) -> NDArray[np.float64]:
+    """(2, n, 6) directional moments along some directions of the track and their images."""
+    there = directions()[:: LOOK_DIRECTIONS // 24]
+    both = np.stack([there, there * [-1.0, 1.0, 1.0]])
+    return solid.directional(np.einsum("ji,...j->...i", axes, _turned_back(both, turn)))
+
+
+def _turned_back(vectors, turn) -> NDArray[np.float64]:
+    """Vectors of the track's axes in those of the posture that was turned."""
+    c, s = np.cos(turn), np.sin(turn)
+    x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
+    return np.stack([c * x + s * y, c * y - s * x, z], axis=-1)
+
+
+@functools.lru_cache(maxsize=1)
+def directions() -> NDArray[np.float64]:
+    """Return unit vectors (N, 3) [1] spread over the sphere.
+
+    Source: R. Swinbank, R. J. Purser, "Fibonacci grids: a novel approach to global modelling", Q. J. R.
+    Meteorol. Soc. 132(619), 1769-1793, 2006.
+    """
+    k = np.arange(LOOK_DIRECTIONS) + 0.5
+    z, turn = 1.0 - 2.0 * k / LOOK_DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * k
+    r = np.sqrt(1.0 - z * z)
+    return np.column_stack([r * np.cos(turn), r * np.sin(turn), z])
+
+
+@functools.lru_cache(maxsize=4)
+def _moments(part) -> Moments:
+    return Moments(part.vertices, part.faces, part.centre_of_mass)

@@ -1,1 +1,0 @@
-"""A part on the track against the bowl wall."""

@@ -1,0 +1,853 @@
+"""A part on the track against the bowl wall: axes, loads, reactions, acceleration and what gives way first.
+
+Axes of the track: X ahead, Y in the surface from the wall towards the bowl's axis, Z up from the
+surface; right-handed, so that the bowl climbs counter-clockwise seen from above. The wall is
+upright; the surface is banked down towards it by delta and climbs by phi. Vectors are relative to the
+centre of mass.
+
+All is per unit of mass, with the height h of the centre of mass as unit of length. Friction acts where the
+normal force N does, which keeps the equations linear in N, its moments N d_x and N d_y, and R1 and R2 of the
+wall. Without N in the forces along X and Y, and without N d_x and N d_y in the moment about Z, they are those
+of a motion in the plane of the floor: two forces and a turning moment of the load and of each wall contact.
+
+Seven unknowns stand against six equations: the normal force acts at a point (d_x, d_y) of the contact
+polygon. Sliding along X, Coulomb friction opposes the sliding, so R3 = 0 and d_y takes the moment about X
+that the thesis gives to R3. At rest friction is not determined; see `held` for our choice.
+
+Source: the thesis, wrench equations of chapter 5; docs/equations.md, docs/mechanics.md.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew import check
+from feederscrew.errors import FeederError
+from feederscrew.geometry.polygons import cross, inset, turned
+from feederscrew.geometry.vectors import dot
+from feederscrew.mechanics import cycle
+from feederscrew.mechanics.floor_balance import HOP, ON_THE_LINE, SLIDE, STICK, TIP, UPPER_REVERSAL
+
+EDGE_DEPTH_SHARE = 1e-5  # of the part's size: corners above one another within this are one edge of its side
+
+
+@dataclass(frozen=True, eq=False)
+class Seat:
+    """A part as it lies against the wall: what the equations of motion need of its geometry."""
+
+    mass: float  # [kg]
+    height: float  # [m] of the centre of mass over the surface
+    heading: float  # [rad] of the body's own direction from X, counter-clockwise
+    inertia: np.ndarray  # (3,) [kg m2] I_XZ, I_YZ, I_ZZ: what resists turning about Z
+    walls: np.ndarray  # (2, 3) [m] wall contacts, the trailing one first
+    contact: np.ndarray  # (K, 2) [m] contact polygon in track axes; (0, 2) of a card
+
+    def twist(self, bank) -> float:
+        """Return how far [rad] a bank turns the part, its higher wall contact leaning beyond the lower."""
+        (x_1, _, z_1), (x_2, _, z_2) = self.walls
+        return float(np.arctan2((z_1 - z_2) * np.tan(bank), x_2 - x_1))
+
+
+@dataclass(frozen=True, eq=False)
+class TrackAxes:
+    """Directions in track axes, (..., 3) each; leading axes are those of the bowl's fields."""
+
+    up: np.ndarray  # against gravity
+    radial: np.ndarray  # level, towards the bowl's axis
+    drive: np.ndarray  # of the vibration, forward and up
+    normals: np.ndarray  # (..., 2, 3) of the wall at the two contacts, into the bowl
+    courses: np.ndarray  # (..., 2, 3) in which each wall contact slides when the part moves on
+
+
+def seat(posture, heading, touching, lean) -> Seat:
+    """Return a mesh part in a heading against the wall.
+
+    Source: docs/mechanics.md, "Headings"; the height of the contacts is own.
+
+    Parameters
+    ----------
+    posture : Posture
+    heading : float [rad]
+    touching : (2, 2) float [m]
+        Corners of the outline at the wall in track axes, from the foot of the centre of mass.
+    lean : float [1]
+        Sign of the bank: with it the upper end of an upright side touches the wall, against it the lower
+        end; upright, the reaction may act anywhere between and is put halfway.
+
+    Returns
+    -------
+    Seat
+    """
+    plan = turned(posture.corners[:, :2], heading)
+    levels = [_level(plan, posture.corners[:, 2], point, lean) - posture.height for point in touching]
+    i_xz, i_yz = turned(posture.inertia[2, :2], heading)
+    return Seat(
+        mass=posture.mass,
+        height=posture.height,
+        heading=heading,
+        inertia=check.frozen(np.array([i_xz, i_yz, posture.inertia[2, 2]])),
+        walls=check.frozen(np.column_stack([touching, levels])),
+        contact=check.frozen(turned(posture.contact, heading)),
+    )
+
+
+def card_seat(posture) -> Seat:
+    """Return the one seat that a part card prints, at heading 0.
+
+    Parameters
+    ----------
+    posture : Posture
+        Of a card with ``track`` data for this aspect.
+
+    Returns
+    -------
+    Seat
+        Wall contacts at the end of the printed lever. The signs of [4.29] put R1 behind the centre of mass
+        and R2 ahead of it.
+
+    Raises
+    ------
+    FeederError
+        If the card has no such data.
+    """
+    block = (posture.printed or {}).get("track") or {}
+    missing = [word for word in ("wall_lever", "wall_lever_angle", "wall_x") if word not in block]
+    if missing:
+        what = f"the card has no {missing[0]} for this aspect in its track block"
+        mend = "choose the aspect that its track block names, or give the part as a mesh"
+        raise FeederError(f"part card, aspect {posture.name}", what, mend)
+    lever, angle, (behind, ahead) = block["wall_lever"], block["wall_lever_angle"], block["wall_x"]
+    side, level = -lever * np.cos(angle), lever * np.sin(angle)
+    return Seat(
+        mass=posture.mass,
+        height=posture.height,
+        heading=0.0,
+        inertia=posture.inertia[2],
+        walls=check.frozen(np.array([[-behind, side, level], [ahead, side, level]])),
+        contact=posture.contact,
+    )
+
+
+def frame(bowl, walls) -> TrackAxes:
+    """Return the directions on the track of a bowl.
+
+    Source: docs/mechanics.md, "Frames and signs".
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Fields may be arrays.
+    walls : (2, 3) float [m]
+        Contacts with the wall.
+
+    Returns
+    -------
+    TrackAxes
+    """
+    phi, delta, beta, alpha, radius = np.broadcast_arrays(
+        bowl.track.climb, bowl.track.bank, bowl.drive.vibration_angle, bowl.drive.direction, bowl.track.radius
+    )
+
+    def banked(x, y, z) -> NDArray[np.float64]:
+        """Track axes of a vector given along X, level towards the bowl's axis, and square to both."""
+        along = x, y * np.cos(delta) + z * np.sin(delta), z * np.cos(delta) - y * np.sin(delta)
+        return np.stack(np.broadcast_arrays(*along), axis=-1)
+
+    up = banked(np.sin(phi), 0.0, np.cos(phi))
+    ahead = banked(np.cos(phi), 0.0, -np.sin(phi))  # level
+    radial = banked(0.0, 1.0, 0.0)
+    drive = banked(np.cos(beta) * np.cos(alpha), np.cos(beta) * np.sin(alpha), np.sin(beta))
+    behind = -np.einsum("...i,ki->...k", ahead, walls)  # of the centre of mass, level: climb and bank count
+    sine = behind / radius[..., None]  # of sigma, positive at the trailing contact
+    cosine = np.sqrt(1.0 - sine**2)
+    normals = cosine[..., None] * radial[..., None, :] + sine[..., None] * ahead[..., None, :]
+    level = cosine[..., None] * ahead[..., None, :] - sine[..., None] * radial[..., None, :]
+    courses = np.cos(phi)[..., None, None] * level + np.sin(phi)[..., None, None] * up[..., None, :]
+    return TrackAxes(up, radial, drive, normals, courses)
+
+
+def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False) -> NDArray[np.float64]:
+    """Return weight, drive and centrifugal force on the part, all at its centre of mass.
+
+    Source: the loads of eq. [4.29], with the centrifugal force of docs/mechanics.md, "The track".
+
+    Parameters
+    ----------
+    seat : Seat
+    bowl : Bowl
+    axes : TrackAxes
+    phase : array_like [rad]
+        w t.
+    speed : array_like [m/s]
+        Of the part relative to the bowl; the bowl's own speed along the track is added to it.
+    without_drive : bool
+        Leave the vibration out, and with it the bowl's own speed.
+
+    Returns
+    -------
+    (..., 3) float [N]
+    """
+    omega = 2.0 * np.pi * bowl.drive.frequency
+    stroke = 0.0 * omega if without_drive else bowl.drive.amplitude * omega
+    along = axes.drive[..., 0] * stroke * np.cos(phase) + speed
+    push = (stroke * omega * np.sin(phase))[..., None] * axes.drive
+    outward = (along**2 / bowl.track.radius)[..., None] * axes.radial
+    return seat.mass * (push - np.asarray(bowl.gravity)[..., None] * axes.up - outward)
+
+
+def bank_without_radial_friction(seat) -> float:
+    """Return the bank [rad] at which the wall's reaction passes through the centre of mass: R3 is zero.
+
+    Source: eqs. [4.33] and [4.35] with R3 = 0; docs/mechanics.md, "The track".
+    """
+    return float(np.mean(np.arctan2(seat.walls[:, 2], -seat.walls[:, 1])))
+
+
+def _level(plan, levels, point, lean) -> float:
+    """Height at which the edge of a side above ``point`` touches the wall."""
+    size = np.ptp(plan, axis=0).max()
+    there = levels[np.hypot(*(plan - point).T) <= EDGE_DEPTH_SHARE * size]
+    if lean == 0.0:
+        return 0.5 * (there.max() + there.min())
+    return there.max() if lean > 0.0 else there.min()
+
+
+SETS = ((True, True), (True, False), (False, True), (False, False))  # closed wall contacts, in order of trial
+SECANT_STEPS = 14  # of the secant rule; the functions are nearly straight
+HELD_SLIP_SHARE = 1e-6  # [1] of the slip of a part that nothing holds: less than this is none
+ALONG_X = np.array([1.0, 0.0])
+
+
+@dataclass(frozen=True, eq=False)
+class TrackSolution:
+    """Accelerations and reactions for one set of closed contacts, per unit of mass."""
+
+    acceleration: np.ndarray  # (..., 2) [m/s2] along X and Y
+    turning: np.ndarray  # (...) [m/s2] theta'' times h
+    normal: np.ndarray  # (...) [m/s2]
+    moments: np.ndarray  # (..., 2) [m/s2] N d / h
+    walls: np.ndarray  # (..., 2) [m/s2] R1, R2
+    friction: np.ndarray  # (..., 2) [m/s2] of the floor on the part
+    couple: np.ndarray  # (...) [m/s2] about Z that the floor holds against turning, over h
+    mobilised: np.ndarray  # (...) [1] friction over normal force along X, signed against motion ahead
+    parting: np.ndarray  # (..., 2) [m/s2] at which each wall contact opens
+
+
+def sliding(seat, axes, load, closed, floor, wall, course=ALONG_X) -> TrackSolution:
+    """Solve the wrench equations of a sliding part: accelerations and reactions.
+
+    Parameters
+    ----------
+    seat : Seat
+    axes : TrackAxes
+    load : (..., 3) float [N]
+        All that acts but contacts.
+    closed : pair of bool
+        Which wall contacts press.
+    floor, wall : (...) float [1]
+        Coefficients of friction, negative where the part slides back.
+    course : (..., 2) float [1]
+        Direction of positive sliding on the floor.
+
+    Returns
+    -------
+    TrackSolution
+        Not finite where the equations are singular.
+
+    Notes
+    -----
+    The complete form of eqs. [4.32] to [4.37] and eqs. [4.57] to [4.62].
+    """
+    slide = _Slide(seat, axes, load, floor, course)
+    acting, walls, across, turning = slide.motion(closed, np.asarray(wall, dtype=float))
+    parting = slide.rates[..., 0] * across[..., None] + slide.rates[..., 1] * turning[..., None]
+    friction = slide.drag * acting.normal(walls)[..., None]
+    return acting.solution(walls, (across, turning), slide.inertia, friction, 0.0, floor, parting)
+
+
+def held(seat, axes, load, closed, ratio) -> TrackSolution:
+    """Return the reactions of a part at rest: least friction, one share of its limit at every contact.
+
+    Source: the equations of ``sliding`` with a choice of friction; docs/mechanics.md, "The track".
+
+    Parameters
+    ----------
+    seat, axes, load, closed
+        As for ``sliding``.
+    ratio : (...) float [1]
+        The wall's coefficient over the floor's.
+
+    Returns
+    -------
+    TrackSolution
+        Its ``mobilised`` is the coefficient that the floor needs along the track. A part that the wall
+        does not hold across the track, or against turning, is held by the floor.
+
+    Notes
+    -----
+    Forces at rest are not determined by the equations. This choice goes over into sliding without a jump.
+    """
+    wall, force = _Wall(seat, axes), load / seat.mass
+
+    def resting(mobilised) -> "tuple[_Acting, NDArray[np.float64]]":
+        """What acts, and the reactions that leave no motion across and no turning."""
+        acting = wall.acting(force, mobilised * ratio, -mobilised[..., None] * ALONG_X)
+        return acting, acting.reactions(closed, np.zeros(2))
+
+    def slip(mobilised) -> tuple[Any, ...]:
+        """What is left over along the track, and the divisor of the wall's reactions that it is of."""
+        return wall.acting(force, mobilised * ratio, -mobilised[..., None] * ALONG_X).undivided(closed)
+
+    mobilised = _mobilised(slip, force)
+    acting, walls = resting(mobilised)
+    across = np.zeros(walls.shape[:-1]) if any(closed) else -acting.left_over(walls, 1)
+    friction = np.stack([-mobilised * acting.normal(walls), across], axis=-1)
+    couple = np.zeros(walls.shape[:-1]) if all(closed) else 0.0 - dot(acting.yaws, walls)
+    nothing = np.zeros(walls.shape[:-1])
+    parting = _released(seat, axes, closed, couple)
+    return acting.solution(walls, (nothing, nothing), np.zeros(3), friction, couple, mobilised, parting)
+
+
+def _mobilised(slip, force) -> NDArray[np.float64]:
+    """Friction over normal force that leaves no slip along the track.
+
+    Where friction at the wall grows without bound before the slip is held, what the floor alone would need.
+    """
+    nothing = np.zeros(force.shape[:-1])
+    unheld, divisor = slip(nothing)
+    guess = _ratio(unheld, divisor) / np.maximum(-force[..., 2], 1e-3 * np.abs(force).max() + 1e-30)
+    root = _zero(
+        lambda mobilised: slip(mobilised)[0], nothing, unheld, guess,
+        lambda after, step: after - np.clip(step, -10.0, 10.0),
+    )  # fmt: skip
+    left, at_found = slip(root)
+    holds = (
+        (np.abs(left) <= HELD_SLIP_SHARE * np.abs(unheld))
+        & (root * guess >= 0.0)
+        & (at_found * divisor > 0.0)
+    )
+    return np.where(holds, root, guess)
+
+
+def _zero(slip, before, slip_before, after, stepped) -> Any:
+    """Where a function is zero, by the secant rule from two guesses; ``stepped`` keeps a step in bounds."""
+    for _ in range(SECANT_STEPS):
+        if np.array_equal(before, after, equal_nan=True):  # it would stay there
+            break
+        slip_after = slip(after)
+        change = slip_after - slip_before
+        step = np.divide(slip_after * (after - before), change, out=np.zeros(change.shape), where=change != 0)
+        before, slip_before, after = after, slip_after, stepped(after, step)
+    return after
+
+
+def _released(seat, axes, closed, couple) -> NDArray[np.float64]:
+    """How the open one of two wall contacts would part if the floor let go of the couple it holds."""
+    parting = np.zeros((*np.shape(couple), 2))
+    if sum(closed) == 1:
+        shut, open_ = closed.index(True), closed.index(False)
+        rates = _opening(seat, axes)
+        across, turning = np.moveaxis(rates, -1, 0)
+        shift = turning[..., shut] / across[..., shut] * across[..., open_]  # which keeps the other closed
+        parting[..., open_] = -couple * (turning[..., open_] - shift)
+    return parting
+
+
+def wall_use(seat, axes, load, closed, floor, ahead, course, turns) -> NDArray[np.float64]:
+    """Return friction over normal force at the only closed wall contact of a part that starts to turn.
+
+    Source: the equations of ``sliding`` with one wall contact.
+
+    Parameters
+    ----------
+    seat, axes, load, closed, floor, course
+        As for ``sliding``; one contact is closed.
+    ahead : (...) float [1]
+        The coefficient at the wall, negative where the part slides back.
+    turns : (...) bool
+        Where the part starts from rest; elsewhere it goes on sliding and ``ahead`` is kept.
+
+    Returns
+    -------
+    (...) float [1]
+        ``ahead`` where the contact slides with the part, its opposite where turning drives it the other way,
+        and between them what keeps it in place: the part then rolls along the wall.
+    """
+    slide, k = _Slide(seat, axes, load, floor, course), closed.index(True)
+    along = axes.courses[..., k, :2]
+    lever, limit = cross(seat.walls[k, :2] / seat.height, along), np.abs(ahead)
+
+    def slip(use) -> Any:
+        """Acceleration of the contact along the wall."""
+        acting, walls, across, turning = slide.motion(closed, use)
+        return acting.left_over(walls, 0) * along[..., 0] + across * along[..., 1] + turning * lever
+
+    use = _zero(slip, -ahead, slip(-ahead), ahead, lambda after, step: np.clip(after - step, -limit, limit))
+    return np.where(turns, use, ahead)
+
+
+class _Slide:
+    """A part that slides on the floor; (..., 2) ``drag`` is the floor's friction for a normal force of 1."""
+
+    def __init__(self, seat, axes, load, floor, course) -> None:
+        self.wall, self.rates, self.force = _Wall(seat, axes), _opening(seat, axes), load / seat.mass
+        self.drag = -np.asarray(floor, dtype=float)[..., None] * course
+        self.inertia = seat.inertia / (seat.mass * seat.height**2)
+        self.resists = dot(self.drag, self.inertia[:2]) + self.inertia[2]
+        self.give = self.rates[..., 1] / (self.rates[..., 0] * self.resists[..., None])
+
+    def motion(self, closed, use) -> Any:
+        """Return what acts, the wall's reactions and the accelerations across the track and in turning."""
+        acting = self.wall.acting(self.force, use, self.drag)
+        walls = acting.reactions(closed, self.give)
+        if all(closed):
+            return acting, walls, *np.zeros((2, *walls.shape[:-1]))
+        return acting, walls, acting.left_over(walls, 1), dot(acting.yaws, walls) / self.resists
+
+
+class _Wall:
+    """What the wall does at its two contacts, for any friction there."""
+
+    def __init__(self, seat, axes) -> None:
+        arms = seat.walls / seat.height
+        self.normals, self.courses = (
+            np.concatenate([force, np.cross(arms, force)], axis=-1) for force in (axes.normals, axes.courses)
+        )
+
+    def acting(self, force, use, drag) -> "_Acting":
+        """Return what acts on the part for a friction over normal force of ``use`` at the wall."""
+        return _Acting(force, self.normals - use[..., None, None] * self.courses, drag)
+
+
+class _Acting:
+    """A load (..., 3), wrenches of the wall's contacts (..., 2, 6) and the floor's drag, N eliminated."""
+
+    def __init__(self, force, pushes, drag) -> None:
+        self.force, self.pushes = force, pushes
+        self.pull = force[..., :2] - drag * force[..., 2:]
+        self.planar = pushes[..., :2] - drag[..., None, :] * pushes[..., 2:3]
+        self.yaws = dot(pushes[..., 3:5], drag[..., None, :]) + pushes[..., 5]
+
+    def reactions(self, closed, give) -> NDArray[np.float64]:
+        """Return R1 and R2, (..., 2), at which the closed contacts stay closed.
+
+        ``give`` (..., 2) is how fast a contact opens for a unit of turning moment over how fast for a unit of
+        force across the track: zero where the part is kept from turning.
+        """
+        shares, divisor = self._shares(closed, give)
+        return _ratio(shares, divisor[..., None])
+
+    def undivided(self, closed) -> tuple[Any, ...]:
+        """Return what is left over along X of a part at rest, times the reactions' divisor, and that."""
+        shares, divisor = self._shares(closed, np.zeros(2))
+        return self.pull[..., 0] * divisor + dot(self.planar[..., 0], shares), divisor
+
+    def _shares(self, closed, give) -> tuple[Any, ...]:
+        """R1 and R2 times the divisor that they have in common, (..., 2), and that, (...)."""
+        across, pull = self.planar[..., 1], -self.pull[..., 1]
+        shares = np.zeros(np.broadcast_shapes(across.shape, (*pull.shape, 1)))
+        if all(closed):
+            shares[..., 0], shares[..., 1] = pull * self.yaws[..., 1], -pull * self.yaws[..., 0]
+            return shares, across[..., 0] * self.yaws[..., 1] - across[..., 1] * self.yaws[..., 0]
+        if any(closed):
+            k = closed.index(True)
+            shares[..., k] = pull
+            return shares, (across + give * self.yaws)[..., k]
+        return shares, np.ones(shares.shape[:-1])
+
+    def left_over(self, walls, axis) -> Any:
+        """Sum of the forces along X or Y, (...)."""
+        return self.pull[..., axis] + dot(self.planar[..., axis], walls)
+
+    def normal(self, walls) -> Any:
+        """Return the floor's normal force N, (...)."""
+        return -(self.force[..., 2] + dot(self.pushes[..., 2], walls))
+
+    def solution(self, walls, motion, inertia, friction, couple, mobilised, parting) -> TrackSolution:
+        """Return the record, with the moments of N that the moments about X and Y ask for."""
+        across, turning = motion
+        about_x, about_y = (dot(self.pushes[..., place], walls) for place in (3, 4))
+        ahead = about_y - inertia[1] * turning - friction[..., 0]
+        offset_moment = inertia[0] * turning - about_x - friction[..., 1]
+        shape = walls.shape[:-1]
+        return TrackSolution(
+            acceleration=np.stack([self.left_over(walls, 0), across], axis=-1),
+            turning=turning,
+            normal=self.normal(walls),
+            moments=np.stack([ahead, offset_moment], axis=-1),
+            walls=walls,
+            friction=friction,
+            couple=np.broadcast_to(couple, shape),
+            mobilised=np.broadcast_to(mobilised, shape),
+            parting=parting,
+        )
+
+
+def _opening(seat, axes) -> NDArray[np.float64]:
+    """How fast each wall contact opens for an acceleration along Y and a turning, (..., 2, 2)."""
+    lever = cross(seat.walls[:, :2] / seat.height, axes.normals[..., :2])
+    return np.stack([axes.normals[..., 1], lever], axis=-1)
+
+
+def _ratio(above, below) -> NDArray[np.float64]:
+    """Their ratio; NaN where it has none."""
+    shape = np.broadcast_shapes(np.shape(above), np.shape(below))
+    return np.divide(above, below, out=np.full(shape, np.nan), where=below != 0.0)
+
+
+PULL_TOLERANCE = 1e-9  # of the weight: a reaction more negative than this would be a pull
+FORCE_NOISE = 1e-12  # of the weight: less than this is rounding
+PHASE_TOLERANCE = 1e-13  # [rad] width of the bracket in which a part breaks loose
+BRACKETING_STEPS = 60
+UNBOUNDED_FRICTION = 1e9  # [1] friction in place of one that is not finite
+
+
+@dataclass(frozen=True, eq=False)
+class TrackMotion:
+    """State of a part on the track at one or many instants; forces of the bowl on the part, in track axes."""
+
+    state: np.ndarray  # (...) int, places in floor.STATES
+    normal_force: np.ndarray  # (...) [N]; 0 while there is no contact
+    walls: np.ndarray  # (..., 2) [N] R1, R2; 0 where opened
+    closed: np.ndarray  # (..., 2) bool, whether each wall contact stays closed
+    radial_friction: np.ndarray  # (...) [N] R3, of the floor along Y
+    traction: np.ndarray  # (...) [N] R4, of the floor against motion along X
+    wall_friction: np.ndarray  # (..., 2) [N] R1f, R2f against motion along the wall
+    couple: np.ndarray  # (...) [N m] with which the floor keeps a part at rest from turning
+    acceleration: np.ndarray  # (..., 2) [m/s2] relative to the bowl along X and Y
+    turning: np.ndarray  # (...) [rad/s2] theta'', counter-clockwise; not 0 only where a contact has opened
+    offset: np.ndarray  # (..., 2) [m] d_x, d_y of the normal force from the foot of the centre of mass
+    inside: np.ndarray  # (...) [m] of that point within the contact polygon; negative: it tips
+    needed: (
+        np.ndarray
+    )  # (..., 3) [1] friction over normal force at the floor and the walls that holds it at rest
+    slides: np.ndarray  # (...) bool, also where the state says that it tips
+    load: np.ndarray  # (..., 3) [N] weight, drive and centrifugal force
+
+
+def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=False) -> TrackMotion:
+    """Return what a part on the track does at one phase of the vibration.
+
+    Source: ``system.sliding`` and ``system.held``; docs/mechanics.md, "The track".
+
+    Parameters
+    ----------
+    seat : Seat
+        How it lies against the wall.
+    bowl : Bowl
+        Fields may be arrays, except the track's radius and the sign of its bank, which belong to the seat.
+    phase : array_like [rad]
+        w t; a quarter turn is the upper reversal.
+    moving : array_like [1]
+        Sense of sliding along the track, +1 or -1; 0 for a part at rest.
+    speed : array_like [m/s]
+        Of that sliding, for the centrifugal force.
+    held : bool
+        Keep a part at rest even where the least friction that holds it is more than there is.
+
+    Returns
+    -------
+    TrackMotion
+        No reaction is negative: where a wall contact would have to pull, it is opened and the equations are
+        solved without it, the part then turning or leaving the wall.
+    """
+    axes = frame(bowl, seat.walls)
+    load = loads(seat, bowl, axes, phase, speed)
+    static, kinetic, wall = _coefficients(bowl)
+    still, needed = _still(seat, bowl, axes, load)
+    moving = np.asarray(moving, dtype=float)
+    slides = (moving != 0.0) | ~((needed[..., 0] <= static) | held)
+    sense = np.where(moving == 0.0, np.sign(still["mobilised"]), moving)
+    free = _course(load, moving, sense)
+
+    def sliding_on(closed) -> dict[Any, Any]:
+        """Along the track while a wall contact is closed; a part off the wall goes where it is pushed."""
+        course = sense[..., None] * ALONG_X if any(closed) else free
+        use = sense * wall if any(closed) else 0.0 * sense * wall
+        turns = (moving == 0.0) & (sum(closed) == 1)
+        if turns.any():
+            use = wall_use(seat, axes, load, closed, kinetic, use, course, turns)
+        return vars(sliding(seat, axes, load, closed, kinetic, use, course)) | {"wall_use": use}
+
+    slipping = _chosen(sliding_on, bowl.gravity) if slides.any() else still
+    solution = {name: _where(slides, slipping[name], still[name]) for name in still}
+    return _motion(seat, solution, slides, needed, load)
+
+
+def needed_at_rest(seat, bowl, phase) -> NDArray[np.float64]:
+    """Return friction over normal force that holds a part at rest, (..., 3) [1]: floor and walls.
+
+    Source: Coulomb's law for the reactions of ``system.held``; docs/mechanics.md, "The track".
+
+    Parameters
+    ----------
+    seat, bowl, phase
+        As for ``motion``.
+    """
+    axes = frame(bowl, seat.walls)
+    still, needed = _still(seat, bowl, axes, loads(seat, bowl, axes, phase))
+    return np.where(still["normal"][..., None] > 0.0, needed, np.nan)
+
+
+def over_cycle(seat, bowl, samples=cycle.PERIOD_SAMPLES) -> tuple[TrackMotion, Any]:
+    """Return the same over one settled period.
+
+    Parameters
+    ----------
+    seat, bowl
+        As for ``motion``; single values.
+    samples : int
+        N, of the period.
+
+    Returns
+    -------
+    tuple of TrackMotion of shape (N,), Cycle
+        Flights are not followed: past the hop the state says ``hop`` and the velocity is that of a part that
+        keeps to the track.
+    """
+    slips = sliding_acceleration(seat, bowl, frame(bowl, seat.walls), -PULL_TOLERANCE * bowl.gravity)
+    loose = loose_windows(
+        lambda phase: motion(seat, bowl, phase),
+        lambda phase: needed_at_rest(seat, bowl, phase)[..., 0],
+        bowl.friction.static,
+    )
+    course = cycle.settle(slips, loose, 1.0 / bowl.drive.frequency, samples)
+    speed = course.velocity
+    return motion(seat, bowl, cycle.phases(samples), np.sign(speed), speed), course
+
+
+def _coefficients(bowl) -> tuple[NDArray[Any], ...]:
+    """Static, kinetic and wall friction, of one shape."""
+    friction = bowl.friction
+    return np.broadcast_arrays(*map(np.asarray, (friction.static, friction.kinetic, friction.wall)))
+
+
+def _still(seat, bowl, axes, load) -> tuple[dict, NDArray[np.float64]]:
+    """The part at rest as ``system.held`` has it, and the friction that holds it there."""
+    static, _, wall = _coefficients(bowl)
+    ratio = np.divide(wall, static, out=np.zeros(np.shape(static)), where=static > 0.0)
+
+    def holding(closed) -> dict[Any, Any]:
+        solution = held(seat, axes, load, closed, ratio)
+        return vars(solution) | {"wall_use": solution.mobilised * ratio}
+
+    still = _chosen(holding, bowl.gravity)
+    return still, _needed(still, ratio)
+
+
+def _course(load, moving, sense) -> NDArray[np.float64]:
+    """Direction of sliding of a part that no wall holds: along the push at rest, else as it moves."""
+    push = load[..., :2]
+    size = np.hypot(push[..., 0], push[..., 1])
+    along = np.divide(push, size[..., None], out=np.zeros(push.shape), where=size[..., None] > 0.0)
+    return np.where((moving == 0.0)[..., None], along, sense[..., None] * ALONG_X)
+
+
+def _chosen(solve, gravity) -> dict[Any, Any]:
+    """At each instant the solution with most closed contacts of which none pulls and no gap closes."""
+    least = -PULL_TOLERANCE * np.max(gravity)
+    chosen: dict[str, np.ndarray] = {}
+    for closed in SETS:
+        solution = solve(closed)
+        solution = solution | {"closed": np.broadcast_to(closed, solution["walls"].shape)}
+        fits = (solution["walls"] >= least).all(axis=-1) & (solution["parting"] >= least).all(axis=-1)
+        if not chosen:
+            chosen, decided = solution, fits
+            continue
+        chosen = {name: _where(decided, chosen[name], solution[name]) for name in solution}
+        decided = decided | fits
+        if decided.all():
+            break
+    return chosen
+
+
+def _needed(still, ratio) -> NDArray[np.float64]:
+    """Friction over normal force that holds the part, at the floor and at each wall contact."""
+    size, normal = np.hypot(*np.moveaxis(still["friction"], -1, 0)), still["normal"]
+    floor = np.divide(size, normal, out=np.full(size.shape, np.nan), where=normal > 0.0)
+    wall = np.where(still["closed"], np.abs(still["mobilised"] * ratio)[..., None], 0.0)
+    return np.concatenate([floor[..., None], wall], axis=-1)
+
+
+def _motion(seat, solution, slides, needed, load) -> TrackMotion:
+    """The record, in newtons and metres, with what holds while there is no contact."""
+    mass, height = seat.mass, seat.height
+    contact = solution["normal"] > 0.0
+    normal = np.where(contact, solution["normal"], 0.0)
+    offset = np.divide(
+        height * solution["moments"], normal[..., None],
+        out=np.full(solution["moments"].shape, np.nan), where=contact[..., None],
+    )  # fmt: skip
+    inside = inset(seat.contact, offset)
+    walls = np.where(solution["closed"] & contact[..., None], np.maximum(solution["walls"], 0.0), 0.0)
+    state = np.where(inside < -ON_THE_LINE, TIP, np.where(slides, SLIDE, STICK))
+    friction = np.where(contact[..., None], solution["friction"], 0.0)
+    noise = FORCE_NOISE * np.linalg.norm(load, axis=-1)[..., None] / mass
+    walls, friction = (mass * np.where(np.abs(force) < noise, 0.0, force) for force in (walls, friction))
+    return TrackMotion(
+        state=np.where(contact, state, HOP),
+        normal_force=mass * normal,
+        walls=walls,
+        closed=solution["closed"],
+        radial_friction=friction[..., 1],
+        traction=0.0 - friction[..., 0],
+        wall_friction=solution["wall_use"][..., None] * walls,
+        couple=mass * height * solution["couple"] * contact,
+        acceleration=np.where(contact[..., None], solution["acceleration"], load[..., :2] / mass),
+        turning=solution["turning"] / height * contact,
+        offset=offset,
+        inside=inside,
+        needed=np.where(contact[..., None], needed, np.nan),
+        slides=slides,
+        load=load,
+    )
+
+
+def _where(condition, first, second) -> Any:
+    """np.where with the condition widened over trailing axes."""
+    wide = condition.reshape(condition.shape + (1,) * (np.ndim(first) - condition.ndim))
+    return np.where(wide, first, second)
+
+
+def sliding_acceleration(seat, bowl, axes, least) -> Callable[..., Any]:
+    """Return the acceleration of a sliding part as a function of phase, speed and sense.
+
+    Source: ``system.sliding``, which is linear in the load.
+
+    Parameters
+    ----------
+    seat : Seat
+    bowl : Bowl
+        Single values.
+    axes : TrackAxes
+    least : float [m/s2]
+        A reaction per unit of mass more negative than this would be a pull.
+
+    Returns
+    -------
+    callable
+        From phase [rad], speed [m/s] along the track and sense, +1 or -1, to an acceleration [m/s2]; of a
+        part that has lost contact, what the load gives it.
+    """
+    rows = {sense: _sliding_rows(seat, bowl, axes, sense) for sense in (1.0, -1.0)}
+    omega = 2.0 * np.pi * bowl.drive.frequency
+    stroke, radius = float(bowl.drive.amplitude * omega), float(bowl.track.radius)
+    drive, up, radial = (vector.tolist() for vector in (axes.drive, axes.up, axes.radial))
+    weight = [bowl.gravity * component for component in up]
+
+    def at(phase, speed, sense) -> float:
+        push = stroke * omega * math.sin(phase)
+        outward = (drive[0] * stroke * math.cos(phase) + speed) ** 2 / radius
+        x = push * drive[0] - weight[0] - outward * radial[0]
+        y = push * drive[1] - weight[1] - outward * radial[1]
+        z = push * drive[2] - weight[2] - outward * radial[2]
+        chosen = rows[sense][0]
+        for row in rows[sense]:
+            (a, b, c), (d, e, f) = row[2], row[3]
+            if a * x + b * y + c * z >= least and d * x + e * y + f * z >= least:
+                chosen = row
+                break
+        (a, b, c), (d, e, f) = chosen[:2]
+        return a * x + b * y + c * z if d * x + e * y + f * z > 0.0 else x
+
+    return at
+
+
+def loose_windows(rest, needed, static, samples=cycle.PERIOD_SAMPLES) -> list[Any]:
+    """Return the phases at which a part at rest breaks loose.
+
+    Source: Coulomb's law on the reactions of ``system.held``; docs/mechanics.md, "The track".
+
+    Parameters
+    ----------
+    rest : callable
+        From phases, (N,) float [rad], to the TrackMotion of a part at rest.
+    needed : callable
+        From the same to the friction that holds it, (N,) float [1]; NaN or infinite where none does.
+    static : float [1]
+    samples : int
+        At which it is looked for; a multiple of four, so that both reversals are among them.
+
+    Returns
+    -------
+    list of (float [rad], float [rad], float [1])
+        As ``cycle.settle`` takes them.
+    """
+    phase = cycle.phases(samples)
+    sense = _loose_sense(rest(phase), static)
+    change = np.flatnonzero(sense != np.roll(sense, 1))
+    if len(change) == 0:
+        return [(0.0, cycle.PERIOD_PHASE, float(sense[0]))] if sense[0] else []
+    before, step = sense[change - 1], cycle.PERIOD_PHASE / samples
+    low, high = phase[change] - step, phase[change].copy()
+    edges = _loose_edges(lambda at: needed(at) - static, low, high, (before != 0.0) & (sense[change] == 0.0))
+    return _cut_windows(edges, sense[change])
+
+
+def _loose_edges(beyond, low, high, falls) -> NDArray[np.float64]:
+    """Phases at which a margin passes zero, each within a bracket; where it is not finite, it is positive.
+
+    Brackets whose ends are both loose, one way and the other, close in on their lower end.
+    """
+    sign = np.where(falls, -1.0, 1.0)
+
+    def margin(at) -> NDArray[np.float64]:
+        return sign * np.nan_to_num(beyond(at), nan=UNBOUNDED_FRICTION, posinf=UNBOUNDED_FRICTION)
+
+    left, right = margin(low), margin(high)
+    for count in range(BRACKETING_STEPS):
+        if (high - low).max() <= PHASE_TOLERANCE:
+            break
+        share = np.where((left < 0.0) & (right > 0.0) & (count % 3 < 2), left / (left - right), 0.5)
+        middle = low + (high - low) * share
+        now = margin(middle)
+        below, exact = now <= 0.0, np.abs(now) <= PHASE_TOLERANCE
+        low, left = np.where(below, middle, low), np.where(below, now, left)
+        high, right = np.where(below, high, middle), np.where(below, right, now)
+        low, high = np.where(exact, middle, low), np.where(exact, middle, high)
+    return high
+
+
+def _cut_windows(starts, senses) -> list[tuple[float, float, float]]:
+    """Windows within one period from where each begins; a state lasts to the next one's begin."""
+    windows = []
+    for start, end, sense in zip(starts, np.append(starts[1:], starts[0] + cycle.PERIOD_PHASE), senses):
+        if sense and end > cycle.PERIOD_PHASE:
+            windows += [
+                (0.0, float(end - cycle.PERIOD_PHASE), float(sense)),
+                (float(start), cycle.PERIOD_PHASE, float(sense)),
+            ]
+        elif sense:
+            windows.append((float(start), float(end), float(sense)))
+    return sorted(windows)
+
+
+def _loose_sense(rest, static) -> NDArray[np.float64]:
+    """Way in which a part at rest breaks loose: +1, -1, or 0 where it is held."""
+    loose = (rest.state == HOP) | ~(rest.needed[:, 0] <= static)
+    return np.where(loose, np.where(rest.acceleration[:, 0] > 0.0, 1.0, -1.0), 0.0)
+
+
+def _sliding_rows(seat, bowl, axes, sense) -> list[tuple[list, list, list, list[Any]]]:
+    """For each set of closed contacts the rows of acceleration, normal force and two margins.
+
+    Each row is a list of three numbers: the value for a unit of load per mass along X, Y and Z.
+    """
+    unit = seat.mass * np.eye(3)
+    course = np.tile(sense * ALONG_X, (3, 1))
+    wall, sets = sense * bowl.friction.wall, []
+    for closed in SETS:
+        use = np.full(3, wall if any(closed) else 0.0)
+        motion_of_set = sliding(seat, axes, unit, closed, np.full(3, bowl.friction.kinetic), use, course)
+        conditions = [
+            motion_of_set.walls[:, k] if shut else motion_of_set.parting[:, k]
+            for k, shut in enumerate(closed)
+        ]
+        rows = (motion_of_set.acceleration[:, 0], motion_of_set.normal, *conditions)
+        along, normal, *conditions = (row.tolist() for row in rows)
+        sets.append((along, normal, *conditions))
+    return sets

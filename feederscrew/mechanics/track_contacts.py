@@ -1,0 +1,210 @@
+"""The contacts of a part on the track: the first to open as the drive grows, and any static equilibrium.
+
+The balance at rest takes the least friction, all along the track and the same share of its limit at every
+contact. Where that would need more than there is, friction across the track, up and down the wall, or more
+of it at one end of the part than at the other may still hold it.
+
+Source: reciprocal screws; Coulomb's cones as a linear programme; docs/mechanics.md.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew.geometry.polygons import cross, sides
+from feederscrew.mechanics import track_balance
+from feederscrew.mechanics.floor_balance import HOP
+from feederscrew.mechanics.track_balance import frame, loads
+from feederscrew.screw.screws import Point, Wrench, reactions, tipping_twists
+
+REVERSALS = {"upper": 0.5 * np.pi, "lower": 1.5 * np.pi}
+WALLS = ("wall_1", "wall_2")
+IDLE = 1e-9  # of the weight: a reaction this small at rest carries nothing
+THIRD, WALL_1 = 2, 3  # places among the six wrenches: three floor points, two walls, traction
+
+
+@dataclass(frozen=True, eq=False)
+class Opening:
+    """The contact that opens first; points from the foot of the centre of mass, in track axes."""
+
+    contact: str  # 'floor', 'wall_1' or 'wall_2'; 'none'
+    drive_factor: float  # [1] times the present amplitude at which it opens; infinite for none
+    reversal: str  # 'upper' or 'lower'
+    point: np.ndarray  # (3,) [m] of the axis, nearest the centre of mass
+    direction: np.ndarray  # (3,) [1] of the axis
+    pitch: float  # [m] slide along the axis per radian; infinite where the part only slides
+
+
+def contact_wrenches(seat, axes, points, *, floor=0.0, wall=(0.0, 0.0), traction=(0.0, 0.0, 0.0)) -> Wrench:
+    """Return unit wrenches of six contacts about the centre of mass: three floor points, two walls, traction.
+
+    Source: screws of unit forces; docs/method/screws.md, "Contacts: reciprocal screws".
+
+    Parameters
+    ----------
+    seat : Seat
+    axes : TrackAxes
+    points : (3, 2) float [m]
+        Floor points, in track axes from the foot of the centre of mass.
+    floor, wall : float, (2,) float [1]
+        Friction at work over normal force, against motion along X: it turns each wrench off the normal.
+    traction : (3,) float [m]
+        A point of the last wrench's line, along X. Of a part at rest that is floor friction; of a sliding
+        one the inertia of its motion along the track, through the centre of mass.
+
+    Returns
+    -------
+    Wrench of shape (6,)
+    """
+    feet = np.column_stack([points, np.full(3, -seat.height)])
+    places = np.concatenate([feet, seat.walls, [traction]])
+    pressing = axes.normals - np.asarray(wall)[:, None] * axes.courses
+    forces = np.concatenate([np.tile([-floor, 0.0, 1.0], (3, 1)), pressing, [[1.0, 0.0, 0.0]]])
+    return Wrench(forces, np.cross(places, forces), Point("C", np.zeros(3)))
+
+
+def first_to_open(seat, bowl) -> Opening:
+    """Return the contact that a growing drive opens first, at either reversal.
+
+    Parameters
+    ----------
+    seat : Seat
+    bowl : Bowl
+        Single values. A part that slides goes on sliding, one that sticks goes on sticking.
+
+    Returns
+    -------
+    Opening
+        Each reaction grows linearly with the drive, lambda_i = -(load o t_i) / (w_i o t_i), t_i the twist
+        reciprocal to the five other wrenches. The axis is that of the twist reciprocal to the normals of
+        the other four contacts and to the traction: the part tips or turns about it without sliding.
+    """
+    candidates = [
+        opening for name, phase in REVERSALS.items() for opening in _openings(seat, bowl, name, phase)
+    ]
+    return min(candidates, key=lambda opening: opening.drive_factor, default=_none())
+
+
+def _openings(seat, bowl, reversal, phase) -> list[Any]:
+    """Every contact that would open at one reversal."""
+    now, axes = track_balance.motion(seat, bowl, phase), frame(bowl, seat.walls)
+    driven = loads(seat, bowl, axes, phase)
+    resting = loads(seat, bowl, axes, phase, without_drive=True)
+    weight, at_work, openings = seat.mass * bowl.gravity, _at_work(now, seat.height), []
+    on_floor = np.array([0.0, np.nan_to_num(now.offset[1]), -seat.height])
+    for place, points in enumerate(_triangles(seat.contact)):
+        six = contact_wrenches(seat, axes, points, **at_work)
+        still, moving = (reactions(six, _force(load)) / weight for load in (resting, driven))
+        twists = tipping_twists(contact_wrenches(seat, axes, points, traction=on_floor))
+        for name, k in _watched(seat, place).items():
+            factor = _factor(still[k], moving[k])
+            openings.append(_opening(name, factor, reversal, twists[k], seat.height))
+    return [opening for opening in openings if np.isfinite(opening.drive_factor)]
+
+
+def _watched(seat, place) -> dict[Any, Any]:
+    """Contacts to look at with one floor triangle: its third point, and with the first the walls."""
+    floor = {"floor": THIRD} if len(seat.contact) else {}
+    walls = {} if place else {name: WALL_1 + k for k, name in enumerate(WALLS)}
+    return floor | walls
+
+
+def _at_work(now, height) -> dict[Any, Any]:
+    """Friction over normal force and the line of the traction, as the part slides or sticks."""
+    wall = np.divide(now.wall_friction, now.walls, out=np.zeros(2), where=now.walls > 0.0)
+    if now.state == HOP:
+        return {}
+    if now.slides:
+        return {"floor": float(now.traction / now.normal_force), "wall": wall}
+    return {"wall": wall, "traction": (0.0, float(now.offset[1]), -height)}
+
+
+def _triangles(contact) -> list[NDArray[np.float64]]:
+    """For each side of the contact polygon its two corners and the one farthest from it."""
+    if len(contact) == 0:  # of a card: the walls' share does not depend on where the floor is touched
+        return [np.array([[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]]) * 1e-3]
+    after = np.roll(contact, -1, axis=0)
+    across = cross(sides(contact)[:, None], contact - contact[:, None])
+    return [np.array([a, b, contact[k]]) for a, b, k in zip(contact, after, across.argmax(axis=1))]
+
+
+def _factor(still, driven) -> float:
+    """Return the multiple of the drive at which a reaction is zero, from it without and with the drive."""
+    if still < -IDLE:
+        return 0.0
+    if driven - still >= -IDLE:
+        return np.inf
+    return max(still, 0.0) / (still - driven)
+
+
+def _force(load) -> Wrench:
+    return Wrench(load, np.zeros(3), Point("C", np.zeros(3)))
+
+
+def _opening(name, factor, reversal, twist, height) -> Opening:
+    return Opening(
+        contact=name,
+        drive_factor=float(factor),
+        reversal=reversal,
+        point=twist.axis.foot + np.array([0.0, 0.0, height]),
+        direction=twist.direction,
+        pitch=float(twist.pitch),
+    )
+
+
+def _none() -> Opening:
+    nowhere = np.full(3, np.nan)
+    return Opening("none", np.inf, "upper", nowhere, nowhere, np.nan)
+
+
+CONE_SIDES = 64  # of the pyramid within a friction cone: its corners lie on it, its sides 0.12 % within
+CONE_MARGIN = 1e-6  # of every coefficient, so that an equilibrium on the very limit is none
+
+
+def exists(seat, bowl, phase=0.5 * np.pi) -> bool:
+    """Return whether forces within the friction cones balance the load on a part at rest.
+
+    Source: Coulomb's cones as a linear programme; docs/mechanics.md, "The track".
+
+    Parameters
+    ----------
+    seat : Seat
+        Of a part with a contact polygon: the floor presses at its corners, the wall at its two contacts.
+    bowl : Bowl
+        Single values; friction at the wall is ``friction.wall``.
+    phase : float [rad]
+        w t; a quarter turn is the upper reversal.
+
+    Returns
+    -------
+    bool
+        False also for a part card without a contact polygon, of which it is not known.
+    """
+    if len(seat.contact) == 0:
+        return False
+    from scipy.optimize import linprog  # a fifth of a second to load: only where a balance is in doubt
+
+    axes = frame(bowl, seat.walls)
+    load = loads(seat, bowl, axes, phase) / (seat.mass * bowl.gravity)
+    rays = _rays(seat, bowl, axes)
+    right = np.concatenate([-load, np.zeros(3)])
+    return linprog(np.zeros(len(rays)), A_eq=rays.T, b_eq=right, method="highs").status == 0
+
+
+def _rays(seat, bowl, axes) -> NDArray[np.float64]:
+    """Edges of the friction pyramids as wrenches about the centre of mass, its height the unit; (R, 6)."""
+    angle = 2.0 * np.pi * np.arange(CONE_SIDES) / CONE_SIDES
+    around = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    static, wall = (mu * (1.0 - CONE_MARGIN) for mu in (bowl.friction.static, bowl.friction.wall))
+    floor = np.column_stack([static * around, np.ones(CONE_SIDES)])
+    feet = np.column_stack([seat.contact, np.full(len(seat.contact), -seat.height)])
+    places, forces = [np.repeat(feet, CONE_SIDES, axis=0)], [np.tile(floor, (len(feet), 1))]
+    for place, normal, course in zip(seat.walls, axes.normals, axes.courses):
+        upward = np.cross(course, normal)
+        tangents = around[:, :1] * course + around[:, 1:] * upward
+        places.append(np.tile(place, (CONE_SIDES, 1)))
+        forces.append(normal + wall * tangents)
+    place, force = np.concatenate(places) / seat.height, np.concatenate(forces)
+    return np.concatenate([force, np.cross(place, force)], axis=1)

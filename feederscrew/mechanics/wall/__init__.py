@@ -1,1 +1,0 @@
-"""The outline of a part along the bowl wall, and its stable headings."""

@@ -1,0 +1,612 @@
+"""From a path or standard input, and the options of a user, to a ``Part``."""
+
+import hashlib
+import re
+import struct
+import sys
+import warnings
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew import check, documents
+from feederscrew.errors import ArgumentError, MeshError, SeveralBodiesError, printable
+from feederscrew.geometry import graphs
+from feederscrew.part import aspect_names, card, gate, mass
+from feederscrew.part.density import find_density
+from feederscrew.part.gate import FARTHEST_CORNER
+from feederscrew.part.hull import CentreOutsideError, convex_hull
+from feederscrew.part.reading import formats, mesh_formats, scenes, threemf
+from feederscrew.part.reading.formats import CARD_FORMAT, FORMATS
+from feederscrew.part.reading.soup import (
+    MAX_MESH_BYTES,
+    MAX_TEXT_BYTES,
+    CommaError,
+    DamageError,
+    Soup,
+    TooManyFacetsError,
+)
+from feederscrew.part.record import Part
+from feederscrew.part.repair import topology
+from feederscrew.units import QuantityError, factor, quantity, quantity_text
+
+EXPORT_AGAIN = "export the part again"
+EXPORT_FEWER = "export it with fewer facets"
+WRITE_POINTS = "write numbers with a decimal point"
+TEXT_READERS = {"obj": mesh_formats.read_obj, "off": mesh_formats.read_off}
+DAMAGE_ERRORS: tuple[type[Exception], ...] = (  # what our readers raise on damaged bytes; no bugs
+    ArithmeticError,
+    EOFError,
+    LookupError,
+    RecursionError,
+    ValueError,
+    struct.error,
+    *formats.DAMAGED_ARCHIVE_ERRORS,
+    DeprecationWarning,
+)
+DAMAGE_REASONS = (  # the first that fits, of faults whose own words are for programmers
+    (formats.DAMAGED_ARCHIVE_ERRORS, "its archive is damaged"),
+    (UnicodeError, "its text cannot be read"),
+    ((EOFError, struct.error), "it is cut short"),
+    (RecursionError, "it is nested too deep"),
+    (ArithmeticError, "a number is out of range"),
+    (LookupError, "something in it is missing"),
+    ((ValueError, DeprecationWarning), "a value in it cannot be read"),
+)
+DAMAGE_MENDS = {
+    formats.UTF16_FAULT: "save it as ASCII or UTF-8 text",
+    documents.POINTER: documents.PULL,
+}
+EXPORT_AS_MESH = "export the part as STL, OBJ, PLY, OFF, GLB, 3MF or STEP"
+
+
+@dataclass(frozen=True)
+class PartFile:
+    """The bytes of a part file and what to call it."""
+
+    source: str  # as given, '-' for standard input
+    where: str  # for error lines
+    name: str  # file stem, printable
+    suffix: str  # lower case, without the dot; '' for standard input
+    data: bytes
+    sha256: str
+
+
+def read_file(source, stdin=None):
+    """Read the bytes of a part file.
+
+    Parameters
+    ----------
+    source : str or Path
+        '-' reads standard input.
+    stdin : binary file, optional
+        Read in place of the file or of the process's own standard input.
+
+    Returns
+    -------
+    File
+
+    Raises
+    ------
+    MeshError
+        If there is no such file, it cannot be read, is empty or is too large.
+    """
+    source = str(source)
+    where = "standard input" if source == "-" else source
+    data = _bytes(source, where, stdin)
+    if not data:
+        raise MeshError(where, "is empty", "export the part again")
+    if len(data) > MAX_MESH_BYTES:
+        raise MeshError(where, f"is larger than {MAX_MESH_BYTES >> 20} MB", "export it with fewer facets")
+    path = Path("stdin" if source == "-" else source)
+    digest = hashlib.sha256(data).hexdigest()
+    return PartFile(source, where, printable(path.stem), path.suffix.lower().removeprefix("."), data, digest)
+
+
+def read_soup(file) -> Soup:
+    """Read the triangles of a mesh file.
+
+    Parameters
+    ----------
+    file : File
+
+    Returns
+    -------
+    Soup
+
+    Raises
+    ------
+    MeshError
+        If the content is of no known format, or is cut short or damaged.
+    """
+    kind, alien = formats.detect_format(file.data, file.suffix)
+    if kind in (None, CARD_FORMAT):
+        mend = DAMAGE_MENDS.get(alien, EXPORT_AS_MESH)
+        raise MeshError(file.where, alien or "is a part card, not a mesh", mend)
+    read = _read(file, kind)
+    if not len(read.faces):
+        left_out = "".join(f"; {text}" for text in read.warnings) if kind == "3mf" else ""
+        raise MeshError(file.where, f"has no facets{left_out}", "export the part again as a solid")
+    return replace(read, format=kind, warnings=_misnamed(file, kind) + read.warnings)
+
+
+def _read(file, kind) -> Soup:
+    """The triangles of a file of a known format; what its reader raises on damaged bytes is a line."""
+    title, data = FORMATS[kind].title, file.data
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):  # what is not finite, the gate names
+            warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
+            if kind in TEXT_READERS:
+                if len(data) > MAX_TEXT_BYTES:
+                    raise TooManyFacetsError(f"is text of more than {MAX_TEXT_BYTES >> 20} MB")
+                return TEXT_READERS[kind](bytes(data).removeprefix(b"\xef\xbb\xbf"))
+            if kind == "ply":
+                return mesh_formats.read_ply(data)
+            if kind == "3mf":
+                return threemf.read_3mf(data, file.where)
+            return (mesh_formats.read_stl if kind.startswith("stl") else scenes.read_scene)(
+                data, kind, file.where
+            )
+    except CommaError as error:
+        raise MeshError(file.where, f"has {error}", WRITE_POINTS) from None
+    except (TooManyFacetsError, formats.BombError) as error:
+        raise MeshError(file.where, f"is too large: it {error}", EXPORT_FEWER) from None
+    except MemoryError:
+        raise MeshError(file.where, "needs more memory than there is", EXPORT_FEWER) from None
+    except DAMAGE_ERRORS as error:
+        raise MeshError(file.where, f"is a damaged {title} ({_reason(error)})", EXPORT_AGAIN) from None
+
+
+def _reason(error) -> Any:
+    """What is wrong with damaged bytes: our own words, or what the class of another's fault stands for."""
+    if not isinstance(error, DamageError):
+        return next(text for kinds, text in DAMAGE_REASONS if isinstance(error, kinds))
+    words = " ".join(str(error).split())
+    return words if len(words) <= 60 else words[:57] + "..."
+
+
+def is_card(file) -> bool:
+    """Return whether the file is a part card: by its name, or by its content on standard input."""
+    if file.suffix in FORMATS[CARD_FORMAT].suffixes:
+        return True
+    return formats.detect_format(file.data, file.suffix)[0] == CARD_FORMAT
+
+
+def _bytes(source, where, stdin) -> Any:
+    if source != "-" and stdin is None:
+        return documents.content(source, MAX_MESH_BYTES, "a part file", MeshError)
+    try:
+        return bytes(documents.upto(stdin or sys.stdin.buffer, MAX_MESH_BYTES))
+    except (OSError, ValueError) as error:
+        raise MeshError(where, f"cannot be read ({error})", "check what it comes from") from None
+
+
+def _misnamed(file, kind):
+    known = {suffix for format in FORMATS.values() for suffix in format.suffixes}
+    if file.suffix not in known or file.suffix in FORMATS[kind].suffixes:
+        return ()
+    return (f"named .{file.suffix} but its content is {FORMATS[kind].title}: read as that",)
+
+
+CRACK_SHARE = 1e-4  # [1] of the size: open surfaces whose rims are closer are of one body
+MAX_RIM_CORNERS = 200_000  # corners of open rims that are looked at
+MAX_NESTED_SURFACES = 1_000  # closed surfaces that are looked at for cavities of others
+NESTING_PROBES = 5  # corners of a surface that say whether it lies within another
+LISTED_FILE_BODIES = 12  # bodies that a refusal lists
+LARGEST_BODY = "largest"
+BODY_NUMBER = re.compile(r"[0-9]{1,9}")
+GIVE_BODY = "give the number or the name of one, or largest"
+TAKE_BODY = "take one with `body` (its number, its name, or largest)"
+
+
+@dataclass(frozen=True, eq=False)
+class FileBody:
+    """One body of a file, its cavities with it."""
+
+    number: int  # from 1, in the order of the file
+    name: str  # that the file gives it, '' for none
+    volume: float  # [cubed unit of the file]
+    size: tuple[float, float, float]  # [unit of the file] along the file's axes
+    facets: NDArray[np.int64]  # indices into the facets of the file
+
+    def text(self, unit: str) -> str:
+        """Return the body as a person reads it in a list: '2 'pin' (64 mm3, 4 x 4 x 4 mm)'."""
+        name = f" {quantity_text(self.name)}" if self.name else ""
+        size = " x ".join(f"{length:.4g}" for length in self.size)
+        return f"{self.number}{name} ({self.volume:.4g} {unit}3, {size} {unit})"
+
+
+def list_bodies(soup: Soup) -> tuple[FileBody, ...]:
+    """Return the bodies of a file, in the order of their first facets.
+
+    Parameters
+    ----------
+    soup : Soup
+
+    Returns
+    -------
+    tuple of FileBody
+        What touches along edges is one body, unless the file has it as closed objects. A closed surface
+        within a body that faces the other way is its cavity. Open surfaces that nearly meet are one body.
+    """
+    points = np.nan_to_num(soup.vertices, posinf=0.0, neginf=0.0)
+    points[np.abs(points) > FARTHEST_CORNER] = 0.0  # what is not finite, the gate names
+    first, group = topology.distinct_points(points)
+    points, faces = points[first], group[soup.faces]
+    a, b, c = faces.T
+    facets = np.flatnonzero((a != b) & (b != c) & (c != a))
+    if not len(facets):
+        return ()
+    faces = faces[facets]
+    number, shell, is_open = _file_surfaces(
+        points, faces, None if soup.objects is None else soup.objects[facets]
+    )
+    volume = np.bincount(shell, mass.tetrahedron_volumes(points[faces]), minlength=number)
+    low, high = _surface_boxes(points, faces, shell, number)
+    of_body = _assign_cavities(points, faces, shell, np.where(is_open, 0.0, volume), low, high)
+    found: list[FileBody] = []
+    for one in dict.fromkeys(of_body[shell].tolist()):
+        own = np.flatnonzero(of_body == one)
+        mine = np.flatnonzero(np.isin(shell, own))
+        size = high[own].max(axis=0) - low[own].min(axis=0)
+        found.append(
+            FileBody(
+                len(found) + 1,
+                _body_name(soup, facets[mine]),
+                abs(float(volume[own].sum())),
+                tuple(size.tolist()),
+                facets[mine],
+            )
+        )
+    return tuple(found)
+
+
+def take_body(soup: Soup, body: str, where: str, unit: str) -> tuple[Soup, FileBody | None]:
+    """Take one body of a file.
+
+    Parameters
+    ----------
+    soup : Soup
+    body : str
+        Its number from 1, its name, or 'largest'.
+    where : str
+        The file, for error lines.
+    unit : str
+        Of the file.
+
+    Returns
+    -------
+    soup : Soup
+        The facets of that body.
+    body : FileBody or None
+        None where the file holds no other.
+
+    Raises
+    ------
+    ArgumentError
+        If there is no such body; the line lists those there are.
+    """
+    known = list_bodies(soup)
+    if not known:
+        return soup, None
+    one = _choose_body(known, body.strip(), where, unit)
+    if len(known) == 1:
+        return soup, None
+    rest = "the other one is" if len(known) == 2 else f"the {len(known) - 1} others are"
+    warning = f"body {one.text(unit)} of {len(known)} is taken: {rest} left out"
+    objects = None if soup.objects is None else soup.objects[one.facets]
+    faces = soup.faces[one.facets]
+    used, own = np.unique(faces, return_inverse=True)
+    return (
+        replace(
+            soup,
+            vertices=soup.vertices[used],
+            faces=own.reshape(-1, 3),
+            objects=objects,
+            warnings=(*soup.warnings, warning),
+        ),
+        one,
+    )
+
+
+def refuse_bodies(fault: MeshError, soup: Soup, unit: str) -> MeshError:
+    """Return the fault of a file of several bodies with a list of them, and how to take one."""
+    known = list_bodies(soup)
+    if len(known) < 2:
+        return fault
+    what = fault.what.partition(", of ")[0] if fault.what.startswith("holds ") else fault.what
+    what = f"holds {len(known)} bodies" if fault.what.startswith("holds ") else what
+    return MeshError(fault.where, f"{what}: {_bodies_text(known, unit)}", f"{TAKE_BODY}, {fault.mend}")
+
+
+def _bodies_text(known, unit) -> str:
+    more = f", and {len(known) - LISTED_FILE_BODIES} more" if len(known) > LISTED_FILE_BODIES else ""
+    return ", ".join(body.text(unit) for body in known[:LISTED_FILE_BODIES]) + more
+
+
+def _choose_body(known, body, where, unit) -> FileBody:
+    """The body that is meant."""
+    if not body:
+        raise ArgumentError("body", "is empty", GIVE_BODY)
+    if body.lower() == LARGEST_BODY:
+        return max(known, key=lambda one: one.volume)
+    if BODY_NUMBER.fullmatch(body):
+        if 1 <= int(body) <= len(known):
+            return known[int(body) - 1]
+        named = []
+    else:
+        named = [one for one in known if one.name == body]
+        named = named or [one for one in known if one.name.strip().lower() == body.lower() and body]
+    if len(named) == 1:
+        return named[0]
+    if named:
+        numbers = " and ".join(str(one.number) for one in named)
+        raise ArgumentError(
+            "body", f"{quantity_text(body)} is the name of bodies {numbers}", "give its number"
+        )
+    raise ArgumentError(
+        "body",
+        f"there is no body {quantity_text(body)}: {where} holds {_bodies_text(known, unit)}",
+        GIVE_BODY,
+    )
+
+
+def _file_surfaces(points, faces, objects) -> tuple[int, NDArray[np.int64], NDArray[np.bool_]]:
+    """How many surfaces hang together, the one of each facet, and whether each is open."""
+    keys = faces
+    if objects is not None and objects.max(initial=0) > 0:
+        apart = faces * (int(objects.max()) + 1) + objects[:, None]
+        _, keys = np.unique(apart, return_inverse=True)
+        keys = keys.reshape(-1, 3)
+        if not topology.edge_table(keys, int(keys.max()) + 1).closed:
+            keys = faces  # objects that close only together
+    edges = topology.edge_table(keys, int(keys.max()) + 1)
+    number, shell = topology.split_shells(edges, keys)
+    rim = np.repeat(edges.net != 0, edges.count)
+    is_open = np.zeros(number, dtype=bool)
+    is_open[shell[edges.order[rim] // 3]] = True
+    if is_open.sum() < 2:
+        return number, shell, is_open
+    sides = edges.order[rim]
+    corners, of_shell = faces.ravel()[sides], shell[sides // 3]
+    if len(corners) > MAX_RIM_CORNERS:
+        return number, shell, is_open
+    from scipy.spatial import cKDTree
+
+    used = np.unique(faces)
+    reach = CRACK_SHARE * float(np.ptp(points[used], axis=0).max())
+    ends = np.concatenate([corners, np.roll(faces, -1, axis=1).ravel()[sides]])
+    tree = cKDTree(points[ends])
+    if tree.count_neighbors(tree, reach) > topology.MAX_NEAR_PAIRS:
+        return number, shell, is_open
+    i, j = tree.query_pairs(reach, output_type="ndarray").T
+    both = np.concatenate([of_shell, of_shell])
+    count, group = graphs.components(both[i], both[j], number)
+    merged = np.zeros(count, dtype=bool)
+    merged[group[is_open]] = True
+    return count, group[shell], merged
+
+
+def _surface_boxes(points, faces, shell, number) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(N, 3) lowest and highest corner of each surface."""
+    low, high = np.full((number, 3), np.inf), np.full((number, 3), -np.inf)
+    for corner in range(3):
+        np.minimum.at(low, shell, points[faces[:, corner]])
+        np.maximum.at(high, shell, points[faces[:, corner]])
+    return low, high
+
+
+def _assign_cavities(points, faces, shell, volume, low, high) -> NDArray[np.int64]:
+    """(N,) the surface that stands for the body of each: itself, or what it is a cavity of."""
+    number = len(volume)
+    of_body = np.arange(number)
+    if not 1 < number <= MAX_NESTED_SURFACES:
+        return of_body
+    around: list[list[int]] = []
+    for k in range(number):
+        boxed = (low <= low[k]).all(axis=1) & (high >= high[k]).all(axis=1) & (volume != 0.0)
+        boxed[k] = False
+        own = np.unique(faces[shell == k])
+        probes = points[own[:: -(-len(own) // NESTING_PROBES)]]
+        around.append(
+            [j for j in np.flatnonzero(boxed).tolist() if _is_within(probes, points[faces[shell == j]])]
+        )
+    is_cavity = np.zeros(number, dtype=bool)
+    for k in sorted(range(number), key=lambda k: len(around[k])):
+        if not around[k] or volume[k] == 0.0:
+            continue
+        parent = max(around[k], key=lambda j: len(around[j]))
+        if not is_cavity[parent] and volume[parent] * volume[k] < 0.0:
+            is_cavity[k], of_body[k] = True, parent
+    return of_body
+
+
+def _is_within(probes, triangles) -> bool:
+    turns = [abs(topology.winding_number(point, triangles)) for point in probes]
+    return sum(turn > 0.5 for turn in turns) * 2 > len(turns)
+
+
+def _body_name(soup, facets) -> str:
+    """The name of the object that most of a body's facets are of."""
+    if soup.objects is None or not soup.names:
+        return ""
+    return soup.names[int(np.argmax(np.bincount(soup.objects[facets], minlength=1)))]
+
+
+FILE_UNITS = {"mm": "millimetres", "in": "inches", "cm": "centimetres", "m": "metres", "um": "micrometres"}
+FED_PART_SIZE_M = (0.5e-3, 0.3)  # [m] largest dimension of what bowls feed
+USUAL_PART_SIZE_M = 2e-3  # [m] below it, an inch file read in mm is likelier than a part so small
+GIVEN_CENTRE_WARNING = (
+    "the centre of mass is as given and how the mass is spread is not known: "
+    "the inertia is that of the homogeneous solid about its own centroid"
+)
+
+
+def load(
+    source,
+    *,
+    units=None,
+    density=None,
+    centre_of_mass=None,
+    names=None,
+    body=None,
+    allow_open=False,
+    stdin=None,
+) -> Any:
+    """Read a part from a mesh file or a part card.
+
+    Parameters
+    ----------
+    source : str or Path
+        STL, OBJ, PLY, OFF, GLB, 3MF, STEP or YAML; '-' reads standard input.
+    units : str, optional
+        'mm', 'cm', 'm', 'um' or 'in'; without it what the format states (GLB: m; 3MF and STEP: their own),
+        else mm.
+    density : str, optional
+        A material or a value, '7.85 g/cm3'; steel without it.
+    centre_of_mass : str, optional
+        'x,y,z' in the file's axes and units, or with units: where it is, if the part is not homogeneous.
+    names : str or Path or AspectNames, optional
+        File of names of the aspects, or what ``naming.read`` made of it; letters without it.
+    body : str, optional
+        Which of several bodies in the file is the part: its number from 1, its name, or 'largest'.
+    allow_open : bool
+        Compute from an open surface or several bodies, and say so.
+    stdin : binary file, optional
+        Read in place of the file or of the process's own standard input.
+
+    Returns
+    -------
+    Part
+
+    Raises
+    ------
+    MeshError
+        If the file is damaged or bounds no single solid.
+    ConfigError, Faults
+        If an option or a part card cannot be used.
+
+    Notes
+    -----
+    With ``centre_of_mass`` how the mass is spread is not known. The inertia kept is that of the homogeneous
+    solid about its own centroid, moved along unchanged; a warning says so.
+    """
+    if units not in (None, *FILE_UNITS):
+        raise ArgumentError(
+            "units", f"'{units}' is not a unit of a part file", documents.hint(str(units), FILE_UNITS)
+        )
+    value, material = find_density(density)
+    file = read_file(source, stdin)
+    if is_card(file):
+        if body is not None:
+            raise ArgumentError("body", "a part card is of one body", "leave it out")
+        _refuse_beside_card(units=units, density=density, centre_of_mass=centre_of_mass, names=names)
+        return card.read_card(file)
+    known = (
+        names
+        if names is None or isinstance(names, aspect_names.AspectNames)
+        else aspect_names.read_aspect_names(names)
+    )
+    solid = _solid_part(file, read_soup(file), units, (value, material), centre_of_mass, body, allow_open)
+    return replace(solid, names=known)
+
+
+def _solid_part(file, soup, wanted, stuff, centre_text, body, allow_open) -> Part:
+    unit, said = _choose_unit(soup, wanted)
+    soup, one = (soup, None) if body is None else take_body(soup, body, file.where, unit)
+    try:
+        surface = gate.check_surface(soup.vertices, soup.faces, file.where, unit, allow_open)
+    except SeveralBodiesError as fault:
+        raise refuse_bodies(fault, soup, unit) from None
+    scale = factor(unit, "length")
+    vertices, solid = surface.vertices * scale, surface.solid.scaled(scale)
+    centre, shifted = _read_centre(centre_text, unit, solid.centre)
+    try:
+        hull = convex_hull(vertices, centre, file.where, given=centre_text is not None)
+    except CentreOutsideError as fault:
+        if centre_text is None:
+            raise
+        raise ArgumentError("centre_of_mass", fault.what, fault.mend) from None
+    gate.check_hull(surface, hull.volume / scale**3, file.where, unit)
+    density, material = stuff
+    return Part(
+        name=file.name if one is None else f"{file.name}-{one.number}",
+        source=file.source,
+        sha256=file.sha256 if one is None else _body_digest(file.sha256, one.number),
+        file_sha256=file.sha256,
+        units=unit,
+        material=material,
+        density=density,
+        volume=solid.volume,
+        mass=density * solid.volume,
+        centre_of_mass=check.frozen(centre),
+        inertia=check.frozen(density * solid.inertia),
+        vertices=check.frozen(vertices),
+        faces=check.frozen(surface.faces),
+        hull=hull,
+        open_surface=surface.open_surface,
+        warnings=(
+            *soup.warnings,
+            *said,
+            *_size_warnings(vertices, unit, wanted),
+            *surface.warnings,
+            *shifted,
+        ),
+    )
+
+
+def _body_digest(sha256, body) -> str:
+    """The sha256 that stands for one of several bodies of a file: no trial of another is its own."""
+    return hashlib.sha256(f"{sha256} body {body}".encode()).hexdigest()
+
+
+def _refuse_beside_card(**options) -> None:
+    for name, value in options.items():
+        if value is not None:
+            raise ArgumentError(name, "a part card has its own", "leave it out")
+
+
+def _choose_unit(soup, wanted):
+    """The unit of the file's numbers; what to say where it is not the wanted one."""
+    stated, title = soup.unit, FORMATS[soup.format].title
+    if stated is None or wanted in (None, stated):
+        return wanted or stated or "mm", ()
+    if soup.format == "glb":
+        return wanted, (f"GLB is in m by its specification; read in {wanted} as asked for",)
+    return stated, (
+        f"{title} files state their unit, here {stated}: the units asked for, {wanted}, are not used",
+    )
+
+
+def _size_warnings(vertices, unit, wanted):
+    """A warning where the size cannot be that of a fed part."""
+    size = float(np.ptp(vertices, axis=0).max())
+    low, high = FED_PART_SIZE_M[0] if wanted else USUAL_PART_SIZE_M, FED_PART_SIZE_M[1]
+    if low <= size <= high:
+        return ()
+    numbers = size / factor(unit, "length")
+    likely = [
+        u for u in FILE_UNITS if u != unit and USUAL_PART_SIZE_M <= numbers * factor(u, "length") <= high
+    ]
+    names = " or ".join(FILE_UNITS[u] for u in likely)
+    kind = "small" if size < low else "large"
+    mend = f"if the file is in {names}, pass `units` {likely[0]}" if likely else "check its scale"
+    return (f"the largest dimension, {size * 1e3:.3g} mm, is {kind} for a fed part: {mend}",)
+
+
+def _read_centre(text, unit, homogeneous):
+    """(3,) [m] the centre of mass asked for, or that of the homogeneous solid."""
+    if text is None:
+        return homogeneous, ()
+    pieces = text.strip().removeprefix("(").removesuffix(")").split(",")
+    if len(pieces) != 3:
+        what = f"{quantity_text(text)} is not three numbers"
+        raise ArgumentError("centre_of_mass", what, "write x,y,z with points and commas, as in 1.5,0,-2")
+    try:
+        centre = np.array([quantity(piece, "length", bare=unit) for piece in pieces])
+    except QuantityError as error:
+        raise ArgumentError("centre_of_mass", error.what, error.mend) from None
+    return centre, (GIVEN_CENTRE_WARNING,)

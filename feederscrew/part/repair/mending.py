@@ -1,0 +1,562 @@
+"""What the gate mends: repeated facets, mixed winding, cracks, T-junctions, and holes with ``allow_open``."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew.errors import MeshError
+from feederscrew.geometry import graphs, vectors
+from feederscrew.part.repair import topology
+from feederscrew.part.repair.topology import MeshEdges, edge_table
+
+EXPORT_SOLID = "export it as a closed solid"
+MAX_SEAM_EDGES = 5000  # open edges: with more than that the surface has worse than T-junctions
+
+
+@dataclass(frozen=True)
+class Seams:
+    """Edges that were joined with several shorter ones of their neighbours."""
+
+    count: int
+    width: float  # [unit of the file] largest distance of a corner from such an edge
+
+
+def mend_facets(vertices, faces, tolerance, where, corners=True):
+    """Triangles after every repair that leaves the shape alone.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    tolerance : float [unit of the file]
+        Corners closer than this are one.
+    where : str
+        The file, for error lines.
+    corners : bool
+        Join corners and seams too; else leave them where they are, for the search for cracks.
+
+    Returns
+    -------
+    vertices, faces : as above
+    edges : MeshEdges
+        Closed if the repairs were enough.
+    said : tuple of str
+        What was done, a sentence each.
+
+    Raises
+    ------
+    MeshError
+        If the facets cannot be turned one way round, or cancel out.
+    """
+    edges = topology.edge_table(faces, len(vertices))
+    vertices, faces, said = leave_out_strays(vertices, faces, edges, tolerance)
+    steps = (_without_repeats, _near_corners_joined, turn_one_way_round, _seams_closed)
+    for step in steps if corners else (_without_repeats, turn_one_way_round):
+        edges = topology.edge_table(faces, len(vertices))
+        if edges.paired:
+            return vertices, faces, edges, said
+        vertices, faces, shown = step(vertices, faces, edges, tolerance, where)
+        said += shown
+        if not len(faces):
+            raise MeshError(where, "encloses no volume", EXPORT_SOLID)
+    edges = topology.edge_table(faces, len(vertices))
+    crowded = int((edges.count > 2).sum())
+    if edges.closed and crowded:
+        joins = _many(crowded, "edge joins", "edges join")
+        said += (f"{joins} more than two facets: the solid touches itself there",)
+    return vertices, faces, edges, said
+
+
+def leave_out_strays(vertices, faces, edges, tolerance):
+    """Leave out facets whose corners lie on a line and that close nothing: with them more edges are open.
+
+    Facets without area that share edges stand and fall together. One that joins two facets, as the filler of
+    a T-junction does, stays.
+    """
+    flat = np.flatnonzero(_heights(vertices, faces) <= tolerance)
+    if not len(flat):
+        return vertices, faces, ()
+    edge_of_side = np.empty(edges.order.shape, dtype=int)
+    edge_of_side[edges.order] = np.repeat(np.arange(len(edges.count)), edges.count)
+    sides = edge_of_side.reshape(-1, 3)[flat]
+    number, node = graphs.components(
+        np.repeat(np.arange(len(flat)), 3), len(flat) + sides.ravel(), len(flat) + len(edges.count)
+    )
+    group = np.repeat(node[: len(flat)], 3)
+    pairs, count = np.unique(np.column_stack([group, sides.ravel()]), axis=0, return_counts=True)
+    of_group, edge = pairs.T
+    opens = np.where(count % 2 == 1, np.where(edges.count[edge] % 2 == 1, -1, 1), 0)
+    change = np.bincount(of_group, opens, number)
+    alone = np.bincount(of_group, count != edges.count[edge], number) == 0  # touches no other facet
+    stray = flat[(change < 0)[group[::3]] | alone[group[::3]]]
+    if not len(stray) or len(stray) == len(faces):
+        return vertices, faces, ()
+    kept = np.ones(len(faces), dtype=bool)
+    kept[stray] = False
+    text = f"{_many(len(stray), 'stray facet', 'stray facets')} without area left out: corners on a line"
+    return *topology.drop_unused_corners(vertices, faces[kept]), (text,)
+
+
+def _heights(vertices, faces) -> NDArray[np.float64]:
+    """(F,) [unit of the file] height of each facet over its longest side."""
+    a, b, c = (vertices[corner] for corner in faces.T)
+    longest = np.maximum(np.maximum(vectors.norm(b - a), vectors.norm(c - b)), vectors.norm(a - c))
+    return vectors.norm(vectors.cross(b - a, c - a)) / np.maximum(longest, np.finfo(float).tiny)
+
+
+def _without_repeats(vertices, faces, edges, tolerance, where):
+    """Each facet once; pairs that lie back to back, as the walls between glued solids do, not at all."""
+    if edges.count.max() < 3:
+        return vertices, faces, ()
+    _, group = topology.distinct_points(np.sort(faces, axis=1))
+    ahead = np.sum(faces < np.roll(faces, -1, axis=1), axis=1) == 2
+    net = np.bincount(group, np.where(ahead, 1, -1)).astype(int)
+    runs = np.where(ahead, 1, -1) == np.sign(net)[group]
+    _, kept = np.unique(np.where(runs, group, -1), return_index=True)
+    kept = np.sort(kept[runs[kept]])
+    back_to_back = (np.bincount(group) - np.abs(net)).sum() // 2
+    repeated = len(faces) - len(kept) - 2 * back_to_back
+    said: tuple[str, ...] = ()
+    if repeated:
+        said += (f"{_many(repeated, 'duplicate facet', 'duplicate facets')} removed",)
+    if back_to_back:
+        said += (f"{_many(back_to_back, 'pair', 'pairs')} of facets back to back (inner walls) removed",)
+    return *topology.drop_unused_corners(vertices, faces[kept]), said
+
+
+def _near_corners_joined(vertices, faces, edges, tolerance, where):
+    odd = edges.count % 2 == 1
+    if not odd.any():
+        return vertices, faces, ()
+    candidates = np.unique([edges.low[odd], edges.high[odd]])
+    target = topology.near_pairs(vertices, candidates, tolerance)
+    moved = int((target != np.arange(len(target))).sum())
+    if not moved:
+        return vertices, faces, ()
+    text = f"joined {_many(moved, 'corner', 'corners')} that nearly met others"
+    return *topology.drop_unused_corners(vertices, target[faces]), (text,)
+
+
+def turn_one_way_round(vertices, faces, edges, tolerance, where):
+    """Facets turned until neighbours agree, as few in each shell as can be."""
+    two = np.flatnonzero(edges.count == 2)
+    askew = edges.net[two] != 0
+    if not askew.any():
+        return vertices, faces, ()
+    odd, shell = _parity(edges.mates(two), askew, len(faces), where)
+    turned = np.bincount(shell, odd) > 0.5 * np.bincount(shell)
+    odd = odd != turned[shell]
+    faces = np.where(odd[:, None], faces[:, ::-1], faces)
+    return (
+        vertices,
+        faces,
+        (f"{odd.sum()} of {len(faces)} facets pointed the other way than the rest; reversed",),
+    )
+
+
+def _parity(mates, askew, count, where) -> Any:
+    """Which facets differ from their shell's first one, and the shell of each.
+
+    Every facet stands for two nodes, itself and its reverse; agreeing neighbours link like with like.
+    """
+    f, g = mates.T
+    g = g + count * askew
+    i, j = np.concatenate([f, f + count]), np.concatenate([g, (g + count) % (2 * count)])
+    _, node = graphs.components(i, j, 2 * count)
+    as_is, reverse = node[:count], node[count:]
+    if (as_is == reverse).any():
+        raise MeshError(where, "has one side only, like a Moebius strip", EXPORT_SOLID)
+    _, shell = np.unique(np.minimum(as_is, reverse), return_inverse=True)
+    return as_is > reverse, shell
+
+
+def _seams_closed(vertices, faces, edges, tolerance, where):
+    *surface, said, _ = close_seams(vertices, faces, edges, tolerance)
+    return *surface, said
+
+
+def close_seams(vertices, faces, edges, tolerance):
+    """Join edges that meet corners of their neighbours half way by facets without area.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    edges : MeshEdges
+        Of the faces.
+    tolerance : float [unit of the file]
+        Corners closer than this to an edge are on it.
+
+    Returns
+    -------
+    vertices, faces : as above
+        The facets that join them come last.
+    said : tuple of str
+    seams : Seams
+    """
+    tails, heads = edges.rim()
+    if not 0 < len(tails) <= MAX_SEAM_EDGES:
+        return vertices, faces, (), Seams(0, 0.0)
+    rim = np.unique([tails, heads])
+    fans, width = _fans(vertices, rim, tails, heads, tolerance)
+    joined = np.concatenate([faces, *fans])
+    after = topology.edge_table(joined, len(vertices))
+    if len(joined) == len(faces) or np.abs(after.net).sum() >= len(tails):
+        return vertices, faces, (), Seams(0, 0.0)
+    count = len(fans)
+    text = f"{_many(count, 'edge meets', 'edges meet')} neighbours half way (T-junctions): joined"
+    return vertices, joined, (text,), Seams(count, width)
+
+
+def _fans(vertices, rim, tails, heads, tolerance):
+    """Facets (N, 3) between each edge and the rim corners on it, where there are any; the furthest off it."""
+    from scipy.spatial import cKDTree
+
+    along = vertices[heads] - vertices[tails]
+    length = vectors.norm(along)
+    middles = vertices[tails] + 0.5 * along
+    near = cKDTree(vertices[rim]).query_ball_point(middles, 0.5 * length + tolerance, return_sorted=True)
+    edge = np.repeat(np.arange(len(tails)), [len(corners) for corners in near])
+    corner = rim[np.concatenate([np.asarray(corners, dtype=int) for corners in near])]
+    offset = vertices[corner] - vertices[tails[edge]]
+    t = np.einsum("nx,nx->n", offset, along[edge]) / length[edge] ** 2
+    off_line = vectors.norm(offset - t[:, None] * along[edge])
+    on = (off_line <= tolerance) & (t > 0.0) & (t < 1.0) & (corner != tails[edge]) & (corner != heads[edge])
+    edge, corner, t = edge[on], corner[on], t[on]
+    order = np.lexsort((t, edge))
+    fans = []
+    for places in np.split(order, np.flatnonzero(np.diff(edge[order])) + 1) if len(order) else ():
+        place = edge[places[0]]
+        chain = [int(tails[place]), *corner[places].tolist()]
+        fans.append(np.array([(int(heads[place]), a, b) for a, b in pairwise(chain)], dtype=int))
+    return fans, float(off_line[on].max(initial=0.0))
+
+
+def _many(count, one, more) -> str:
+    return f"{count} {one if count == 1 else more}"
+
+
+JOIN_SHARE, OPEN_JOIN_SHARE = 1e-4, 1e-2  # [1] of the size: cracks joined unasked, and with ``allow_open``
+THIN_SHARE, OPEN_THIN_SHARE = 0.05, 0.2  # [1] of the volume: the same, of a layer as thick as the crack
+CRACK_WIDTHS_A_DECADE = 3  # widths tried for each power of ten, the least first
+FOLD_COSINE = -0.9998  # between normals: such facets lie back to back
+SLIVER_WIDTHS = 4.0  # facets lower than so many crack widths have no normal that says anything
+MAX_COMPARISONS = 3_000_000  # of open edges with each other: half a second
+COMPARED_AT_ONCE = 500_000  # what some ten MB hold
+CRACK_ALONG = 0.9  # [1] cosine between both sides of a crack, at least
+GAP_SHARE = 0.02  # [1] of the size: what is wider is a hole, not a crack
+
+
+@dataclass(frozen=True, eq=False)
+class JoinedSurface:
+    """A surface whose cracks are joined."""
+
+    vertices: NDArray[np.float64]  # (V, 3) [unit of the file]
+    faces: NDArray[np.int64]  # (F, 3)
+    edges: MeshEdges
+    width: float  # [unit of the file] of the widest crack joined
+    corners: int  # how many were joined with others
+    seams: int  # edges joined with several shorter ones
+
+
+@dataclass(frozen=True)
+class OpenGaps:
+    """What lies between the open edges of a surface."""
+
+    cracks: int  # open edges that run along another, near it
+    width: float  # [unit of the file] largest distance across them
+    place: tuple[float, float, float]  # [unit of the file] where
+    others: int  # open edges that lie round holes
+
+
+def join_cracks(
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int64],
+    least: float,
+    size: float,
+    where: str,
+    allow_open: bool = False,
+) -> JoinedSurface | None:
+    """Join corners and edges across cracks by the least width that closes the surface.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+        Not closed.
+    least : float [unit of the file]
+        Corners closer than this are one already.
+    size : float [unit of the file]
+        Largest extent of the part.
+    where : str
+        The file, for error lines.
+    allow_open : bool
+        Join wider cracks too, and take what leaves the fewest edges open if nothing closes the surface.
+
+    Returns
+    -------
+    JoinedSurface or None
+        None where no width does it. Nothing is joined that would let a facet vanish, fold facets onto each
+        other, make more than two facets meet at an edge where two met, or move walls by a share of their
+        thickness: a thin wall stays, or the surface stays open.
+    """
+    largest, thin = (OPEN_JOIN_SHARE, OPEN_THIN_SHARE) if allow_open else (JOIN_SHARE, THIN_SHARE)
+    edges = edge_table(faces, len(vertices))
+    fewest, best = int(np.abs(edges.net).sum()), None
+    crowded = int((edges.count > 2).sum())
+    gaps = _gaps(*_open_edges(vertices, edges))
+    nearest = float(gaps.min() if allow_open else gaps.max())  # unasked, all must close
+    for width in _widths(max(least, 0.5 * nearest), largest * size):
+        joined = _join_within(vertices, faces, edges, width, where)
+        if joined is None or int((joined.edges.count > 2).sum()) > crowded:
+            continue
+        still_open = int(np.abs(joined.edges.net).sum())
+        if not still_open:
+            return joined if _is_thin(joined, thin) else None
+        if still_open < fewest:
+            fewest, best = still_open, joined
+    return best if allow_open else None
+
+
+def measure_gaps(vertices: NDArray[np.float64], edges: MeshEdges, size: float) -> OpenGaps:
+    """Measure how far the open edges of a surface are from the next open edge that runs along them.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    edges : MeshEdges
+        Not closed.
+    size : float [unit of the file]
+        Largest extent of the part.
+
+    Returns
+    -------
+    OpenGaps
+        Of very many open edges some, evenly drawn, stand for all.
+    """
+    chosen, tail, head, facet = _open_edges(vertices, edges)
+    gaps = _gaps(chosen, tail, head, facet)
+    along = gaps <= GAP_SHARE * size
+    cracks = round(float(along.mean()) * len(tail))
+    widest = int(np.argmax(np.where(along, gaps, -1.0)))
+    x, y, z = 0.5 * (tail[chosen[widest]] + head[chosen[widest]]) + 0.0
+    width = float(gaps[widest]) if cracks else 0.0
+    return OpenGaps(cracks, width, (float(x), float(y), float(z)), len(tail) - cracks)
+
+
+def folded_share(vertices: NDArray[np.float64], faces: NDArray[np.int64], edges: MeshEdges) -> float:
+    """Return the share of the area in facets that lie back to back with a neighbour.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    edges : MeshEdges
+        Of the faces.
+
+    Returns
+    -------
+    float [1]
+        0 for a solid; 1 for loose facets, each closed by itself.
+    """
+    area, pairs = _back_to_back(vertices, faces, edges)
+    return float(area[np.unique(pairs)].sum()) / float(area.sum())
+
+
+def _widths(least, largest):
+    """Widths from the least to the largest, each some steps of a power of ten."""
+    if largest <= least:
+        return ()
+    steps = max(1, int(np.ceil(CRACK_WIDTHS_A_DECADE * np.log10(largest / least))))
+    return least * (largest / least) ** (np.arange(1, steps + 1) / steps)
+
+
+def _join_within(vertices, faces, before, width, where) -> JoinedSurface | None:
+    """The surface with corners within a width joined, and what is open then; None where that harms it."""
+    odd = before.count % 2 == 1
+    candidates = np.unique([before.low[odd], before.high[odd]])
+    target = topology.near_pairs(vertices, candidates, width)
+    moved = target != np.arange(len(target))
+    ends = target[faces]
+    if (ends == ends[:, [1, 2, 0]]).any():  # a facet would vanish: it is a feature, not a crack
+        return None
+    # A chain of corners, each near the next, is no crack: all must be near the one they are joined with.
+    opened = float(vectors.norm(vertices[moved] - vertices[target[moved]]).max(initial=0.0))
+    if opened > width:
+        return None
+    points, joined = topology.drop_unused_corners(vertices, ends)
+    edges = edge_table(joined, len(points))
+    try:
+        points, joined, _ = turn_one_way_round(points, joined, edges, width, where)
+    except MeshError:  # one side only: too much was joined
+        return None
+    edges = edge_table(joined, len(points))
+    facets = len(joined)
+    points, joined, _, across = close_seams(points, joined, edges, width)
+    edges = edge_table(joined, len(points))
+    if _folds(points, joined[:facets], edges, width):
+        return None
+    return JoinedSurface(points, joined, edges, max(opened, across.width), int(moved.sum()), across.count)
+
+
+def _folds(vertices, faces, edges, width) -> bool:
+    """Whether facets that now share an edge lie back to back."""
+    area, pairs = _back_to_back(vertices, faces, edges)
+    sides = vertices[faces] - vertices[faces[:, [1, 2, 0]]]
+    solid = area > SLIVER_WIDTHS * width * vectors.norm(sides).max(axis=1)
+    return bool(solid[pairs].all(axis=1).any())
+
+
+def _back_to_back(vertices, faces, edges) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """(F,) twice the area of each facet, (N, 2) neighbours across an edge of two that face each other."""
+    pairs = edges.mates(edges.count == 2)
+    i, j = pairs[(pairs < len(faces)).all(axis=1)].T
+    a, b, c = (vertices[corner] for corner in faces.T)
+    across = vectors.cross(b - a, c - a)
+    area = vectors.norm(across)
+    back = np.einsum("nx,nx->n", across[i], across[j]) < FOLD_COSINE * area[i] * area[j]
+    return area, np.column_stack([i[back], j[back]])
+
+
+def _is_thin(joined, share) -> bool:
+    """Whether a layer as thick as the widest crack holds no more than a share of the volume."""
+    a, b, c = (joined.vertices[corner] - joined.vertices[0] for corner in joined.faces.T)
+    across = vectors.cross(b - a, c - a)
+    volume = abs(float(np.einsum("fx,fx->", a, across))) / 6.0
+    return joined.width * 0.5 * float(vectors.norm(across).sum()) <= share * volume
+
+
+def _open_edges(
+    vertices, edges
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+    """Which open edges stand for all; (N, 3) and (N, 3) the ends of all; (N,) a facet of each."""
+    open_edges = np.flatnonzero(edges.net)
+    step = -(-(len(open_edges) ** 2) // MAX_COMPARISONS)
+    ends = vertices[edges.low[open_edges]], vertices[edges.high[open_edges]]
+    return np.arange(0, len(open_edges), step), *ends, edges.order[edges.start[open_edges]] // 3
+
+
+def _gaps(chosen, tails, heads, facet) -> NDArray[np.float64]:
+    """How far open edges are from the nearest of other facets that run along them; infinite without one."""
+    ways = heads - tails
+    squares = np.maximum(np.einsum("nx,nx->n", ways, ways), np.finfo(float).tiny)
+    widest = []
+    rows = max(1, COMPARED_AT_ONCE // len(tails))
+    for edge in np.array_split(chosen, -(-len(chosen) // rows)):
+        cosine = np.abs(np.einsum("ex,nx->en", ways[edge], ways)) / np.sqrt(squares[edge, None] * squares)
+        beside = (cosine > CRACK_ALONG) & (facet[edge, None] != facet)
+        gap = np.zeros(len(edge))
+        for share in (0.0, 0.5, 1.0):
+            offset = (tails[edge] + share * ways[edge])[:, None] - tails
+            t = np.clip(np.einsum("enx,nx->en", offset, ways) / squares, 0.0, 1.0)
+            distance = vectors.norm(offset - t[..., None] * ways)
+            gap = np.maximum(gap, np.where(beside, distance, np.inf).min(axis=1))
+        widest.append(gap)
+    return np.concatenate(widest)
+
+
+FAN_RIM_CORNERS = 60  # corners: rims with more are closed by a fan
+
+
+@dataclass(frozen=True, eq=False)
+class Holes:
+    """The holes of an open surface."""
+
+    rims: list[list[int]]  # corners of each, against the sense of the facets beside it
+    width: float  # [unit of the file] across the widest
+    middle: np.ndarray  # (3,) [unit of the file] of the widest
+
+
+def find_holes(vertices, edges) -> Holes:
+    """The holes of an open surface.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    edges : MeshEdges
+        Not closed.
+
+    Returns
+    -------
+    Holes
+    """
+    tails, heads = edges.rim()
+    rims = _rims(heads.tolist(), tails.tolist())
+    hole = np.repeat(np.arange(len(rims)), [len(rim) for rim in rims])
+    corners = vertices[np.concatenate(rims)]
+    sums = np.column_stack([np.bincount(hole, column) for column in corners.T])
+    middles = sums / np.bincount(hole)[:, None]
+    radii = np.zeros(len(rims))
+    np.maximum.at(radii, hole, np.linalg.norm(corners - middles[hole], axis=1))
+    widest = int(np.argmax(radii))
+    return Holes(rims, 2.0 * float(radii[widest]), middles[widest])
+
+
+def cap_holes(vertices, rims) -> NDArray[np.float64]:
+    """Triangles that close holes.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    rims : list of list of int
+
+    Returns
+    -------
+    (N, 3, 3) float [unit of the file]
+        Of least area in all for a rim of at most ``LARGE`` corners, else a fan from its middle; either is
+        exact where the rim is flat.
+    """
+    return np.concatenate([(_patch if len(rim) <= FAN_RIM_CORNERS else _fan)(vertices[rim]) for rim in rims])
+
+
+def _rims(tails, heads) -> list[list[int]]:
+    """Sides strung together to closed rims that pass no corner twice, as lists of corners."""
+    onward: dict[int, list[int]] = {}
+    for tail, head in zip(tails, heads):
+        onward.setdefault(tail, []).append(head)
+    rims = []
+    for start in list(onward):
+        path, place = [start], {start: 0}
+        while onward[path[-1]]:
+            corner = onward[path[-1]].pop()
+            if corner in place:
+                rim, path = path[place[corner] :], path[: place[corner] + 1]
+                rims.append(rim)
+                for passed in rim[1:]:
+                    del place[passed]
+            else:
+                place[corner] = len(path)
+                path.append(corner)
+    return rims
+
+
+def _fan(rim) -> NDArray[np.float64]:
+    middle = np.broadcast_to(rim.mean(axis=0), rim.shape)
+    return np.stack([rim, np.roll(rim, -1, axis=0), middle], axis=1)
+
+
+def _patch(rim) -> NDArray[np.float64]:
+    """(K - 2, 3, 3) triangles of least area over a closed polygon of K corners in space.
+
+    Dynamic programming over its chords (G. Barequet, M. Sharir, "Filling gaps in the boundary of a
+    polyhedron", Comput. Aided Geom. Des. 12(2), 207-229, 1995).
+    """
+    count = len(rim)
+    least, apex = np.zeros((count, count)), np.zeros((count, count), dtype=int)
+    for step in range(2, count):
+        for i in range(count - step):
+            j, k = i + step, np.arange(i + 1, i + step)
+            areas = 0.5 * vectors.norm(vectors.cross(rim[k] - rim[i], rim[j] - rim[i]))
+            total = least[i, k] + least[k, j] + areas
+            apex[i, j] = k[np.argmin(total)]
+            least[i, j] = total.min()
+    chords, triangles = [(0, count - 1)], []
+    while chords:
+        i, j = chords.pop()
+        if j - i > 1:
+            triangles.append((i, apex[i, j], j))
+            chords += [(i, apex[i, j]), (apex[i, j], j)]
+    return rim[np.array(triangles, dtype=int).reshape(-1, 3)]

@@ -1,0 +1,324 @@
+"""Corners that coincide, the facets at each edge, and the closed surfaces that they make."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew.geometry import graphs, vectors
+from feederscrew.geometry.graphs import components
+
+HASH_MIX = tuple(
+    np.uint64(odd) for odd in (0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB, 0xD6E8FEB86659FD93)
+)
+MAX_NEAR_PAIRS = 10_000_000  # near pairs: what a few hundred MB hold
+
+
+def weld_corners(vertices, faces) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Triangles with each distinct corner once.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+        Finite.
+    faces : (F, 3) int
+
+    Returns
+    -------
+    vertices : (V', 3) float [unit of the file]
+        Distinct, and all in use.
+    faces : (F', 3) int
+        Facets that have collapsed to an edge or a point are left out: their sides cancel.
+    """
+    first, group = distinct_points(vertices)
+    return drop_unused_corners(vertices[first], group[faces])
+
+
+def drop_unused_corners(vertices, faces) -> tuple[np.ndarray, np.ndarray]:
+    """The same triangles without collapsed facets and without corners that no facet uses."""
+    a, b, c = faces.T
+    collapsed = (a == b) | (b == c) | (c == a)
+    if collapsed.any():
+        faces = faces[~collapsed]
+    used = np.zeros(len(vertices), dtype=bool)
+    used[faces] = True
+    if used.all():
+        return vertices, faces
+    return vertices[used], (np.cumsum(used) - 1)[faces]
+
+
+def distinct_points(rows) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Which rows are the same.
+
+    Parameters
+    ----------
+    rows : (N, K) float [any]
+        K up to 4. Finite; minus zero counts as zero.
+
+    Returns
+    -------
+    first : (M,) int
+        One row of each kind.
+    group : (N,) int
+        The kind of each row, an index into ``first``.
+    """
+    rows = np.ascontiguousarray(rows, dtype=float) + 0.0
+    first, group = _grouped(_hashed(rows))
+    if not np.array_equal(rows[first[group]], rows):  # two kinds share a hash: one in 1e6 files of 1e6 facets
+        _, first, group = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    return first, group.reshape(-1)
+
+
+def near_pairs(vertices, candidates, tolerance) -> NDArray[np.int64]:
+    """For each corner, the one it is joined with; only candidates closer than a tolerance are.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    candidates : (N,) int
+    tolerance : float [unit of the file]
+
+    Returns
+    -------
+    (V,) int
+    """
+    from scipy.spatial import cKDTree
+
+    target = np.arange(len(vertices))
+    tree = cKDTree(vertices[candidates])
+    if tree.count_neighbors(tree, tolerance) > MAX_NEAR_PAIRS:
+        return target
+    i, j = tree.query_pairs(tolerance, output_type="ndarray").T
+    _, cluster = graphs.components(i, j, len(candidates))
+    _, first = np.unique(cluster, return_index=True)
+    target[candidates] = candidates[first[cluster]]
+    return target
+
+
+def _hashed(rows) -> Any:
+    """(N,) one 64-bit number a row; wraps round on purpose."""
+    bits = rows.view(np.uint64)
+    mixed = np.zeros(len(rows), dtype=np.uint64)
+    for column, odd in zip(bits.T, HASH_MIX):
+        mixed += column
+        mixed *= odd
+        mixed ^= mixed >> np.uint64(31)
+    return mixed
+
+
+def _grouped(keys) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    order = np.argsort(keys)
+    ordered = keys[order]
+    new = np.ones(len(keys), dtype=bool)
+    np.not_equal(ordered[1:], ordered[:-1], out=new[1:])
+    group = np.empty(len(keys), dtype=np.int64)
+    group[order] = np.cumsum(new) - 1
+    return order[new], group
+
+
+@dataclass(frozen=True, eq=False)
+class MeshEdges:
+    """The E edges of F facets; each facet has three sides, side s being one of facet s // 3."""
+
+    corners: int  # how many there are: V
+    keys: np.ndarray  # (E,) low corner times V plus high corner
+    order: np.ndarray  # (3F,) sides, edge by edge
+    start: np.ndarray  # (E,) where in ``order`` an edge's sides begin
+    count: np.ndarray  # (E,) sides at each edge
+    net: np.ndarray  # (E,) sides from the low to the high corner, less those back
+
+    @cached_property
+    def closed(self) -> bool:
+        """Whether every side has one that runs back along it."""
+        return not self.net.any()
+
+    @cached_property
+    def paired(self) -> bool:
+        """Whether every edge joins exactly two facets, wound the same way round."""
+        return self.closed and bool((self.count == 2).all())
+
+    @property
+    def low(self) -> NDArray[np.int64]:
+        """(E,) lower corner of each edge."""
+        return self.keys // self.corners
+
+    @property
+    def high(self) -> NDArray[np.int64]:
+        """(E,) higher corner of each edge."""
+        return self.keys % self.corners
+
+    def mates(self, edges) -> Any:
+        """(N, 2) the two facets at edges that have two; ``edges`` is a mask or indices."""
+        start = self.start[edges]
+        return np.column_stack([self.order[start], self.order[start + 1]]) // 3
+
+    def rim(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Open sides from corner to corner, as (N,) and (N,), each as often as it is open."""
+        times = np.abs(self.net)
+        at = np.repeat(np.arange(len(times)), times)
+        forward = self.net[at] > 0
+        return np.where(forward, self.low[at], self.high[at]), np.where(forward, self.high[at], self.low[at])
+
+
+def edge_table(faces, corners) -> MeshEdges:
+    """The edges of facets.
+
+    Parameters
+    ----------
+    faces : (F, 3) int
+        No corner twice in a facet.
+    corners : int
+        How many there are.
+
+    Returns
+    -------
+    MeshEdges
+    """
+    tails, heads = faces, faces[:, [1, 2, 0]]
+    keys = np.minimum(tails, heads) * corners + np.maximum(tails, heads)
+    keys = (2 * keys + (tails > heads)).ravel()
+    order = np.argsort(keys)
+    keys = keys[order]
+    back, keys = keys & 1, keys >> 1
+    start = np.flatnonzero(np.concatenate([[True], keys[1:] != keys[:-1]]))
+    count = np.diff(start, append=len(keys))
+    net = count - 2 * np.add.reduceat(back, start)
+    return MeshEdges(corners, keys[start], order, start, count, net)
+
+
+SHELL_PROBES = 64  # corners of a shell that are tried
+SHELL_SOLID_ANGLES, MAX_SOLID_ANGLES = (
+    4_000_000,
+    400_000_000,
+)  # solid angles for one shell and for all: half a second, a minute
+LISTED_SHELLS = 3  # bodies named with their volume
+SAVE_SHELLS = (
+    "save each body as a file of its own, or unite them in CAD if they are one part;"
+    " or pass `allow_open` to take them as one part"
+)
+REVERSE_INNER = "reverse the inner surface if it is a cavity, else save each body as a file of its own"
+MOVE_CAVITY = "move the cavity inside the material in CAD"
+
+
+def split_shells(edges, faces) -> tuple[int, NDArray[np.int64]]:
+    """Which shell each facet belongs to.
+
+    Parameters
+    ----------
+    edges : MeshEdges
+    faces : (F, 3) int
+
+    Returns
+    -------
+    number : int
+        Of shells: facets joined across edges. Where more than two facets meet, shells touch; they are one
+        only if they do not close without each other.
+    shell : (F,) int
+    """
+    one, other = edges.mates(edges.count == 2).T
+    number, shell = components(one, other, len(faces))
+    crowded = edges.count > 2
+    if not crowded.any():
+        return number, shell
+    facets, edge = edges.order // 3, np.repeat(np.arange(len(crowded)), edges.count)
+    at = crowded[edge]
+    runs = np.where(faces < np.roll(faces, -1, axis=1), 1, -1).ravel()[edges.order[at]]
+    pairs, which = np.unique(edge[at] * number + shell[facets[at]], return_inverse=True)
+    unclosed = pairs[np.bincount(which, runs) != 0]
+    at_edge, of_shell = np.divmod(unclosed, number)
+    same = at_edge[1:] == at_edge[:-1]
+    count, group = components(of_shell[:-1][same], of_shell[1:][same], number)
+    return count, group[shell]
+
+
+def shell_fault(vertices, faces, shell, volume, unit) -> Any:
+    """What keeps several shells from being one outer surface and cavities in its material.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    shell : (F,) int
+    volume : (S,) float [cubed unit of the file]
+        Of each shell; the largest is positive.
+    unit : str
+        Of the file.
+
+    Returns
+    -------
+    (what, mend) : tuple of str, or None
+        None where it is one part.
+    """
+    by_size = np.argsort(-np.abs(volume), kind="stable")
+    bodies = by_size[volume[by_size] > 0.0]
+    if len(bodies) > 1:
+        turns = _turns_around(vertices, faces, shell, bodies[1])
+        what = f"a body of {volume[bodies[1]]:.4g} {unit}3 lies inside another, both facing outwards"
+        return (what, REVERSE_INNER) if (turns > 0.5).all() else _several(volume[bodies], unit)
+    if len(volume) * len(faces) > MAX_SOLID_ANGLES:
+        return f"holds {len(volume)} closed surfaces", SAVE_SHELLS
+    for cavity in by_size[1:]:
+        turns = _turns_around(vertices, faces, shell, cavity)
+        if (turns < 0.5).all():
+            return _several(np.abs(volume[[*bodies, cavity]]), unit)
+        if (np.abs(turns - 1.0) > 0.1).any():
+            return f"a cavity of {-volume[cavity]:.4g} {unit}3 crosses another surface", MOVE_CAVITY
+    return None
+
+
+def _several(volume, unit) -> tuple[str, str]:
+    listed = ", ".join(f"{v:.4g}" for v in volume[:LISTED_SHELLS]) + (
+        ", ..." if len(volume) > LISTED_SHELLS else ""
+    )
+    return f"holds {len(volume)} bodies, of {listed} {unit}3", SAVE_SHELLS
+
+
+def turns_around(vertices, faces, shell, inner, outer) -> NDArray[np.float64]:
+    """Return how often one shell goes round corners of another.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    shell : (F,) int
+    inner, outer : int
+
+    Returns
+    -------
+    (N,) float [1]
+        1 inside the outer shell, 0 outside; negative where it faces inwards.
+    """
+    corners = np.unique(faces[shell == inner])
+    around = vertices[faces[shell == outer]]
+    step = -(-len(corners) // max(1, min(SHELL_PROBES, SHELL_SOLID_ANGLES // len(around))))
+    return np.array([winding_number(point, around) for point in vertices[corners[::step]]])
+
+
+def _turns_around(vertices, faces, shell, one) -> NDArray[np.float64]:
+    """(N,) float [1] how often the other shells go round corners of one: 1 in their material, 0 outside."""
+    own = shell == one
+    corners = np.unique(faces[own])
+    step = -(-len(corners) // max(1, min(SHELL_PROBES, SHELL_SOLID_ANGLES // len(faces))))
+    others = vertices[faces[~own]]
+    return np.array([winding_number(point, others) for point in vertices[corners[::step]]])
+
+
+def winding_number(point, corners) -> float:
+    """Return how often closed triangles go round a point [1].
+
+    Parameters
+    ----------
+    point : (3,) float [unit of the file]
+    corners : (F, 3, 3) float [unit of the file]
+
+    References
+    ----------
+    van Oosterom, Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983).
+    """
+    a, b, c = np.moveaxis(corners - point, 1, 0)
+    la, lb, lc = (vectors.norm(corner) for corner in (a, b, c))
+    triple = np.einsum("fi,fi->f", a, vectors.cross(b, c))
+    ab, bc, ca = (np.einsum("fi,fi->f", u, v) for u, v in ((a, b), (b, c), (c, a)))
+    return np.arctan2(triple, la * lb * lc + ab * lc + bc * la + ca * lb).sum() / (2.0 * np.pi)

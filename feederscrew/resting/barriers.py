@@ -1,0 +1,328 @@
+"""Barriers between resting faces: how high a part must be lifted to tip, and into what it tips."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew import check
+from feederscrew.geometry import vectors
+from feederscrew.geometry.compiled import fitting
+from feederscrew.geometry.vectors import solid_angles
+from feederscrew.resting import landscape
+
+UNNAMED = landscape.NAMELESS  # label of a hull triangle or a sink that belongs to no face
+SADDLE_TIE = 1e-6  # of the highest saddle: what rounding in a file leaves between the saddles of mirror twins
+
+
+@dataclass(frozen=True, eq=False)
+class Tipping:
+    """Exact tumbling gathered by face: F faces, B ways between two of them, the lowest of each pair."""
+
+    shares: np.ndarray  # (F,) [1] probability when every direction is equally likely
+    heights: np.ndarray  # (F,) [m] of the centre of mass, lowest sink of the face; NaN without a sink
+    pairs: np.ndarray  # (B, 2) faces on both sides, the smaller index first
+    tops: np.ndarray  # (B,) [m] height of the centre of mass on the way's saddle
+    axes: np.ndarray  # (B, 3) unit vector along the edge the part tips over
+    doubts: tuple[str, ...]  # of the tumbling
+
+
+def tipping(tumbling, labels) -> Tipping:
+    """Return basins and saddles of exact tumbling, gathered by face.
+
+    Parameters
+    ----------
+    tumbling : Tumbling
+    labels : (T,) int
+        Face of each hull triangle; UNNAMED for triangles of none. A sink of no face (a facet that noise
+        or tessellation left) joins the face behind the lowest saddle around it, or the faces behind
+        saddles as low as each other, in equal parts.
+
+    Returns
+    -------
+    Tipping
+
+    Raises
+    ------
+    ValueError
+        If no sink carries a label.
+    """
+    labels = np.asarray(labels)
+    basins = adopted_shares(tumbling, labels[tumbling.sinks], labels.max() + 1)
+    heights = np.full(basins.shape[1], np.inf)
+    sinks = np.repeat(np.arange(basins.shape[0]), np.diff(basins.indptr))
+    np.minimum.at(heights, basins.indices, tumbling.heights[sinks])
+    saddles, faces = _between(basins, tumbling.pairs)
+    order = np.flatnonzero(faces[:, 0] != faces[:, 1])
+    order = order[np.lexsort((tumbling.saddle_heights[saddles[order]], *faces[order, ::-1].T))]
+    pairs = faces[order]
+    first = np.append(True, (pairs[1:] != pairs[:-1]).any(axis=1))[: len(pairs)]
+    pairs, lowest = pairs[first], saddles[order[first]]
+    return Tipping(
+        shares=check.frozen(np.bincount(basins.indices, tumbling.shares[sinks] * basins.data, len(heights))),
+        heights=check.frozen(np.where(np.isfinite(heights), heights, np.nan)),
+        pairs=check.frozen(pairs),
+        tops=check.frozen(tumbling.saddle_heights[lowest]),
+        axes=check.frozen(tumbling.saddle_axes[lowest]),
+        doubts=tumbling.doubts,
+    )
+
+
+def _between(basins, pairs) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """(N,) saddles and (N, 2) faces on both sides, smaller first: each way from a face to a face."""
+    many = np.diff(basins.indptr)[pairs]
+    paths = many[:, 0] * many[:, 1]
+    saddles = np.repeat(np.arange(len(pairs)), paths)
+    step = np.arange(len(saddles)) - np.repeat(np.cumsum(paths) - paths, paths)
+    turn = np.column_stack(np.divmod(step, many[saddles, 1]))
+    first, other = basins.indices[basins.indptr[pairs[saddles]] + turn].T
+    return saddles, np.column_stack([np.minimum(first, other), np.maximum(first, other)])
+
+
+def rises(tips) -> NDArray[np.float64]:
+    """Return the lift (B, 2) [m] of the centre of mass on the way from the first face and from the second.
+
+    Source: docs/resting.md, "Barriers and the tipping graph".
+    """
+    return np.maximum(tips.tops[:, None] - tips.heights[tips.pairs], 0.0)
+
+
+def barriers(tips) -> NDArray[np.float64]:
+    """Return the lowest lift (F,) [m] that tips each face into another; infinite where nothing does."""
+    lowest = np.full(len(tips.shares), np.inf)
+    np.minimum.at(lowest, tips.pairs.ravel(), rises(tips).ravel())
+    return lowest
+
+
+def tip_angles(polygons, heights) -> NDArray[np.float64]:
+    """Return the tilt of the floor at which a part that does not slide tips over an edge of its contact.
+
+    Source: docs/resting.md, "Barriers and the tipping graph".
+
+    Parameters
+    ----------
+    polygons : sequence of (K, 3) float [m]
+        Corners about the centre of mass, counter-clockwise seen from outside; F polygons.
+    heights : (F,) float [m]
+        Of the centre of mass over them.
+
+    Returns
+    -------
+    (F,) float [rad]
+        Negative where the part does not even stand on a level floor.
+    """
+    _, across, first, counts = _edge_levers(polygons)
+    return np.minimum.reduceat(np.arctan2(across, np.repeat(heights, counts)), first)
+
+
+def line_tip_angle(polygon, normal, axis, height) -> float:
+    """Return the tilt of the floor at which a rolling part tips over an end of its line of contact.
+
+    Source: docs/resting.md, "Barriers and the tipping graph".
+
+    Parameters
+    ----------
+    polygon : (K, 3) float [m]
+        Corners of the strip it lies on, about the centre of mass.
+    normal, axis : (3,) float [1]
+        Unit vectors: outward from the strip, and along the axis, not parallel to it.
+    height : float [m]
+        Of the centre of mass over the strip.
+
+    Returns
+    -------
+    float [rad]
+        Of a floor that falls along the line, over the nearer of its ends. A part that lies on two circles
+        has its line from one to the other.
+    """
+    along = vectors.unit(axis - vectors.dot(axis, normal) * normal)
+    reach = vectors.product(polygon, along)
+    return float(np.arctan2(min(reach.max(), -reach.min()), height))
+
+
+def tilt_over(height, top) -> float:
+    """Return the tilt [rad] that brings a centre of mass at ``height`` [m] over a saddle at ``top`` [m].
+
+    Source: docs/resting.md, "Barriers and the tipping graph".
+    """
+    return np.arctan2(np.sqrt(np.maximum(top**2 - height**2, 0.0)), height)
+
+
+def critical_solid_angles(polygons, heights) -> NDArray[np.float64]:
+    """Return the share of each face's solid angle left when the mean critical one is taken off.
+
+    Parameters
+    ----------
+    polygons : sequence of (K, 3) float [m]
+        Contact corners about the centre of mass, counter-clockwise seen from outside; F polygons.
+    heights : (F,) float [m]
+        Of the centre of mass.
+
+    Returns
+    -------
+    (F,) float [1]
+        (Q - mean over the edges of Q_crit) / Q; 0 where Q is. Q_crit of an edge is the solid angle of the
+        polygon seen from the centre of mass lifted, upright, to its distance from that edge: where it
+        passes when the part tips. The rule's weight is this times Q / h.
+
+    References
+    ----------
+    B. K. A. Ngoi, S. W. Lye, J. Chen, "Analysing the natural resting aspect of a component for automated
+    assembly", Int. J. Adv. Manuf. Technol. 11, 406-412, 1996, doi 10.1007/BF01178966: read in a
+    restatement only, the paper itself was not at hand.
+    """
+    normals, across, first, counts = _edge_levers(polygons)
+    heights, corners = np.repeat(heights, counts), np.concatenate(polygons)
+    lifts, shares = np.hypot(across, heights) - heights, np.empty(len(polygons))
+    for size in np.unique(counts):
+        same_size = np.flatnonzero(counts == size)
+        edges = first[same_size, None] + np.arange(size)
+        angles = _lifted_angles(corners[edges], normals[same_size], lifts[edges])
+        critical, whole = angles[:, 1:].mean(axis=1), angles[:, 0]
+        shares[same_size] = 1.0 - np.divide(critical, whole, out=np.ones(len(whole)), where=whole > 0.0)
+    return shares
+
+
+def _lifted_angles(polygons, normals, lifts) -> NDArray[np.float64]:
+    """(F, K + 1) [sr] polygons (F, K, 3) seen from the centre of mass as it is and from each lift of it."""
+    apex, first, second = polygons[:, :1], polygons[:, 1:-1], polygons[:, 2:]
+    fan = np.stack([np.broadcast_to(apex, first.shape), first, second], axis=2)
+    down = np.insert(lifts, 0, 0.0, axis=1)[..., None] * normals[:, None]
+    triangles = fan[:, None] + down[:, :, None, None]
+    return solid_angles(np.zeros(3), triangles.reshape(-1, 3, 3)).reshape(triangles.shape[:3]).sum(axis=-1)
+
+
+def balance(tips) -> NDArray[np.float64]:
+    """Return the shares that stay the same when every face keeps tipping into its neighbours.
+
+    Parameters
+    ----------
+    tips : Tipping
+
+    Returns
+    -------
+    (F,) float [1]
+        Stationary shares of the chain in which a face tips into each neighbour at a rate inverse to the
+        lift that takes. Zero for faces without a sink.
+
+    Notes
+    -----
+    Boothroyd and Redford balance the transitions between two aspects of prisms and cylinders, N_a / N_b =
+    E_a / E_b with E the energy to leave each; their book was not at hand. This is that balance on any
+    number of faces, with the saddle between two basins as the height the part must be lifted to.
+
+    References
+    ----------
+    G. Boothroyd, A. H. Redford, "Mechanized Assembly", McGraw-Hill, 1968.
+    """
+    count = len(tips.shares)
+    rates = np.zeros((count, count))
+    lift = np.maximum(rises(tips), 1e-12 * np.nanmax(tips.heights))
+    for k in (0, 1):
+        rates[tips.pairs[:, k], tips.pairs[:, 1 - k]] = 1.0 / lift[:, k]
+    present = np.isfinite(tips.heights)
+    shares = np.zeros(count)
+    shares[present] = _stationary(rates[np.ix_(present, present)])
+    return shares
+
+
+def _stationary(rates) -> NDArray[np.float64]:
+    """Shares (N,), sum 1, that stay the same under rates (N, N) from the row's state to the column's.
+
+    States are taken out one by one and their traffic led past them; no difference is taken, so that rates
+    many orders of magnitude apart do no harm: W. K. Grassmann, M. I. Taksar, D. P. Heyman, "Regenerative
+    analysis and steady state distributions for Markov chains", Oper. Res. 33(5), 1107-1116, 1985.
+    """
+    rates, shares = rates.copy(), np.ones(len(rates))
+    for last in range(len(rates) - 1, 0, -1):
+        rates[:last, last] /= rates[last, :last].sum() or np.inf
+        rates[:last, :last] += rates[:last, last, None] * rates[last, :last]
+    for k in range(1, len(rates)):
+        if rates[:k, k].any():
+            shares[k] = (shares[:k] * rates[:k, k]).sum()
+    return shares / shares.sum()
+
+
+def _edge_levers(polygons) -> tuple[NDArray[Any], ...]:
+    """(F, 3) normals of polygons, (N,) [m] how far inside each edge the foot is; (F,) first edges, counts."""
+    counts = np.array([len(polygon) for polygon in polygons])
+    first = np.cumsum(counts) - counts
+    corners, after = np.concatenate(polygons), np.arange(1, counts.sum() + 1)
+    after[first + counts - 1] = first
+    ahead = corners[after]
+    normals = vectors.unit(np.add.reduceat(vectors.cross(corners, ahead), first))
+    edges = ahead - corners
+    outward = vectors.cross(edges, np.repeat(normals, counts, axis=0))
+    return normals, np.einsum("ki,ki->k", corners, outward) / vectors.norm(edges), first, counts
+
+
+def named(tumbling, labels) -> NDArray[np.int64]:
+    """Return the label (S,) of each sink from its own; an unnamed one takes that of the face it joins.
+
+    The first of the faces that share it, where they do.
+    """
+    return adopted_shares(tumbling, labels, labels.max() + 1).argmax(axis=1)
+
+
+def adopted_shares(tumbling, labels, count) -> Any:
+    """Parts of every sink's basin that belong to each face.
+
+    Parameters
+    ----------
+    tumbling : Tumbling
+    labels : (S,) int
+        Face of each sink; UNNAMED for a facet that noise or tessellation left.
+    count : int
+        Faces, with or without a sink.
+
+    Returns
+    -------
+    (S, F) sparse float [1]
+        Rows sum to 1. An unnamed sink joins the face behind the lowest saddle around it; where several
+        saddles are as low, as around a sink on a mirror plane, it is shared out among the faces behind them.
+
+    Raises
+    ------
+    ValueError
+        If no sink carries a label.
+    """
+    labels = np.asarray(labels)
+    own = np.flatnonzero(labels != UNNAMED)
+    if not len(own):
+        raise ValueError("no sink of the tumbling carries a label")
+    if len(own) == len(labels):
+        return _links(own, labels, (len(labels), count))
+    members, claims = _claims(tumbling, labels)
+    claimed, by = claims.T
+    if (np.diff(claimed) > 0).all():  # each by one
+        taken = np.arange(len(labels))
+        taken[claimed] = by
+        return _links(
+            np.arange(len(labels)), labels[landscape.find_roots(taken)[members]], (len(labels), count)
+        )
+    goes = _links(np.append(own, claimed), np.append(own, by), (len(labels), len(labels)))
+    while (labels[goes.indices] == UNNAMED).any():
+        goes = goes @ goes  # twice as far along the chain of claims
+    faces = type(goes)((goes.data, labels[goes.indices], goes.indptr), shape=(len(labels), count))
+    faces.sum_duplicates()
+    return faces[members]
+
+
+def _claims(tumbling, labels) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """(S,) the sink that stands for each, with which it is claimed; (C, 2) claimed and claiming ones."""
+    order = np.argsort(tumbling.saddle_heights, kind="stable")
+    pairs, tops = tumbling.pairs[order], tumbling.saddle_heights[order]
+    parent, claims = np.arange(len(labels)), np.empty_like(pairs)
+    adopt = fitting(landscape.adopt_tree, len(order))
+    count = adopt(pairs, tops, SADDLE_TIE * tops.max(initial=0.0), labels.copy(), parent, claims)
+    claimed, by = claims[:count].T
+    pairs = np.divmod(np.unique(claimed * len(labels) + by), len(labels))
+    return landscape.find_roots(parent), np.column_stack(pairs)
+
+
+def _links(start, end, shape) -> Any:
+    """Sparse matrix of equal parts, rows summing to 1, from each start to its ends."""
+    from scipy.sparse import csr_array  # the names of rules, of which this room is a part, need no SciPy
+
+    return csr_array((1.0 / np.bincount(start)[start], (start, end)), shape=shape)

@@ -1,0 +1,327 @@
+"""Exact quasi-static tumbling, where a body set down without momentum comes to rest, by class of aspect.
+
+Source: docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew import check
+from feederscrew.errors import MeshError
+from feederscrew.geometry import compiled, vectors
+from feederscrew.part.hull import Hull
+from feederscrew.resting import barriers, walks
+from feederscrew.resting import half_edges as tumbling_edges
+from feederscrew.resting.faces import Face
+from feederscrew.resting.rules import formulas, registry
+from feederscrew.resting.rules.registry import FaceQuantities
+from feederscrew.units import GRAVITY
+
+SPHERE = 4.0 * np.pi  # [sr]
+SHARE_SUM_TOLERANCE = 1e-6  # [1] what the shares may miss 1 by before the result is called doubtful
+FACET_UNEVENNESS = (
+    1e-7  # [1] of the radius: what the corners of a facet merged from needles may lie off its plane
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Tumbling:
+    """Basins of the flow down the height of the centre of mass; S sinks, E saddles, M maxima.
+
+    Directions are "down" in the part's axes. A sink is a stable facet, a saddle an edge and a maximum
+    a corner over which the part can be balanced.
+    """
+
+    sinks: np.ndarray  # (S,) a hull triangle of each sink
+    normals: np.ndarray  # (S, 3) outward unit normal
+    heights: np.ndarray  # (S,) [m] of the centre of mass
+    areas: np.ndarray  # (S,) [sr] directions from which the part ends there
+    pairs: np.ndarray  # (E, 2) sinks on both sides of each saddle
+    saddle_heights: np.ndarray  # (E,) [m]
+    saddle_directions: np.ndarray  # (E, 3) unit
+    saddle_axes: np.ndarray  # (E, 3) unit, along the edge
+    maxima: np.ndarray  # (M,) hull corners
+    doubts: tuple[str, ...]  # self-checks that failed; empty for a result to trust
+
+    @property
+    def shares(self) -> NDArray[np.float64]:
+        """(S,) [1] probability of each sink when every direction is equally likely."""
+        return self.areas / SPHERE
+
+
+def tumble(hull) -> Tumbling:
+    """Return basins, saddles and maxima of the quasi-static flow on a convex hull.
+
+    Parameters
+    ----------
+    hull : Hull
+        With the centre of mass strictly inside.
+
+    Returns
+    -------
+    Tumbling
+        ``doubts`` names every self-check that failed: the areas fill the sphere, sinks - saddles +
+        maxima = 2, every walk falls from its saddle to a sink and rises from it to a maximum.
+
+    References
+    ----------
+    K. Goldberg, B. Mirtich, Y. Zhuang, J. Craig, B. Carlisle, J. Canny, "Part pose statistics:
+    estimators and experiments", IEEE Trans. Robot. Autom. 15(5), 849-857, 1999 (the model).
+    H. Baktash, N. Sharp, Q. Zhou, A. Jacobson, K. Crane, "Putting rigid bodies to rest", ACM Trans.
+    Graph. 44(4), 2025 (its Morse-Smale form; written here from the mathematics).
+    """
+    edges = tumbling_edges.half_edges(hull)
+    sinks, saddles = tumbling_edges.sinks(edges), tumbling_edges.saddles(edges)
+    maxima = tumbling_edges.maxima(edges)
+    feet = _feet(edges, saddles)
+    heights, saddle_heights = _facet_heights(edges, sinks), vectors.norm(feet)
+    directions = feet / saddle_heights[:, None]
+    pairs, raw, arrived = _basins(edges, sinks, saddles, maxima, directions)
+    areas = _areas(raw)
+    falls = (pairs >= 0) & (heights[pairs] <= saddle_heights[:, None] + FACET_UNEVENNESS * hull.radius)
+    doubts = _doubts(areas, len(sinks) - len(saddles) + len(maxima), arrived and falls.all())
+    axes = edges.vertices[edges.targets[saddles]] - edges.vertices[edges.origins[saddles]]
+    return Tumbling(
+        sinks=check.frozen(edges.facet_edges[sinks] // 3),
+        normals=check.frozen(edges.normals[sinks]),
+        heights=check.frozen(heights),
+        areas=check.frozen(areas),
+        pairs=check.frozen(pairs),
+        saddle_heights=check.frozen(saddle_heights),
+        saddle_directions=check.frozen(directions),
+        saddle_axes=check.frozen(axes / vectors.norm(axes)[:, None]),
+        maxima=check.frozen(maxima),
+        doubts=doubts,
+    )
+
+
+def _basins(edges, sinks, saddles, maxima, directions) -> tuple[NDArray[np.int64], NDArray[np.float64], bool]:
+    """(E, 2) sinks each saddle joins, (S,) boundary integrals of their basins, whether every walk arrived."""
+    tops = np.zeros(len(edges.vertices), bool)
+    tops[maxima] = True
+    pairs, peaks = np.empty((2, len(saddles), 2), int)
+    raw = np.zeros(len(edges.normals))
+    trace = compiled.fitting(walks.trace_saddles, len(edges.origins), walks.trace_saddles_together)
+    trace(edges, tops, saddles, directions, _gauges(edges.normals), pairs, peaks, raw)
+    rank = np.full(len(edges.normals) + 1, -1)  # the last entry stands for a lost walk
+    rank[sinks] = np.arange(len(sinks))
+    return rank[pairs], raw[sinks], bool((pairs >= 0).all() and (peaks >= 0).all())
+
+
+def _gauges(normals) -> NDArray[np.float64]:
+    """(M, 3) unit vectors near the normals, off every symmetry plane a part may have."""
+    near = normals + 1e-3 * np.array([0.5377, -0.8339, 0.1246])
+    return near / vectors.norm(near)[:, None]
+
+
+def _feet(edges, saddles) -> NDArray[np.float64]:
+    """(E, 3) [m] feet of the centre of mass on the saddles' edges."""
+    u = edges.vertices[edges.origins[saddles]]
+    along = edges.vertices[edges.targets[saddles]] - u
+    return u - along * (edges.slopes[saddles] / np.einsum("ei,ei->e", along, along))[:, None]
+
+
+def _facet_heights(edges, facets) -> NDArray[np.float64]:
+    corners = edges.vertices[edges.origins[edges.facet_edges[facets]]]
+    return np.einsum("si,si->s", edges.normals[facets], corners)
+
+
+def _areas(raw) -> NDArray[np.float64]:
+    """Basin areas from boundary integrals: those that hold the point opposite their gauge lack 4 pi."""
+    if len(raw) == 1:
+        return np.array([SPHERE])
+    missing = max(round(1.0 - raw.sum() / SPHERE), 0)
+    areas = raw.copy()
+    if missing:
+        areas[np.argsort(raw, kind="stable")[:missing]] += SPHERE
+    return np.where((areas < 0.0) & (areas > -SHARE_SUM_TOLERANCE), 0.0, areas)
+
+
+def _doubts(areas, euler, arrived) -> tuple[str, ...]:
+    total = areas.sum() / SPHERE
+    doubts = {
+        f"the basins fill {total:.6g} of the sphere": abs(total - 1.0) > SHARE_SUM_TOLERANCE,
+        "a basin has a negative area": (areas < 0.0).any(),
+        f"sinks - saddles + maxima is {euler}, not 2": euler != 2,
+        "a walk from a saddle does not fall to a sink and rise to a maximum": not arrived,
+    }
+    return tuple(text for text, wrong in doubts.items() if wrong)
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """The faces a part can rest on and how they hang together; F faces, T hull triangles."""
+
+    hull: Hull
+    faces: tuple[Face, ...]
+    rows: np.ndarray  # (F,) row of each face's class among the aspects
+    labels: np.ndarray  # (T,) face of each hull triangle, -1 for none
+    tips: barriers.Tipping
+
+
+@dataclass(frozen=True, eq=False)
+class Exact:
+    """What exact tumbling adds to the aspects, A rows; NaN where the part does not rest."""
+
+    probabilities: dict[str, np.ndarray]  # (A,) [1] by every rule that weighs faces
+    barriers: np.ndarray  # (A,) [m] lowest lift that tips the part; NaN where nothing does
+    barrier_energies: np.ndarray  # (A,) [J]
+    tip_angles: np.ndarray  # (A,) [rad] of the floor, at which a part that does not slide tips
+    doubts: tuple[str, ...]  # self-checks of the tumbling that failed
+
+
+@dataclass(frozen=True)
+class Transition:
+    """The lowest way by which a part tips from one aspect into another (or into its equal)."""
+
+    start: int  # row of the aspect it leaves
+    end: int
+    lift: float  # [m]
+    axis: tuple[float, float, float]  # unit, along the edge it tips over, in the file's axes
+
+
+def grounded(hull, faces, rows) -> Ground:
+    """Compute the exact basins and barriers of the faces a part rests on.
+
+    Parameters
+    ----------
+    hull : Hull
+    faces : sequence of Face
+        Stable ones.
+    rows : (F,) int
+        Row of each face's class among the aspects.
+
+    Returns
+    -------
+    Ground
+    """
+    labels = np.full(len(hull.triangles), barriers.UNNAMED)
+    for k, face in enumerate(faces):
+        labels[face.triangles] = k
+    tips = barriers.tipping(tumble(hull), labels)
+    return Ground(hull, tuple(faces), check.frozen(rows), check.frozen(labels), tips)
+
+
+def ground(part, aspects) -> Ground:
+    """Return the faces of a part matched to the rows of its aspects, with exact basins and barriers.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    aspects : Aspects
+        Of that part.
+
+    Returns
+    -------
+    Ground
+
+    Raises
+    ------
+    MeshError
+        If the part is a card without a shape.
+    """
+    if aspects.ground is None:
+        raise MeshError(part.source, "is a part card, it has no shape to tumble", "give a mesh file")
+    return aspects.ground
+
+
+def exact(found, part, aspects, exponent=formulas.EXPONENTS["hard"]) -> Exact:
+    """Compute the columns that exact tumbling adds to the aspects of a part.
+
+    Source: docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
+
+    Parameters
+    ----------
+    found : Ground
+    part : Part
+    aspects : Aspects
+    exponent : float [1]
+        Of the surface-weighted closed form.
+
+    Returns
+    -------
+    Exact
+    """
+    tips, count = found.tips, len(aspects.names)
+    lifts = barriers.barriers(tips)
+    lowest = _lowest(found.rows, np.where(np.isfinite(lifts), lifts, np.nan), count)
+    angles = _tip_angles(found.faces, lifts)
+    return Exact(
+        probabilities=_probabilities(found, aspects.stable, exponent),
+        barriers=check.frozen(lowest),
+        barrier_energies=check.frozen(part.mass * GRAVITY * lowest),
+        tip_angles=check.frozen(_lowest(found.rows, angles, count)),
+        doubts=tips.doubts,
+    )
+
+
+def _probabilities(found, stable, exponent) -> dict[str, NDArray[np.float64]]:
+    """Probability of each class by every rule that weighs faces."""
+    tips = found.tips
+    quantities = FaceQuantities(
+        tips=tips,
+        faces=found.faces,
+        shares=tips.shares,
+        heights=tips.heights,
+        radius=found.hull.radius,
+        exponent=exponent,
+    )
+    weights = registry.weights(quantities)
+    return {rule: _by_class(found, weight, stable) for rule, weight in weights.items()}
+
+
+def _by_class(found, weights, stable) -> NDArray[np.float64]:
+    """(A,) shares of the classes, from the (F,) weights of their faces."""
+    sums = np.bincount(found.rows, weights, minlength=len(stable))
+    return check.frozen(formulas.normalised(sums, stable))
+
+
+def transitions(found) -> list[Transition]:
+    """Return the graph of what tips into what.
+
+    Parameters
+    ----------
+    found : Ground
+
+    Returns
+    -------
+    list of Transition
+        The lowest way of each ordered pair of classes, by row; into an equal face as well.
+    """
+    lifts = barriers.rises(found.tips)
+    ways: dict[tuple[int, int], Transition] = {}
+    for pair, lift, axis in zip(found.rows[found.tips.pairs], lifts, found.tips.axes):
+        for start, end, up in ((*pair, lift[0]), (*pair[::-1], lift[1])):
+            way = Transition(int(start), int(end), float(up), tuple(axis.tolist()))
+            best = ways.setdefault((way.start, way.end), way)
+            if way.lift < best.lift:
+                ways[way.start, way.end] = way
+    return [ways[pair] for pair in sorted(ways)]
+
+
+def _tip_angles(faces, lifts) -> NDArray[np.float64]:
+    """(F,) [rad] tilt of the floor that tips the part off each face; NaN where nothing does."""
+    angles = np.array([_rolling_tip_angle(*face) for face in zip(faces, lifts)])
+    flat = np.array([face.kind == "flat" for face in faces])
+    if flat.any():
+        flats = [face for face in faces if face.kind == "flat"]
+        angles[flat] = barriers.tip_angles([face.polygon for face in flats], [face.height for face in flats])
+    return angles
+
+
+def _rolling_tip_angle(face, lift) -> float:
+    if face.kind == "flat" or not np.isfinite(lift):
+        return np.nan
+    if np.isnan(face.axis).any():  # a ball with a flat leaves it over the saddle
+        return barriers.tilt_over(face.height, face.height + lift)
+    return barriers.line_tip_angle(face.polygon, face.normal, face.axis, face.height)
+
+
+def _lowest(rows, values, count) -> NDArray[np.float64]:
+    """(A,) smallest value of each row's faces; NaN where there is none."""
+    lowest = np.full(count, np.inf)
+    np.fmin.at(lowest, rows, values)
+    return np.where(np.isfinite(lowest), lowest, np.nan)

@@ -1,0 +1,361 @@
+"""Half-edges of a convex hull, its facets with their borders, and the signs that steer a part rolling on it.
+
+Half-edge 3 t + k of triangle t runs from its corner k + 1 to its corner k + 2, opposite corner k; arrays
+have one entry for each of the H half-edges. The walks of `tumbling.walk` rely on a convex body: convex
+facets, three of them or more at each corner, three corners or more to each facet. Noise in a file leaves
+corners on the edge between two facets, needles (triangles whose corners are the ends of one edge and such a
+corner between them), and planes of which some triangles are coplanar within the tolerance of merging and
+others are not.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew import check
+from feederscrew.geometry import vectors
+from feederscrew.geometry.graphs import components
+from feederscrew.resting import walks
+
+COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
+NEEDLE_WIDTH = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own
+HALF_EDGE_BLOCK = 1 << 12  # half-edges at a time
+PLANE = 1e-14  # [1] error of a triangle's plane at the far end of the part, times its width over the radius
+MIN_FACETS_AT_CORNER = 3  # facets at a corner
+STRAIGHTNESS_TOLERANCE = 1e-9  # [1] of the radius: of a corner behind the line of its neighbours
+
+
+class Edges(NamedTuple):
+    """Half-edges of a hull of T triangles, H = 3 T, and its facets of coplanar triangles.
+
+    Only half-edges on a border lead somewhere: from one corner of three facets or more to the next.
+    A named tuple, so that compiled code can read it.
+    """
+
+    vertices: np.ndarray  # (V, 3) [m] about the centre of mass
+    origins: np.ndarray  # (H,) corner a half-edge starts from
+    targets: np.ndarray  # (H,) corner it ends at
+    twins: np.ndarray  # (H,) the same edge seen from the other side
+    facets: np.ndarray  # (T,) facet of each triangle
+    borders: np.ndarray  # (H,) bool: parts two facets
+    ahead: np.ndarray  # (H,) next border half-edge of the same facet
+    around: np.ndarray  # (H,) next border half-edge leaving the same corner
+    slopes: np.ndarray  # (H,) [m2] origin . (target - origin): negative where the foot is ahead
+    sides: np.ndarray  # (H,) [m2] not negative where the foot of the facet is inside this edge
+    normals: np.ndarray  # (M, 3) outward unit normals of the M facets
+    facet_edges: np.ndarray  # (M,) a bordering half-edge of each facet
+    vertex_edges: np.ndarray  # (V,) a bordering half-edge leaving each corner, or one of a facet it lies on
+
+
+def half_edges(hull) -> Edges:
+    """Return half-edges of a hull with coplanar triangles merged into facets.
+
+    Parameters
+    ----------
+    hull : Hull
+        With the centre of mass strictly inside.
+
+    Returns
+    -------
+    Edges
+    """
+    origins = hull.triangles[:, [1, 2, 0]].ravel().astype(int)
+    targets = hull.triangles[:, [2, 0, 1]].ravel().astype(int)
+    twins = _twins(hull.neighbours)
+    borders = facet_borders(hull, origins, targets, twins, np.repeat(_facets(hull, twins), 3))
+    facets, edges = borders.facets[::3], np.flatnonzero(borders.part)
+    normals = _facet_normals(hull, facets)
+    slopes, sides = _signs(hull.vertices, normals, origins, borders)
+    slopes = _one_way_out(slopes, sides, borders)
+    by_facet, by_vertex = np.zeros(len(normals), int), np.zeros(len(hull.vertices), int)
+    by_facet[borders.facets[edges]] = edges
+    by_vertex[origins] = by_facet[borders.facets]
+    by_vertex[origins[edges]] = edges
+    arrays = {
+        "vertices": hull.vertices,
+        "origins": origins,
+        "targets": borders.targets,
+        "twins": borders.twins,
+        "facets": facets,
+        "borders": borders.part,
+        "ahead": borders.ahead,
+        "around": borders.around,
+        "slopes": slopes,
+        "sides": sides,
+        "normals": normals,
+        "facet_edges": by_facet,
+        "vertex_edges": by_vertex,
+    }
+    return Edges(**{name: check.frozen(array) for name, array in arrays.items()})
+
+
+def _signs(vertices, normals, origins, borders) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(H,) and (H,) [m2] slopes and sides, as ``Edges`` has them, from each half-edge's corners and facet."""
+    slopes, sides = np.empty((2, len(origins)))
+    corners, facets = np.ascontiguousarray(vertices.T), np.ascontiguousarray(normals.T)
+    for some in _blocks(len(origins)):
+        u, w, n = (
+            corners[:, origins[some]],
+            corners[:, borders.targets[some]],
+            facets[:, borders.facets[some]],
+        )
+        slopes[some] = walks.dot(u, w - u)
+        sides[some] = walks.triple(n, u, w)
+    return slopes, sides
+
+
+def _blocks(count) -> list[Any]:
+    """Slices of half-edges, as many at a time as a processor's cache holds."""
+    return [slice(start, start + HALF_EDGE_BLOCK) for start in range(0, count, HALF_EDGE_BLOCK)]
+
+
+def _one_way_out(slopes, sides, borders) -> NDArray[np.float64]:
+    """(H,) [m2] slopes with which every facet is left one way: over one edge, over one corner, or not at all.
+
+    The foot of the centre of mass lies nearest to one place of a convex polygon. Where a corner of the
+    border lies on or, by rounding, behind the line between its neighbours, the signs may name two places or
+    none: the nearest is taken, and at the others the foot is past the corner on the other side of it.
+    """
+    edges = np.flatnonzero(borders.part)
+    before = np.zeros_like(borders.ahead)
+    before[borders.ahead[edges]] = edges
+    slopes, leaves = slopes.copy(), sides[edges] < 0.0
+    over_edge = leaves & (slopes[edges] <= 0.0) & (slopes[borders.twins[edges]] <= 0.0)
+    over_corner = (slopes[edges] > 0.0) & (slopes[borders.twins[before[edges]]] > 0.0)
+    facet = borders.facets[edges]
+    exits, unstable = np.bincount(facet, over_edge * 1 + over_corner), np.bincount(facet, leaves) > 0
+    for doubtful in np.flatnonzero(exits != unstable):
+        own = facet == doubtful
+        over = edges[own & over_edge].tolist(), edges[own & over_corner].tolist()
+        _settle(slopes, sides, borders.twins, before, over, edges[own & leaves].tolist())
+    return slopes
+
+
+def _settle(slopes, sides, twins, before, over, leaving) -> None:
+    """Change signs of slopes (in place) so that a facet is left over the nearest of several places.
+
+    ``over`` holds half-edges to be left over and half-edges leaving corners to be left over; ``leaving`` all
+    with the foot beyond them.
+    """
+
+    def away(h, past):
+        return (sides[h] ** 2 + past * slopes[h] ** 2) / -(slopes[h] + slopes[twins[h]])
+
+    places = sorted([(away(h, 0.0), 0, h) for h in over[0]] + [(away(h, 1.0), 1, h) for h in over[1]])
+    if leaving and not places:
+        end = min((max(h, twins[h], key=slopes.__getitem__) for h in leaving), key=slopes.__getitem__)
+        slopes[end] = 0.0
+    for _, corner, h in places[1:] if leaving else places:
+        ends = (h, twins[before[h]]) if corner else (h, twins[h])
+        end = min(ends, key=lambda end: abs(slopes[end]))
+        slopes[end] = -np.finfo(float).tiny if corner else np.finfo(float).tiny
+
+
+def sinks(edges) -> NDArray[np.int64]:
+    """Return (S,) facets that hold the foot of the centre of mass: the part rests on them."""
+    leaves = edges.borders & (edges.sides < 0.0)
+    stable = np.ones(len(edges.normals), bool)
+    stable[np.repeat(edges.facets, 3)[leaves]] = False
+    return np.flatnonzero(stable)
+
+
+def saddles(edges) -> NDArray[np.int64]:
+    """Return (E,) half-edges, one of each pair, over which the part can be balanced.
+
+    The foot of the centre of mass lies between the two corners and neither facet rolls over the edge.
+    """
+    ahead = (edges.slopes <= 0.0) & (edges.sides >= 0.0) & edges.borders
+    one_of_two = np.arange(len(ahead)) < edges.twins
+    return np.flatnonzero(ahead & ahead[edges.twins] & one_of_two)
+
+
+def maxima(edges) -> NDArray[np.int64]:
+    """Return (M,) corners on which the part can be balanced: no neighbour is further out along them."""
+    origins = edges.origins[edges.borders]
+    top = np.zeros(len(edges.vertices), bool)
+    top[origins] = True
+    top[origins[edges.slopes[edges.borders] > 0.0]] = False
+    return np.flatnonzero(top)
+
+
+def _twins(neighbours) -> NDArray[np.int64]:
+    owners, beyond = np.repeat(np.arange(len(neighbours)), 3), neighbours.ravel().astype(int)
+    first, second = (np.ascontiguousarray(column)[beyond] == owners for column in neighbours.T[:2])
+    return 3 * beyond + np.where(first, 0, np.where(second, 1, 2))
+
+
+def _facets(hull, twins) -> NDArray[np.int64]:
+    """Facet of each triangle: triangles joined across flat edges."""
+    owners = np.repeat(np.arange(len(hull.triangles)), 3)
+    depths = _depths(hull, twins)
+    near = np.flatnonzero(np.minimum(depths, depths[twins]) <= COPLANAR * hull.radius)
+    if not len(near):
+        return np.arange(len(hull.triangles))
+    flat = near[_flat(hull, near, twins, depths)]
+    return components(owners[flat], owners[twins[flat]], len(hull.triangles))[1]
+
+
+def _depths(hull, twins) -> NDArray[np.float64]:
+    """(H,) [m] how far the corner off each edge, of the neighbour, lies below the triangle's plane."""
+    corners, depths = hull.triangles.ravel(), np.empty(len(twins))
+    places, normals = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(hull.normals.T)
+    for some in _blocks(len(twins)):
+        triangles = np.arange(some.start, min(some.stop, len(twins))) // 3
+        above = walks.dot(normals[:, triangles], places[:, corners[twins[some]]])
+        depths[some] = hull.heights[triangles] - above
+    return depths
+
+
+def _flat(hull, near, twins, depths) -> NDArray[np.bool_]:
+    """Which of some half-edges lie inside a facet.
+
+    Both triangles must lie in each other's plane as far as rounding lets that be known; a sliver joins the
+    neighbour across its longest edge only, or it would glue the facets on both its sides.
+    """
+    pairs = near // 3, twins[near] // 3
+    edges = near % 3, twins[near] % 3
+    inside, sliver = np.ones(len(near), bool), np.zeros(len(near), bool)
+    across = np.zeros(len(near), bool)
+    for triangle, edge, depth in zip(pairs, edges, (depths[near], depths[twins[near]])):
+        corners = hull.vertices[hull.triangles[triangle]]
+        lengths = vectors.norm(corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]])  # opposite each corner
+        width = 2.0 * hull.areas[triangle] / lengths.max(axis=1) / hull.radius
+        narrow = width < NEEDLE_WIDTH
+        inside &= depth <= hull.radius * (COPLANAR + PLANE / np.maximum(width, NEEDLE_WIDTH))
+        across |= narrow & (edge == lengths.argmax(axis=1))
+        sliver |= narrow
+    return across | (inside & ~sliver)
+
+
+def _facet_normals(hull, facets) -> NDArray[np.float64]:
+    """(M, 3) unit normals of the facets, by the areas of their triangles."""
+    if len(hull.triangles) == facets.max() + 1:
+        return hull.normals[np.argsort(facets)]
+    weighted = hull.areas[:, None] * hull.normals
+    sums = np.stack([np.bincount(facets, column) for column in weighted.T], axis=1)
+    return sums / vectors.norm(sums)[:, None]
+
+
+class Borders(NamedTuple):
+    """Half-edges of which only some part two facets."""
+
+    targets: np.ndarray  # (H,) corner a half-edge ends at
+    twins: np.ndarray  # (H,) the same edge seen from the other side
+    part: np.ndarray  # (H,) bool: parts two facets, from one corner of three facets to the next
+    ahead: np.ndarray  # (H,) next half-edge along the border of the same facet
+    facets: np.ndarray  # (H,) facet of each half-edge
+
+    @property
+    def around(self) -> NDArray[np.int64]:
+        """(H,) next border half-edge leaving the same corner; the first half-edge off the borders."""
+        edges = np.flatnonzero(self.part)
+        around = np.zeros_like(self.ahead)
+        around[self.ahead[edges]] = self.twins[edges]
+        return around
+
+
+def facet_borders(hull, origins, targets, twins, facets) -> Borders:
+    """Return the borders between facets, as a convex body has them.
+
+    Parameters
+    ----------
+    hull : Hull
+    origins, targets, twins : (H,) int
+        Its half-edges: 3 t to 3 t + 2 run around triangle t.
+    facets : (H,) int
+        Facet of coplanar triangles each half-edge belongs to.
+
+    Returns
+    -------
+    Borders
+        Every corner with three edges or more, every facet likewise and convex; facets are numbered
+        without gaps. A facet that would not be convex is left in triangles, and one left with two edges
+        (a needle) becomes part of its neighbour.
+    """
+    facets = _convex(hull, origins, twins, facets)
+    while True:
+        straightened = _straightened(origins, _bordered(targets, twins, facets))
+        needles = _of_two_edges(straightened)
+        if not len(needles):
+            return (
+                straightened if np.bincount(facets).all() else straightened._replace(facets=_numbered(facets))
+            )
+        facets = _joined(facets, facets[needles], facets[straightened.twins[needles]])
+
+
+def _bordered(targets, twins, facets) -> Borders:
+    part = facets != facets[twins]
+    return Borders(targets, twins, part, _ahead(twins, part), facets)
+
+
+def _ahead(twins, part) -> NDArray[np.int64]:
+    """(H,) next border along each facet, over the edges within it; meaningless off the borders."""
+    following = np.arange(len(twins)).reshape(-1, 3)[:, [1, 2, 0]].ravel()
+    ahead = following.copy()
+    inside = np.flatnonzero(part & ~part[ahead])
+    while len(inside):
+        ahead[inside] = following[twins[ahead[inside]]]
+        inside = inside[~part[ahead[inside]]]
+    return ahead
+
+
+def _convex(hull, origins, twins, facets) -> NDArray[np.int64]:
+    """(H,) facets, those with a reflex corner taken apart into their triangles."""
+    targets, single = origins[twins], np.arange(len(facets)) // 3
+    while True:
+        bordered = _bordered(targets, twins, facets)
+        merged = np.bincount(facets[::3])[facets] > 1
+        edges = np.flatnonzero(bordered.part & merged)
+        corner = hull.vertices[targets[edges]]
+        before, after = hull.vertices[origins[edges]], hull.vertices[targets[bordered.ahead[edges]]]
+        across = vectors.cross(corner - before, after - corner)
+        turn = (across * _normals(hull, facets)[facets[edges]]).sum(axis=1)
+        reflex = turn < -STRAIGHTNESS_TOLERANCE * hull.radius * np.sqrt(((after - before) ** 2).sum(axis=1))
+        if not reflex.any():
+            return facets
+        split = np.isin(facets, facets[edges[reflex]])
+        facets = _numbered(np.where(split, facets.max() + 1 + single, facets))
+
+
+def _numbered(facets) -> NDArray[np.int64]:
+    """(H,) facets numbered without gaps."""
+    return np.unique(facets, return_inverse=True)[1].ravel()
+
+
+def _normals(hull, facets) -> NDArray[np.float64]:
+    """(M, 3) unit normals of the facets, by the areas of their triangles."""
+    weighted = hull.areas[:, None] * hull.normals
+    sums = np.stack([np.bincount(facets[::3], column) for column in weighted.T], axis=1)
+    return sums / np.maximum(np.sqrt((sums**2).sum(axis=1)), np.finfo(float).tiny)[:, None]
+
+
+def _straightened(origins, borders) -> Borders:
+    """Borders with one edge where several met at corners of two facets."""
+    valence = np.bincount(origins[borders.part], minlength=origins.max() + 1)
+    passing = borders.part & (
+        valence[borders.targets] < MIN_FACETS_AT_CORNER
+    )  # ends at a corner of two facets
+    if not passing.any():
+        return borders
+    starts = np.flatnonzero(borders.part & ~passing[borders.twins])
+    last, going = starts.copy(), np.flatnonzero(passing[starts])
+    while len(going):
+        last[going] = borders.ahead[last[going]]
+        going = going[passing[last[going]]]
+    targets, twins, ahead = (array.copy() for array in (borders.targets, borders.twins, borders.ahead))
+    targets[starts], twins[starts], ahead[starts] = targets[last], twins[last], ahead[last]
+    part = np.zeros_like(borders.part)
+    part[starts] = True
+    return Borders(targets, twins, part, ahead, borders.facets)
+
+
+def _of_two_edges(borders) -> NDArray[np.int64]:
+    """Half-edges of facets with two edges, one of the two."""
+    edges = np.flatnonzero(borders.part)
+    return edges[(borders.ahead[borders.ahead[edges]] == edges) & (edges < borders.ahead[edges])]
+
+
+def _joined(facets, first, second) -> NDArray[np.int64]:
+    """(H,) facets, each of ``first`` joined with that of ``second``."""
+    return components(first, second, facets.max() + 1)[1][facets]

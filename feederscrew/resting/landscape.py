@@ -1,0 +1,336 @@
+"""The height of the centre of mass over every way down: sinks, saddles and what lies between.
+
+H(n), the height of the centre of mass when direction n points down, has its minima at hull triangles. The
+way from one triangle to the next leads over their common edge; the lowest such ways make a tree, and
+cutting it at saddles that rise too little above the shallower side leaves one basin per resting place.
+
+Source: docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew.geometry import vectors
+from feederscrew.geometry.compiled import compiled, fitting
+
+NAMELESS = -1  # a sink of no face
+
+
+def find_roots(forest) -> NDArray[np.int64]:
+    """Return the root of every member of a forest (N,) of places in itself."""
+    while True:
+        further = forest[forest]
+        if np.array_equal(further, forest):
+            return forest
+        forest = further
+
+
+def on_lists(function):
+    """Return a function that runs another on lists, in plain Python the faster, and fills its arrays."""
+
+    def run(*arrays) -> Any:
+        lists = [array.tolist() for array in arrays]
+        made = function(*lists)
+        for array, filled in zip(arrays, lists):
+            array[:] = filled
+        return made
+
+    return run
+
+
+@compiled
+def find_root(forest, k) -> int:
+    """Return the root of a member of a forest (N,), and cut the way to it short."""
+    while forest[k] != k:
+        forest[k] = forest[forest[k]]
+        k = forest[k]
+    return k
+
+
+@compiled
+def join_trees(heights, limits, ones, others, tops, region, basin, standing) -> None:
+    """Join sinks along ways sorted by height where the shallower side rises no more than its limit.
+
+    A way between sinks that lower ways have led to each other is passed over.
+
+    Source: own; docs/resting.md, "Exact tumbling".
+
+    Parameters
+    ----------
+    heights, limits : (B,) float [m], of the sinks
+    ones, others : (W,) int, sinks on either side of each way
+    tops : (W,) float [m], ascending
+    region, basin : (B,) int, each sink its own; two forests, their roots the lowest of each tree
+    standing : (W,) bool, filled with the ways that join regions but no basins
+    """
+    for k in range(len(tops)):
+        i, j = ones[k], others[k]
+        low, high = find_root(region, i), find_root(region, j)
+        if low == high:
+            continue
+        if heights[low] > heights[high]:
+            low, high = high, low
+        region[high] = low
+        standing[k] = tops[k] - heights[high] > limits[high]
+        if not standing[k]:
+            deep, shallow = find_root(basin, i), find_root(basin, j)
+            if heights[deep] > heights[shallow]:
+                deep, shallow = shallow, deep
+            basin[shallow] = deep
+
+
+@compiled
+def adopt_tree(pairs, tops, tie, names, parent, claims) -> int:
+    """Let every nameless sink be claimed by what lies behind its lowest saddle, or saddles where they tie.
+
+    Source: own; docs/resting.md, "Exact tumbling".
+
+    Parameters
+    ----------
+    pairs : (E, 2) sinks on both sides of each saddle
+    tops : (E,) float [m], ascending
+    tie : float [m], saddles that differ by less are as high as each other
+    names : (S,) int, NAMELESS where a sink has none; filled at the roots of ``parent``
+    parent : (S,) int, each sink its own; filled with a forest of nameless sinks that are claimed as one
+    claims : (E, 2) filled with the root of the claimed and that of the claiming
+
+    Returns
+    -------
+    int
+        Claims made.
+    """
+    count = start = 0
+    while start < len(pairs):
+        stop = start
+        while stop == start or (stop < len(pairs) and tops[stop] - tops[start] <= tie):
+            i, j = find_root(parent, pairs[stop, 0]), find_root(parent, pairs[stop, 1])
+            if names[i] == NAMELESS and names[j] == NAMELESS:
+                parent[j] = i
+            stop += 1
+        first = count
+        for e in range(start, stop):
+            i, j = find_root(parent, pairs[e, 0]), find_root(parent, pairs[e, 1])
+            if names[i] == NAMELESS:
+                i, j = j, i
+            if names[i] != NAMELESS and names[j] == NAMELESS:
+                claims[count, 0], claims[count, 1] = j, i
+                count += 1
+        for c in range(first, count):
+            names[claims[c, 0]] = names[claims[c, 1]]
+        start = stop
+    return count
+
+
+SMOOTH_ANGLE = np.radians(
+    25.0
+)  # a sharper edge is meant: a bar of 12 sides (30 deg) has flats, one of 16 rolls
+GENTLE_COSINE = np.cos(SMOOTH_ANGLE)  # of two normals, their product
+RIPPLE_OF_RADIUS = 2e-3  # noise and tessellation leave barriers below this share of the part's radius ...
+RIPPLE_OF_HEIGHT = 2e-2  # ... and below this share of the height, or slender parts would lose their sides
+MIN_BARRIER_SHARE = (
+    1e-4  # of the radius, 1 um on a small part: a lower barrier holds nothing, however sharp its edge
+)
+STRIP_ANGLE = 1e-6  # [rad] between halves of one strip
+MIN_TRIANGLE_WIDTH = 1e-3  # of the radius: a narrower triangle has no direction of its own
+
+
+@dataclass(frozen=True, eq=False)
+class Landscape:
+    """Basins of a hull; T triangles, E edges, B basins, R ripples."""
+
+    pairs: np.ndarray  # (E, 2) triangles on either side of each edge of the hull
+    basins: np.ndarray  # (T,) the triangle at the bottom of each triangle's basin
+    sinks: np.ndarray  # (B,) those bottom triangles
+    ripples: np.ndarray  # (R, 2) sinks on either side of a smooth edge that were too deep to merge
+    rises: np.ndarray  # (R,) [1] height of the way over that edge, above the higher side, as a share of it
+    bends: np.ndarray  # (R,) [rad] between the lowest triangles on either side
+    lows: np.ndarray  # (L,) triangles from which no way leads down, before any were merged
+
+
+def edges(hull) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return every edge of the hull once: its triangles (E, 2) and corners (E, 2), places in the hull [1]."""
+    first, second = np.repeat(np.arange(len(hull.triangles)), 3), hull.neighbours.ravel()
+    once = np.flatnonzero(first < second)
+    starts, ends = (hull.triangles[:, corners].ravel()[once] for corners in ([1, 2, 0], [2, 0, 1]))
+    return np.column_stack([first[once], second[once]]), np.column_stack([starts, ends])
+
+
+def passes(hull, pairs, ends) -> NDArray[np.float64]:
+    """Return the height of the centre of mass at the highest point of the way over each edge.
+
+    Tipping over an edge turns the part about it: the centre of mass climbs until it stands over the edge,
+    if that happens on the way, else the way is downhill and its top is the higher side.
+
+    Source: docs/resting.md, "Barriers and the tipping graph".
+
+    Parameters
+    ----------
+    hull : Hull
+    pairs, ends : (E, 2) int
+        Triangles on either side and corners of each edge.
+
+    Returns
+    -------
+    (E,) float [m]
+    """
+    p, q = vectors.columns_at(hull.vertices, ends)
+    n1, n2 = vectors.columns_at(hull.normals, pairs)
+    along = q - p
+    square = np.maximum(vectors.dot_columns(along, along), np.finfo(float).tiny)
+    foot = p - along * (vectors.dot_columns(p, along) / square)  # of the centre
+    sides = ((n1, n2), (n1, foot), (foot, n2))
+    turn, before, after = (vectors.dot_columns(vectors.cross_columns(*side), along) for side in sides)
+    between = (before * turn > 0.0) & (after * turn > 0.0)
+    higher = np.maximum(*hull.heights[pairs.T])
+    return np.where(between, np.maximum(np.sqrt(vectors.dot_columns(foot, foot)), higher), higher)
+
+
+def landscape(hull) -> Landscape:
+    """Return the basins of the hull with ripples merged by persistence.
+
+    Parameters
+    ----------
+    hull : Hull
+
+    Returns
+    -------
+    Landscape
+        A triangle whose way down is cut off by a ripple (noise, a tessellated curve, the diagonal of a
+        flat face) belongs to the basin behind the ripple. A low barrier over a sharp edge, like the one
+        around the end of a slender pin, is no ripple.
+
+    References
+    ----------
+    H. Edelsbrunner, D. Letscher, A. Zomorodian, "Topological persistence and simplification", Discrete
+    Comput. Geom. 28, 511-533, 2002.
+    """
+    pairs, ends = edges(hull)
+    tops = passes(hull, pairs, ends)
+    ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * hull.heights)
+    nothing = np.full(len(hull.heights), MIN_BARRIER_SHARE * hull.radius)
+    below = _downhill(hull, pairs, tops)
+    smooth = gentle(_broad_normals(hull, below), pairs)
+    local = find_roots(below)
+    basins, deep = _joined(hull, local, pairs[smooth], tops[smooth], ripple)
+    strips, way = local[pairs[smooth][deep]], tops[smooth][deep]
+    basins, _ = _joined(hull, basins, pairs, tops, nothing)
+    return Landscape(
+        pairs=pairs,
+        basins=basins,
+        sinks=_sinks(basins),
+        ripples=basins[strips],
+        rises=way / hull.heights[basins[strips]].max(axis=1, initial=0.0) - 1.0,
+        bends=_bend(hull, strips),
+        lows=_sinks(local),
+    )
+
+
+def angle(u, v) -> Any:
+    """Return angles between vectors (..., 3) [rad], true down to the smallest.
+
+    Source: its sine and cosine are the cross and the scalar product over one and the same length.
+    """
+    along = u[..., 0] * v[..., 0] + u[..., 1] * v[..., 1] + u[..., 2] * v[..., 2]
+    return np.arctan2(vectors.norm(vectors.cross(u, v)), along)
+
+
+def gentle(normals, pairs) -> NDArray[np.bool_]:
+    """Whether two planes meet in a bend so gentle that it may be part of a curve.
+
+    Source: own; docs/resting.md, "The drop test": turns of less than 25 degrees.
+
+    Parameters
+    ----------
+    normals : (N, 3) float [1]
+        Unit vectors.
+    pairs : (E, 2) int
+
+    Returns
+    -------
+    (E,) bool
+    """
+    return vectors.dot_columns(*vectors.columns_at(normals, pairs)) > GENTLE_COSINE
+
+
+def _downhill(hull, pairs, tops) -> NDArray[np.int64]:
+    """(T,) neighbour each triangle rolls to when no step may climb; itself where there is none."""
+    height = hull.heights
+    steps = np.concatenate([pairs, pairs[:, ::-1]])
+    falls = (height[steps[:, 1]] < height[steps[:, 0]]) & (np.tile(tops, 2) <= height[steps[:, 0]])
+    steps = steps[falls]
+    steps = steps[np.argsort(-height[steps[:, 1]], kind="stable")]
+    below = np.arange(len(height))
+    below[steps[:, 0]] = steps[:, 1]  # of several ways down the lowest is written last
+    return below
+
+
+def _bend(hull, pairs) -> NDArray[np.float64]:
+    return angle(hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]])
+
+
+def _broad_normals(hull, below) -> NDArray[np.float64]:
+    """(T, 3) normal of each triangle, of a sliver that of the first broad one on its way down.
+
+    A corner moved by noise, or a chamfer too small to see, leads round a sharp edge by gentle bends.
+    """
+    a, b, c = vectors.columns_at(hull.vertices, hull.triangles)
+    sides = [
+        np.sqrt(vectors.dot_columns(side, side)) for side in (b - c, c - a, a - b)
+    ]  # opposite each corner
+    thin = 2.0 * hull.areas < MIN_TRIANGLE_WIDTH * hull.radius * np.maximum(np.maximum(*sides[:2]), sides[2])
+    end = find_roots(np.where(thin, below, np.arange(len(thin))))
+    still = np.flatnonzero(thin & (end == np.arange(len(thin))))  # no way down, or half of a flat strip
+    lengths, neighbours = np.column_stack(sides)[still], hull.neighbours[still]
+    end = _over_longest(end, thin, still, neighbours[np.arange(len(still)), lengths.argmax(axis=1)])
+    level = angle(hull.normals[still, None], hull.normals[neighbours]) < STRIP_ANGLE
+    best = np.where(thin[end[neighbours]], 0.0, np.where(level, np.inf, lengths)).argmax(axis=1)
+    out = np.arange(len(thin))
+    out[still] = np.where(thin[end[still]], end[hull.neighbours[still, best]], end[still])
+    return hull.normals[out[end]]
+
+
+def _over_longest(end, thin, still, longest) -> NDArray[np.int64]:
+    """(T,) triangle for which each stands: slivers at the rim of a flat end lead over their longest sides.
+
+    Two slivers that share their longest side, as those of a narrow chamfer, stand for themselves.
+    """
+    end = end.copy()
+    while (still_thin := thin[end[still]] & ~thin[end[longest]]).any():
+        end[still[still_thin]] = end[longest[still_thin]]
+    return end
+
+
+def _joined(hull, basins, pairs, tops, limit) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Basins (T,) joined where the way between them rises by no more than the shallower one's limit.
+
+    Returns the new basins, and the edges (indices) of the lowest ways that rise by more.
+    """
+    sinks = _sinks(basins)
+    place = np.empty(len(basins), dtype=int)
+    place[sinks] = np.arange(len(sinks))
+    place = place[basins]
+    firsts, seconds = place[pairs].T
+    crossings = np.flatnonzero(firsts != seconds)
+    crossings = crossings[np.argsort(tops[crossings], kind="stable")]
+    region, basin = np.arange(len(sinks)), np.arange(len(sinks))
+    standing = np.zeros(len(crossings), dtype=bool)
+    join = fitting(join_trees, 3 * len(basins), on_lists(join_trees))
+    join(
+        hull.heights[sinks],
+        limit[sinks],
+        firsts[crossings],
+        seconds[crossings],
+        tops[crossings],
+        region,
+        basin,
+        standing,
+    )
+    return sinks[find_roots(basin)][place], crossings[standing]
+
+
+def _sinks(basins) -> NDArray[np.int64]:
+    """(B,) triangles at the bottom of their own basins."""
+    return np.flatnonzero(basins == np.arange(len(basins)))

@@ -1,0 +1,292 @@
+"""The formulas of the rules: published ones of a face's geometry, surface-weighted and exact tumbling.
+
+A published rule gives the weight of a class of ``faces`` equal aspects; `normalised` makes probabilities of
+them. Surface weights lie between dead landings and violent ones. In a cascade of hops a bouncing part loses
+energy until it can cross no saddle.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from feederscrew import check
+from feederscrew.resting.barriers import critical_solid_angles
+
+
+def pmi(faces, polar_inertia, height) -> NDArray[np.float64]:
+    """Return polar moment of inertia over height: the thesis's rule, eq. [section 3.1].
+
+    Parameters
+    ----------
+    faces : (A,) int
+        Equal aspects in the class; Tables 3-8 and 3-9 count each class once.
+    polar_inertia : (A,) float [kg m2]
+        About the aspect's normal through the centre of mass.
+    height : (A,) float [m]
+        Of the centre of mass over the aspect.
+
+    Returns
+    -------
+    (A,) float [kg m]
+    """
+    return faces * polar_inertia / height
+
+
+def csa(faces, solid_angle, height) -> NDArray[np.float64]:
+    """Return centroid solid angle over height, eq. [Table 3-2].
+
+    Parameters
+    ----------
+    faces, height
+        As in `pmi`.
+    solid_angle : (A,) float [sr]
+        Of one face, seen from the centre of mass.
+
+    Returns
+    -------
+    (A,) float [sr/m]
+
+    References
+    ----------
+    B. K. A. Ngoi, L. E. N. Lim, S. S. G. Lee, J. Electronics Manufacturing 5(3), 1995.
+    """
+    return faces * solid_angle / height
+
+
+def stability(faces, contact_area, height) -> NDArray[np.float64]:
+    """Return contact area over height, eq. [Table 3-3].
+
+    Parameters
+    ----------
+    faces, height
+        As in `pmi`.
+    contact_area : (A,) float [m2]
+        Of one face.
+
+    Returns
+    -------
+    (A,) float [m]
+
+    References
+    ----------
+    P. S. K. Chua, M. L. Tay, "Modelling the natural resting aspect of small regular shaped parts",
+    J. Manufacturing Science and Engineering 120(3), 1998.
+    """
+    return faces * contact_area / height
+
+
+def normalised(weights, stable) -> NDArray[np.float64]:
+    """Return the probabilities of the stable aspects from their weights; the unstable ones have none.
+
+    Source: docs/resting.md, "How were the parts launched?".
+
+    Parameters
+    ----------
+    weights : (A,) float [any one unit]
+    stable : (A,) bool
+
+    Returns
+    -------
+    (A,) float [1]
+        Sums to 1; NaN throughout where a weight is not known, or none is above 0.
+    """
+    weights = np.where(stable, weights, 0.0)
+    total = weights.sum()
+    return weights / (total if total != 0.0 else np.nan)
+
+
+EXPONENTS = {"soft": 0.0, "medium": 1.2, "hard": 2.0}  # [1] by what the part lands on
+"""Soft: dead landings, exact quasi-static tumbling. Medium and hard: what drop simulations of restitution
+0.5 and of tumbling launches on a hard plane follow; 2 was chosen with measured cuboids in view."""
+
+
+def named(exponent) -> str:
+    """Return the surface of an exponent, 'hard'; 'exponent 1.5' where it has no name."""
+    names = {value: name for name, value in EXPONENTS.items()}
+    return names.get(exponent, f"exponent {exponent:g}")
+
+
+def surface_weights(shares, heights, radius, exponent) -> NDArray[np.float64]:
+    """Return the shares of a part that bounces before it settles, not normalised.
+
+    Source: own; docs/resting.md, "Surface-weighted tumbling".
+
+    Parameters
+    ----------
+    shares : (F,) float [1]
+        Quasi-static probabilities.
+    heights : (F,) float [m]
+        Of the centre of mass on each face; NaN where the share is zero.
+    radius : float [m]
+        Largest distance from the centre of mass to a corner: the part's highest way to stand.
+    exponent : float [1]
+        0 for a dead landing; larger for harder surfaces and livelier launches.
+
+    Returns
+    -------
+    (F,) float [1]
+        share (1 - height / radius)^exponent: a bouncing part visits every face and stays where it lies deep.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not finite or the radius not positive.
+
+    Notes
+    -----
+    Where radius - height is nearly zero for all faces (a nearly round body) the weight means nothing.
+    """
+    radius, exponent = check.positive("radius", radius), float(exponent)
+    if not np.isfinite(exponent):
+        raise ValueError(f"exponent is {exponent}, not a finite number")
+    depth = np.clip(1.0 - np.asarray(heights, float) / radius, np.finfo(float).tiny, 1.0)
+    return np.where(np.asarray(shares) > 0.0, shares * depth**exponent, 0.0)
+
+
+def surface_shares(shares, heights, radius, exponent) -> NDArray[np.float64]:
+    """Return ``surface_weights`` (F,) [1] that sum to 1.
+
+    Source: own; docs/resting.md, "Surface-weighted tumbling".
+    """
+    weights = surface_weights(shares, heights, radius, exponent)
+    return weights / weights.sum()
+
+
+# A hop keeps at most the share u of its energy with probability u^KEPT_ENERGY_EXPONENT: a fifth on average.
+KEPT_ENERGY_EXPONENT = 0.25
+HOP_BLOCK_SIZE = 1 << 16  # ways times levels at a time
+ENERGY_LEVELS = 200  # of energy, between the part's highest way to stand and the lowest saddle
+
+
+def quasistatic(tips) -> NDArray[np.float64]:
+    """Return the share of the attitudes from which a part let go without speed ends on each face.
+
+    Source: docs/resting.md, "Exact tumbling".
+
+    Parameters
+    ----------
+    tips : Tipping
+
+    Returns
+    -------
+    (F,) float [1]
+    """
+    return tips.shares
+
+
+def critical(faces) -> NDArray[np.float64]:
+    """Return the critical solid angle of each face over its height; of a rolling one, from its lowest strip.
+
+    Parameters
+    ----------
+    faces : sequence of Face
+        F faces.
+
+    Returns
+    -------
+    (F,) float [sr/m]
+
+    References
+    ----------
+    As in `critical_solid_angles`.
+    """
+    heights, solid_angles = (
+        np.array([getattr(face, name) for face in faces]) for name in ("height", "solid_angle")
+    )
+    shares = critical_solid_angles([face.polygon for face in faces], heights)
+    return shares * solid_angles / heights
+
+
+def hop_shares(tips, radius) -> NDArray[np.float64]:
+    """Return the shares in which hops of falling energy leave a part on its faces.
+
+    Source: own; docs/resting.md, "The cascade of hops".
+
+    Parameters
+    ----------
+    tips : Tipping
+    radius : float [m]
+        Largest distance from the centre of mass to a corner: the energy, as a height, at which every
+        attitude is open and the cascade begins.
+
+    Returns
+    -------
+    (F,) float [1]
+        Sums to 1; zero for faces without a sink.
+
+    Raises
+    ------
+    ValueError
+        If the radius is not positive.
+
+    Notes
+    -----
+    Energies e are heights, h those of the faces, t those of the saddles, A the shares of the basins. A
+    hop of energy e from face i ends on i or on a neighbour j whose saddle lies below e, with weights
+    A_i (e - h_i) and A_j (e - h_j) (e - t_ij) / (e - h_i): the room a face offers at that energy, times the
+    share of the hops that are high enough. Then the part keeps a random share of its energy over the
+    face it is on, and once no saddle lies below, it stays. Deep faces hold what comes, high and shallow
+    ones pass it on.
+
+    KEPT_ENERGY_EXPONENT and the powers of one were chosen by eye: docs/resting.md says on what,
+    ``benchmarks/accuracy.py`` compares.
+    """
+    present = np.flatnonzero(np.isfinite(tips.heights) & (tips.shares > 0.0))
+    between = np.isin(tips.pairs, present).all(axis=1)
+    pairs = np.searchsorted(present, tips.pairs[between])
+    tops, radius = tips.tops[between], check.positive("radius", radius)
+    ended = _cascade(tips.shares[present], tips.heights[present] / radius, pairs, tops / radius)
+    shares = np.zeros(len(tips.shares))
+    shares[present] = ended / ended.sum() if ended.any() else tips.shares[present]  # a ball has no room
+    return shares
+
+
+def _cascade(shares, heights, pairs, tops) -> NDArray[np.float64]:
+    """(F,) where the parts end; lengths in units of the radius."""
+    if not len(tops):
+        return shares
+    levels = np.linspace(1.0, tops.min(), ENERGY_LEVELS + 1)
+    lowest = np.full(len(shares), np.inf)
+    np.minimum.at(lowest, pairs.ravel(), np.repeat(tops, 2))
+    hops = _Hops(shares, heights, pairs, tops)
+    below = (
+        np.maximum(levels[:, None] - heights, 0.0) ** KEPT_ENERGY_EXPONENT
+    )  # of what is kept, up to each level
+    energies, retained, sinking = 0.5 * (levels[:-1] + levels[1:]), below[:-1] - below[1:], below[1:] > 0.0
+    reach, moves = np.where(sinking, below[1:], np.inf), energies[:, None] > lowest
+    density = hops.moved(shares, hops.parts(np.ones(1))[0]) / np.maximum(below[0], np.finfo(float).tiny)
+    before, sunk = np.empty(retained.shape), np.zeros(len(shares))
+    step = max(1, HOP_BLOCK_SIZE // len(hops.start))
+    for some in (slice(k, k + step) for k in range(0, ENERGY_LEVELS, step)):
+        parts = hops.parts(energies[some]) * (retained * moves)[some, hops.start]
+        for k, part in enumerate(parts / reach[some, hops.end], some.start):
+            before[k] = density
+            density = density + hops.moved(density, part)
+        lost = before[some, hops.start] * parts * ~sinking[some, hops.end]
+        sunk += np.bincount(hops.end, lost.sum(axis=0), minlength=len(shares))
+    return (before * retained * ~moves).sum(axis=0) + sunk + density * below[-1]
+
+
+class _Hops:
+    """Which faces a hop can end on; W directed ways, those of each face to itself among them."""
+
+    def __init__(self, shares, heights, pairs, tops) -> None:
+        own = np.arange(len(shares))
+        self.shares, self.heights, self.tops = shares, heights, np.concatenate([tops, tops])
+        self.start = np.concatenate([pairs[:, 0], pairs[:, 1], own])
+        self.end = np.concatenate([pairs[:, 1], pairs[:, 0], own])
+
+    def parts(self, energies) -> NDArray[np.float64]:
+        """(K, W) part of the mass at its start that goes each way in a hop of each energy (K,)."""
+        depth = np.maximum(energies[:, None] - self.heights, np.finfo(float).eps)
+        rates, between = (self.shares * depth)[:, self.end], slice(0, len(self.tops))
+        high = np.maximum(energies[:, None] - self.tops, 0.0)  # of the hops, those high enough
+        rates[:, between] *= high / depth[:, self.start[between]]
+        starts = self.start + len(self.shares) * np.arange(len(energies))[:, None]
+        total = np.bincount(starts.ravel(), rates.ravel(), minlength=depth.size)
+        return rates / total[starts]
+
+    def moved(self, mass, parts) -> NDArray[Any]:
+        """(F,) mass after one hop."""
+        return np.bincount(self.end, mass[self.start] * parts, minlength=len(mass))
