@@ -127,7 +127,15 @@ def _options(arrays=False, **others):
 
 @functools.cache
 def _fingerprint():
-    """Digest of the compiled sources: a changed source must not find what an older one left on disk."""
+    """Digest of the compiled sources and of the names of all modules.
+
+    A changed source must not find what an older one left on disk, and what lies there names the modules of
+    the records that it is handed: one that has moved since could not be loaded.
+    """
     library = Path(__file__).parents[1]
     files = sorted(path for pattern in SOURCES for path in library.glob(pattern))
-    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:12]
+    names = sorted(path.relative_to(library).as_posix() for path in library.rglob("*.py"))
+    digest = hashlib.sha256("\n".join(names).encode())
+    for path in files:
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]

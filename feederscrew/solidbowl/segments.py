@@ -159,7 +159,7 @@ def _is_lug_clear(lug, tooled_area, lugs, planes):
     """Whether a lug lies apart from devices, from other lugs and from other seams."""
     if tooled_area.distance(shapely.Point(lug.middle[:2])) < LUG_CLEARANCE_M:
         return False
-    if any(np.sum((lug.middle - lug.middle) ** 2) < (2.0 * SCREW_LENGTH_M) ** 2 for lug in lugs):
+    if any(np.sum((lug.middle - other.middle) ** 2) < (2.0 * SCREW_LENGTH_M) ** 2 for other in lugs):
         return False
     own = int(np.argmax(np.abs(lug.along)))
     return all(axis == own or abs(lug.middle[axis] - at) > SCREW_LENGTH_M for axis, at in planes)

@@ -450,7 +450,7 @@ def test_the_lowest_outlet_that_is_told_has_a_width_to_measure(shape, climb, lea
 
 def test_a_turn_below_a_cut_is_found():
     made = planned(CHAINS["gap"])
-    longer = replace(made, way=replace(made.path, end=made.path.end + 0.3), first=made.first + 0.3)
+    longer = replace(made, path=replace(made.path, end=made.path.end + 0.3), first=made.first + 0.3)
     with pytest.raises(FeederError, match="meets the track at"):
         ways_down(body(longer))
 

@@ -43,8 +43,8 @@ def test_height_width_and_wall_are_those_of_the_formula(stepped, rng):
     np.testing.assert_allclose(found, np.tan(STEEP.climb) * s, rtol=0, atol=NEAR)
     for one in s[:20]:
         assert track_width(own, whole, one) == pytest.approx(TRACK.width, abs=NEAR)
-        place = own.way.places(one, 5e-3) + [0.0, 0.0, 2e-3]
-        theta = own.way.angle(one)
+        place = own.path.places(one, 5e-3) + [0.0, 0.0, 2e-3]
+        theta = own.path.angle(one)
         met = facets.first_met(whole, place, place + 0.1 * np.array([np.cos(theta), np.sin(theta), 0.0]))
         assert met[0] == pytest.approx(5e-3, abs=NEAR)
 
@@ -79,7 +79,7 @@ def test_a_cone_is_closed_and_its_track_that_of_the_formula(climb, bank, width, 
     solid = body(planned(track=track, asked=SolidOptions(shape="conical"), turns=1.8))
     assert closed(solid) > 0.0
     own, whole = solid.plan, facets.unplaced(solid)
-    s, y = rng.uniform(0.1, own.way.end - 0.01, 200), rng.uniform(3e-4, width - 3e-4, 200)
+    s, y = rng.uniform(0.1, own.path.end - 0.01, 200), rng.uniform(3e-4, width - 3e-4, 200)
     found = np.array([track_heights(own, whole, *one) for one in zip(s, y)])
     formula = np.tan(track.climb) * s + y * np.sin(track.bank)
     np.testing.assert_allclose(found, formula, rtol=0, atol=NEAR)
@@ -94,8 +94,8 @@ def test_nothing_of_the_track_stands_out_of_a_leaning_wall(name):
     solid = body(planned(track=track, asked=SolidOptions(shape="conical"), turns=1.4, name=name))
     own, whole = solid.plan, facets.unplaced(solid)
     lean = np.tan(0.5 * np.pi - own.stairs.slope)
-    for s in np.linspace(0.5, 0.9, 12) * own.way.end:
-        theta, foot = own.way.angle(s), own.way.places(s, 0.0)
+    for s in np.linspace(0.5, 0.9, 12) * own.path.end:
+        theta, foot = own.path.angle(s), own.path.places(s, 0.0)
         out = np.array([np.cos(theta), np.sin(theta), 0.0])
         for deep in np.linspace(0.5, 3.0, 12) * own.material.plate:
             start = foot + 0.05 * out - [0.0, 0.0, deep]
