@@ -263,7 +263,7 @@ def crew(jobs=None, scheduler=None):
     return Cluster(scheduler) if scheduler else Processes(jobs or processors())
 
 
-def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda run: None) -> Batch:
+def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda kept: None) -> Batch:
     """Compute every part and write the folder of the batch.
 
     Parameters
