@@ -14,7 +14,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-__version__ = "0.2.0"
+from feederscrew.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from feederscrew.bowl.record import Bowl as Bowl

@@ -11,7 +11,7 @@ from feederscrew.tooling.devices.kinds import KINDS
 
 ROOT = Path(__file__).parent.parent
 ORDER = [
-    "errors", "check", "units", "value_forms", "records", "running", "documents", "dxf",
+    "version", "errors", "check", "units", "value_forms", "records", "running", "documents", "dxf",
     "geometry", "part", "resting", "tooling.devices", "bowl", "screw", "mechanics", "conveying", "dropping",
     "tooling", "rates", "trial", "machine", "solidbowl", "studies", "designing", "output", "thesis", "batch",
     "serving",

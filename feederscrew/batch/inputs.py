@@ -8,6 +8,7 @@ import re
 import unicodedata
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from feederscrew import bowl as bowls
 from feederscrew import documents
@@ -37,7 +38,7 @@ class ListedPart:
     names: str | None = None  # file of names of its aspects
 
 
-def read_listing(path, faults):
+def read_listing(path, faults) -> list[Any]:
     """Read the parts of a list; their paths count from its folder.
 
     Parameters
@@ -73,7 +74,7 @@ def _text(path):
     return documents.decoded(data, path)
 
 
-def _header_faults(path, line, header):
+def _header_faults(path, line, header) -> list[Any]:
     where = f"{path}:{line}"
     if PART not in header:
         return [
@@ -92,7 +93,7 @@ def _header_faults(path, line, header):
     ]
 
 
-def _row(path, line, header, cells, faults):
+def _row(path, line, header, cells, faults) -> list[Any]:
     """Return the part of a line, or none."""
     where, texts = f"{path}:{line}", dict(zip(header, cells))
     if len(cells) > len(header):
@@ -115,7 +116,7 @@ CARD_KEY = re.compile(rb"^(mass|inertia|aspects)\s*:", re.MULTILINE)
 LONGEST, MOST_BYTES = 80, 160  # letters and bytes of a folder's name
 
 
-def gather(sources, configs=(), overrides=(), density=None):
+def gather(sources, configs=(), overrides=(), density=None) -> tuple[Any, ...]:
     """Gather every part in every bowl, each with a folder name of its own.
 
     Parameters
@@ -164,7 +165,7 @@ def _of_density(row, density):
     return replace(row, options=(*row.options, ("density", density)))
 
 
-def _request(row, conditions, names):
+def _request(row, conditions, names) -> Request:
     return Request(row.source, conditions, row.options, line=row.line, aspect=row.aspect, names=names)
 
 
@@ -182,7 +183,7 @@ def _names(rows, faults):
     return names_by_file
 
 
-def _rows(source, faults):
+def _rows(source, faults) -> list[Any]:
     """Return the parts that one argument stands for."""
     if Path(source).suffix.lower() == ".csv" and not found_as(Path.is_dir, source):
         return read_listing(source, faults)
@@ -217,7 +218,7 @@ def _there(path):
     return path.is_file() or (path.is_symlink() and not path.exists())
 
 
-def _once(paths):
+def _once(paths) -> list[Any]:
     """Keep each file by its shortest way: links between folders may lead round in a circle."""
     shortest: dict[tuple[Path, str], str] = {}
     for path in sorted(paths, key=lambda path: (len(Path(path).parts), path)):
@@ -231,7 +232,7 @@ def _some(matches, typed, what, mend):
     return matches
 
 
-def _conditions(path, overrides, faults, line):
+def _conditions(path, overrides, faults, line) -> Conditions | None:
     """Read the bowl of a file, asked for in a line of a list or in none; None where it has faults."""
     try:
         settings = bowls.settings(path, overrides)
@@ -258,7 +259,7 @@ def _placed(fault, path, line):
     return ConfigError(f"{line}: {fault.where}", fault.what, fault.mend) if line else fault
 
 
-def _named(requests):
+def _named(requests) -> tuple[Any, ...]:
     """Give the requests folder names that differ on every file system."""
     several = len({request.conditions for request in requests}) > 1
     labels = [_label(request, several) for request in requests]

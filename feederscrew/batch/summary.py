@@ -2,7 +2,9 @@
 
 import csv
 import io
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote
 
 from feederscrew.batch.task import DONE, NOT_COMPUTED, PARTS, THUMBNAIL
@@ -28,7 +30,7 @@ HIDDEN_SUMMARY_COLUMNS = (  # from a table for people; reasons stand above it, a
 )  # fmt: skip
 
 
-def rows(store, requests, finished=None):
+def rows(store, requests, finished=None) -> tuple[Any, ...]:
     """Read what the disk says of each part.
 
     Parameters
@@ -50,12 +52,12 @@ def rows(store, requests, finished=None):
     )
 
 
-def is_partial(text):
+def is_partial(text) -> bool:
     """Return whether the text of a summary is that of a run that was stopped."""
     return any(row.get("status") == NOT_COMPUTED for row in csv.DictReader(io.StringIO(text)))
 
 
-def _row(record, request):
+def _row(record, request) -> dict[Any, Any]:
     columns = {
         "part": Path(request.source).name,
         "folder": request.name,
@@ -78,7 +80,7 @@ def _harmless(value):
     return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
 
 
-def rate(row):
+def rate(row) -> str:
     """Return a row's rate for people."""
     number = row["parts_per_minute"]
     return "no rate" if number is None else f"{number:.3g} / min"
@@ -87,7 +89,7 @@ def rate(row):
 NO_RATE = "; rate is 0"  # what a note ends in where the number says it already
 
 
-def sheets(store, rows):
+def sheets(store, rows) -> Iterator[Any]:
     """Yield what each contact sheet shows, up to ``TILES`` parts; a sheet without a picture is left out.
 
     Yields
@@ -101,7 +103,7 @@ def sheets(store, rows):
             yield tiles
 
 
-def _tile(store, row):
+def _tile(store, row) -> tuple[Any, ...]:
     if row["status"] != DONE:
         reason = _reason(row)
     elif row["parts_per_minute"] is None and row.get("note"):
@@ -113,7 +115,7 @@ def _tile(store, row):
     return store.file(row["folder"], THUMBNAIL), row["folder"], reason
 
 
-def _reason(row):
+def _reason(row) -> str:
     """Why a part failed, without the path of its file in front."""
     reason = row["reason"] or ""
     place, colon, rest = reason.partition(": ")
@@ -128,7 +130,7 @@ INDEX_HEADINGS = (
 SUMMARY_LINK_TABLE = Matrix(("all numbers",), ((MarkedCell(SUMMARY_FILE, link=SUMMARY_FILE),),))
 
 
-def index_page(store, rows):
+def index_page(store, rows) -> Page:
     """Build the page of a batch: a line a part, with its picture and a link to its folder.
 
     Parameters
@@ -147,7 +149,7 @@ def index_page(store, rows):
     return Page(text, "", (Chapter((Matrix(INDEX_HEADINGS, lines, sortable=True), SUMMARY_LINK_TABLE)),))
 
 
-def _index_row(store, row):
+def _index_row(store, row) -> tuple[Any, ...]:
     remarks = "; ".join(filter(None, (row["reason"], row["note"], row["warnings"])))
     folder = MarkedCell(row["folder"], link=f"{PARTS}/{quote(row['folder'])}/")
     start = (MarkedCell("", picture=_picture(store, row)), folder, MarkedCell(row["config"]))
@@ -159,11 +161,11 @@ def _index_row(store, row):
     return (*start, *numbers, MarkedCell(leaves), *rates, MarkedCell(remarks))
 
 
-def _number(value):
+def _number(value) -> MarkedCell:
     return MarkedCell("-" if value is None else f"{value:.4g}", "number")
 
 
-def _picture(store, row):
+def _picture(store, row) -> Picture | None:
     content = store.file(row["folder"], THUMBNAIL) if row["status"] == DONE else None
     return (
         None

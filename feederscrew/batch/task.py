@@ -6,6 +6,7 @@ import json
 import re
 from dataclasses import dataclass, field
 from importlib import metadata
+from typing import Any
 
 from feederscrew import __version__
 from feederscrew.bowl import Bowl
@@ -81,7 +82,7 @@ class Task:
     key: str  # of everything that the results hang on
 
     @classmethod
-    def of(cls, request, choices, data):
+    def of(cls, request, choices, data) -> "Task":
         """Make the task of a request, once its file is read."""
         sha256 = hashlib.sha256(data).hexdigest()
         return cls(request, choices, data, sha256, fingerprint(request, choices, sha256))
@@ -103,7 +104,7 @@ class Outcome:
     files: dict[str, bytes] = field(default_factory=dict)
 
     @classmethod
-    def failed(cls, task, reason, *, final=True):
+    def failed(cls, task, reason, *, final=True) -> "Outcome":
         """Make the outcome of a part that gave nothing; ``final`` if it would fail again."""
         request, reason = task.request, ELSEWHERE.sub("", " ".join(reason.split()))
         if request.source not in reason:
@@ -138,6 +139,6 @@ def fingerprint(request, choices, sha256):
     return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
 
 
-def libraries():
+def libraries() -> dict[Any, Any]:
     """Return the version of each library that has a say in the numbers or pictures, by name."""
     return {name: metadata.version(name) for name in LIBRARIES}

@@ -3,6 +3,7 @@
 import functools
 import gc
 import io
+from typing import Any
 
 import numpy as np
 
@@ -25,7 +26,7 @@ SEED_DIGITS = 8  # hexadecimal, of the file's sha256
 class Files(dict):
     """Results by name, as a folder would take them."""
 
-    def write(self, name, content):
+    def write(self, name, content) -> None:
         """Keep one file, text or bytes."""
         self[name] = tables.encoded(content)
 
@@ -52,7 +53,7 @@ def work(task):
         gc.collect()  # figures hold themselves: a process would grow with every part
 
 
-def _results(task):
+def _results(task) -> Outcome:
     request, choices, files = task.request, task.choices, Files()
     part = load(request.source, **dict(request.options), names=request.names, stdin=io.BytesIO(task.data))
     study, tested = _answered(part, task, files)
@@ -98,7 +99,7 @@ def travel(conditions):
     return convey_output.document(convey(conditions.bowl)) | {"bowl": dict(conditions.texts)}
 
 
-def _rate(part, aspects, task, files):
+def _rate(part, aspects, task, files) -> tuple[Any, ...]:
     """Rate the aspect wanted, else the orientation that leaves most often; what ``feeder rate`` warns of."""
     if part.vertices is None:
         return {"note": "a part card has no outline: no rate"}, _tried(part, task.request, None)
@@ -123,7 +124,7 @@ def _tried(part, request, wanted):
     return proof.warnings(conditions.tried, part, conditions.bowl, wanted)
 
 
-def _answered(part, task, files):
+def _answered(part, task, files) -> tuple[Any, ...]:
     """Return the study of a part's aspects and, for the summary, the drop test where one is asked for.
 
     Its random numbers hang on the part's file alone; its answer is then the recommended one. Without one the

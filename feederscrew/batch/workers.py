@@ -9,6 +9,7 @@ import os
 import re
 import signal
 import time
+from collections.abc import Iterator
 from concurrent.futures import CancelledError
 from itertools import islice
 from multiprocessing import forkserver, resource_tracker
@@ -47,14 +48,14 @@ class Processes:
         Parts after which a process is replaced by a fresh one.
     """
 
-    def __init__(self, jobs, job=work, lifetime=LIFETIME):
+    def __init__(self, jobs, job=work, lifetime=LIFETIME) -> None:
         self.jobs, self.job, self.lifetime = jobs, job, lifetime
         methods = multiprocessing.get_all_start_methods()
         self.context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
         self.context.set_forkserver_preload([PRELOAD, job.__module__])
         _start_server(self.context)
 
-    def outcomes(self, tasks):
+    def outcomes(self, tasks) -> Iterator[Any]:
         """Yield the outcome of each task, as they come; a task is taken only when a process is free for it.
 
         Parameters
@@ -84,7 +85,7 @@ class Processes:
             for worker in crew:
                 worker.stop()
 
-    def each(self, function, items):
+    def each(self, function, items) -> Iterator[Any]:
         """Yield what a function gives for each of some items, from a process that has its libraries already.
 
         Parameters
@@ -107,7 +108,7 @@ class Processes:
         finally:
             worker.stop()
 
-    def _busy(self, crew, tasks, retries):
+    def _busy(self, crew, tasks, retries) -> list[Any]:
         """Give every process work, as long as there is any; return those at work."""
         for worker in [w for w in crew if w.task is None and (w.dead or w.served >= self.lifetime)]:
             worker.stop()
@@ -123,7 +124,7 @@ class Processes:
         return [w for w in crew if w.task is not None]
 
 
-def _start_server(context):
+def _start_server(context) -> None:
     """Start what forks the processes and imports for them; deaf to Ctrl-C: the batch decides when to stop."""
     if context.get_start_method() != "forkserver":
         return
@@ -138,19 +139,19 @@ def _start_server(context):
 class _Worker:
     """One process, and the line to it."""
 
-    def __init__(self, context, job):
+    def __init__(self, context, job) -> None:
         self.connection, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, job), daemon=True)
         self.process.start()
         theirs.close()  # so that the line breaks when the process does
         self.task, self.served, self.dead = None, 0, False
 
-    def give(self, task):
+    def give(self, task) -> None:
         self.task, self.served = task, self.served + 1
         with contextlib.suppress(OSError):  # it is dead: ``take`` finds out
             self.connection.send(task)
 
-    def take(self):
+    def take(self) -> tuple[Any, ...]:
         """Return the task and its outcome; None for a worker that died over it."""
         task, self.task = self.task, None
         try:
@@ -159,18 +160,18 @@ class _Worker:
             self.dead = True
             return task, None
 
-    def stop(self):
+    def stop(self) -> None:
         self.connection.close()
         self.process.terminate()
         self.process.join()
 
 
-def _ready(crew):
+def _ready(crew) -> list[Any]:
     lines = {worker.connection: worker for worker in crew if worker.task is not None}
     return [lines[line] for line in wait(list(lines))]
 
 
-def _serve(connection, job):
+def _serve(connection, job) -> None:
     """Answer tasks until the other end of the line is gone."""
     gc.freeze()  # what was there before the fork stays shared, and is not searched after every part
     gc.enable()
@@ -206,10 +207,10 @@ class Cluster:
         From a Task to an Outcome; the workers import it from the same version of this program.
     """
 
-    def __init__(self, address, job=work):
+    def __init__(self, address, job=work) -> None:
         self.address, self.job = address, job
 
-    def outcomes(self, tasks):
+    def outcomes(self, tasks) -> Iterator[Any]:
         """Yield the outcome of each task, as they come; few tasks are on the way at a time.
 
         Parameters
@@ -247,7 +248,7 @@ class Cluster:
         except (OSError, ValueError) as error:
             raise self._fault(f"no scheduler answers ({_first_line(error)})") from None
 
-    def _check_workers(self, client):
+    def _check_workers(self, client) -> None:
         """Check that every worker has this very program and libraries, or its bytes would not be ours."""
         try:
             client.wait_for_workers(1, timeout=CLUSTER_TIMEOUT_S)
@@ -261,7 +262,7 @@ class Cluster:
             if odd:
                 raise self._fault(f"{worker} has another version of {', '.join(odd)}")
 
-    def _gathered(self, client, tasks):
+    def _gathered(self, client, tasks) -> Iterator[Any]:
         running: dict[Any, Task] = {}  # by its future
         while True:
             with self._attended():
@@ -302,7 +303,7 @@ class Cluster:
         except (OSError, CancelledError, _distributed().client.ClosedClientError):
             raise self._fault("the scheduler is lost") from None
 
-    def _fault(self, what):
+    def _fault(self, what) -> FeederError:
         return FeederError(self.address, what, RESUME_CLUSTER_ADVICE)
 
 
@@ -315,7 +316,7 @@ def _distributed():
     return distributed
 
 
-def _versions():
+def _versions() -> dict[Any, Any]:
     return {"feederscrew": __version__, **libraries()}
 
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 from feederscrew.conveying.answer import answer, scaled
 
@@ -67,12 +68,12 @@ def surfaces(bowl, hops):
     return found + ([replace(bowl, restitution=end) for end in rebounds(bowl)] if hops else [])
 
 
-def rebounds(bowl):
+def rebounds(bowl) -> tuple[Any, ...]:
     """Return both ends of the spread of a bowl's restitution [1], not above ``MOST``."""
     return tuple(min(end, MAX_RESTITUTION) for end in even_range(bowl.restitution))
 
 
-def restitution_doubt(bowl):
+def restitution_doubt(bowl) -> Neighbours:
     """Return neighbours for both ends of the spread of restitution."""
     return Neighbours(*(answer(replace(bowl, restitution=end)).velocity for end in rebounds(bowl)))
 

@@ -5,7 +5,9 @@ import heapq
 import itertools
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -76,7 +78,7 @@ class _Idea:
     again: int = 0  # times that a device was left out at which it was lost
 
 
-def candidates(search, cost_class=None):
+def candidates(search, cost_class=None) -> Iterator[Any]:
     """Try proposals, and yield each Candidate that is clean and brings the target, within the budget.
 
     Parameters
@@ -90,7 +92,7 @@ def candidates(search, cost_class=None):
         yield from _of_class(search, number)
 
 
-def _of_class(search, cost_class):
+def _of_class(search, cost_class) -> Iterator[Any]:
     """Candidates of a cost class: no device at all, then the most promising chain of all banks, and so on."""
     if cost_class_of(search.plain.devices) > cost_class:  # the user's own devices are dearer
         return
@@ -110,7 +112,7 @@ def _of_class(search, cost_class):
     yield from _best_first(search, ideas)
 
 
-def _best_first(search, ideas):
+def _best_first(search, ideas) -> Iterator[Any]:
     """Candidates of ideas, the most promising first; a chain is looked for where its bound is the highest."""
     order = itertools.count()  # of equal ones the first
     heap = [(-_bound(search, idea), next(order), idea) for idea in ideas]
@@ -214,12 +216,12 @@ def _score(search, idea):
     return _bound(search, idea) * proposal.purity * EACH_DEVICE ** len(proposal.cuts) * known
 
 
-def _place(track, row):
+def _place(track, row) -> tuple[Any, ...]:
     """What names an orientation on a track of some bank."""
     return track.made.bowl.track.bank, row
 
 
-def chain_key(track, proposal, lying):
+def chain_key(track, proposal, lying) -> tuple[Any, ...]:
     """Return what names a chain on a track and what shall leave it, whatever the drive.
 
     Parameters
@@ -243,7 +245,7 @@ def _tried_before(search, track, proposal):
     return key in search.chains or any(_is_alike(key, other) for other in search.chains)
 
 
-def _is_alike(key, other):
+def _is_alike(key, other) -> bool:
     """Whether two chains for the same track and orientation differ by little in each of their numbers."""
     if key[:2] != other[:2] or len(key[2]) != len(other[2]):
         return False
@@ -255,7 +257,7 @@ def _is_alike(key, other):
     return all(abs(a - b) <= max(LITTLE, LITTLE_SHARE * abs(a)) for a, b in values)
 
 
-def _lost_before(search, idea):
+def _lost_before(search, idea) -> bool:
     """Whether what is wanted was lost whole at a device of another chain that begins in the same way."""
     place, chain = _place(idea.track, idea.row), idea.proposal.chain
     return any(own == place and chain[: len(head)] == head for own, head in search.lost_behind)
@@ -276,7 +278,7 @@ def _promise(search, track, row, way):
     return share * track.fastest / pitch
 
 
-def _share(search, track, row):
+def _share(search, track, row) -> float:
     """Share [1] in which an orientation comes, with those that count as it."""
     alike = proposals.alike(track.ways.lying, row, search.request.up)
     return float(track.weights[[row, *alike]].sum())
@@ -340,7 +342,7 @@ def arriving(search, bowl):
     return shares(search.part, bare, rule=search.request.rule, jobs=search.request.jobs)
 
 
-def at_its_drive(search, candidate):
+def at_its_drive(search, candidate) -> tuple[Any, ...]:
     """Return a Candidate with what arrives on the floor of its own bowl, and those Shares.
 
     The search itself takes them from one drive; what the user says of them is kept.
@@ -355,7 +357,7 @@ def at_its_drive(search, candidate):
     return known, replace(candidate, ways=ways, weights=weights / weights.sum())
 
 
-def offered(search, bowl):
+def offered(search, bowl) -> tuple[Any, ...]:
     """Return what comes along a track, Orientations, and in which shares (M,) [1]."""
     ways = proposals.known_through(search.part, search.known.aspects, bowl)
     ways = arrivals.oriented(ways, search.known.measured)
@@ -364,7 +366,7 @@ def offered(search, bowl):
     return ways, weights / total if total > 0.0 else np.full(len(weights), 1.0 / len(weights))
 
 
-def _tried_out(search, made, proposal, weights):
+def _tried_out(search, made, proposal, weights) -> Iterator[Any]:
     """Try a proposal and what mends it; the Candidate where one is clean and fast enough.
 
     One that one draw alone denies is taken where nothing mends it: the draws of its proof are more.
@@ -407,7 +409,7 @@ def _with_one_draw_denied(candidate):
     return candidate if drawn is not None and drawn.held == drawn.draws - 1 >= SCREENED - 1 else None
 
 
-def _showed(candidate):
+def _showed(candidate) -> tuple[Any, ...]:
     """What the trial of a candidate showed: equal where another one did the same."""
     attempt = candidate.attempt
     return attempt.faults, attempt.efficiency, attempt.stopped
@@ -451,7 +453,7 @@ def livened(search, made, candidate, weights):
     return _screened(search, attempted(search, made, replace(candidate.proposal, step=step), weights, bowl))
 
 
-def stays_at_steel(proposal, faults):
+def stays_at_steel(proposal, faults) -> bool:
     """Return whether faults, sentences of a trial or of draws, name a blade or rails at which parts stay."""
     names = [cut.device.name for cut in proposal.cuts if cut.device.overhead or cut.device.hangs]
     return any(f"stopped at {name}" in fault for fault in faults for name in names)
@@ -479,7 +481,7 @@ def _moved_out(candidate):
     )
 
 
-def calmer(search, made, candidate, weights):
+def calmer(search, made, candidate, weights) -> Candidate | None:
     """Return a Candidate: the same chain tried at a calmer drive; None where there is none.
 
     Parameters
@@ -518,7 +520,7 @@ def _screened(search, candidate):
     return replace(candidate, attempt=attempt, drawn=drawn)
 
 
-def attempted(search, made, proposal, weights, driven=None):
+def attempted(search, made, proposal, weights, driven=None) -> Candidate:
     """Return a Candidate: one short trial at the drive that the target asks for, or at that of a bowl.
 
     Parameters

@@ -1,6 +1,7 @@
 """One bowl for several parts: a chain whose values suit all of them, or else what is changed between them."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 from feederscrew.designing import calm_drive, exploring, loop, proposals
 from feederscrew.designing.alternatives import merit
@@ -32,7 +33,7 @@ class FamilyStudy(ReadableRecord):
         return next(word for word in (NONE, FALLS_SHORT, HOLDS) if word in words)
 
     @property
-    def shared(self):
+    def shared(self) -> bool:
         """Whether all run on one track through one chain: only drive and sensors are set anew."""
         return all(one.bowl is not None and iron(one) == iron(self.members[0]) for one in self.members)
 
@@ -42,14 +43,14 @@ class FamilyStudy(ReadableRecord):
         return self.stopped or any(one.partial for one in self.members)
 
 
-def iron(study):
+def iron(study) -> tuple[Any, ...]:
     """Return what of a design is steel: its track, and its devices but what a sensor is shown."""
     devices = tuple((one.kind, one.sees if one.senses else one.text) for one in study.devices)
     track = study.bowl.track
     return (track.radius, track.width, track.bank, track.climb), devices
 
 
-def named_apart(parts):
+def named_apart(parts) -> None:
     """Say which two parts have one name; raises FeederError."""
     names = [OWN, *(part.name.casefold() for part in parts)]
     for k, name in enumerate(names[1:]):
@@ -61,7 +62,7 @@ def named_apart(parts):
             )
 
 
-def family(parts, plain, given, request, *, told=None, before=None, progress=None):
+def family(parts, plain, given, request, *, told=None, before=None, progress=None) -> FamilyStudy:
     """Design one bowl for several parts, each tried in it.
 
     The part that needs the widest track is designed first; its track and its kinds of devices are offered
@@ -109,7 +110,7 @@ def family(parts, plain, given, request, *, told=None, before=None, progress=Non
         return FamilyStudy(tuple(found[n] for n in sorted(found)), stopped=True)
 
 
-def _common(parts, plain, given, request):
+def _common(parts, plain, given, request) -> tuple[Any, ...]:
     """A bowl with a track on which each part fits, which keys are given then, and who needs the widest."""
     tracks = [
         calm_drive.section(part, answered(part), plain, given, diameter=request.diameter).bowl.track

@@ -1,6 +1,7 @@
 """Chains to be tried for an orientation, and how a value is moved that a trial denies."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -41,7 +42,7 @@ class ProposalWay:
     turns: bool = False  # whether a device that turns others into the orientation may come first
 
     @property
-    def holes(self):
+    def holes(self) -> bool:
         """Whether holes of several corners may be used."""
         return not set(HOLES) <= set(self.without)
 
@@ -98,7 +99,7 @@ class Proposal:
         return cost_class(self.devices)
 
     @property
-    def devices(self):
+    def devices(self) -> tuple[Any, ...]:
         """Every device along the track."""
         return (*self.before, *(cut.device for cut in self.cuts))
 
@@ -107,17 +108,17 @@ class Proposal:
         return trying.wanted_states(known, self.rows)
 
     @property
-    def rows(self):
+    def rows(self) -> tuple[Any, ...]:
         """The wanted row, and those that count as it."""
         return (self.row, *self.same)
 
     @property
-    def hangs(self):
+    def hangs(self) -> bool:
         """Whether parts leave hanging."""
         return any(cut.device.hangs for cut in self.cuts)
 
     @property
-    def chain(self):
+    def chain(self) -> tuple[Any, ...]:
         """The devices as a bowl file has them."""
         return tuple(f"{one.kind}: {one.text}" for one in self.devices)
 
@@ -127,7 +128,7 @@ class Proposal:
         return ", ".join(f"{one.kind}: {one.short}" for one in self.devices) or "no device"
 
 
-def alike(lying, row, up):
+def alike(lying, row, up) -> tuple[Any, ...]:
     """Return the rows beside a wanted one that count as it: those of aspects that may be up too."""
     names = _folded(up)
     return tuple(k for k, one in enumerate(lying) if k != row and one.aspect.casefold() in names)
@@ -138,7 +139,7 @@ def free_headings(lying, row, request):
     return trying.aspects_at_any_heading(lying, row, request.up, heading_given=request.heading is not None)
 
 
-def _folded(names):
+def _folded(names) -> set[Any]:
     return {name.strip().casefold() for name in names}
 
 
@@ -430,7 +431,7 @@ def dropped_before(proposal, others, wanted, every):
     return replace(proposal, cuts=(cut, *proposal.cuts), step=f"{kind.kind} of {device.text} before it")
 
 
-def lost_at(tried, kind):
+def lost_at(tried, kind) -> bool:
     """Return whether the wanted orientation ends at a device of a kind."""
     right = set(trying.wanted_rows(tried.known, tried.states))
     ends = [tried.places[n] for n, k in enumerate(tried.rows) if k in right]

@@ -2,6 +2,7 @@
 
 import math
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -77,7 +78,7 @@ def _drawn_device(device, every, rng):
     return replace(device, **more)
 
 
-def _named(devices, every, drawn):
+def _named(devices, every, drawn) -> tuple[Any, ...]:
     """Devices with the orientation that they name as the drawn part has it: its aspects may change places."""
     made = []
     for device in devices:
@@ -96,7 +97,7 @@ def _meant(device, named, every):
     return every[place_of(every, aspect, heading, device.where, f"{device.kind} names")]
 
 
-def opening(device, every):
+def opening(device, every) -> tuple[Any, ...]:
     """Return the corners (K, 2) [m] of a gate that is given by an orientation and its play."""
     grown = _meant(device, device.like[:2], every).view_ahead.buffer(device.like[2])
     return tuple(map(tuple, shapely.get_coordinates(grown.exterior)[:-1].tolist()))
@@ -169,7 +170,7 @@ def matched(one, every):
 def robust_run(
     part, bowl, known, shares, wanted, *, draws, tolerance, run, any_heading=(), spared=(), enough=HALF,
     allowed=None,
-):  # fmt: skip
+) -> RobustRun:  # fmt: skip
     """Try draws of part, friction, drive and cuts.
 
     Parameters
@@ -204,13 +205,13 @@ def robust_run(
         back, AGAIN more of each wanted orientation are tried: it is offered again, and costs rate.
     """
 
-    def draw_one(draw):
+    def draw_one(draw) -> tuple[Any, ...]:
         return _draw(
             part, bowl, known, shares, np.atleast_1d(wanted), tolerance, (run.seed, draw),
             any_heading, spared, enough,
         )  # fmt: skip
 
-    def work(begin):
+    def work(begin) -> None:
         tasks: list[Any] = []
         failures = 0
         for done in range(draws):
@@ -235,7 +236,7 @@ def robust_run(
     return RobustRun(done, held, worst, float(min(speeds, default=0.0)), partial=stopped)
 
 
-def _draw(part, bowl, known, shares, wanted, tolerance, seed, any_heading, spared, enough):
+def _draw(part, bowl, known, shares, wanted, tolerance, seed, any_heading, spared, enough) -> tuple[Any, ...]:
     """What goes wrong in one draw, and the velocity there."""
     rng = np.random.default_rng(seed)
     other = drawn_part(part, tolerance, rng)
@@ -272,7 +273,7 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, any_heading, spare
     return faults(tried, {matched(known.lying[k], lying) for k in spared}), tried.velocity
 
 
-def drawn_rows(known, shares, rows, rng, spared=()):
+def drawn_rows(known, shares, rows, rng, spared=()) -> list[Any]:
     """Return the orientations that one draw tries: a wanted one, then OTHERS parts as they come.
 
     Parameters
@@ -358,7 +359,7 @@ def faults(tried, spared=()):
     return found
 
 
-def denied(tried):
+def denied(tried) -> Iterator[Any]:
     """Say what a short trial denies: what leaves or stays though rejected, and what is lost in the main."""
     if not tried.efficiency > 0.0:
         yield "nothing leaves as wanted"

@@ -133,7 +133,7 @@ def to_arrays(found) -> Any:
     return occupancy.to_arrays(shaken.occupancy) | counted
 
 
-def from_arrays(part, aspects, bowl, drops, arrays):
+def from_arrays(part, aspects, bowl, drops, arrays) -> Arrival:
     """Return an arrival from plain arrays, once every number in them is one that such parts can have.
 
     Source: own. What follows from other numbers, such as the intervals, is computed again.
@@ -213,7 +213,7 @@ def enough(found) -> int:
     return int(min(MAX_ARRIVALS, rounds * plate_test.PARTS_A_LOOK))
 
 
-def _runs(bowl, drops):
+def _runs(bowl, drops) -> list[Any]:
     """Parts (None: as many as are enough), seconds and pace of the runs there may be, in their order."""
     pace = (
         ARRIVAL_PACE

@@ -35,7 +35,7 @@ class Drops:
     partial: bool  # stopped by the user before all were done
 
 
-def drops_of(arrays, most):
+def drops_of(arrays, most) -> Drops:
     """Return the drops of a finished run from plain arrays, once every number is one that a drop can have.
 
     Parameters

@@ -106,7 +106,7 @@ def to_arrays(seen) -> Any:
     return {name: value for name, value in vars(seen).items() if name not in DERIVED_FIELDS}
 
 
-def from_arrays(arrays, count, parts):
+def from_arrays(arrays, count, parts) -> Occupancy:
     """Return an Occupancy from plain arrays, once every number in them is one that it can have.
 
     Source: own. Intervals and rates follow from the other numbers, and are computed again.

@@ -282,7 +282,7 @@ def test(part, aspects, bowls, preset, own, *, drops=None, pace=EXACT_PACE, run=
     return results
 
 
-def shaken_of(part, aspects, bowl, preset, pace, counted, seen):
+def shaken_of(part, aspects, bowl, preset, pace, counted, seen) -> PlateResult:
     """Return what parts did on one plate, from what was seen of them in an earlier run that was not stopped.
 
     Source: docs/resting.md, "On the vibrating plate".
@@ -350,7 +350,7 @@ class _Way:
     run: RunSettings
 
 
-def _plate(way, bowl, launch, count, progress):
+def _plate(way, bowl, launch, count, progress) -> PlateResult:
     """The test on one plate."""
     shape, length, pace = way.shape, way.length, way.pace
     floor, unit = floor_of(bowl, length, pace.coarse), np.sqrt(length / bowl.gravity)

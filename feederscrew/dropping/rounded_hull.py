@@ -99,7 +99,7 @@ def _planes(vertices, axis, tolerance) -> list[NDArray[np.int64]]:
     return [part for part in parts if len(part) > MIN_ARC_EDGES]
 
 
-def _runs(vertices, corners, axis):
+def _runs(vertices, corners, axis) -> list[Any]:
     """Row, corners and whether it is closed, of each rim of the corners in one plane."""
     first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     first /= np.sqrt((first**2).sum())
@@ -129,7 +129,7 @@ def _cross(u, v) -> NDArray[np.float64]:
     return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
 
 
-def _even(lengths, turns):
+def _even(lengths, turns) -> list[Any]:
     """Runs of corners of a polygon between even edges, and whether each goes all around.
 
     ``lengths`` (K,) of the edge from each corner to the next, ``turns`` (K,) at each corner.

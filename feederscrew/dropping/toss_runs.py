@@ -85,7 +85,7 @@ def read_launches(path) -> LaunchFile:
     return _launches(header, rows, str(path), hashlib.sha256(data).hexdigest())
 
 
-def _table(text, where):
+def _table(text, where) -> tuple[Any, ...]:
     """Header, and rows with the numbers of their lines, each a dict of cells by column."""
     lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if line.strip(", \t")]
     lines = [(k, line) for k, line in lines if not line.lstrip().startswith("#")]

@@ -56,7 +56,7 @@ class DropTrace:
         return bool((np.arctan2(across, vectors.product(down, down[0])) > TUMBLED_RAD).any())
 
 
-def follow(shape, length, principal, starts, drops, rows):
+def follow(shape, length, principal, starts, drops, rows) -> tuple[Any, ...]:
     """Follow the first drops of a test once more.
 
     Source: docs/resting.md, "The drop test".

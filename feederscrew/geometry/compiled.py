@@ -78,7 +78,7 @@ _once = functools.cache(entry)
 
 
 @functools.cache
-def _can_keep():
+def _can_keep() -> bool:
     """Whether numba finds a place on disk that it can write; else each run compiles what it needs."""
     from numba import njit
 
@@ -89,7 +89,7 @@ def _can_keep():
     return True
 
 
-def _nothing():
+def _nothing() -> None:
     pass
 
 
@@ -107,7 +107,7 @@ def _named(function):
     return function
 
 
-def _register():
+def _register() -> None:
     """Tell numba of the functions marked since, whichever room was imported first."""
     from numba.extending import register_jitable
 
@@ -117,7 +117,7 @@ def _register():
         register_jitable(**{"forceinline": True} | _options(**how) | kept)(function)
 
 
-def _options(arrays=False, **others):
+def _options(arrays=False, **others) -> dict[Any, Any]:
     """Without arrays no reference counting, which costs more than the arithmetic; and no way in from C."""
     from numba.core.options import DefaultOptions
 

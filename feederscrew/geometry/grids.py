@@ -32,7 +32,7 @@ class Grid:
     codes: np.ndarray  # (N1, N2) places in ``names``
     names: tuple[str, ...]  # of the regimes
 
-    def columns(self):
+    def columns(self) -> dict[Any, Any]:
         """Return the cells as columns of a table, the second axis running fastest."""
         first, second = np.meshgrid(self.first.shown, self.second.shown, indexing="ij")
         return {
@@ -42,17 +42,17 @@ class Grid:
             "regime": np.asarray(self.names)[self.codes.ravel()],
         }
 
-    def shares(self):
+    def shares(self) -> dict[Any, Any]:
         """Return the fraction of the cells in each regime, by name."""
         counts = np.bincount(self.codes.ravel(), minlength=len(self.names))
         return {name: float(count / self.codes.size) for name, count in zip(self.names, counts)}
 
-    def unanswered(self, column):
+    def unanswered(self, column) -> int:
         """Return the number of cells without a value."""
         return int(np.isnan(self.values[column]).sum())
 
 
-def axis(span):
+def axis(span) -> GridAxis:
     """Return the GridAxis of a ``bowl.reading.KeyRange``."""
     key = span.key
     return GridAxis(key.column, check.frozen(np.array(span.values)), units.factor(key.unit, key.dimension))
@@ -91,7 +91,7 @@ def _by_rows(first, second, function, rows) -> Any:
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
-def span(column, low, high, count, unit=1.0):
+def span(column, low, high, count, unit=1.0) -> GridAxis:
     """Return the GridAxis of ``count`` evenly spaced values.
 
     Parameters

@@ -1,6 +1,7 @@
 """A solid as cells of a lattice: what is in it, what in its hull, and how far every cell is from it."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import distance_transform_edt
@@ -34,7 +35,7 @@ class Cells:
         found = np.rint((points - self.origin) / self.size).astype(int)
         return np.clip(found, 0, np.array(self.solid.shape) - 1)
 
-    def at(self, points):
+    def at(self, points) -> tuple[Any, ...]:
         """Return the cells of points (N, 3) as an index of its arrays."""
         return tuple(self.places(points).T)
 
@@ -44,7 +45,7 @@ class Cells:
         return self.solid & (self.inside < 1.5 * self.size)
 
 
-def cells(corners, triangles, count):
+def cells(corners, triangles, count) -> Cells:
     """Return the cells of a closed surface.
 
     Parameters
@@ -80,7 +81,7 @@ def _filled(triangles, origin, size, shape):
     return np.cumsum(turns, axis=2)[..., :-1] % 2 == 1
 
 
-def chords(corners, triangles, count):
+def chords(corners, triangles, count) -> tuple[Any, ...]:
     """Return, along upright lines through a closed surface, from its lowest place to its highest.
 
     Parameters
@@ -108,7 +109,7 @@ def chords(corners, triangles, count):
     return size * (height[last] - height[first]), facet[first], facet[last]
 
 
-def _met(triangles, shape):
+def _met(triangles, shape) -> tuple[Any, ...]:
     """Where upright lines at whole numbers meet triangles (T, 3, 3): which line, how high, which one."""
     least = np.ceil(triangles[:, :, :2].min(axis=1)).astype(int).clip(0)
     most = np.floor(triangles[:, :, :2].max(axis=1)).astype(int).clip(None, shape[:2] - 1)

@@ -110,7 +110,7 @@ def cross(u, v) -> Any:
     return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
 
 
-def barrier(points):
+def barrier(points) -> tuple[Any, ...]:
     """Return where a part that is turned in a plane first stands over a corner.
 
     Parameters
@@ -137,7 +137,7 @@ def barrier(points):
     return float(turn[first]), float(far[first])
 
 
-def convex(points):
+def convex(points) -> np.ndarray:
     """Return the places (H,) of the corners of a convex hull, counter-clockwise; fewer than 3 of a line."""
     order = np.lexsort((points[:, 1], points[:, 0]))
     chains = []

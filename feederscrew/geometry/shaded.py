@@ -1,5 +1,7 @@
 """The area that the facets of a body cover, seen along one axis, and that below its highest sides."""
 
+from typing import Any
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
@@ -85,7 +87,7 @@ def below(sides, least):
     return shapely.union_all(pieces).simplify(least)
 
 
-def _runs(covered):
+def _runs(covered) -> list[Any]:
     """Slices of a row (M,) of bool in which it is true."""
     steps = np.flatnonzero(np.diff(np.concatenate([[0], covered.astype(int), [0]])))
     return [slice(int(a), int(b)) for a, b in zip(steps[::2], steps[1::2])]

@@ -247,7 +247,7 @@ def misfit(columns, right) -> NDArray[np.float64]:
     return left
 
 
-def carried(axis, start, end):
+def carried(axis, start, end) -> Any:
     """Return a unit vector (3,) turned as the shortest turn takes one direction to another.
 
     Parameters

@@ -1,6 +1,7 @@
 """How a part comes to lie in a groove: a V of two faces, where its weight finds the lowest place."""
 
 import functools
+from typing import Any
 
 import numpy as np
 
@@ -59,7 +60,7 @@ def settled(points, angle):
 
 
 @functools.lru_cache(maxsize=32)
-def _turns(step):
+def _turns(step) -> np.ndarray:
     """Matrices (2 AXES, 3, 3) that turn rows by a step [rad] about axes spread over the sphere."""
     axes = directions()[:: len(directions()) // STEP_AXES][:STEP_AXES]
     s, c = np.sin(step), np.cos(step)
@@ -89,12 +90,12 @@ def _reach(points):
 
 
 @functools.lru_cache(maxsize=2048)
-def _reach_of_orientation(posture, heading):
+def _reach_of_orientation(posture, heading) -> np.ndarray:
     """What an orientation reaches (N, SEEN) [m], turned a little."""
     return np.array([_reach(_standing(posture, heading + by)) for by in HEADING_OFFSETS])
 
 
-def becomes(orientation, orientations, angle):
+def becomes(orientation, orientations, angle) -> tuple[Any, ...]:
     """Return what an orientation becomes in a groove, ((place, share) ...); place -1 is none of the known.
 
     Source: own; docs/tooling.md, "A groove".

@@ -1,6 +1,7 @@
 """Files of ``feeder aspects``: its tables and documents, its chart and its sheet of views."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -97,7 +98,7 @@ def printed(frame, wanted=None):
     return frame.only(names)
 
 
-def _by_heading(frame):
+def _by_heading(frame) -> dict[Any, Any]:
     """The columns by what a table heads them, 'height' and 'pmi'; without what heads several, 'low'."""
     words = [tables.heading(name)[0].casefold() for name in frame]
     return {word: name for word, name in zip(words, frame) if words.count(word) == 1}
@@ -113,7 +114,7 @@ def by_share(frame):
     return tables.frame({name: [column[row] for row in order] for name, column in frame.items()})
 
 
-def _lies(study):
+def _lies(study) -> dict[Any, Any]:
     """How the part lies, in words; nothing of a card, which has no shape."""
     hull, found = study.part.hull, study.aspects
     if hull is None:
@@ -121,7 +122,7 @@ def _lies(study):
     return {"lies": postures(found.normals, found.contact_areas, found.kinds, hull)}
 
 
-def _barriers(found):
+def _barriers(found) -> dict[Any, Any]:
     if found.barriers is None:
         return {}
     return {
@@ -131,12 +132,12 @@ def _barriers(found):
     }
 
 
-def _interval(name, answer):
+def _interval(name, answer) -> dict[Any, Any]:
     """Probabilities with both ends of their interval; nothing where there are none."""
     return {} if answer is None else {name: answer.p, f"{name}_low": answer.low, f"{name}_high": answer.high}
 
 
-def _labels(name, text, wanted, count):
+def _labels(name, text, wanted, count) -> dict[Any, Any]:
     """A column that says the same in every row, where that is to be said."""
     return {name: [text] * count} if wanted else {}
 
@@ -165,7 +166,7 @@ def names(study):
     return names_file.text(study.part, study.aspects)
 
 
-def profiles(study):
+def profiles(study) -> tuple[Any, ...]:
     """Return the names of the stable aspects that a chart shows, and their probabilities by rule.
 
     Parameters
@@ -182,7 +183,7 @@ def profiles(study):
     return [found.names[row] for row in stable], {rule: p[stable] for rule, p in found.probabilities.items()}
 
 
-def answer(study):
+def answer(study) -> np.ndarray | None:
     """Return the recommended answer for `profiles`, (3, A): share, low, high; None of a card."""
     known = study.recommended
     if known is None:
@@ -191,7 +192,7 @@ def answer(study):
     return np.array([known.p[stable], known.low[stable], known.high[stable]])
 
 
-def remarks(study):
+def remarks(study) -> list[Any]:
     """Return what a user should know of pictures that are missing or not whole, a line each."""
     count = len(study.aspects.names)
     if study.part.vertices is None:
@@ -344,7 +345,7 @@ def answer_bars(names, answer, profiles, title=""):
     return figure
 
 
-def _first_in_legend(figure, axes, columns):
+def _first_in_legend(figure, axes, columns) -> None:
     """Draw the legend with the bar before the marks: matplotlib lists lines first."""
     handles, labels = axes.get_legend_handles_labels()
     first = labels.index(ANSWERED)
@@ -353,7 +354,7 @@ def _first_in_legend(figure, axes, columns):
     figure.legend(*listed, loc="outside lower center", ncols=columns, frameon=False, fontsize=7.5)
 
 
-def grouped_bars(axes, names, profiles, room=UPRIGHT_IN):
+def grouped_bars(axes, names, profiles, room=UPRIGHT_IN) -> None:
     """Draw the bars of several profiles on an Axes, each with its value over it.
 
     Parameters
@@ -382,7 +383,7 @@ def grouped_bars(axes, names, profiles, room=UPRIGHT_IN):
     axes.set_ylim(0.0, highest * 1.14)
 
 
-def _numbers(axes, x, percent, known, upright, texts=None):
+def _numbers(axes, x, percent, known, upright, texts=None) -> None:
     """Write the percentages, or ``texts`` in their place, over the ends of bars."""
     look = {} if texts is None else {"fontweight": "bold"}
     texts = percent if texts is None else texts
@@ -424,12 +425,12 @@ class Sheet:
     pixel: float  # [size] edge of one pixel, the same in every panel
 
     @property
-    def page(self):
+    def page(self) -> tuple[Any, ...]:
         """Width and height of the whole sheet."""
         width, height = self.image
         return self.columns * width, self.rows * (height + self.caption) + HEAD_PX + FOOT_PX
 
-    def place(self, panel):
+    def place(self, panel) -> tuple[Any, ...]:
         """Return the lower left corner of a panel's image."""
         row, column = divmod(panel, self.columns)
         width, height = self.image
@@ -476,7 +477,7 @@ def aspect_views(part, found, rows, answer=None):
     return figure
 
 
-def _layout(stances, rules, answered):
+def _layout(stances, rules, answered) -> Sheet:
     """The layout in which the largest part just fits its panel."""
     count = len(stances)
     columns = count if count <= MOST_ACROSS else 3 if count in (5, 6, 9) else MOST_ACROSS
@@ -503,12 +504,12 @@ def _axes(figure, sheet, panel):
     return axes
 
 
-def _share(sheet, left, bottom, width, height):
+def _share(sheet, left, bottom, width, height) -> tuple[Any, ...]:
     page = sheet.page
     return left / page[0], bottom / page[1], width / page[0], height / page[1]
 
 
-def _caption(figure, sheet, panel, found, row, answer):
+def _caption(figure, sheet, panel, found, row, answer) -> None:
     """Name, kind and count of a class; the recommended answer with its interval, then every rule, smaller."""
     left, bottom = sheet.place(panel)
     axes = figure.add_axes(_share(sheet, left, bottom - sheet.caption, sheet.image[0], sheet.caption))
@@ -534,7 +535,7 @@ def _caption(figure, sheet, panel, found, row, answer):
         _number(axes, y, f"{100.0 * values[row]:.1f} %", fontsize=6)
 
 
-def _answer(axes, y, share, low, high):
+def _answer(axes, y, share, low, high) -> None:
     """The recommended probability as a broad bar, its interval as a line through it and in words."""
     axes.text(30, y, "recommended", fontsize=6, color=style.INK, va="center")
     axes.barh(y, BAR_PX, height=13, left=BARS_PX, color=style.FAINT, alpha=0.5)
@@ -545,7 +546,7 @@ def _answer(axes, y, share, low, high):
     _number(axes, y, sentence, fontsize=6.5, fontweight="bold")
 
 
-def _number(axes, y, text, **look):
+def _number(axes, y, text, **look) -> None:
     axes.text(RIGHT_PX, y, text, color=style.INK, va="center", ha="right", **look)
 
 

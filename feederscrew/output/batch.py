@@ -68,7 +68,7 @@ def _sheet(tiles):
     return figure
 
 
-def _tile(figure, axes, left, bottom, tile):
+def _tile(figure, axes, left, bottom, tile) -> None:
     """One thumbnail and its text, ``bottom`` being that of the text."""
     picture, name, said = tile
     if picture is not None:
@@ -83,7 +83,7 @@ def _tile(figure, axes, left, bottom, tile):
         axes.text(middle, bottom + TEXT - 24, _wrapped(said, BELOW), va="top", **look)
 
 
-def _wrapped(text, most):
+def _wrapped(text, most) -> str:
     """The text in as many lines as there is room for."""
     lines = textwrap.wrap(text, LETTERS + 2)
     if len(lines) > most:

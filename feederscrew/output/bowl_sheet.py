@@ -55,7 +55,8 @@ def draw_sheets(
     """
     drawing, solid = Drawing(tooling_drawing.PENS), study.solid.with_lugs
     sizes = measures(study.solid)
-    sizes = replace(sizes, extent=tuple(float(x) for x in np.ptp(solid.vertices, axis=0)))
+    wide, deep, high = (float(x) for x in np.ptp(solid.vertices, axis=0))
+    sizes = replace(sizes, extent=(wide, deep, high))
     scale = min(_scale(max(sizes.extent[:2]) / MM, VIEW_ROOM), _scale(sizes.height / MM, VIEW_HEIGHT))
     count = 3 if solid.plan.stretch is not None else 2
     drawing.box(*FRAME)

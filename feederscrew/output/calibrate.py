@@ -1,5 +1,7 @@
 """Files of ``feeder calibrate``."""
 
+from typing import Any
+
 from feederscrew.output import offers as offer
 from feederscrew.output import tables
 
@@ -34,7 +36,7 @@ def exponents(study):
     )
 
 
-def document(study):
+def document(study) -> dict[Any, Any]:
     """Return the calibration as one JSON document.
 
     Parameters
@@ -60,7 +62,7 @@ def remarks(study):
     return listed
 
 
-def offers(study):
+def offers(study) -> list[Any]:
     """Offer the table and the document of a calibration.
 
     Parameters

@@ -26,7 +26,7 @@ class _Writer(RendererAgg):
         super().__init__(*size)
         self._known = {}  # texts and fonts: as they can be drawn, and width, height, descent
 
-    def draw_text(self, gc, x, y, s, prop, *angle, **more):
+    def draw_text(self, gc, x, y, s, prop, *angle, **more) -> None:
         more["ismath"] = False  # a name with a dollar sign is no formula
         super().draw_text(gc, x, y, self._drawable(s, prop)[0], prop, *angle, **more)
 
@@ -39,7 +39,7 @@ class _Writer(RendererAgg):
             self._known[key] = self._fitted(text, prop)
         return self._known[key]
 
-    def _fitted(self, text, prop):
+    def _fitted(self, text, prop) -> tuple[Any, ...]:
         font, measured = get_font(findfont(prop)), super().get_text_width_height_descent
         sentence = "".join(letter if font.get_char_index(ord(letter)) else _escape(letter) for letter in text)
         sentence = LONG_WORD.sub(r"\1…\2", sentence)
@@ -53,7 +53,7 @@ class _Writer(RendererAgg):
         return sentence, measured(sentence, prop, False)
 
 
-def _escape(letter):
+def _escape(letter) -> str:
     return letter.encode("unicode_escape").decode()
 
 
@@ -73,7 +73,7 @@ class PixelCanvas(Canvas):
 
     image: np.ndarray  # (rows, columns, 3) uint8
 
-    def print_png(self, filename_or_obj, *, metadata=None, **_):
+    def print_png(self, filename_or_obj, *, metadata=None, **_) -> None:
         """Write the pixels of the image."""
         imsave(filename_or_obj, self.image, format="png", dpi=self.figure.dpi, metadata=metadata)
 

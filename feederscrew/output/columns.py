@@ -1,5 +1,7 @@
 """Units of the shop, mm, g, degrees, and what every document says of its part."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew.units import MM, factor
@@ -9,7 +11,7 @@ UJ = factor("uJ", "energy")
 GRAM, G_MM2, G_CM3 = factor("g", "mass"), factor("g mm2", "inertia"), factor("g/cm3", "density")
 
 
-def part(solid, warnings=()):
+def part(solid, warnings=()) -> dict[Any, Any]:
     """Return what every document says of its part.
 
     Parameters
@@ -36,7 +38,7 @@ def part(solid, warnings=()):
     }
 
 
-def conditions(solid):
+def conditions(solid) -> dict[Any, Any]:
     """Return what was assumed of a part, for ``run.json``.
 
     Parameters

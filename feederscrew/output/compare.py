@@ -1,6 +1,8 @@
 """Files of ``feeder compare``: profiles of a part, feeding tests by device, and many measured sets."""
 
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -72,7 +74,7 @@ def hidden(study):
     return () if any(each.chi_square.degrees_of_freedom for each in study.comparisons) else TESTS
 
 
-def document(study):
+def document(study) -> dict[Any, Any]:
     """Return the comparison as one JSON document.
 
     Parameters
@@ -97,7 +99,7 @@ def document(study):
 FEEDING_FILE = "devices.csv"
 
 
-def feeding_offers(study):
+def feeding_offers(study) -> list[Any]:
     """Offer the table of a FeedingStudy, as a list of Offer."""
     return [offer.table(FEEDING_FILE, device_comparisons, study)]
 
@@ -140,12 +142,12 @@ def feeding_table(studies):
     return tables.frame(columns | {"agrees": found["agrees"]})
 
 
-def feeding_hidden(study):
+def feeding_hidden(study) -> tuple[Any, ...]:
     """Return the columns that a table for people leaves out: the file, and what the rules predict."""
     return ("set", *_rules([study]))
 
 
-def feeding_document(study):
+def feeding_document(study) -> dict[Any, Any]:
     """Return one feeding test as a JSON document.
 
     Parameters
@@ -166,16 +168,16 @@ def feeding_document(study):
     }
 
 
-def _rules(studies):
+def _rules(studies) -> tuple[Any, ...]:
     return tuple(dict.fromkeys(f"p_{rule}" for one in studies for rule in _own(one)))
 
 
-def _own(study):
+def _own(study) -> list[Any]:
     """The rules whose own prediction stands beside the recommended answer's."""
     return [rule for rule in study.answers if rule != "recommended"]
 
 
-def _rows(study):
+def _rows(study) -> Iterator[Any]:
     counts, ends = study.measured, study.ends
     for k, station in enumerate(study.stations):
         yield {
@@ -259,12 +261,12 @@ def sets_table(study):
     return tables.frame(columns | {name: _three(made[name]) for name in study.answers})
 
 
-def _three(values):
+def _three(values) -> list[Any]:
     """Numbers as texts with three digits behind the point; None where there is none."""
     return [None if np.isnan(value) else f"{value:.3f}" for value in values.astype(float)]
 
 
-def _whole(values):
+def _whole(values) -> list[Any]:
     return [None if value is None or value != value else f"{value:.0f}" for value in values]
 
 
@@ -278,14 +280,14 @@ def _series(study, one):
     return next(name for name, sets in study.series.items() if one in sets)
 
 
-def _counted(one):
+def _counted(one) -> tuple[Any, ...]:
     """Parts counted, rule of the recommended answer, aspects, and how many of them it holds."""
     parts = int(one.profile.values.sum()) if one.profile.counted else None
     rule = None if one.recommended is None else one.recommended.rule
     return parts, rule, len(one.aspects.names), one.inside
 
 
-def _mean(name, sets):
+def _mean(name, sets) -> tuple[Any, ...]:
     """The row of a series: the mean over its sets."""
     apart, known = [one.apart for one in sets], [one.inside for one in sets if one.inside is not None]
     answers = dict.fromkeys(answer for away in apart for answer in away)
@@ -304,7 +306,7 @@ def _mean(name, sets):
     )
 
 
-def sets_document(study):
+def sets_document(study) -> dict[Any, Any]:
     """Return many measured sets and every answer for them as one JSON document.
 
     Parameters
@@ -322,7 +324,7 @@ def sets_document(study):
     }
 
 
-def _set_document(one):
+def _set_document(one) -> dict[Any, Any]:
     head = one.measured.head
     known = one.recommended
     return {
@@ -374,7 +376,7 @@ def _set_and_launch(one):
     return f"{set_label(one)} ({launch})" if launch else set_label(one)
 
 
-def offers(study):
+def offers(study) -> list[Any]:
     """Offer the table of comparisons and their picture.
 
     Parameters
@@ -440,7 +442,7 @@ def look(name, place=0):
     return name.replace("_", " "), OWN[place % len(OWN)]
 
 
-def bars(axes, names, profiles, printed=None, room=BAR):
+def bars(axes, names, profiles, printed=None, room=BAR) -> None:
     """Draw the grouped bars on an Axes, with a tick where print has the number.
 
     Parameters
@@ -513,7 +515,7 @@ def comparison(title, names, measured, rules, compared):
     return figure
 
 
-def _legend(figure, measured, rules):
+def _legend(figure, measured, rules) -> None:
     """One entry a profile, whatever chart it stands in."""
     looks = [look(name, place) for place, name in enumerate(measured)]
     looks += [look(name, len(measured)) for name in rules]
@@ -523,7 +525,7 @@ def _legend(figure, measured, rules):
     )
 
 
-def _matrix(axes, measured, rules, compared):
+def _matrix(axes, measured, rules, compared) -> None:
     """Deviations of every profile from those that were measured, as a table of shades."""
     names, known = [*measured, *rules], {frozenset(pair): value for pair, value in compared.items()}
     values = np.full((len(names), len(measured)), np.nan)
@@ -544,7 +546,7 @@ def _matrix(axes, measured, rules, compared):
     axes.spines[:].set_visible(False)
 
 
-def _numbers(axes, x, percent, upright):
+def _numbers(axes, x, percent, upright) -> None:
     for at, value in zip(x, percent):
         text = f"{value:.1f}"
         axes.annotate(
@@ -553,11 +555,11 @@ def _numbers(axes, x, percent, upright):
         )  # fmt: skip
 
 
-def _ticks(axes, x, percent, width):
+def _ticks(axes, x, percent, width) -> None:
     axes.hlines(percent, x - 0.46 * width, x + 0.46 * width, color=style.INK, linewidth=1.1, zorder=3)
 
 
-def of_kind(study):
+def of_kind(study) -> tuple[Any, ...]:
     """Return the functions of a CompareStudy or a FeedingStudy: offers, what is printed, hidden, document."""
     if isinstance(study, FeedingStudy):
         return feeding_offers, feeding_printed, feeding_hidden, feeding_document

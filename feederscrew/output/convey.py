@@ -1,5 +1,7 @@
 """Files of ``feeder convey``: at one point, along a curve, over the phase, over a map."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew.conveying import answer, sensitivity, steady
@@ -27,7 +29,7 @@ RUNS_AWAY = (
 LIMITS = {"forward": "slip up the track", "backward": "slip down the track"}
 
 
-def document(study):
+def document(study) -> dict[Any, Any]:
     """Return a ConveyStudy as the JSON document, without the bowl's values."""
     found, change = study.answer, sensitivity.SENSITIVITY_CHANGE
     return {
@@ -136,17 +138,17 @@ def points(study):
     )
 
 
-def map_remarks(study):
+def map_remarks(study) -> list[Any]:
     """Return how many cells of a ConveyMap have no steady velocity, no period or several velocities."""
     return _remarks(study.statuses, study.grid.values["several"])
 
 
-def curve_remarks(study):
+def curve_remarks(study) -> list[Any]:
     """Return the same of a ConveyCurve."""
     return _remarks(study.statuses, study.several)
 
 
-def _remarks(status, several):
+def _remarks(status, several) -> list[Any]:
     counts = {
         "no steady state": (status == "no steady state").sum(),
         "no period (averaged)": (status == "averaged").sum(),
@@ -155,11 +157,11 @@ def _remarks(status, several):
     return [f"{count} of {status.size} cells: {what}" for what, count in counts.items() if count]
 
 
-def _in_mm_s(found):
+def _in_mm_s(found) -> dict[Any, Any]:
     return {VELOCITIES.get(name, name): a / MM_S if name in VELOCITIES else a for name, a in found.items()}
 
 
-def _changed(found, pair, change):
+def _changed(found, pair, change) -> dict[Any, Any]:
     return {
         "change_percent": 100.0 * change,
         "velocity_less_mm_s": pair.less / MM_S,
@@ -168,7 +170,7 @@ def _changed(found, pair, change):
     }
 
 
-def rebound(bowl, found):
+def rebound(bowl, found) -> dict[Any, Any] | None:
     """Return a document's entry on the spread of restitution.
 
     Parameters
@@ -192,7 +194,7 @@ def rebound(bowl, found):
     }
 
 
-def _bounced(found):
+def _bounced(found) -> list[Any]:
     """A row of what the spread of restitution does, where the document has one."""
     if found is None:
         return []
@@ -201,41 +203,41 @@ def _bounced(found):
     return [(f"velocity for restitution {' / '.join(ends)} [mm/s]", " / ".join(speeds))]
 
 
-def _change(name, pair):
+def _change(name, pair) -> tuple[Any, ...]:
     less, more = number(pair["velocity_less_mm_s"]), number(pair["velocity_more_mm_s"])
     return f"velocity for {name} -/+ {pair['change_percent']:g} % [mm/s]", f"{less} / {more}"
 
 
-def _margin(limit, margin):
+def _margin(limit, margin) -> str:
     return "never holds" if np.isnan(limit) else f"{number(limit)} (margin {number(margin)})"
 
 
-def _single_periods(document):
+def _single_periods(document) -> list[Any]:
     """A row with the range over single periods, where they are not all alike."""
     if document["period"] == 1 or document["status"] == "no steady state":
         return []
     return [("slowest to fastest period [mm/s]", _slowest_to_fastest(document))]
 
 
-def _slowest_to_fastest(document):
+def _slowest_to_fastest(document) -> str:
     return between(*(document[f"velocity_{which}_period_mm_s"] for which in ("slowest", "fastest")))
 
 
-def _of_periods(period):
+def _of_periods(period) -> str:
     return f", every {period} periods" if period > 1 else ""
 
 
-def between(low, high):
+def between(low, high) -> str:
     """Return two numbers as a range for people."""
     return f"{number(low)} to {number(high)}"
 
 
-def number(value):
+def number(value) -> str:
     """Return a number for people; NaN is none."""
     return "none" if np.isnan(value) else f"{value:.4g}"
 
 
-def phase_document(found):
+def phase_document(found) -> dict[Any, Any]:
     """Return a BestPhase for the JSON document."""
     over = zip(found.frictions, found.best_over_friction, found.straight_over_friction)
     return {
@@ -272,7 +274,7 @@ def phase_summary(best):
     return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
 
 
-def offers(study, settings):
+def offers(study, settings) -> list[Any]:
     """Offer the files of a ConveyStudy.
 
     Parameters
@@ -291,7 +293,7 @@ def offers(study, settings):
     ]
 
 
-def curve_offers(study):
+def curve_offers(study) -> list[Any]:
     """Offer the files of a ConveyCurve, as a list of Offer."""
     name, alt = f"convey_{study.kind}", f"Velocity over {study.over}"
     return [
@@ -300,7 +302,7 @@ def curve_offers(study):
     ]
 
 
-def phase_offers(study, settings):
+def phase_offers(study, settings) -> list[Any]:
     """Offer the files of a ConveyPhase, as a list of Offer; ``settings`` as for ``offers``."""
     return [
         offer.document(
@@ -310,7 +312,7 @@ def phase_offers(study, settings):
     ]
 
 
-def map_offers(study):
+def map_offers(study) -> list[Any]:
     """Offer the files of a ConveyMap, as a list of Offer."""
     names = " and ".join(one.key.name.rpartition(".")[2].replace("_", " ") for one in study.ranges)
     return [
@@ -380,7 +382,7 @@ def cycle(trace, amplitude, found):
     return figure
 
 
-def cycle_title(trace, found):
+def cycle_title(trace, found) -> str:
     """Return what of a motion a trace shows, and how fast it is."""
     shown, velocity = round(trace.time[-1]), f"{found.velocity * 1e3:.4g} mm/s"
     if found.status == "no steady state":
@@ -445,7 +447,7 @@ def curve(frame, title):
     return figure
 
 
-def on_axes(spans, bowl):
+def on_axes(spans, bowl) -> tuple[Any, ...] | None:
     """Return operating points of a bowl in the units of a map's axes.
 
     Parameters
@@ -469,7 +471,7 @@ def _unit(key):
     return factor(key.unit, key.dimension)
 
 
-def _by_phase(axes, trace, way):
+def _by_phase(axes, trace, way) -> None:
     """The part's line, each phase in its colour; drawn once a phase, with gaps."""
     for place, name in enumerate(PHASES):
         inside = trace.phase == place
@@ -479,7 +481,7 @@ def _by_phase(axes, trace, way):
             axes.plot(trace.time, shown, label=f"part {PHASE_WORDS[name]}", **look)
 
 
-def _velocity(figure, axes, grid):
+def _velocity(figure, axes, grid) -> None:
     style.tidy(axes, title="Velocity [mm/s], from rest", grid="none")
     axes.set(xlabel=_label(grid.first), ylabel=_label(grid.second))
     velocity = grid.values["velocity"].T / MM_S
@@ -506,7 +508,7 @@ def _velocity(figure, axes, grid):
             axes.contourf(x, y, several, [0.5, 1.5], colors="none", hatches=[HATCH])
 
 
-def _regimes(axes, grid):
+def _regimes(axes, grid) -> None:
     style.tidy(axes, title="Regimes", x=_label(grid.first), grid="none")
     colours = mpl_colors.ListedColormap([REGIMES[name][0] for name in grid.names])
     axes.pcolormesh(
@@ -529,7 +531,7 @@ def _regimes(axes, grid):
     )
 
 
-def _throws(axes, grid):
+def _throws(axes, grid) -> None:
     """Lines of equal throw number: the hop, the first peak of the velocity, a flight of one period."""
     throw = grid.values["throw_number"].T
     levels = [level for level in sorted(THROWS) if throw.min() < level < throw.max()]
@@ -545,9 +547,9 @@ def _throw_name(level):
     return THROWS[min(THROWS, key=lambda known: abs(known - level))]
 
 
-def _label(axis):
+def _label(axis) -> str:
     return " ".join(heading(axis.column))
 
 
-def _ends(axis):
+def _ends(axis) -> tuple[Any, ...]:
     return axis.shown[0], axis.shown[-1]

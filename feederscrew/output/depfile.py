@@ -7,7 +7,7 @@ from pathlib import Path
 from feederscrew.errors import FeederError
 
 
-def write(path, targets, inputs):
+def write(path, targets, inputs) -> None:
     """Write one rule, and an empty one for each input so that make goes on when it is gone.
 
     Parameters
@@ -34,14 +34,14 @@ def write(path, targets, inputs):
         raise FeederError(path, f"cannot be written ({error.strerror})", "give another `depfile`") from error
 
 
-def rule(targets, inputs):
+def rule(targets, inputs) -> str:
     """Return the text of the rule."""
     made, needed = ([_escaped(path) for path in paths] for paths in (targets, inputs))
     lines = [" ".join(made) + ": " + " \\\n  ".join(needed), *(f"{path}:" for path in needed)]
     return "".join(f"{line.rstrip()}\n" for line in lines)
 
 
-def _escaped(path):
+def _escaped(path) -> str:
     """A path with what make takes for its own marked."""
     text = Path(path).as_posix().replace("$", "$$")
     return "".join(f"\\{letter}" if letter in " #:%" else letter for letter in text)

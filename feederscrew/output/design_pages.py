@@ -1,6 +1,8 @@
 """The page of ``feeder design``, of one part and of a family of parts."""
 
+from collections.abc import Iterator
 from itertools import zip_longest
+from typing import Any
 
 from feederscrew import units
 from feederscrew.designing import record
@@ -47,7 +49,7 @@ def page(study, built=None):
     )
 
 
-def _sections(study, built):
+def _sections(study, built) -> Iterator[Any]:
     d = designs.document(study)
     answer = tuple(_answer(study, d))
     yield Chapter(answer, _tiles(d), study.warnings, anchor="answer", title="The answer")
@@ -82,7 +84,7 @@ def _sections(study, built):
     yield Chapter(blocks, anchor="acceptance", title="Acceptance sheet")
 
 
-def _answer(study, d):
+def _answer(study, d) -> Iterator[Any]:
     yield Text(_status(study))
     if d["machine"]:
         yield Text(f"The machine: {designs.machine_text(d['machine'])}.")
@@ -97,7 +99,7 @@ def _answer(study, d):
         yield from _pairs(study)
 
 
-def _pairs(study):
+def _pairs(study) -> Iterator[Any]:
     """Pictures of what may go wrong between two parts, or a part and two walls."""
     for one in study.risks:
         if one.pair is not None:
@@ -106,7 +108,7 @@ def _pairs(study):
             )
 
 
-def _status(study):
+def _status(study) -> str:
     """What the status says, in a sentence: what is missing, or what all was reached."""
     if study.status != record.HOLDS:
         return f"Status: {study.status}. {study.why}."
@@ -117,7 +119,7 @@ def _status(study):
     )
 
 
-def _tiles(d):
+def _tiles(d) -> tuple[Any, ...]:
     return (
         Tile("status", d["status"], d["wanted"] or "no orientation"),
         Tile(
@@ -132,7 +134,7 @@ def _tiles(d):
     )
 
 
-def _played(study):
+def _played(study) -> Iterator[Any]:
     yield Text("Parts of the short trial at the device that decides.")
     scene, captions = playback.scene(study.part, *study.trials)
     yield Views(
@@ -140,7 +142,7 @@ def _played(study):
     )
 
 
-def _proof(study, d):
+def _proof(study, d) -> Iterator[Any]:
     yield Text(
         "A queue of parts that push each other, at three fills, and draws of part, friction, drive and cuts, "
         "each tried with parts of its own."
@@ -227,7 +229,7 @@ def offers(study, settings, built=None):
     return found
 
 
-def _unproved(study, settings):
+def _unproved(study, settings) -> Iterator[Any]:
     """What is handed over of a design that was stopped."""
     yield offer.document("design.json", designs.document, study)
     yield offer.table("design_trials.csv", designs.attempts, study)
@@ -235,7 +237,7 @@ def _unproved(study, settings):
         yield offer.text("design.yaml", designs.bowl_file, study, settings)
 
 
-def family_document(study):
+def family_document(study) -> dict[Any, Any]:
     """Return a FamilyStudy as the JSON document."""
     return {
         "status": study.status,
@@ -249,11 +251,11 @@ def family_document(study):
     }
 
 
-def _names(study):
+def _names(study) -> list[Any]:
     return [one.part.name for one in study.members]
 
 
-def changes(study):
+def changes(study) -> list[Any]:
     """Return what differs between the parts: rows of what, how it is changed, and a text for each part."""
     bowls = [one.bowl for one in study.members]
     if any(bowl is None for bowl in bowls):
@@ -264,11 +266,11 @@ def changes(study):
     return [row for row in rows if len(set(row[2])) > 1]
 
 
-def _values(bowls, section, name, unit, text):
+def _values(bowls, section, name, unit, text) -> tuple[Any, ...]:
     return tuple(f"{getattr(getattr(bowl, section), name) / unit:.6g} {text}" for bowl in bowls)
 
 
-def _devices(study):
+def _devices(study) -> Iterator[Any]:
     """A row for each place of each kind: the first gap of all parts, the second, ..."""
     kinds = dict.fromkeys(one.kind for member in study.members for one in member.devices)
     for kind in kinds:
@@ -319,7 +321,7 @@ def family_page(study):
     )
 
 
-def _chapters(study):
+def _chapters(study) -> Iterator[Any]:
     answer = [Text(_family_status(study)), Table(frame(parts(study)))]
     answer += [Text("The machine that each part asks for:"), Notes(tuple(_machines(study)))]
     warned = tuple(
@@ -342,7 +344,7 @@ def _chapters(study):
     yield Chapter(blocks, anchor="changeover", title="Changeover")
 
 
-def _family_status(study):
+def _family_status(study) -> str:
     if study.partial:
         return "It was stopped before all parts were designed."
     if study.shared and study.status == record.HOLDS:
@@ -354,7 +356,7 @@ def _family_status(study):
     return "The parts do not share one chain: the list below names what is swapped."
 
 
-def _family_tiles(study):
+def _family_tiles(study) -> Iterator[Any]:
     yield Tile("status", study.status, "the worst of all parts")
     yield Tile("one bowl for all", "yes" if study.shared else "no", "same track and same devices")
     rows = changes(study)
@@ -362,18 +364,18 @@ def _family_tiles(study):
     yield Tile("changed", f"{len(rows)}", f"{by_hand} of them by hand")
 
 
-def _machines(study):
+def _machines(study) -> Iterator[Any]:
     for one in study.members:
         told = designs.machine_facts(one)
         text = "no bowl" if told is None else designs.machine_text(told)
         yield f"{one.part.name}: {text}"
 
 
-def _risks(study):
+def _risks(study) -> list[Any]:
     return [f"{one.part.name}: {risk.text}" for one in study.members for risk in one.risks]
 
 
-def parts(study):
+def parts(study) -> dict[Any, Any]:
     """Return columns of what each part delivers, and where its own page is."""
     rows = []
     for one in study.members:
@@ -395,7 +397,7 @@ def parts(study):
     return {name: [row[name] for row in rows] for name in rows[0]}
 
 
-def family_offers(study):
+def family_offers(study) -> list[Any]:
     """Offer the files of a FamilyStudy itself, as a list of Offer; each part has its own folder."""
     if study.partial:  # nothing to build from
         return [offer.document("family.json", family_document, study)]

@@ -2,6 +2,8 @@
 
 import datetime
 import textwrap
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -38,7 +40,7 @@ CAMERAS = {  # by what a sensor sees
 TEXT_WIDTH = 62  # letters of a value that is printed beside its name
 
 
-def document(study):
+def document(study) -> dict[Any, Any]:
     """Return a DesignStudy as the JSON document."""
     proved = study.status != record.NOT_PROVED
     return {
@@ -83,7 +85,7 @@ NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed a
 CLASS_WORDS = ("steel alone", "steady air", "a sensor with a valve")
 
 
-def alternative(one):
+def alternative(one) -> dict[Any, Any]:
     """Return an Alternative as a dict: null where nothing was counted."""
     value, low, _ = one.delivered or (None, None, None)
     return {
@@ -99,7 +101,7 @@ def alternative(one):
     }
 
 
-def _needs(one):
+def _needs(one) -> list[Any]:
     """What a chain needs beside steel, its cameras by what they see."""
     cameras = [CAMERAS[view] for view in one.sees]
     return [*cameras, *NEEDS[3][1:]] if cameras else list(NEEDS[one.cost_class])
@@ -120,7 +122,7 @@ def alternatives(study):
     return tables.frame({name: [row[name] for row in rows] for name in names})
 
 
-def alternative_text(one):
+def alternative_text(one) -> str:
     """Return an Alternative as one sentence."""
     figures = ""
     if one.delivered is not None and one.purity is not None:
@@ -140,7 +142,7 @@ PROOF = (  # what a design has shown: none of it of one that is not proved
 )  # fmt: skip
 
 
-def _proof(study):
+def _proof(study) -> dict[Any, Any]:
     """The figures of a design that its queues have shown, by the names of ``PROOF``."""
     purity, purity_low = study.purity
     high = study.jams_per_hour_high
@@ -162,7 +164,7 @@ def long_ride(rows):
     return tables.frame({**counts, "becomes": others, "left": [row["left"] for row in rows], **percent})
 
 
-def nearest(study):
+def nearest(study) -> dict[Any, Any] | None:
     """Return the nearest that holds as a dict, ``tried`` what was run for it; None of what holds."""
     one = study.nearest
     if one is None:
@@ -190,12 +192,12 @@ def nearest(study):
     }
 
 
-def _digits(value):
+def _digits(value) -> float:
     """A number without the digits that dividing by a unit has left."""
     return float(f"{value:.12g}")
 
 
-def bowl(study):
+def bowl(study) -> dict[Any, Any] | None:
     """Return the bowl of a design as a dict; None where there is none."""
     if study.bowl is None:
         return None
@@ -221,7 +223,7 @@ def bowl(study):
     }
 
 
-def machine_facts(study):
+def machine_facts(study) -> dict[Any, Any] | None:
     """Return the machine that a design asks for as a dict; None where there is no bowl."""
     if study.bowl is None:
         return None
@@ -250,7 +252,7 @@ def machine_facts(study):
     }
 
 
-def machine_text(told):
+def machine_text(told) -> str:
     """Return the dict of ``machine`` as one sentence."""
     travels = "" if told["velocity_mm_s"] is None else f", {told['velocity_mm_s']:.3g} mm/s"
     return (
@@ -260,7 +262,7 @@ def machine_text(told):
     )
 
 
-def _angles(told):
+def _angles(told) -> str:
     """The direction of the vibration at the springs, where they are drawn, and at the track."""
     at_springs, at_track = (told[f"vibration_angle_at_the_{place}_deg"] for place in ("springs", "track"))
     drawn = (
@@ -269,17 +271,17 @@ def _angles(told):
     return f"{drawn}{at_track:.3g} deg to the track"
 
 
-def _hops(told):
+def _hops(told) -> str:
     """How a part hops, in words; '' where it does not."""
     return f", parts hop {told['hop']}" if told["hop_height_mm"] > 0.0 else ""
 
 
-def _drive_kind(told):
+def _drive_kind(told) -> str:
     led = f", phase {told['phase_deg']:.4g} deg" if told["drive"] == TWO_AXIS else ""
     return f"{told['drive']}{led}: {told['drive_needs']}"
 
 
-def _served_by(told):
+def _served_by(told) -> str:
     """Cameras, valves and air, in words."""
     seen = f" ({', '.join(CAMERAS[one] for one in told['cameras_see'])})" if told["cameras"] else ""
     counts = [
@@ -289,7 +291,7 @@ def _served_by(told):
     return f"{counts[0]}{seen}, {counts[1]}, {'compressed air' if told['air'] else 'no air'}"
 
 
-def _machine(told):
+def _machine(told) -> Iterator[Any]:
     """Rows of the dict of ``machine``."""
     if told is None:
         return
@@ -305,7 +307,7 @@ def _machine(told):
     yield "cameras, valves, air", _served_by(told)
 
 
-def risk(one):
+def risk(one) -> dict[Any, Any]:
     """Return a Risk as a dict: of two parts how the second lies to the first, in the axes of the file."""
     pair: dict | None = None if one.pair is None else {}
     if pair is not None and one.pair.turn is not None:
@@ -315,7 +317,7 @@ def risk(one):
     return {"kind": one.kind, "text": one.text, "pair": pair}
 
 
-def queue(one):
+def queue(one) -> dict[Any, Any]:
     """Return a FilledQueue as a dict."""
     return {
         "fill": one.fill,
@@ -394,13 +396,13 @@ def two_columns(rows):
     return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
 
 
-def folded(name, value):
+def folded(name, value) -> list[Any]:
     """Return rows of a name and the lines of a long value."""
     lines = textwrap.wrap(value, TEXT_WIDTH, break_long_words=False, break_on_hyphens=False) or [""]
     return [(name, lines[0]), *(("", line) for line in lines[1:])]
 
 
-def outcome(d, devices):
+def outcome(d, devices) -> list[Any]:
     """Return rows of the answer of a design's document, and of its devices as the trade names them."""
     head = [
         ("status", d["status"]),
@@ -420,7 +422,7 @@ def _leaves_as(d):
     return (d["wanted"] or "-") + up
 
 
-def _result_rows(d):
+def _result_rows(d) -> list[Any]:
     """Rows of what a design has shown."""
     return [
         (
@@ -440,20 +442,20 @@ def _result_rows(d):
     ]
 
 
-def dimensions(d):
+def dimensions(d) -> list[Any]:
     """Return rows of what a design's document says of the bowl and its drive."""
     bowl = {name: value for name, value in (d["bowl"] or {}).items() if name not in SAID_FIRST}
     named_values = [(" ".join(tables.heading(name)).strip(), value) for name, value in bowl.items()]
     return [(name, f"{value:.4g}") for name, value in named_values if value is not None]
 
 
-def _drive(bowl):
+def _drive(bowl) -> Iterator[Any]:
     """The drive that the drawn springs make, where it is another one."""
     if bowl.get("drive_of_the_springs"):
         yield "its drawn springs make", bowl["drive_of_the_springs"]
 
 
-def _hourly(d):
+def _hourly(d) -> str:
     high = d["jams_per_hour_high"]
     return "" if high is None else f", at most {high:.3g} an hour"
 
@@ -465,7 +467,7 @@ def acceptance(study):
     return tables.frame({name: [row[k] for row in rows] for k, name in enumerate(names)})
 
 
-def _sheet(study):
+def _sheet(study) -> Iterator[Any]:
     for one in study.queues:
         low, high = one.ends
         values = (f"{end / PER_MINUTE:.4g}" for end in (one.rate, low, high))
@@ -510,7 +512,7 @@ def _sheet(study):
     yield ("angle at which a part slides down a tilted strip", "", f"{friction:.3g}", "", "", "deg", "", "")
 
 
-def _share(part, whole):
+def _share(part, whole) -> str:
     return f"{100.0 * part / whole:.4g}" if whole else ""
 
 
@@ -534,7 +536,7 @@ SIZING = (("fill_density", "g/cm3", "density"), ("outlet_height", "mm", "length"
 OWN = {"drive": DRIVE, "track": TRACK, "machine": MACHINE, "sizing": SIZING}
 
 
-def bowl_file(study, settings, sheet=None):
+def bowl_file(study, settings, sheet=None) -> str:
     """Return the design as a bowl file.
 
     Parameters
@@ -604,18 +606,18 @@ def _read_back(lines, study, own):
     return found
 
 
-def _unbalance(machine):
+def _unbalance(machine) -> Iterator[Any]:
     for word, value in schema.unbalance_values(machine).items():
         length = word in schema.CENTRE
         yield word, f"{value / MM:.9g} mm" if length else f"{value:.9g} kg m2"
 
 
-def _text(record, word, unit, dimension):
+def _text(record, word, unit, dimension) -> str:
     scale = units.factor(unit, dimension) if unit else 1.0
     return f"{getattr(record, word) / scale:.9g} {unit}".strip()
 
 
-def trial_of(study):
+def trial_of(study) -> Verified | None:
     """Return what a design has shown, as its bowl file says it; None where nothing has left a queue.
 
     Parameters
@@ -637,7 +639,7 @@ def trial_of(study):
     )  # fmt: skip
 
 
-def _verified(study, bowl):
+def _verified(study, bowl) -> Iterator[Any]:
     value, low, high = (f"{rate / PER_MINUTE:.4g}/min" for rate in study.delivered)
     yield "status", study.status
     yield "wanted", study.wanted
@@ -685,7 +687,7 @@ def accepted_summary(lines):
     return tables.frame({name: [row[name] for row in rows] for name in rows[0]})
 
 
-def accepted_document(lines):
+def accepted_document(lines) -> dict[Any, Any]:
     """Return the sheet as the JSON document."""
     listed = [one.agrees for one in lines if one.agrees is not None]
     return {
@@ -795,7 +797,7 @@ def risk_picture(part, risk):
     return figure
 
 
-def bodies(part, pair):
+def bodies(part, pair) -> tuple[Any, ...]:
     """Return the part and what it may be caught by, each as ((V, 3) float [m], (F, 3) int), in its axes."""
     points = part.vertices - part.centre_of_mass
     first = vectors.product(points, pair.axes.T)

@@ -1,5 +1,6 @@
 """Files of ``feeder drop``: counts of the test, and the traced drops."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -49,7 +50,7 @@ def counts(study):
     )
 
 
-def document(study):
+def document(study) -> dict[Any, Any]:
     """Return the drop test as one JSON document.
 
     Parameters
@@ -93,7 +94,7 @@ def remarks(study):
     return listed
 
 
-def _scatter(study):
+def _scatter(study) -> str:
     """What becomes of one value of restitution, and of the intervals."""
     tally, (low, high) = study.result.tally, study.result.launch["restitution"]
     ends = np.stack([tally.p - tally.low, tally.high - tally.p])
@@ -146,7 +147,7 @@ def traces(study):
     )
 
 
-def listed(study):
+def listed(study) -> list[Any]:
     """Return when each followed drop was counted, on what, and whether it was seen at rest."""
     return [
         {
@@ -238,7 +239,7 @@ def counts_figure(title, aspects, tally, rules):
     return figure
 
 
-def bars(axes, places, tally):
+def bars(axes, places, tally) -> None:
     """Draw bars of the drops with 95 % intervals, and the band from gentle to violent launches behind."""
     low = 100.0 * np.minimum(tally.gentle, tally.violent)
     high = 100.0 * np.maximum(tally.gentle, tally.violent)
@@ -254,7 +255,7 @@ ABOVE = 0.4  # room over the highest reference line, of that below it, on the lo
 LEGEND = (0.96, 0.87)  # places of its lines, of the axis
 
 
-def curve(axes, trace, aspects, rows):
+def curve(axes, trace, aspects, rows) -> None:
     """Draw the energy and height of the centre of mass over time, with the stills' numbers.
 
     Parameters
@@ -318,14 +319,14 @@ def references(trace, aspects):
     return lines
 
 
-def badge(axes, x, y, number):
+def badge(axes, x, y, number) -> None:
     """Draw a still's number in a disc."""
     disc = {"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": style.INK, "linewidth": 0.7}
     axes.text(x, y, str(number), fontsize=6, ha="center", va="center", color=style.INK, bbox=disc, zorder=6,
               clip_on=False)  # fmt: skip
 
 
-def _named(axes, lines):
+def _named(axes, lines) -> None:
     """Reference lines, their names at the right from the first on; one without room is left out."""
     low, high = np.log(axes.get_ylim())
     taken = list(LEGEND)
@@ -367,7 +368,7 @@ class Strip:
     bottoms: np.ndarray  # (S,) of each still, from the image of the centre of mass
 
     @property
-    def page(self):
+    def page(self) -> tuple[Any, ...]:
         """Width and height of the whole picture."""
         return 2 * EDGE + ACROSS * (WIDTH + GAP) - GAP, HEAD + sum(self.heights) + DOWN * CAPTION + CURVE
 
@@ -376,7 +377,7 @@ class Strip:
         """[m] of the grid on the plane."""
         return grid_step(self.pixel * WIDTH / CELLS * self.solid.size)
 
-    def place(self, panel):
+    def place(self, panel) -> tuple[Any, ...]:
         """Return the left, bottom, width and height of a still on the page."""
         row, column = divmod(panel, ACROSS)
         above = HEAD + sum(self.heights[: row + 1]) + row * CAPTION
@@ -431,7 +432,7 @@ def _gap(solid, standing):
     return (standing.height - (solid.points @ standing.down).max()) * solid.size
 
 
-def _layout(solid, trace, rows):
+def _layout(solid, trace, rows) -> tuple[Any, ...]:
     """The layout in which every still fits, all in one scale, and how the part stands in each."""
     places, points = trace.positions / solid.size, shading.outermost(solid.points)
     way = places[rows[-1], :2] - places[rows[0], :2]
@@ -456,7 +457,7 @@ def _layout(solid, trace, rows):
     return Strip(solid, trace, places, heading, pixel, tuple(heights.tolist()), bottoms), stances
 
 
-def _still(axes, laid, standing, panel, row):
+def _still(axes, laid, standing, panel, row) -> None:
     """The part on its way, on a floor with a grid that stays where it is."""
     _, _, width, height = laid.place(panel)
     frame = shading.Shot(-0.5 * width * laid.pixel, laid.bottoms[panel], laid.pixel, width, height)
@@ -483,13 +484,13 @@ def _clear(solid, standing, frame):
     return np.dstack([image * part[..., None], np.where(part, 1.0, shade)])
 
 
-def _draw(axes, solid, camera, line, look):
+def _draw(axes, solid, camera, line, look) -> None:
     """Where a line (N, 3) about the centre of mass is not hidden by the solid."""
     image, seen = camera.project(line), camera.sees(solid, line, away=BEHIND)
     axes.plot(*np.where(seen[:, None], image, np.nan).T, **look)
 
 
-def _grid(laid, place):
+def _grid(laid, place) -> Iterator[Any]:
     """Lines on the plane about a still, along and across the way, a round number of millimetres apart."""
     step = laid.step / laid.solid.size
     ways = np.array([laid.heading, np.cross([0.0, 0.0, 1.0], laid.heading)])  # along, across
@@ -507,7 +508,7 @@ def grid_step(longest):
     return MM * decade * max(step for step in (1.0, 2.0, 5.0) if step * decade * MM <= longest * (1.0 + 1e-9))
 
 
-def _share(laid, left, bottom, width, height):
+def _share(laid, left, bottom, width, height) -> tuple[Any, ...]:
     page = laid.page
     return left / page[0], bottom / page[1], width / page[0], height / page[1]
 
@@ -525,7 +526,7 @@ def _page(figure, laid, title):
     return axes
 
 
-def _caption(page, place, number, words):
+def _caption(page, place, number, words) -> None:
     """Number and text under a still."""
     left, bottom, _, _ = place
     badge(page, left + 16, bottom - 18, number)

@@ -2,6 +2,7 @@
 
 import textwrap
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -42,7 +43,7 @@ LABELS = {  # what people read
 }
 
 
-def instant(found, posture, bowl):
+def instant(found, posture, bowl) -> dict[Any, Any]:
     """Return the upper reversal under the names of the JSON contract.
 
     Parameters
@@ -71,7 +72,7 @@ def instant(found, posture, bowl):
     }
 
 
-def over_cycle(found, course):
+def over_cycle(found, course) -> dict[Any, Any]:
     """One period as columns.
 
     Parameters
@@ -101,7 +102,7 @@ def over_cycle(found, course):
     }
 
 
-def document(found, settings):
+def document(found, settings) -> dict[Any, Any]:
     """Return all of one FloorStudy, for JSON; of one as published, the upper reversal by print.
 
     Parameters
@@ -219,19 +220,19 @@ def map_cells(study, kind):
     return MAPS[kind](study, COARSE).columns()
 
 
-def map_remarks(study):
+def map_remarks(study) -> list[Any]:
     """Return what a reader of the maps should know, a sentence each."""
     return [line for kind, make in MAPS.items() for line in map_notes(kind, make(study, COARSE))]
 
 
-def map_notes(kind, grid):
+def map_notes(kind, grid) -> list[Any]:
     """Return a sentence where nothing slides on a map."""
     if MOTION_STATES.index("slide") in grid.codes:
         return []
     return [f"{kind.replace('_', ' and ')}: {none_slides(grid)}."]
 
 
-def none_slides(grid):
+def none_slides(grid) -> str:
     """Say what a map shows on which nothing slides: of which instant it is, and what happens there."""
     shares = {name: share for name, share in grid.shares().items() if share > 0.0}
     words = {"stick": "is held", "tip": "has its line of action outside the contact", "hop": "is in the air"}
@@ -244,7 +245,7 @@ def none_slides(grid):
     )
 
 
-def alignment(study):
+def alignment(study) -> dict[Any, Any]:
     """Return theta'' over every heading as columns."""
     headings, cells = study.alignment()
     names = ("alignment_acceleration_rad_s2", "published_alignment_rad_s2")
@@ -256,7 +257,7 @@ def mean_velocity(found):
     return None if HOP in found.cycle.state or not found.course.settled else found.course.mean
 
 
-def chosen(found):
+def chosen(found) -> list[Any]:
     """Return which aspect was taken, in one line, where none was asked for."""
     return [f"Aspect {found.posture.name}, {found.why}"] if found.why else []
 
@@ -275,17 +276,17 @@ def shown_value(value):
     return value if isinstance(value, str) else "never" if np.isinf(value) else f"{value:.5g}"
 
 
-def noiseless(value, scale):
+def noiseless(value, scale) -> float:
     """Return the rounding of an exact zero as zero; ``scale`` is what it came out of."""
     return 0.0 if abs(value) <= 1e-9 * max(abs(scale), 1e-12) else float(value)
 
 
-def tips(inside):
+def tips(inside) -> bool | None:
     """True, false, or None where the contact polygon or the contact is missing."""
     return None if np.isnan(inside) else bool(inside < -ON_THE_LINE)
 
 
-def _friction(found, bowl):
+def _friction(found, bowl) -> dict[Any, Any]:
     """Friction of the complete equations and the most that the floor gives; the print has no such vector."""
     if not hasattr(found, "friction"):
         return {}
@@ -293,7 +294,7 @@ def _friction(found, bowl):
     return {"friction_N": float(np.hypot(*found.friction)), "greatest_friction_N": limit}
 
 
-def _offsets(found):
+def _offsets(found) -> dict[Any, Any]:
     pair = np.broadcast_to(found.offset, (2,)) if np.ndim(found.offset) else (found.offset, np.nan)
     return {
         "normal_line_offset_mm": float(pair[0]) / MM,
@@ -424,7 +425,7 @@ def alignment_figure(grid, direction, title):
     return figure
 
 
-def arrow(axes, start, step, text, color, *, pushing=False, beside=0):
+def arrow(axes, start, step, text, color, *, pushing=False, beside=0) -> None:
     """A force arrow with its value: from ``start`` on or, ``pushing``, towards it from outside.
 
     ``beside`` writes the value to the left (-1) or right (1) of the middle instead of beyond the head.
@@ -441,12 +442,12 @@ def arrow(axes, start, step, text, color, *, pushing=False, beside=0):
         _note(axes, tail if pushing else head, text, color, shift, centred=True)
 
 
-def newtons(force):
+def newtons(force) -> str:
     """Return a force for people."""
     return f"{force:.3g} N" if force >= 0.1 else f"{1e3 * force:.3g} mN"
 
 
-def _part(axes, posture, heading, size):
+def _part(axes, posture, heading, size) -> None:
     outline, contact = turned(posture.outline, heading) / MM, turned(posture.contact, heading) / MM
     axes.add_patch(
         mpl_patches.Polygon(
@@ -468,14 +469,14 @@ def _part(axes, posture, heading, size):
         axes.plot([-along[0], along[0]], [-along[1], along[1]], zorder=4, **shading.AXIS)
 
 
-def _heading_line(axes, heading, size):
+def _heading_line(axes, heading, size) -> None:
     """The body's own direction, x' (the thesis's Z')."""
     end = 0.72 * size * np.array([np.cos(heading), np.sin(heading)])
     axes.plot([0, end[0]], [0, end[1]], color=style.INK, linewidth=0.8, linestyle=(0, (6, 3)), zorder=4)
     axes.annotate("x'", end, (3, 10), textcoords="offset points", fontsize=9, color=style.INK, style="italic")
 
 
-def _legend(figure, posture, pressed):
+def _legend(figure, posture, pressed) -> None:
     handles = [
         mpl_patches.Patch(facecolor=CONTACT, alpha=0.35, label="contact polygon"),
         mpl_lines.Line2D(
@@ -499,7 +500,7 @@ def _legend(figure, posture, pressed):
     )
 
 
-def _arrows(axes, forces, size):
+def _arrows(axes, forces, size) -> None:
     longest = max(np.hypot(*force) for _, force, _ in forces)
     for name, force, color in forces:
         if longest > 0.0 and np.hypot(*force) > 1e-6 * longest:
@@ -508,7 +509,7 @@ def _arrows(axes, forces, size):
             )
 
 
-def _note(axes, place, text, color, shift, centred=False):
+def _note(axes, place, text, color, shift, centred=False) -> None:
     sideways = "center" if centred and abs(shift[0]) < abs(shift[1]) else "left" if shift[0] >= 0 else "right"
     axes.annotate(
         text, place, tuple(shift), textcoords="offset points", fontsize=8, color=color, fontweight="bold",
@@ -517,7 +518,7 @@ def _note(axes, place, text, color, shift, centred=False):
     )  # fmt: skip
 
 
-def _aspect(posture):
+def _aspect(posture) -> str:
     return f"Aspect {posture.name}" + (" (rolling)" if posture.kind == "rolling" else "")
 
 
@@ -576,7 +577,7 @@ def regime_map(grid, column, *, title, labels, value, own=None, note=()):
     return figure
 
 
-def _map_note(axes, lines):
+def _map_note(axes, lines) -> None:
     """Sentences under the title, each from a line of its own."""
     listed = [piece for line in lines for piece in textwrap.wrap(line, LETTERS)]
     axes.text(
@@ -588,7 +589,7 @@ def _map_note(axes, lines):
     )  # fmt: skip
 
 
-def state_band(axes, phase, states, names):
+def state_band(axes, phase, states, names) -> None:
     """A band along the top of an Axes in the colour of each instant's state."""
     step = 360.0 / len(phase)
     for code, name in enumerate(names):
@@ -599,14 +600,14 @@ def state_band(axes, phase, states, names):
             )  # fmt: skip
 
 
-def state_legend(figure, states, names):
+def state_legend(figure, states, names) -> None:
     """Colours of the states that occur, below the figure."""
     present = [name for code, name in enumerate(names) if code in np.asarray(states)]
     handles = [mpl_patches.Patch(color=STATES[name], label=name) for name in present]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), fontsize=8, frameon=False)
 
 
-def phase_axis(axes):
+def phase_axis(axes) -> None:
     """Phase of the vibration along x, the reversals marked."""
     axes.set_xlim(0, 360)
     axes.set_xticks(np.arange(0, 361, 45))
@@ -614,11 +615,11 @@ def phase_axis(axes):
         axes.axvline(phase, color=style.FAINT, linewidth=1.2, zorder=0)
 
 
-def _places(grid, names):
+def _places(grid, names) -> list[Any]:
     return [grid.names.index(name) for name in names if name in grid.names]
 
 
-def _values(figure, axes, data, label, covered):
+def _values(figure, axes, data, label, covered) -> None:
     x, y, shown = data
     finite = shown[np.isfinite(shown)]
     low, high = finite.min(), finite.max()
@@ -635,7 +636,7 @@ def _values(figure, axes, data, label, covered):
             text.set_path_effects(style.rim())
 
 
-def _region(axes, grid, name):
+def _region(axes, grid, name) -> bool:
     """Hatch one regime; whether it occurs."""
     if name not in grid.names:
         return False
@@ -656,7 +657,7 @@ def _region(axes, grid, name):
     return True
 
 
-def _throws(axes, grid):
+def _throws(axes, grid) -> None:
     """Lines of equal throw number where the part hops: all that this balance can say there."""
     if "hop" not in grid.names or "throw_number" not in grid.values or min(grid.codes.shape) < 2:
         return
@@ -674,7 +675,7 @@ def _throws(axes, grid):
             text.set_path_effects(style.halo())
 
 
-def _own_point(axes, own):
+def _own_point(axes, own) -> None:
     axes.plot(*own, "o", markersize=7, color=style.ACCENT, markeredgecolor="white", zorder=6)
     axes.annotate(
         "this bowl", own, (8, 6), textcoords="offset points", fontsize=8, color=style.ACCENT,
@@ -682,7 +683,7 @@ def _own_point(axes, own):
     )  # fmt: skip
 
 
-def _map_legend(figure, names):
+def _map_legend(figure, names) -> None:
     if not names:
         return
     with matplotlib.rc_context({"hatch.color": HATCH, "hatch.linewidth": 0.6}):
@@ -701,7 +702,7 @@ def _map_legend(figure, names):
         )
 
 
-def _runs(flags):
+def _runs(flags) -> list[Any]:
     indices = np.flatnonzero(flags)
     return [run for run in np.split(indices, np.flatnonzero(np.diff(indices) > 1) + 1) if len(run)]
 
@@ -718,7 +719,7 @@ ALTS = {
 }
 
 
-def offers(study, settings):
+def offers(study, settings) -> list[Any]:
     """Offer the files of a FloorStudy.
 
     Parameters
@@ -770,9 +771,9 @@ def _plan(study):
     return plan(study.posture, study.heading, study.now)
 
 
-def _title(study):
+def _title(study) -> str:
     return f"{_name(study)}, heading {np.degrees(study.heading):.4g}°"
 
 
-def _name(study):
+def _name(study) -> str:
     return f"{study.part.name}, aspect {study.posture.name}"

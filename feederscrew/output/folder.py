@@ -9,6 +9,7 @@ import tempfile
 import time
 from importlib import metadata
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 from feederscrew import __version__
 from feederscrew.errors import FeederError
@@ -57,16 +58,16 @@ class ResultFolder:
         self._records()
         return self
 
-    def __exit__(self, *fault):
+    def __exit__(self, *fault) -> None:
         return None
 
-    def write(self, name, content):
+    def write(self, name, content) -> None:
         """Hold back one file, text or bytes, until ``keep``; '/' in the name makes folders."""
         if not _inside(name) or name == RECORD:
             raise ValueError(f"{name!r} is not a name for a result")
         self.staged[name] = tables.encoded(content)
 
-    def has_file(self, command, name):
+    def has_file(self, command, name) -> bool:
         """Return whether an earlier run of a command has left a file of that name here.
 
         Parameters
@@ -80,7 +81,7 @@ class ResultFolder:
         """
         return name in self._records().get(command, {}).get("files", [])
 
-    def keep(self, command, *, arguments=(), effective=None, warnings=()):
+    def keep(self, command, *, arguments=(), effective=None, warnings=()) -> None:
         """Put every file in place and record the run.
 
         Parameters
@@ -117,7 +118,7 @@ class ResultFolder:
                 with contextlib.suppress(OSError):
                     folder.rmdir()  # goes only if nothing came into it
 
-    def _put(self, command, record):
+    def _put(self, command, record) -> None:
         records = self._records()
         old = records.get(command, {}).get("files", [])
         records[command] = record
@@ -152,7 +153,7 @@ class ResultFolder:
             self._check_owner(owner)
         return records
 
-    def _check_owner(self, owner):
+    def _check_owner(self, owner) -> None:
         path, sha256 = next(iter(self.identity.items()), (None, NO_FILE["sha256"]))
         if owner["sha256"] == sha256:
             return
@@ -170,7 +171,7 @@ class ResultFolder:
         except ValueError:  # another drive
             return Path(path).absolute().as_posix()
 
-    def _check_writable(self):
+    def _check_writable(self) -> None:
         nearest = next(p for p in (self.path.absolute(), *self.path.absolute().parents) if p.exists())
         if not nearest.is_dir():
             raise FeederError(nearest, "is a file, not a folder", "give another folder to `directory`")
@@ -191,7 +192,7 @@ def _inside(name):
     return bool(path.parts) and not path.is_absolute() and ".." not in path.parts and "\\" not in name
 
 
-def _tidy(root):
+def _tidy(root) -> None:
     """Delete what runs that were killed have left half-written."""
     for left in root.glob(f"{STAGING_PREFIX}*"):
         with contextlib.suppress(OSError):
@@ -199,12 +200,12 @@ def _tidy(root):
                 shutil.rmtree(left, ignore_errors=True)
 
 
-def _missing(path):
+def _missing(path) -> list[Any]:
     """The folders that making ``path`` makes, the innermost first."""
     return [p for p in (path, *path.parents) if not p.exists()]
 
 
-def _write(path, content):
+def _write(path, content) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(content)
 

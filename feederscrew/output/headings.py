@@ -1,5 +1,7 @@
 """Files of ``feeder headings``."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew.geometry.polygons import turned
@@ -21,7 +23,7 @@ SPARE = (
 )  # left out of a table that is too wide
 
 
-def rows(study):
+def rows(study) -> list[Any]:
     """Return every stable heading of a HeadingsStudy, one a dict, under the columns of ``headings.csv``."""
     return [_row(one, row, study.chances) for one in study.headings for row in range(len(one.headings))]
 
@@ -32,7 +34,7 @@ def frame(study):
     return tables.frame({name: [row[name] for row in found] for name in found[0]})
 
 
-def document(study, settings):
+def document(study, settings) -> dict[Any, Any]:
     """Return a HeadingsStudy as the JSON document.
 
     Parameters
@@ -53,7 +55,7 @@ def document(study, settings):
     }
 
 
-def answer(study):
+def answer(study) -> str:
     """Say whose probabilities of the aspects a HeadingsStudy takes."""
     return f"Aspect share: {study.answer}"
 
@@ -69,7 +71,7 @@ def remarks(study):
     return lines
 
 
-def _row(one, row, chances):
+def _row(one, row, chances) -> dict[Any, Any]:
     degrees = np.degrees(one.headings)
     return {
         "aspect": one.aspect,
@@ -134,7 +136,7 @@ def headings(posture, found, track, title):
     return figure
 
 
-def _one(axes, posture, found, row, track, size):
+def _one(axes, posture, found, row, track, size) -> None:
     heading, falls = found.headings[row], found.falls_off[row]
     style.tidy(axes, grid="none")
     axes.set_title(_caption(found, row), fontsize=8, color=FALLS if falls else style.INK, loc="center")
@@ -166,14 +168,14 @@ def _one(axes, posture, found, row, track, size):
     axes.set_aspect("equal")
 
 
-def _caption(found, row):
+def _caption(found, row) -> str:
     text = f"{np.degrees(found.headings[row]):.4g}°   {100.0 * found.shares[row]:.1f} %"
     size = f"{found.lengths[row] / MM:.4g} long, {found.widths[row] / MM:.4g} wide [mm]"
     note = "falls off" if found.falls_off[row] else "overhangs" if found.overhangs[row] > 0.0 else "stays on"
     return f"{text}\n{size}\n{note}"
 
 
-def _track(axes, distance, track, size):
+def _track(axes, distance, track, size) -> None:
     """The wall and the free edge, concentric."""
     reach = np.linspace(-1.2, 1.2, 81) * max(size, NARROWEST * track.width) / track.radius
     for radius, dashes in ((track.radius, "-"), (track.radius - track.width, (0, (5, 3)))):
@@ -185,7 +187,7 @@ def _track(axes, distance, track, size):
             axes.fill_between(x / MM, y / MM, y / MM - 0.12 * size / MM, color=WALL, alpha=0.35, linewidth=0)
 
 
-def offers(study, settings):
+def offers(study, settings) -> list[Any]:
     """Offer the files of a HeadingsStudy.
 
     Parameters

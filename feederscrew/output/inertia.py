@@ -1,5 +1,7 @@
 """Files of ``feeder inertia``."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew.output import columns, tables
@@ -88,12 +90,12 @@ def _in(value, unit):
     return None if value is None else value / unit
 
 
-def _vector(values, name, letters=AXES):
+def _vector(values, name, letters=AXES) -> list[Any]:
     values = [None] * len(letters) if values is None else _clean(values)
     return [(name.format(letter), value) for letter, value in zip(letters, values)]
 
 
-def _matrix(values, name):
+def _matrix(values, name) -> list[Any]:
     values = _clean(values)
     return [(name.format(AXES[i] + AXES[j]), values[i][j]) for i in range(3) for j in range(i, 3)]
 
@@ -102,7 +104,7 @@ def _clean(values):
     return np.where(np.abs(values) <= NOISE * np.abs(values).max(), 0.0, values)
 
 
-def offers(study, format="csv"):
+def offers(study, format="csv") -> list[Any]:
     """Offer the mass properties of a part.
 
     Parameters

@@ -1,6 +1,7 @@
 """The machine and the bowl for a part as tables, documents and files: ``feeder bowl``."""
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -18,7 +19,7 @@ N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
 LITRE = units.factor("l", "volume")
 
 
-def offers(study, tried=None, mark=None, fields=None):
+def offers(study, tried=None, mark=None, fields=None) -> tuple[Any, ...]:
     """Return the files of a machine.
 
     Parameters
@@ -53,11 +54,11 @@ def offers(study, tried=None, mark=None, fields=None):
     )
 
 
-def _document(study, tried):
+def _document(study, tried) -> dict[Any, Any]:
     return document(study) | ({} if tried is None else {"verified": proof.block(tried)})
 
 
-def document(study):
+def document(study) -> dict[Any, Any]:
     """Return everything of a machine as the JSON document.
 
     Parameters
@@ -93,7 +94,7 @@ def document(study):
     }
 
 
-def _drive(study):
+def _drive(study) -> dict[Any, Any]:
     """What kind of drive it is; where the springs do not make it, both."""
     drive, other = study.bowl.drive, study.mismatch
     kind = drive_sizing.TWO_AXIS if drive_sizing.is_two_axis(drive) else drive_sizing.LEAF_SPRING
@@ -107,7 +108,7 @@ def _drive(study):
     }
 
 
-def _figures(one):
+def _figures(one) -> dict[Any, Any]:
     return {
         "vibration_angle_at_the_springs_deg": one.spring_angle / DEG,
         "vibration_angle_at_the_track_deg": one.track_angle / DEG,
@@ -117,7 +118,7 @@ def _figures(one):
     }
 
 
-def _rocking(study):
+def _rocking(study) -> dict[Any, Any]:
     """The stroke round the bowl over its mean, as the solid is and with the weight that balances it."""
     as_is, balanced = study.rocking
     return {
@@ -131,7 +132,7 @@ def _rocking(study):
     }
 
 
-def order(study):
+def order(study) -> dict[Any, Any]:
     """Return what an order asked for and what was sized for it, as a dict."""
     asked, size, room = study.order, study.order.size, study.order.lying
     wanted = (None, None) if asked.wanted is None else (asked.wanted[0], asked.wanted[1] / DEG)
@@ -170,7 +171,7 @@ def order(study):
     }
 
 
-def _springs(study):
+def _springs(study) -> dict[Any, Any]:
     made, machine = study.springs, study.bowl.machine
     return {
         "leaf_stiffness_n_per_mm": made.leaf_stiffness / N_MM,
@@ -206,7 +207,7 @@ def _springs(study):
     }
 
 
-def _stroke(study):
+def _stroke(study) -> dict[Any, Any]:
     moved, found, bowl = study.stroke, study.answer, study.bowl
     return {
         "controller_percent": 100.0 * bowl.sizing.controller,
@@ -306,11 +307,11 @@ def measured_summary(one):
     return tables.frame(dict(zip(("quantity", "should be", "measured"), zip(*rows))))
 
 
-def _measured_text(value):
+def _measured_text(value) -> str:
     return "-" if value is None or math.isnan(value) else f"{value:.4g}"
 
 
-def measured_document(one):
+def measured_document(one) -> dict[Any, Any]:
     """Return a MeasuredMachine as the JSON document."""
     now = {"stroke_mm": one.stroke and one.stroke / MM, "acceleration_m_s2": one.acceleration}
     return {

@@ -1,5 +1,7 @@
 """The bowl from above and in section, in one scale, and what it does from full to empty."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.patches import Circle, Polygon, Rectangle, Wedge
 
@@ -44,7 +46,7 @@ def bowl(study, tried=None):
     return page
 
 
-def _title(page, study, tried):
+def _title(page, study, tried) -> None:
     words, moved = "The machine of this bowl", study.stroke
     if study.order is not None:
         rate = study.order.target / PER_MINUTE
@@ -71,7 +73,7 @@ def _title(page, study, tried):
         page.text(0.02, 0.912, said, fontsize=9.5, color=style.ACCENT, va="center")
 
 
-def _from_above(axes, study, half):
+def _from_above(axes, study, half) -> None:
     """Wall, track, floor, the springs' circle and the part on the track."""
     track, machine = study.bowl.track, study.bowl.machine
     radius, width, at = track.radius / MM, track.width / MM, machine.spring_radius / MM
@@ -94,14 +96,14 @@ def _from_above(axes, study, half):
     axes.text(-ROOM * radius, half, "from above", fontsize=10, fontweight="bold", color=style.INK, va="top")
 
 
-def _banks(study):
+def _banks(study) -> tuple[Any, ...]:
     """Places of the banks round the springs' circle [rad], and the leaves in each."""
     leaves, banks = int(study.bowl.machine.leaves), int(study.bowl.sizing.banks)
     here = np.arange(banks)
     return np.radians(90.0) + 2.0 * np.pi / banks * here, leaves // banks + (here < leaves % banks)
 
 
-def _bank(axes, radius, place, leaves, machine):
+def _bank(axes, radius, place, leaves, machine) -> None:
     """One bank, leaf by leaf from above, each as thick as it is: its width lies along the radius."""
     outward, along = np.array([np.cos(place), np.sin(place)]), np.array([-np.sin(place), np.cos(place)])
     width, thick = machine.leaf_width / MM, machine.leaf_thickness / MM
@@ -113,7 +115,7 @@ def _bank(axes, radius, place, leaves, machine):
         axes.add_patch(Polygon(corners, closed=True, facecolor=STEEL, edgecolor=SHEET, linewidth=0.5))
 
 
-def _parts(axes, study, radius):
+def _parts(axes, study, radius) -> None:
     """The part along the wall, as often as it fits on a quarter of the track."""
     if study.order is None:
         return
@@ -132,7 +134,7 @@ def _parts(axes, study, radius):
         )
 
 
-def _way(axes, radius):
+def _way(axes, radius) -> None:
     """An arrow the way the parts climb: counter-clockwise."""
     turn = np.radians(np.linspace(28, 78, 40))
     axes.plot(radius * np.cos(turn), radius * np.sin(turn), color=style.INK, linewidth=1.1)
@@ -144,7 +146,7 @@ def _way(axes, radius):
     )  # fmt: skip
 
 
-def _in_section(axes, study, half):
+def _in_section(axes, study, half) -> None:
     """Wall, turns of the track, fill, springs and base."""
     track, machine, rules = study.bowl.track, study.bowl.machine, study.bowl.sizing
     radius, width, depth = track.radius / MM, track.width / MM, study.depth / MM
@@ -175,7 +177,7 @@ def _in_section(axes, study, half):
     axes.text(-ROOM * radius, half, "in section", fontsize=10, fontweight="bold", color=style.INK, va="top")
 
 
-def _turns(axes, study, radius, width, foot, depth, sheet):
+def _turns(axes, study, radius, width, foot, depth, sheet) -> None:
     """The track cut at both sides, half a turn higher on the left."""
     rise = np.pi * 2.0 * radius * np.tan(study.bowl.track.climb)
     for side, start in ((1, 0.0), (-1, 0.5)):
@@ -195,7 +197,7 @@ def _turns(axes, study, radius, width, foot, depth, sheet):
             )
 
 
-def _leaves(axes, place, top, machine, count):
+def _leaves(axes, place, top, machine, count) -> None:
     """A bank of leaves at its tilt, as many as there are."""
     tilt, length = machine.spring_angle, machine.leaf_length / MM
     lean = 0.5 * length * np.sin(tilt)
@@ -204,29 +206,29 @@ def _leaves(axes, place, top, machine, count):
         axes.plot([x - lean, x + lean], [top - length * np.cos(tilt), top], color=SHEET, linewidth=1.4)
 
 
-def _base(machine):
+def _base(machine) -> str:
     return f"base {machine.base_mass:.3g} kg\n{machine.base_inertia:.3g} kg m²"
 
 
-def _set(machine):
+def _set(machine) -> str:
     leaf = (
         f"{machine.leaf_width / MM:.3g} x {machine.leaf_thickness / MM:.3g} x {machine.leaf_length / MM:.3g}"
     )
     return f"{machine.leaves:.0f} leaves {leaf}\nmotion there {machine.spring_angle / DEG:.3g}°"
 
 
-def _full(study):
+def _full(study) -> str:
     return f"full {study.fill.mass:.3g} kg"
 
 
-def _climb(study):
+def _climb(study) -> str:
     track, turns = study.bowl.track, study.turns
     said = f"climb {track.climb / DEG:.3g}°" if track.climb > 0.0 else "level track"
     said += f", {turns:.3g} turns" if np.isfinite(turns) else ""
     return f"{said}\nbowl {study.bowl.machine.bowl_mass:.3g} kg, {study.bowl.machine.bowl_inertia:.3g} kg m²"
 
 
-def _across(axes, left, right, y, text, radius):
+def _across(axes, left, right, y, text, radius) -> None:
     for x in (left, right):
         axes.plot([x, x], [0, y - 0.02 * radius], color=style.INK, linewidth=0.5, zorder=0)
     axes.annotate("", (left, y), (right, y), arrowprops=DIMENSION)
@@ -236,7 +238,7 @@ def _across(axes, left, right, y, text, radius):
     )  # fmt: skip
 
 
-def _upright(axes, side, radius, low, high):
+def _upright(axes, side, radius, low, high) -> None:
     """A height beside the wall, on the right (1) or on the left (-1)."""
     x = side * 1.13 * radius
     for y in (low, high):
@@ -247,7 +249,7 @@ def _upright(axes, side, radius, low, high):
     axes.text(*place, f"{high - low:.3g}", fontsize=9, color=style.INK, va="center", ha=way)
 
 
-def _curves(page, study):
+def _curves(page, study) -> None:
     """Rate or velocity, and natural frequency, from a full bowl to an empty one."""
     left, right = page.add_axes((0.065, 0.065, 0.41, 0.27)), page.add_axes((0.565, 0.065, 0.41, 0.27))
     fill = 100.0 * study.emptying.levels

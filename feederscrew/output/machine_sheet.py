@@ -1,6 +1,8 @@
 """The sheet of a machine and the sheet that a quotation asks for: one line a quantity, in plain text."""
 
 import math
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +19,7 @@ LITRE = units.factor("l", "volume")
 GRAM, GRAM_CM3 = units.factor("g", "mass"), units.factor("g/cm3", "density")
 
 
-def quotation(study, tried=None):
+def quotation(study, tried=None) -> list[Any]:
     """Return the lines that a maker asks for: part, rate, orientation, bowl, drive.
 
     Parameters
@@ -45,7 +47,7 @@ def quotation(study, tried=None):
     )
 
 
-def machine(study, tried=None):
+def machine(study, tried=None) -> list[Any]:
     """Return the lines of a machine without an order, as ``quotation`` does."""
     first = _drive_first(study)
     return _lines(
@@ -61,11 +63,11 @@ def machine(study, tried=None):
     )
 
 
-def _lines(pairs):
+def _lines(pairs) -> list[Any]:
     return [{"quantity": quantity, "value": value} for quantity, value in pairs]
 
 
-def _drive_first(study):
+def _drive_first(study) -> Iterator[Any]:
     """What one set of leaf springs cannot make, and both drives, before anything else."""
     if drive_sizing.is_two_axis(study.bowl.drive):
         yield "drive", two_axis(study.bowl.drive)
@@ -74,7 +76,7 @@ def _drive_first(study):
         yield "these springs make", study.mismatch.machine.text
 
 
-def two_axis(drive):
+def two_axis(drive) -> str:
     """Return what a drive out of phase is and needs, as text; '' of a leaf-spring drive."""
     if not drive_sizing.is_two_axis(drive):
         return ""
@@ -89,7 +91,7 @@ def angles(study, *, phase=True):
     return f"{said}, phase {study.bowl.drive.phase / DEG:.4g}°" if led else said
 
 
-def _part(study):
+def _part(study) -> Iterator[Any]:
     part, room = study.order.part, study.order.lying
     size = " x ".join(f"{side / MM:.4g}" for side in sorted(_box(part), reverse=True))
     yield "part, drawing", f"{part.name}, {part.source}"
@@ -98,14 +100,14 @@ def _part(study):
     yield "size [mm]", f"{size}; at most {room.longest / MM:.4g} along the wall, {room.tallest / MM:.4g} high"
 
 
-def _asked_of_trial(found):
+def _asked_of_trial(found) -> Iterator[Any]:
     """What a trial was of, for a machine that has no order."""
     if found is not None:
         yield "orientation that leaves", found.wanted
         yield "rate asked for [1/min]", f"{found.target / PER_MINUTE:.6g}"
 
 
-def _tried(found):
+def _tried(found) -> Iterator[Any]:
     """What a trial has delivered, before what is computed."""
     if found is not None:
         ends = ", ".join(f"{end / PER_MINUTE:.4g}" for end in (found.low, found.high))
@@ -115,7 +117,7 @@ def _tried(found):
         )
 
 
-def rate_of_trial(found):
+def rate_of_trial(found) -> str:
     """Return what a trial has delivered as text for titles and drawings."""
     value, low = (f"{end / PER_MINUTE:.4g}" for end in (found.delivered, found.low))
     return f"{value}/min, at least {low}: {found.status}"
@@ -130,7 +132,7 @@ def _box(part):
     return part.vertices.max(axis=0) - part.vertices.min(axis=0)
 
 
-def _rates(study):
+def _rates(study) -> Iterator[Any]:
     asked = study.order
     rates = study.rates(study.velocities) / PER_MINUTE
     yield "rate asked for [1/min]", f"{asked.target / PER_MINUTE:.6g}"
@@ -144,14 +146,14 @@ def _rates(study):
     yield "whose probabilities", asked.answer
 
 
-def _orientation(asked):
+def _orientation(asked) -> str:
     share = f"{100 * asked.flow.share:.3g} % of the parts"
     if asked.wanted is None:
         return f"every one that passes track and devices, {share}"
     return f"aspect {asked.wanted[0]} at {asked.wanted[1] / DEG:.3g} deg, {share}"
 
 
-def _bowl(study):
+def _bowl(study) -> Iterator[Any]:
     size, rules = study.order.size, study.bowl.sizing
     rule = max(size.least, key=size.least.get)
     least = f"{size.least[rule] / MM:.4g} by: {rule}"
@@ -166,7 +168,7 @@ def _bowl(study):
     yield "hopper [l]", f"{study.order.hopper / LITRE:.3g}, filled every {hours:.4g} min"
 
 
-def _full(study):
+def _full(study) -> Iterator[Any]:
     rules, fill, under = study.bowl.sizing, study.fill, study.bowl.machine
     third = abs(rules.fill_height - 1.0 / 3.0) < 1e-3
     share = "a third" if third else f"{100 * rules.fill_height:.3g} %"
@@ -178,7 +180,7 @@ def _full(study):
     yield "on the springs, full", f"{mass:.3g} kg, {inertia:.3g} kg m2"
 
 
-def _drive(study):
+def _drive(study) -> Iterator[Any]:
     rules = study.bowl.sizing
     yield "supply, drive [Hz]", supply(study.stroke.frequency)
     yield from _readings(study)
@@ -187,7 +189,7 @@ def _drive(study):
     yield "tune again outside [%]", f"{100 * low:.3g} to {100 * high:.3g} of the controller, at that rate"
 
 
-def supply(frequency):
+def supply(frequency) -> str:
     """Return the mains and waves that give a frequency [Hz], as text."""
     for mains in MAINS:
         for wave, times in (("half wave", 1.0), ("full wave", 2.0)):
@@ -196,7 +198,7 @@ def supply(frequency):
     return f"frequency converter, {frequency:.4g}"
 
 
-def _readings(study):
+def _readings(study) -> Iterator[Any]:
     moved, rules = study.stroke, study.bowl.sizing
     full = moved.peak_to_peak / rules.controller / MM
     at = f"at {100 * rules.controller:.3g} % of the controller, {full:.3g} at 100 %"
@@ -209,7 +211,7 @@ def _readings(study):
         yield "a part hops", hop(study.bowl).text
 
 
-def _travel(study):
+def _travel(study) -> Iterator[Any]:
     found, bowl = study.answer, study.bowl
     upright = (bowl.drive.vibration_angle + bowl.track.climb) / DEG
     yield (
@@ -223,12 +225,12 @@ def _travel(study):
         yield "velocity from full to empty [mm/s]", f"{full} to {empty}, amplitude left alone"
 
 
-def _known(value):
+def _known(value) -> str:
     """A number to three digits; 'none' where there is none, as without a steady state."""
     return f"{value:.3g}" if math.isfinite(value) else "none"
 
 
-def _springs(study):
+def _springs(study) -> Iterator[Any]:
     made, under = study.springs, study.bowl.machine
     leaf = " x ".join(
         f"{side / MM:.3g}" for side in (under.leaf_width, under.leaf_thickness, under.leaf_length)
@@ -253,7 +255,7 @@ def _springs(study):
     yield "force of the magnet [N]", f"{pull}; {study.force:.3g} along the motion"
 
 
-def _rocking(study):
+def _rocking(study) -> Iterator[Any]:
     """Where the centre of mass of a solid is, and what that does to the stroke round it."""
     if study.rocking is None:
         return
@@ -267,14 +269,14 @@ def _rocking(study):
     yield "stroke round the bowl [%]", f"{as_is}; {said}"
 
 
-def shared(study):
+def shared(study) -> str:
     """Return how the leaves share into banks, as text: '3 banks of 6'."""
     leaves, banks = int(study.bowl.machine.leaves), int(study.bowl.sizing.banks)
     less, more = leaves // banks, -(-leaves // banks)
     return f"{banks} banks of {less}" if less == more else f"{banks} banks of {less} or {more}"
 
 
-def _other_leaves(study):
+def _other_leaves(study) -> Iterator[Any]:
     """What other sets of leaves do; makers who reckon with t^2 beside beam theory's t^3."""
     for one in study.changes[1:]:
         found = f"{one.natural_frequency:.4g} Hz, gain {one.gain:.3g}"

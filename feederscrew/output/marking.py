@@ -3,6 +3,7 @@
 import re
 from dataclasses import dataclass
 from pathlib import PurePosixPath
+from typing import Any
 
 import numpy as np
 
@@ -87,7 +88,7 @@ def mark_step(data, mark):
     return STEP_PRODUCT.sub(rb"\1" + end + rb",'\2" + end, data)
 
 
-def diagonal(sheet, mark):
+def diagonal(sheet, mark) -> tuple[Any, ...]:
     """Return the size of a mark's letters and its turn [rad].
 
     Parameters
@@ -134,7 +135,7 @@ def across(figure, mark):
     return figure
 
 
-def _write(figure, mark):
+def _write(figure, mark) -> None:
     size, turn = diagonal(figure.get_size_inches(), mark)
     figure.text(
         0.5, 0.5, mark, fontsize=POINTS * size, rotation=np.degrees(turn), ha="center", va="center",
@@ -142,7 +143,7 @@ def _write(figure, mark):
     ).set_in_layout(False)  # fmt: skip
 
 
-def pictures(offered, mark):
+def pictures(offered, mark) -> list[Any]:
     """Return offers whose pictures bear a mark; the others as they are.
 
     Parameters

@@ -22,12 +22,12 @@ class Offer:
     view: Callable[[], Any] | None = None  # the frame, the document or the figure itself
 
     @property
-    def is_picture(self):
+    def is_picture(self) -> bool:
         """Whether it is left out where no pictures are wanted."""
         return self.name.endswith(".png")
 
 
-def table(name, make, *arguments, **keywords):
+def table(name, make, *arguments, **keywords) -> Offer:
     """Offer a CSV file.
 
     Parameters
@@ -46,18 +46,18 @@ def table(name, make, *arguments, **keywords):
     return Offer(name, lambda: tables.text(view(), "csv"), view=view)
 
 
-def document(name, make, *arguments, **keywords):
+def document(name, make, *arguments, **keywords) -> Offer:
     """Offer a JSON file; ``make`` returns the document."""
     view = partial(make, *arguments, **keywords)
     return Offer(name, lambda: tables.json_text(view()), view=view)
 
 
-def text(name, make, *arguments, **keywords):
+def text(name, make, *arguments, **keywords) -> Offer:
     """Offer a file of text or of bytes as ``make`` returns it."""
     return Offer(name, partial(make, *arguments, **keywords))
 
 
-def picture(name, alt, draw, *arguments, **keywords):
+def picture(name, alt, draw, *arguments, **keywords) -> Offer:
     """Offer a PNG; ``draw`` returns the figure, and its module is imported by whoever asks for it.
 
     Parameters
@@ -82,7 +82,7 @@ def picture(name, alt, draw, *arguments, **keywords):
     return Offer(name, make, alt, view)
 
 
-def write(folder, offered, *, pictures=True):
+def write(folder, offered, *, pictures=True) -> None:
     """Make every file offered and hand it to a folder.
 
     Parameters
@@ -112,7 +112,7 @@ def write(folder, offered, *, pictures=True):
             return
 
 
-def by_name(offered):
+def by_name(offered) -> dict[Any, Any]:
     """Return the offers of a subject by the names of their files."""
     return {offer.name: offer for offer in offered}
 

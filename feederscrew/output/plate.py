@@ -1,5 +1,8 @@
 """Files of ``feeder drop --plate``."""
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 
 from feederscrew.dropping.occupancy import MIN_TRANSITIONS
@@ -56,19 +59,19 @@ def drives(study):
     return _labelled(study, _drive)
 
 
-def summary(study):
+def summary(study) -> Iterator[Any]:
     """Yield how fast parts travel on each plate, a line each."""
     for plate, name in zip(study.plates, study.names):
         yield f"{_where(plate, name)}: {travels(plate, 4)}, {plate.transitions} transitions seen"
 
 
-def travels(result, digits):
+def travels(result, digits) -> str:
     """Return the mean velocity on one plate and, of several parts, its interval."""
     speed, low, high = (f"{end:.{digits}g}" for end in result.occupancy.velocity / MM_S)
     return f"travels at {speed} mm/s" + f" ({low} to {high})" * (result.parts > 1)
 
 
-def document(study):
+def document(study) -> dict[Any, Any]:
     """Return the test as one JSON document.
 
     Parameters
@@ -109,7 +112,7 @@ def remarks(study):
     return listed
 
 
-def notes(bowls):
+def notes(bowls) -> Iterator[Any]:
     """Return what is simplified in a bowl's plate, a line each."""
     if any(bowl.friction.kinetic < bowl.friction.static for bowl in bowls):
         yield "the plate has one coefficient of friction: the kinetic one, for sticking too"
@@ -117,11 +120,11 @@ def notes(bowls):
         yield "the plate has the same friction in every direction: that of slip up the track"
 
 
-def _where(result, name):
+def _where(result, name) -> str:
     return f"{name} at {result.bowl.drive.amplitude / MM:.4g} mm"
 
 
-def _changing(aspects, plate):
+def _changing(aspects, plate) -> list[Any]:
     """Aspects whose share still changes."""
     return [name for name, changing in zip(aspects.names, plate.occupancy.changing) if changing]
 
@@ -136,14 +139,14 @@ def _labelled(study, columns):
     return tables.frame(joined)
 
 
-def _head(result, name, count):
+def _head(result, name, count) -> dict[Any, Any]:
     """The columns that say which plate a row is of."""
     drive = result.bowl.drive
     values = {"bowl": name, "amplitude_mm": drive.amplitude / MM, "throw_number": result.throw_number}
     return {key: [value] * count for key, value in values.items()}
 
 
-def _drive(aspects, result, name):
+def _drive(aspects, result, name) -> dict[Any, Any]:
     ends = ("velocity_mm_s", "velocity_low_mm_s", "velocity_high_mm_s")
     return {
         **_head(result, name, 1),
@@ -156,7 +159,7 @@ def _drive(aspects, result, name):
     }
 
 
-def _plate(aspects, result, name):
+def _plate(aspects, result, name) -> dict[Any, Any]:
     seen = result.occupancy
     return {
         **_head(result, name, len(aspects.names)),
@@ -175,7 +178,7 @@ def _plate(aspects, result, name):
     }
 
 
-def _rates(aspects, result, name):
+def _rates(aspects, result, name) -> dict[Any, Any]:
     seen, names = result.occupancy, np.array(aspects.names)
     before, after = np.nonzero(np.ones(seen.counts.shape, bool) & (seen.times > 0.0)[:, None])
     return {
@@ -189,7 +192,7 @@ def _rates(aspects, result, name):
     }
 
 
-def _course(aspects, result, name):
+def _course(aspects, result, name) -> dict[Any, Any]:
     shares = result.occupancy.course
     looks = np.unique(np.linspace(0, len(shares) - 1, TIMES).astype(int))
     time = looks * result.seconds / (len(shares) - 1)
@@ -201,7 +204,7 @@ def _course(aspects, result, name):
     }
 
 
-def _plate_document(aspects, result, name):
+def _plate_document(aspects, result, name) -> dict[Any, Any]:
     """One plate of the document."""
     drive, seen = result.bowl.drive, result.occupancy
     velocity = dict(zip(("velocity_mm_s", "velocity_low_mm_s", "velocity_high_mm_s"), seen.velocity / MM_S))
@@ -258,7 +261,7 @@ def plate_figure(study):
     return figure
 
 
-def over_time(axes, aspects, result):
+def over_time(axes, aspects, result) -> None:
     """Draw the stacked share of each aspect at every look; what is white above was not down yet."""
     course = 100.0 * result.occupancy.course
     time = np.linspace(0.0, result.seconds, len(course))
@@ -274,7 +277,7 @@ def over_time(axes, aspects, result):
     axes.set_ylim(0.0, 100.0)
 
 
-def shares(axes, aspects, seen):
+def shares(axes, aspects, seen) -> None:
     """Draw how parts lay at first and in the second half, with its interval, and where the rates lead."""
     places = np.arange(len(aspects.names))
     axes.bar(places - 0.2, 100.0 * seen.start, 0.36, color=GREY, label="at first")
@@ -324,7 +327,7 @@ def trend(study):
     return figure
 
 
-def over_throw(axes, x, seen, names):
+def over_throw(axes, x, seen, names) -> None:
     """Draw the share of each named aspect over the (N,) throw numbers ``x``, set a little apart."""
     for place, (k, name) in enumerate(names.items()):
         at = x + APART * np.ptp(x) * (place - 0.5 * (len(names) - 1))
@@ -337,13 +340,13 @@ def over_throw(axes, x, seen, names):
         axes.plot(at, [100.0 * one.start[k] for one in seen], ls=":", lw=1.0, color=colour(k))
 
 
-def _left_out(aspects, shown):
+def _left_out(aspects, shown) -> str:
     """What the picture does not show, as a clause."""
     count = len(aspects.names) - len(shown)
     return f"; {count} aspects never above {100.0 * LABELLED:g} % left out" if count else ""
 
 
-def named(axes, x, results, names):
+def named(axes, x, results, names) -> None:
     """Draw the stroke of each plate over its point, and the bowl's name where there are several."""
     several = len(set(names)) > 1
     for at, result, name in zip(x, results, names):
@@ -361,7 +364,7 @@ def colour(k):
     return COLOURS[k] if k < len(COLOURS) else matplotlib.colormaps["viridis"]((0.37 * k) % 1.0)
 
 
-def offers(study):
+def offers(study) -> list[Any]:
     """Offer the tables of a dynamic bowl test, its document and its chart.
 
     Parameters

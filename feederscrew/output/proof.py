@@ -1,10 +1,12 @@
 """What the trial of a design has shown, beside what other commands compute of it."""
 
+from typing import Any
+
 from feederscrew import __version__
 from feederscrew.units import PER_MINUTE
 
 
-def warnings(verified, part, bowl, wanted=None):
+def warnings(verified, part, bowl, wanted=None) -> list[Any]:
     """Say what the trial of a bowl file has shown, or why that holds no more: a list of str.
 
     Parameters
@@ -67,13 +69,13 @@ def beside(document, verified, part, bowl, wanted=None):
     return document | led | {"parts_per_minute_static": own["parts_per_minute"]}
 
 
-def _rates(verified):
+def _rates(verified) -> dict[Any, Any]:
     """The rate of a trial with its ends [1/min]."""
     names = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
     return dict(zip(names, (end / PER_MINUTE for end in (verified.delivered, verified.low, verified.high))))
 
 
-def block(verified):
+def block(verified) -> dict[Any, Any]:
     """Return what a trial has shown as a dict."""
     return {
         "status": verified.status,

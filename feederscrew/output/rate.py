@@ -1,5 +1,8 @@
 """Files of ``feeder rate``."""
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 
 from feederscrew import units
@@ -12,7 +15,7 @@ from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 SCARCE = 0.25  # share of the parts at the entry that stay on the track, below which it is said
 
 
-def document(study):
+def document(study) -> dict[Any, Any]:
     """Return a RateStudy as the JSON document: the part, the rate and every factor of its chain."""
     found, rule = study.rate, study.rule
     known, row = found.orientations, found.row
@@ -100,7 +103,7 @@ def summary(document):
     return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
 
 
-def _both(document):
+def _both(document) -> Iterator[Any]:
     """Lines of the trial and of the rule, where the bowl file has a trial that holds."""
     tried = document.get("verified")
     if tried:
@@ -151,7 +154,7 @@ def stopping(study):
     return said
 
 
-def spaced(study):
+def spaced(study) -> list[Any]:
     """Return which devices need more room between parts than they come with, a sentence each."""
     free = study.rate.orientations.gap
     if study.rate.gap > free or not free > 0.0:
@@ -205,7 +208,7 @@ def _rolling(found):
     ]
 
 
-def _scarce(study):
+def _scarce(study) -> list[Any]:
     """How many parts have to come to the entry where few of them stay on the track."""
     share, offered = entering(study.rate.orientations, study.rule)[1], study.rate.offered.value
     if not 0.0 < share < SCARCE or not offered > 0.0:
@@ -218,7 +221,7 @@ def _scarce(study):
     ]
 
 
-def _turned(devices):
+def _turned(devices) -> list[Any]:
     """What is not certain of the devices."""
     names = [device.name for device in devices if device.turns]
     return [f"{', '.join(names)}: quasi-static, until a trial confirms it"] if names else []
@@ -228,20 +231,20 @@ def _named(device):
     return f"{device.name} ({device.text})" if np.isfinite(device.limit) else device.name
 
 
-def _range(name, found, unit):
+def _range(name, found, unit) -> dict[Any, Any]:
     return {name: found.value / unit, f"{name}_low": found.low / unit, f"{name}_high": found.high / unit}
 
 
-def _with_range(document, name, scale=1.0):
+def _with_range(document, name, scale=1.0) -> str:
     value, low, high = (scale * document[key] for key in (name, f"{name}_low", f"{name}_high"))
     return f"{value:.4g} ({low:.4g} to {high:.4g})"
 
 
-def _number(value):
+def _number(value) -> str:
     return "none" if np.isnan(value) else f"{value:.4g}"
 
 
-def offers(study):
+def offers(study) -> list[Any]:
     """Offer the files of a RateStudy, as a list of Offer."""
     return [
         offer.document("rate.json", document, study),

@@ -344,7 +344,7 @@ def html(record):
     return line + cells.to_html(index=False, max_rows=MOST_ROWS, na_rep="", border=0)
 
 
-def _view_uri(part):
+def _view_uri(part) -> str:
     """A part on the lowest side of its file, shaded, as the address of an image."""
     from feederscrew.output import shading, style
 
@@ -360,7 +360,7 @@ def _settings(bowl):
     return tables.data_frame(tables.frame(columns | {"from": [s.origin for s in given]}))
 
 
-def _named(record, end):
+def _named(record, end) -> dict[Any, Any]:
     """What the command of a record offers with files of one kind, by the names without it."""
     return {one.name.removesuffix(end): one for one in _offered(record) if one.name.endswith(end)}
 
@@ -385,7 +385,7 @@ def _chosen(record, found, name, what):
     raise ArgumentError("name", f"{kind} has no {what}{f' {name!r}' if name else ''}", mend)
 
 
-def _document(record):
+def _document(record) -> dict[Any, Any]:
     """Numbers and words of the document that a command writes where it writes no table."""
     for one in _offered(record):
         if isinstance(one, offers.Offer) and one.name.endswith(".json") and one.view is not None:

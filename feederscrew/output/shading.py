@@ -36,7 +36,7 @@ class Rays:
         Centre of mass, in the same axes.
     """
 
-    def __init__(self, vertices, faces, centre):
+    def __init__(self, vertices, faces, centre) -> None:
         points = np.asarray(vertices, dtype=float) - centre
         self.size = float(np.linalg.norm(points, axis=1).max())
         self.points = points / self.size
@@ -47,7 +47,7 @@ class Rays:
         self._scene = EmbreeScene()
         TriangleMesh(self._scene, self._single, self.faces.astype(np.int32))
 
-    def hits(self, origins, direction):
+    def hits(self, origins, direction) -> tuple[Any, ...]:
         """Return what parallel rays meet first.
 
         Parameters
@@ -106,7 +106,7 @@ class Camera:
         """Return depths behind the ray starts (rows, columns) and normals (rows, columns, 3) over a grid."""
         return self.meet(solid, across, up)[:2]
 
-    def meet(self, solid, across, up):
+    def meet(self, solid, across, up) -> tuple[Any, ...]:
         """Return depths, normals and facets (rows, columns), ``MISSED`` without one, over a grid."""
         origins = self.origins(across, up)
         distances, normals, facets = solid.hits(origins.reshape(-1, 3), -self.back)
@@ -177,7 +177,7 @@ def curved_sides(faces, normals):
     return connected_components(graph, directed=False)[1]
 
 
-def _across_edges(faces):
+def _across_edges(faces) -> tuple[Any, ...]:
     """Pairs of facets that share an edge, as two index arrays."""
     edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     facet = np.tile(np.arange(len(faces)), 3)
@@ -211,12 +211,12 @@ class Stance:
     framed: np.ndarray  # (2, 2) [size] the same with its shadow
 
     @property
-    def floor_axes(self):
+    def floor_axes(self) -> np.ndarray:
         """(3, 3) rows x, y in the floor and z up."""
         return np.stack([self.along, np.cross(self.along, self.down), -self.down])
 
 
-def stance(points, down, height):
+def stance(points, down, height) -> Stance:
     """Put a part on the floor and look at it.
 
     Parameters
@@ -237,7 +237,7 @@ def stance(points, down, height):
     return placed(points, down, height, -along if lean < -(BACK_TALL**2) else along)
 
 
-def placed(points, down, height, along):
+def placed(points, down, height, along) -> Stance:
     """Return the stance whose floor axis ``along``, a unit vector, is ``TURN`` out of the picture's plane."""
     across = np.cross(along, down)
     camera = _camera(along, across, -down)
@@ -270,7 +270,7 @@ def outermost(points):
     return points[order[first]]
 
 
-def _box(image):
+def _box(image) -> np.ndarray:
     return np.stack([image.min(axis=0), image.max(axis=0)])
 
 
@@ -296,7 +296,7 @@ def _any_across(down):
     return across / np.linalg.norm(across)
 
 
-def _camera(x, y, z):
+def _camera(x, y, z) -> Camera:
     right = np.cos(TURN) * x + np.sin(TURN) * y
     ahead = np.cos(TURN) * y - np.sin(TURN) * x
     back = np.sin(ELEVATION) * z - np.cos(ELEVATION) * ahead
@@ -332,7 +332,7 @@ class Shot:
     rows: int
 
     @property
-    def extent(self):
+    def extent(self) -> tuple[Any, ...]:
         """(left, right, bottom, top), as an image on axes wants it."""
         return (
             self.left,
@@ -341,7 +341,7 @@ class Shot:
             self.bottom + self.rows * self.pixel,
         )
 
-    def positions(self, each=1):
+    def positions(self, each=1) -> tuple[Any, ...]:
         """Return the image positions, ``each`` a pixel: across from the left, up from the top row down."""
         step = self.pixel / each
         across = self.left + (np.arange(self.columns * each) + 0.5) * step
@@ -391,7 +391,7 @@ def averaged(samples, each):
     return samples.reshape(rows, each, columns, each, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
 
 
-def _draw(image, kept, solid, camera, across, up, colour, step):
+def _draw(image, kept, solid, camera, across, up, colour, step) -> None:
     """Draw on an image what the rays of its rows meet; they are the rows ``kept`` of those that are cast."""
     depths, normals = camera.cast(solid, across, up)
     met = np.isfinite(depths[kept])
@@ -404,7 +404,7 @@ def _within(rows, start, stop):
     return slice(max(rows.start, start), min(rows.stop, stop))
 
 
-def _covered(bounds, across, up):
+def _covered(bounds, across, up) -> tuple[Any, ...]:
     """Rows and columns of samples round the part, with a rim for its outline."""
     rim = 4.0 * (up[0] - up[1])
     columns = np.flatnonzero((across > bounds[0, 0] - rim) & (across < bounds[1, 0] + rim))
@@ -454,7 +454,7 @@ def _floor(solid, stance, across, up):
     return PAPER * (1.0 - dark[..., None])
 
 
-def _shadow(solid, stance):
+def _shadow(solid, stance) -> tuple[Any, ...]:
     """How dark each cell of the floor is: darkest where the part touches it, soft where it is high.
 
     Returns the map, the position of its first cell and the size of a cell.
@@ -476,7 +476,7 @@ MOST_VIEWER_FACETS = 200_000  # that a browser is shown
 FINEST = 2.0**10  # cells across the part of the first grid tried on a larger mesh
 
 
-def reduced_mesh(vertices, faces, most=MOST_VIEWER_FACETS):
+def reduced_mesh(vertices, faces, most=MOST_VIEWER_FACETS) -> tuple[Any, ...]:
     """Return a mesh of at most so many facets: corners of one grid cell become one, facets that vanish go.
 
     Parameters
@@ -505,17 +505,17 @@ def reduced_mesh(vertices, faces, most=MOST_VIEWER_FACETS):
     return corners, kept
 
 
-def encoded(array, kind):
+def encoded(array, kind) -> str:
     """Return an array's bytes, of a numpy ``kind``, as text in base64."""
     return base64.b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode()
 
 
-def short(value):
+def short(value) -> float:
     """Return a number with the seven digits that single precision has."""
     return float(f"{value:.7g}")
 
 
-def viewed(part, back):
+def viewed(part, back) -> dict[Any, Any]:
     """Return what a scene of the viewer tells of a part and of the viewer's place.
 
     Parameters
@@ -544,7 +544,7 @@ def viewed(part, back):
     }
 
 
-def track(vertices, faces):
+def track(vertices, faces) -> dict[Any, Any]:
     """Return a section of track (V, 3) [m] for a scene of the viewer."""
     return {"positions": encoded(vertices / MM, "<f4"), "index": encoded(faces, "<u4")}
 
@@ -557,7 +557,7 @@ AXIS: dict[str, Any] = {"color": "#0072b2", "linewidth": 0.9, "linestyle": (0, (
 ROUND_LENGTHS = np.array([1.0, 2.0, 5.0])
 
 
-def centre_of_mass(axes, radius, place=(0.0, 0.0)):
+def centre_of_mass(axes, radius, place=(0.0, 0.0)) -> None:
     """Draw the quartered circle through whatever is in front of it.
 
     Parameters
@@ -578,7 +578,7 @@ def centre_of_mass(axes, radius, place=(0.0, 0.0)):
         )
 
 
-def contact(axes, solid, standing, polygon):
+def contact(axes, solid, standing, polygon) -> None:
     """Draw the contact polygon: whole where it is seen, dashed where the part hides it.
 
     Parameters
@@ -607,7 +607,7 @@ def contact(axes, solid, standing, polygon):
             axes.plot(chain[:, 0], chain[:, 1], zorder=3, **look)
 
 
-def rolling_axis(axes, solid, standing, direction):
+def rolling_axis(axes, solid, standing, direction) -> None:
     """Draw the axis a part rolls about, through its centre of mass; nothing where there is none.
 
     Parameters
@@ -628,7 +628,7 @@ def rolling_axis(axes, solid, standing, direction):
     axes.plot(*ends.T, zorder=4, scalex=False, scaley=False, **AXIS)
 
 
-def scale_bar(axes, right, y, pixel):
+def scale_bar(axes, right, y, pixel) -> None:
     """Draw a bar of a round number of millimetres that ends at ``right``; ``pixel`` [m] is one data unit."""
     wanted = 110.0 * pixel * 1e3
     decade = 10.0 ** np.floor(np.log10(wanted))
@@ -642,7 +642,7 @@ def scale_bar(axes, right, y, pixel):
     )
 
 
-def marks_legend(axes, left, y, *, rolling):
+def marks_legend(axes, left, y, *, rolling) -> None:
     """Draw what the marks mean, in one line of text from ``left`` on; the axis only if one is drawn."""
     centre_of_mass(axes, 9.0, (left + 9.0, y))
     axes.text(left + 26, y, "centre of mass", fontsize=7, color=style.INK, va="center")
@@ -653,14 +653,14 @@ def marks_legend(axes, left, y, *, rolling):
         axes.text(left + 510, y, "axis it rolls about", fontsize=7, color=style.INK, va="center")
 
 
-def _pieces(polygon):
+def _pieces(polygon) -> np.ndarray:
     """Every edge of a closed polygon cut up: (K * STEPS, 2, 3) ends of the pieces."""
     share = np.linspace(0.0, 1.0, STEPS + 1)[:, None]
     chains = [(1.0 - share) * a + share * b for a, b in zip(polygon, np.roll(polygon, -1, axis=0))]
     return np.concatenate([np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains])
 
 
-def _runs(flags):
+def _runs(flags) -> list[Any]:
     """Index arrays of the runs of true entries."""
     indices = np.flatnonzero(flags)
     return [run for run in np.split(indices, np.flatnonzero(np.diff(indices) > 1) + 1) if len(run)]
@@ -672,7 +672,7 @@ COARSE = 40  # rays each way to find out what is hidden
 THROUGH = 0.45  # of its colour: the part where something is in front of it
 
 
-def pair_picture(track, part, centre, camera, half, columns, rows):
+def pair_picture(track, part, centre, camera, half, columns, rows) -> tuple[Any, ...]:
     """Render a part on a track as an image.
 
     Parameters
@@ -716,7 +716,7 @@ def pair_picture(track, part, centre, camera, half, columns, rows):
     return averaged(image, PAIR_SAMPLES), frame, whole.size
 
 
-def shown_share(track, part, centre, camera, half):
+def shown_share(track, part, centre, camera, half) -> float:
     """Return the share [1] of what is to be seen of a part that the track does not hide.
 
     Parameters
@@ -734,7 +734,7 @@ def shown_share(track, part, centre, camera, half):
     return float(seen.sum() / max(there.sum(), 1))
 
 
-def _part_alone(part, centre, camera, size, across, up):
+def _part_alone(part, centre, camera, size, across, up) -> tuple[Any, ...]:
     """Depths (rows, columns) in a size, and normals, of the part without the track."""
     corners, faces = part
     alone = Rays(corners, faces, centre)

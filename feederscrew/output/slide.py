@@ -1,6 +1,7 @@
 """Files of ``feeder slide``: maps of regimes."""
 
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 
@@ -51,7 +52,7 @@ def summary(slides):
     return tables.frame({"at the bowl's own point": names, **columns})
 
 
-def document(study, settings):
+def document(study, settings) -> dict[Any, Any]:
     """Return a SlideStudy as the JSON document.
 
     Parameters
@@ -99,7 +100,7 @@ def settings(found):
     return tables.frame(columns)
 
 
-def _map(one):
+def _map(one) -> dict[Any, Any]:
     return {
         "beta_deg": np.degrees(one.beta),
         "operating_point": {
@@ -115,20 +116,20 @@ def _map(one):
     }
 
 
-def _column(one):
+def _column(one) -> list[Any]:
     numbers = [one.ratio, np.degrees(one.alpha_minus_theta), one.friction]
     numbers += [one.at_bowl[name] for name in LIMITS] + [one.onsets[name] for name in ONSETS]
     shares = [_percent(share) for share in one.grid.shares().values()]
     return [*(_number(number) for number in numbers), regime_words(one.regime), *shares]
 
 
-def _number(value):
+def _number(value) -> str:
     if np.isnan(value):
         return "none"
     return "never" if np.isinf(value) else f"{value:.4g}"
 
 
-def _percent(share):
+def _percent(share) -> str:
     return "< 1 %" if 0.0 < share < 0.005 else f"{100 * share:.0f} %"
 
 
@@ -274,7 +275,7 @@ def curves(slides):
     return figure
 
 
-def _map_axes(slide, title):
+def _map_axes(slide, title) -> tuple[Any, ...]:
     figure = style.figure(6.4, 4.6)
     title = f"{title}, β = {np.degrees(slide.beta):.6g}°"
     axes = style.tidy(figure.add_subplot(), title=title, x=ANGLE, y=RATIO, grid="none")
@@ -284,7 +285,7 @@ def _map_axes(slide, title):
     return figure, axes
 
 
-def _hop_region(axes, slide, start):
+def _hop_region(axes, slide, start) -> None:
     """Grey hatching from a G upward, where contact is lost, with its name."""
     top = slide.grid.second.values[-1]
     if start >= top:
@@ -304,7 +305,7 @@ def _hop_region(axes, slide, start):
     )
 
 
-def _own_point(axes, x, y, text, drop=0):
+def _own_point(axes, x, y, text, drop=0) -> None:
     """The bowl's own operating point, named beside it."""
     axes.plot(x, y, "o", markersize=7, color=style.ACCENT, markeredgecolor="white", zorder=5)
     left = x <= np.mean(axes.get_xlim())
@@ -315,7 +316,7 @@ def _own_point(axes, x, y, text, drop=0):
     )  # fmt: skip
 
 
-def _label_region(axes, slide, name):
+def _label_region(axes, slide, name) -> bool:
     """Write the regime's name into its region, on two lines if need be; False if it has no room."""
     inside = (slide.grid.codes == slide.grid.names.index(name)) & ~_taken(slide)
     for text in (REGIMES[name][1], REGIMES[name][1].replace(" ", "\n", 1)):
@@ -342,7 +343,7 @@ def _taken(slide):
     return ((across > -0.02) & (across < 0.27))[:, None] & (up < 0.03)
 
 
-def _most_central(room):
+def _most_central(room) -> tuple[Any, ...]:
     """The cell deepest in a region; among nearly as deep ones, the nearest to the middle."""
     depth = ndimage.distance_transform_edt(np.pad(room, 1))[1:-1, 1:-1]
     i, j = np.nonzero(depth >= 0.9 * depth.max())
@@ -351,7 +352,7 @@ def _most_central(room):
     return i[best], j[same[len(same) // 2]]
 
 
-def _legend(figure, slide, names):
+def _legend(figure, slide, names) -> None:
     """Colours of the regimes that are on the map but too thin to be named there."""
     shares = slide.grid.shares()
     patches = [mpl_patches.Patch(color=REGIMES[n][0], label=REGIMES[n][1]) for n in names if shares[n] > 0]
@@ -361,7 +362,7 @@ def _legend(figure, slide, names):
         )
 
 
-def _levels(axes, slide):
+def _levels(axes, slide) -> None:
     """Contour lines, each with its value written at an angle: those that the map reaches."""
     friction = slide.grid.values["mu_limit"]
     x, y = slide.grid.first.shown, slide.grid.second.values
@@ -384,7 +385,7 @@ def _levels(axes, slide):
                 text.set_color(style.INK)
 
 
-def _dress_3d(axes, slide, top):
+def _dress_3d(axes, slide, top) -> None:
     title = f"Limiting friction, β = {np.degrees(slide.beta):.6g}°"
     style.tidy(axes, title=title, x=ANGLE, y="G = A ω² / g [1]", grid="none")
     axes.set_zlabel(FRICTION, fontsize=9, color=style.INK)
@@ -394,7 +395,7 @@ def _dress_3d(axes, slide, top):
     axes.view_init(elev=28, azim=-118)
 
 
-def _curve(axes, slide, shade):
+def _curve(axes, slide, shade) -> None:
     """One angle: its forward limit [4.28] and, dashed, its backward limit."""
     aligned, ratios = np.abs(slide.grid.first.values).argmin(), slide.grid.second.values
     forward, backward = (slide.grid.values[name][aligned] for name in ("mu_limit", "mu_backward"))
@@ -420,7 +421,7 @@ ALTS = {
 }
 
 
-def offers(study):
+def offers(study) -> list[Any]:
     """Offer the files of a SlideStudy, as a list of Offer."""
     fine = cache(partial(study.fine, PICTURE))  # once for all pictures
     pictures = [

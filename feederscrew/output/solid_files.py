@@ -118,7 +118,7 @@ def pack_3mf(objects, title, mark=""):
     return archive.getvalue()
 
 
-def _object(number, name, vertices, faces):
+def _object(number, name, vertices, faces) -> str:
     points = "".join(f'<vertex x="{x:.9g}" y="{y:.9g}" z="{z:.9g}"/>' for x, y, z in vertices / MM)
     facets = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in faces)
     return (
@@ -144,7 +144,7 @@ def section_stl(strip, mark=""):
     return _binary_stl(triangles(strip), SECTION_HEADER, mark)
 
 
-def check_opencascade():
+def check_opencascade() -> None:
     """Raise the line that says what to install where OpenCASCADE is not here.
 
     Raises
@@ -190,7 +190,7 @@ def section_step(section):
         return COUNT.sub(b"track section", STEP_DATE.sub(b"'1970-01-01T00:00:00'", path.read_bytes()))
 
 
-def _quiet():
+def _quiet() -> None:
     """Keep what OpenCASCADE tells of each file off the terminal."""
     from OCP.Message import Message
 

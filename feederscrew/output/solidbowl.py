@@ -1,6 +1,7 @@
 """The bowl as a solid: its document, and the files of ``feeder bowl --solid``."""
 
 import functools
+from typing import Any
 
 from feederscrew.output import marking
 from feederscrew.output import offers as offer
@@ -16,7 +17,7 @@ NOT_EXACT = (
 WALL = "the wall is no surface of revolution: it is ruled between splines through 16 places a quarter turn"
 
 
-def offers(study, tried=None, mark=None, fields=None):
+def offers(study, tried=None, mark=None, fields=None) -> tuple[Any, ...]:
     """Return the files of the solid of a bowl.
 
     Parameters
@@ -75,7 +76,7 @@ def _marked_step(solid, mark):
     return marking.mark_step(solid.step.data, mark)
 
 
-def document(solid):
+def document(solid) -> dict[Any, Any]:
     """Return what a bowl as a solid measures and weighs.
 
     Parameters
@@ -121,7 +122,7 @@ def document(solid):
     }
 
 
-def _step(solid):
+def _step(solid) -> dict[Any, Any]:
     """What the STEP file was found to be when it was opened again."""
     found, leans = solid.step, solid.plan.stairs is not None
     return {
@@ -132,7 +133,7 @@ def _step(solid):
     }
 
 
-def _segments(cut):
+def _segments(cut) -> dict[Any, Any]:
     return {
         "segments": [
             {"name": one.name, "size_mm": [x / MM for x in one.size], "volume_mm3": one.volume / MM**3}

@@ -1,5 +1,7 @@
 """The bowl with parts on its track: as a picture, for the viewer of a page, and as lines for a drawing."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew.output import marking, shading, style
@@ -40,7 +42,7 @@ def figure(study):
     return style.pixels(_image(study.solid.with_lugs, study.order.part, COLUMNS, ROWS))
 
 
-def parts(solid, part):
+def parts(solid, part) -> tuple[Any, ...]:
     """Return the parts along the track of a bowl as one mesh, vertices (V, 3) [m] and faces (F, 3)."""
     own = part.vertices - part.centre_of_mass
     placed = [riding.place_rider(solid.plan, one, own, s) for one, s in solid.riders]
@@ -67,7 +69,7 @@ def _image(solid, part, columns, rows):
     return image
 
 
-def _frame(seen, columns, rows):
+def _frame(seen, columns, rows) -> tuple[Any, ...]:
     """Positions of the samples across and up the picture."""
     low, high = seen.min(axis=0), seen.max(axis=0)
     pixel = MARGIN * max((high - low)[0] / columns, (high - low)[1] / rows) / shading.SAMPLES
@@ -87,7 +89,7 @@ def _drawn(whole, bowl, looked, across, up):
     return image
 
 
-def blocks(solid, part, why="", mark=""):
+def blocks(solid, part, why="", mark="") -> list[Any]:
     """Return what a page shows of a bowl: the solid to be turned, or why there is none.
 
     Parameters
@@ -111,7 +113,7 @@ def blocks(solid, part, why="", mark=""):
     return [Views(scene(solid, part), captions, "solid-bowl", "The", hint=TURN, printed=True, mark=mark)]
 
 
-def scene(solid, part):
+def scene(solid, part) -> dict[Any, Any]:
     """Return what the viewer draws of a bowl with its parts.
 
     Parameters
@@ -145,7 +147,7 @@ def scene(solid, part):
     }
 
 
-def camera(azimuth, elevation):
+def camera(azimuth, elevation) -> Camera:
     """Return the camera that looks from an azimuth and an elevation [deg]."""
     a, e = np.radians(azimuth), np.radians(elevation)
     back = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
@@ -183,7 +185,7 @@ def lines(vertices, faces, looked):
     return pieces * rays.size + looked.project(centre[None])[0]
 
 
-def _edges(points, faces, back):
+def _edges(points, faces, back) -> tuple[Any, ...]:
     """Ends of the edges that are drawn, and the direction off the surface there."""
     corners = points[faces]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

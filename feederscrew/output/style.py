@@ -1,5 +1,7 @@
 """Figures that come out as the same bytes every time: their size, their look, the colours of the methods."""
 
+from typing import Any
+
 from feederscrew.output import DPI
 from feederscrew.output.heavy import heavy
 from feederscrew.resting.rules import registry
@@ -66,14 +68,14 @@ def tidy(axes, *, title="", x="", y="", grid="both"):
     return axes
 
 
-def named_ticks(axes, places, names):
+def named_ticks(axes, places, names) -> None:
     """Write names under an x axis, slanting where they would touch each other."""
     slanting = len(names) * max(map(len, names), default=0) > LEVEL
     look = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"} if slanting else {}
     axes.set_xticks(places, names, **look)
 
 
-def method(name, place=0):
+def method(name, place=0) -> tuple[Any, ...]:
     """Return label and colour of a rule or profile; ``place`` picks a spare colour for an unknown one."""
     rule = registry.RULE_OF.get(name)
     return (rule.label, rule.colour) if rule else (name.replace("_", " "), SPARE[place % len(SPARE)])

@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import math
+from typing import Any
 
 import numpy as np
 
@@ -54,15 +55,15 @@ class Frame(dict):
     does the same; importing pandas takes longer than most answers.
     """
 
-    def rows(self):
+    def rows(self) -> list[Any]:
         """Return the rows, each a dict of cells by column."""
         return [dict(zip(self, cells)) for cells in zip(*self.values())]
 
-    def only(self, names):
+    def only(self, names) -> "Frame":
         """Return a table of these columns, in this order."""
         return Frame({name: self[name] for name in names})
 
-    def without(self, names):
+    def without(self, names) -> "Frame":
         """Return a table of all columns but these."""
         return Frame({name: column for name, column in self.items() if name not in names})
 
@@ -141,7 +142,7 @@ def text(frame, format, width=None):
     raise ValueError(f"format is {format!r}, not 'table' or 'csv'")
 
 
-def to_page(frame, spare, width=PAGE):
+def to_page(frame, spare, width=PAGE) -> tuple[Any, ...]:
     """Leave columns out of a table for people until its lines have no more letters than a page.
 
     ``spare`` names those that may go, in groups that go together, the first group first. Returns the
@@ -200,7 +201,7 @@ def _plain(value):
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def heading(name, numeric=True):
+def heading(name, numeric=True) -> tuple[Any, ...]:
     """Return a column's name and unit for people.
 
     Parameters
@@ -241,7 +242,7 @@ def is_share(name):
     return name in PASSED or name.rpartition("_")[2] in SHARES
 
 
-def _aligned(frame, width):
+def _aligned(frame, width) -> str:
     """Columns side by side: texts to the left, numbers with their points in one line."""
     columns = {name: _column(name, column) for name, column in frame.items()}
     if width is None or not columns:
@@ -253,12 +254,12 @@ def _aligned(frame, width):
     return "\n".join("".join(f"{line}\n" for line in _lines(piece) if line) for piece in pieces)
 
 
-def _lines(columns):
+def _lines(columns) -> list[Any]:
     """Line by line; a line of units is empty where no column has one."""
     return [window.GAP.join(cells).rstrip() for cells in zip(*columns)]
 
 
-def _column(name, values):
+def _column(name, values) -> list[Any]:
     """Name, unit and cells of one column, all of one width."""
     numeric = is_numeric(values)
     cells = _numbers(name, values) if numeric else [_word(value) for value in values]
@@ -267,7 +268,7 @@ def _column(name, values):
     return [cell.rjust(width) if numeric else cell.ljust(width) for cell in cells]
 
 
-def _numbers(name, values):
+def _numbers(name, values) -> list[Any]:
     """Cells of a column of numbers, their points under each other."""
     if np.issubdtype(values.dtype, np.integer):
         return [str(value) for value in values]
@@ -277,7 +278,7 @@ def _numbers(name, values):
     return _pointed([_number(0.0 if abs(value) <= nothing else value) for value in values])
 
 
-def _number(value):
+def _number(value) -> str:
     if not math.isfinite(value):
         return "-" if math.isnan(value) else str(value)
     if value == 0.0:
@@ -294,7 +295,7 @@ def _word(value):
     return "-" if value is None or value != value else units.printable(str(value))
 
 
-def _pointed(cells):
+def _pointed(cells) -> list[Any]:
     """Cells padded on the right until their decimal points stand under each other."""
     tails = [len(cell) - cell.find(".") if "." in cell else 0 for cell in cells]
     return [cell + " " * (max(tails, default=0) - tail) for cell, tail in zip(cells, tails)]

@@ -1,6 +1,7 @@
 """The tipping graph of ``feeder aspects --graph``: which aspect tips into which, and by what lift."""
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -38,7 +39,7 @@ def transitions(study):
     )
 
 
-def offers(study):
+def offers(study) -> list[Any]:
     """Offer the table and the drawing of what tips into what.
 
     Parameters
@@ -150,7 +151,7 @@ def of_part(study, ways, shares):
     return graph(part.name, found.names, ways, shares, drawn)
 
 
-def _framed(axes, picture, text, place):
+def _framed(axes, picture, text, place) -> None:
     """The part as it rests on an aspect, its name and its share below."""
     half = HALF * np.array([1.0, picture.shape[0] / picture.shape[1]])
     low, high = place - half + [0.0, 0.03], place + half + [0.0, 0.03]
@@ -159,7 +160,7 @@ def _framed(axes, picture, text, place):
     axes.annotate(text, place - [0.0, half[1] - 0.02], **look)
 
 
-def _name(axes, name, place):
+def _name(axes, name, place) -> None:
     """A letter within its disc, a longer name across it."""
     letter = len(name) <= LETTERS
     box = {} if letter else {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0}}
@@ -167,7 +168,7 @@ def _name(axes, name, place):
     axes.annotate(name, place, zorder=4, **look, **box)
 
 
-def _arrows(axes, ways, places, sizes, names):
+def _arrows(axes, ways, places, sizes, names) -> None:
     """The easiest way between every two discs that are shown; the easiest out of each stands out."""
     lowest: dict[int, float] = {}
     between: dict[tuple[int, int], float] = {}
@@ -184,7 +185,7 @@ def _arrows(axes, ways, places, sizes, names):
         taken.append(arrow(axes, *ends, lift, lift <= EQUAL_LIFT * lowest[start], taken, others))
 
 
-def arrow(axes, begin, end, lift, easiest, taken=(), others=()):
+def arrow(axes, begin, end, lift, easiest, taken=(), others=()) -> tuple[Any, ...]:
     """Draw one way between two discs (place, size), bent to leave room for the way back.
 
     Parameters
@@ -237,7 +238,7 @@ def _curve(start, end, shares):
     return start + shares[:, None] * along + 2.0 * (shares * (1.0 - shares))[:, None] * beside
 
 
-def _half(text):
+def _half(text) -> tuple[Any, ...]:
     """Half the width and the height of a label, over the ring's radius."""
     return 0.5 * LETTER_SIZE[0] * len(text), 0.5 * LETTER_SIZE[1]
 
@@ -248,5 +249,5 @@ def _overlap(one, other):
     return max(sides[0], 0.0) * max(sides[1], 0.0)
 
 
-def _lift_mm(lift):
+def _lift_mm(lift) -> str:
     return f"{lift / MM:.3g}"

@@ -1,5 +1,7 @@
 """Files of ``feeder tooling``."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew.output import marking
@@ -79,7 +81,7 @@ def chain_picture(devices, every, shares):
     return offer.picture("tooling.png", "Each orientation where each device bears least", draw)
 
 
-def _views(study):
+def _views(study) -> list[Any]:
     """The part over the cuts in three dimensions, where there is a cut to see."""
     seen = [device.picture for device in study.design.devices if device.placed and not device.turns]
     if not any(seen):

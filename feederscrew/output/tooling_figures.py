@@ -1,6 +1,7 @@
 """Pictures of tooling: each orientation at the worst place of each device, and what isolates each."""
 
 import textwrap
+from typing import Any
 
 import numpy as np
 import shapely
@@ -125,7 +126,7 @@ def limits(study):
     return page
 
 
-def _cell(page, box, found, size):
+def _cell(page, box, found, size) -> None:
     """One orientation at one device."""
     good = found.verdict.passes > 0.0
     colour = PASSES if good else FALLS
@@ -144,13 +145,13 @@ def _cell(page, box, found, size):
     write_text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, {margin_words(found.verdict)}", colour=colour)
 
 
-def _bare(page, box, one, size):
+def _bare(page, box, one, size) -> None:
     """One orientation that the bare track returns: it meets no device."""
     _above(_axes(page, box, size, True), one, None, None, FALLS)
     write_text(page, box[0] + 8, box[1] + ROW - 12, "meets no device", colour=FALLS)
 
 
-def _turned(page, axes, found, box, colour):
+def _turned(page, axes, found, box, colour) -> None:
     """The part before and after a device that may turn it: along a step, across a ledge."""
     along = not found.device.inwards
     turned = found.after is not found.orientation
@@ -178,7 +179,7 @@ def _side(one, along):
     return shapely.MultiPoint(np.column_stack([level, up]) / MM).convex_hull
 
 
-def _above(axes, one, hole, found, colour):
+def _above(axes, one, hole, found, colour) -> None:
     """The part on the track from above: wall below, moving to the right."""
     right = axes.get_xlim()[1]
     half = min(0.95 * max(one.length, one.width) / MM, right)
@@ -198,7 +199,7 @@ def _above(axes, one, hole, found, colour):
     axes.plot(*weight, "o", ms=5.5, color=colour, mec="white", mew=0.8, zorder=7)
 
 
-def _ahead(axes, one, opening, colour):
+def _ahead(axes, one, opening, colour) -> None:
     """The part seen along the track, the wall at the left, in the opening of a gate."""
     top = axes.get_ylim()[1]
     right = min(axes.get_xlim()[1], one.track.width / MM, 1.5 * max(one.length, one.width) / MM)
@@ -230,13 +231,13 @@ def _scale(every, rows, column):
     return max(max(pair) for pair in needed) / MM
 
 
-def _heading(page, title, missing):
+def _heading(page, title, missing) -> None:
     write_text(page, 16, 26, title, size=11, weight="bold")
     for line, text in enumerate([*KEY, missing]):
         write_text(page, 16, 50 + LINE * line, text, size=8)
 
 
-def _told(page, at, one, share, found, is_wanted):
+def _told(page, at, one, share, found, is_wanted) -> None:
     """What becomes of an orientation, at the left of its row."""
     left, top = at
     if all(passage.verdict.passes > 0.0 for passage in found):
@@ -253,7 +254,7 @@ def _told(page, at, one, share, found, is_wanted):
         write_text(page, left, top + 52 + (1 + len(lines)) * LINE, "wanted", weight="bold")
 
 
-def _measured(page, top, one, share):
+def _measured(page, top, one, share) -> None:
     """Share and limits of an orientation, at the left of its row."""
     write_text(page, 16, top + 24, one.name, size=12, weight="bold")
     balcony = f"{one.balcony / MM:.2f} mm" if np.isfinite(one.balcony) else "none"
@@ -267,7 +268,7 @@ def _measured(page, top, one, share):
         write_text(page, 138, top + 50 + place * LINE, value)
 
 
-def _isolated(study, place):
+def _isolated(study, place) -> list[Any]:
     """Lines on what isolates an orientation, or why nothing does: the trial's word first."""
     found, tried = study.designs[place], study.trial_of(place)
     if found is None:
@@ -285,7 +286,7 @@ def _isolated(study, place):
     return ["not isolated", *textwrap.wrap(why, LETTERS)]
 
 
-def _device(device, place):
+def _device(device, place) -> str:
     value = f" {device.text}" if np.isfinite(device.limit) else ""
     value += " {:.4g} to {:.4g} mm".format(*np.divide(device.span, MM)) if device.span else ""
     play = f" {device.like[2] / MM:.3g} mm" if device.like else ""
@@ -299,14 +300,14 @@ def _rows(every, shares, wanted):
     return ([] if wanted is None else [wanted]) + (often or ([] if wanted is not None else [0]))
 
 
-def _missing(every, rows, shares):
+def _missing(every, rows, shares) -> str:
     left = [every[k].name for k in range(len(every)) if k not in rows]
     if not left:
         return ""
     return f"without a row, as less than {100.0 * LEAST_SHARE:g} % of the parts come so: {', '.join(left)}"
 
 
-def fill_area(axes, area, face, edge, order, width=0.8):
+def fill_area(axes, area, face, edge, order, width=0.8) -> None:
     """Draw a shapely geometry [mm]: areas with their holes, lines and points."""
     for part in shapely.get_parts(area):
         if part.geom_type == "Polygon":
@@ -324,21 +325,21 @@ def in_mm(area):
     return shapely.transform(area, lambda points: points / MM)
 
 
-def margin_words(verdict):
+def margin_words(verdict) -> str:
     """Return the margin of a verdict in words; a device that only sets parts apart has none."""
     if np.isnan(verdict.margin):
         return "no margin"
     return f"margin {verdict.margin / MM:+.2f} mm" if verdict.sure else "not sure"
 
 
-def draw_rule(page, top):
+def draw_rule(page, top) -> None:
     """Draw a line across a page, ``top`` pixels from its upper edge."""
     wide, high = page.get_size_inches() * style.DPI
     y = 1.0 - top / high
     page.add_artist(Line2D([16.0 / wide, 1.0 - 16.0 / wide], [y, y], color=style.FAINT, lw=0.8))
 
 
-def write_text(page, x, y, text, *, size=9, colour=style.INK, weight="normal"):
+def write_text(page, x, y, text, *, size=9, colour=style.INK, weight="normal") -> None:
     """Write a line of text on a page, in pixels from its upper left corner."""
     wide, high = page.get_size_inches() * style.DPI
     page.text(
@@ -346,7 +347,7 @@ def write_text(page, x, y, text, *, size=9, colour=style.INK, weight="normal"):
     )
 
 
-def profile_along_track(one, top, right):
+def profile_along_track(one, top, right) -> tuple[Any, ...]:
     """Return what is seen of an orientation [mm], and the line (K, 2) [mm] of wall and track below it.
 
     Parameters
@@ -378,7 +379,7 @@ def curved_track(track, radius):
     return shapely.Polygon(np.vstack([np.column_stack([x, wall]), np.column_stack([x, far])[::-1]]))
 
 
-def turned_words(found):
+def turned_words(found) -> str:
     """Say what a stretch that leans the track turns an orientation into, where statics tells."""
     if found.after.name == found.orientation.name:
         return "may turn, not sure"
@@ -390,7 +391,7 @@ def scale_bar_length(size):
     return max(step * 10.0**k for k in range(-3, 5) for step in STEPS if step * 10.0**k <= BAR * size)
 
 
-def draw_scale_bar(page, right, y, size):
+def draw_scale_bar(page, right, y, size) -> None:
     """Draw a scale bar that ends ``right`` pixels from the left edge, ``y`` from the upper one."""
     wide, high = page.get_size_inches() * style.DPI
     length = scale_bar_length(size)
@@ -400,7 +401,7 @@ def draw_scale_bar(page, right, y, size):
     write_text(page, left, y - 10, f"{length:g} mm", size=8)
 
 
-def draw_leaving(page, box, one, size, colour):
+def draw_leaving(page, box, one, size, colour) -> None:
     """Draw an orientation as it leaves in a box of pixels, ``size`` mm a pixel or, if need be, more."""
     left, top, wide, high = box
     low, up = min(one.view_ahead.bounds[1], 0.0) / MM, one.view_ahead.bounds[3] / MM
@@ -417,11 +418,11 @@ def draw_leaving(page, box, one, size, colour):
         draw_scale_bar(page, left + wide - 4.0, top + high + 24.0, own)
 
 
-def _hangs(one):
+def _hangs(one) -> bool:
     return isinstance(one, Hanging)
 
 
-def draw_along_track(axes, one, colour):
+def draw_along_track(axes, one, colour) -> None:
     """Draw an orientation [mm] as it leaves: the wall at the left, the track below it, rails cut across."""
     shown, (_, top), (_, right) = in_mm(one.view_ahead), axes.get_ylim(), axes.get_xlim()
     if _hangs(one):

@@ -1,5 +1,7 @@
 """Tables, documents and the bowl file of ``feeder tooling``."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew.bowl.devices import DEVICES_SECTION, check_written, value_text
@@ -56,7 +58,7 @@ def document(study):
     }
 
 
-def orientations(study):
+def orientations(study) -> list[Any]:
     """Return one row an orientation: what it measures, its limits and what isolates it.
 
     Parameters
@@ -71,7 +73,7 @@ def orientations(study):
     return [_row(one, share) | _designed(study, k, found) for k, (one, share, found) in enumerate(rows)]
 
 
-def leaving(study, place):
+def leaving(study, place) -> dict[Any, Any]:
     """Return efficiency and purity [1] of an orientation's design, by the names of ``LEAVING``.
 
     Of its trial where one was made, with the 95 % interval. Else the least by the static rule: without what
@@ -86,7 +88,7 @@ def leaving(study, place):
     return dict(zip(LEAVING, (*values, found.efficiency, found.purity), strict=True))
 
 
-def status(study, place):
+def status(study, place) -> str:
     """Return what is known of an orientation's design, in one word.
 
     'confirmed' or 'denied' by its trial; 'static' where none was made; 'none' where nothing isolates it.
@@ -150,7 +152,7 @@ def _for_people(row, cut, returned):
     return shown | {"device": cut.device.full_name, "value": cut.device.value_words, "returns": returns}
 
 
-def _few(text, most):
+def _few(text, most) -> str:
     """As many of some names as have room, and how many more there are."""
     names = text.split(" ")
     while len(names) > 1 and len(" ".join(names)) > most:
@@ -159,7 +161,7 @@ def _few(text, most):
     return " ".join(names) + (f" and {more} more" if more else "")
 
 
-def _returned(study, cut):
+def _returned(study, cut) -> str:
     """'A@2 A@90, all of B, C': what a device returns, aspects of which it returns every orientation last."""
     names: dict[str, set[str]] = {}
     for one in study.orientations:
@@ -169,7 +171,7 @@ def _returned(study, cut):
     return ", ".join(shown for shown in (single, f"all of {', '.join(whole)}" if whole else "") if shown)
 
 
-def remarks(study, efficiency=0.0):
+def remarks(study, efficiency=0.0) -> list[Any]:
     """Return what a reader should know: what cannot be told apart, and why."""
     found = study.design
     if found is None:
@@ -177,7 +179,7 @@ def remarks(study, efficiency=0.0):
     return [_lead(study, found), *found.reasons]
 
 
-def _lead(study, found):
+def _lead(study, found) -> str:
     """What becomes of the orientation asked for: what the trial says first."""
     one, tried = study.orientations[study.wanted], study.trial_of(study.wanted)
     shares = (
@@ -198,7 +200,7 @@ def _lead(study, found):
     )
 
 
-def trials(study):
+def trials(study) -> tuple[Any, ...]:
     """Return what the trials of other chains, or of a table's best, said: two lists, denied and confirmed."""
     told = [one for k, one in enumerate(study.trials) if study.design is None or k]
     if study.design is None:
@@ -211,7 +213,7 @@ def trials(study):
     return [text for faults, text in said if faults], [text for faults, text in said if not faults]
 
 
-def isolation_words(study, efficiency=0.0):
+def isolation_words(study, efficiency=0.0) -> str:
     """Say how many of the orientations that come often enough to matter can be isolated."""
     often = np.flatnonzero(study.shares >= LEAST_SHARE)
     designed = [k for k in often if study.designs[k] is not None]
@@ -253,7 +255,7 @@ def _outcome(one, met):
     return track_sections.passage_fate(one, met)
 
 
-def _row(one, share):
+def _row(one, share) -> dict[Any, Any]:
     return {
         "aspect": one.aspect,
         "heading_deg": one.heading / DEG,
@@ -286,7 +288,7 @@ def _designed(study, place, found):
     }
 
 
-def _cut(cut):
+def _cut(cut) -> dict[Any, Any]:
     return {
         "device": cut.device.kind,
         **cut.device.document_values(),
@@ -302,7 +304,7 @@ def _cut(cut):
     }
 
 
-def _turned(cut):
+def _turned(cut) -> dict[Any, Any]:
     """What a turning device does, and how sure that is; nothing of any other."""
     if not cut.device.turns:
         return {}
@@ -319,11 +321,11 @@ def _turns(cut):
     return f"turns {', '.join(lines)}; {QUASI_STATIC}" if lines else serves
 
 
-def _finite(value):
+def _finite(value) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def bowl_file(study, settings):
+def bowl_file(study, settings) -> str:
     """Return a bowl file: what the user gave, and the devices that isolate the orientation asked for.
 
     Parameters
@@ -354,16 +356,16 @@ def bowl_file(study, settings):
     return "\n".join(lines) + "\n"
 
 
-def _wide(width):
+def _wide(width) -> str:
     return f"  width: {in_mm(width)}  # as the design asks for"
 
 
-def _mark(cut):
+def _mark(cut) -> str:
     """What is not certain of a device."""
     return "  # quasi-static, until a trial confirms it" if cut.device.turns else ""
 
 
-def _file_head(study):
+def _file_head(study) -> list[Any]:
     one, found = study.orientations[study.wanted], study.design
     return [
         f"# Tooling that lets aspect {one.aspect} at heading {one.name.partition('@')[2]} deg leave.",
@@ -374,7 +376,7 @@ def _file_head(study):
     ]
 
 
-def _tried(trial):
+def _tried(trial) -> list[Any]:
     """What the trial said, the first thing to know of a design that it denies."""
     if trial is None:
         return ["# By the static rule, not tried: see feeder trial."]

@@ -1,6 +1,7 @@
 """The part in three dimensions over a cut: the orientation that leaves, and the nearest that falls."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -58,21 +59,21 @@ def figure(devices, every, shares, wanted):
     return page
 
 
-def poses(devices, every, shares, wanted):
+def poses(devices, every, shares, wanted) -> list[Any]:
     """Return the passages worth a view, of what leaves and of what falls by least, each with a few words."""
     shown = [device for device in devices if device.placed]
     found = [_leaves(shown, every, wanted), _falls(shown, every, shares, wanted)]
     return [(met, _short(met)) for met, _, _ in (one for one in found if one)]
 
 
-def _short(met):
+def _short(met) -> str:
     """'gap, margin +0.64 mm': device and margin."""
     if met.orientation.kind == "hanging":
         return "in the rails"
     return f"{met.device.name}, {margin_words(met.verdict)}"
 
 
-def _drawable(met):
+def _drawable(met) -> list[Any]:
     return [one for one in met if one.picture and one.picture != "turned"]
 
 
@@ -81,7 +82,7 @@ def _over_a_cut(met):
     return met.picture == "above" and met.device.cuts
 
 
-def _leaves(devices, every, wanted):
+def _leaves(devices, every, wanted) -> tuple[Any, ...] | None:
     """The passage of the wanted orientation with the least margin, with lines of text."""
     met = _drawable(track_sections.until_returned(devices, every[wanted], every))
     if not met:
@@ -93,7 +94,7 @@ def _leaves(devices, every, wanted):
     return least, _told(least, "passes"), PASSES
 
 
-def _falls(devices, every, shares, wanted):
+def _falls(devices, every, shares, wanted) -> tuple[Any, ...] | None:
     """The passage of the orientation that fails by least, with lines of text."""
     found = []
     for k, one in enumerate(every):
@@ -107,7 +108,7 @@ def _falls(devices, every, shares, wanted):
     return nearest, _told(nearest, word), FALLS
 
 
-def _told(met, word):
+def _told(met, word) -> tuple[Any, ...]:
     kind = met.device.name
     where = "half way through" if met.verdict.passes > 0.0 else "in front of it"
     if _over_a_cut(met):
@@ -115,7 +116,7 @@ def _told(met, word):
     return f"{met.orientation.name} {word} the {kind}", f"{margin_words(met.verdict)}, {where}"
 
 
-def track_below(met, every):
+def track_below(met, every) -> tuple[Any, ...]:
     """Return the section of track of a passage, as the part stands on it.
 
     Parameters
@@ -139,7 +140,7 @@ def track_below(met, every):
     return np.column_stack([ahead, from_wall - one.distance, corners[:, 2]]), faces
 
 
-def part_on_section(met, station):
+def part_on_section(met, station) -> np.ndarray:
     """Return the corners (V, 3) [m] of the part of a passage on a track section that holds its station."""
     one = met.orientation
     points = np.array(one.posture.surface)
@@ -147,7 +148,7 @@ def part_on_section(met, station):
     return on_section(np.column_stack([flat, points[:, 2]]), met.angle(station), one.track.radius)
 
 
-def on_section(points, angle, radius):
+def on_section(points, angle, radius) -> np.ndarray:
     """Return points (N, 3) [m], ahead, from the wall and up, as they lie at an angle of a track section."""
     c, s, up = np.cos(angle), np.sin(angle), radius - points[:, 1]
     return np.column_stack([c * points[:, 0] + s * up, radius + s * points[:, 0] - c * up, points[:, 2]])
@@ -158,7 +159,7 @@ def station_of(met, every):
     return build_section(met.orientation.track, [met.device], every, lead=1.0)
 
 
-def _image(met, every):
+def _image(met, every) -> tuple[Any, ...]:
     """The rendered view of a passage, its place, the camera, and the point in its middle."""
     section = station_of(met, every)
     corners, faces = part_on_section(met, section.stations[0]), met.orientation.posture.solid.faces
@@ -194,7 +195,7 @@ def clearest(tracks, parts, centres, angles, half):
     for turn in TURNS:
         views = [camera_at(angle, turn) for angle in angles]
         moments = zip(tracks, parts, centres, views)
-        share = np.mean([shading.shown_share(*moment, half) for moment in moments])
+        share = float(np.mean([shading.shown_share(*moment, half) for moment in moments]))
         if share > most:
             best, most = views, share
         if share >= ENOUGH:
@@ -202,7 +203,7 @@ def clearest(tracks, parts, centres, angles, half):
     return best
 
 
-def camera_at(angle, turn=0.0):
+def camera_at(angle, turn=0.0) -> Camera:
     """Return the view from inside the bowl and above the part, ahead of it or ``turn`` [rad] from there."""
     ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
     inwards, up = np.array([-ahead[1], ahead[0], 0.0]), np.array([0.0, 0.0, 1.0])
@@ -214,7 +215,7 @@ def camera_at(angle, turn=0.0):
     return Camera(right=right, up=np.cross(back, right), back=back)
 
 
-def _marks(axes, met, every, camera, centre, colour):
+def _marks(axes, met, every, camera, centre, colour) -> None:
     """Hull of the support and the weight, seen through the part."""
     if not _over_a_cut(met) or met.orientation.kind == "hanging":
         return

@@ -58,7 +58,7 @@ def tosses(study):
     )
 
 
-def document(study):
+def document(study) -> dict[Any, Any]:
     """Return the tosses as one JSON document.
 
     Parameters

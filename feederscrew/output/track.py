@@ -1,5 +1,7 @@
 """Files of ``feeder track``: the cycle and the maps."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew import bowl as bowls
@@ -68,7 +70,7 @@ LABELS = {
 }
 
 
-def instant(found):
+def instant(found) -> dict[Any, Any]:
     """One instant under the names of the JSON contract; ``found`` is a TrackMotion of one instant."""
     load = found.normal_force + abs(found.traction)
     return {
@@ -91,7 +93,7 @@ def instant(found):
     }
 
 
-def printed(found):
+def printed(found) -> dict[Any, Any]:
     """Return the same of the printed equations; ``found`` is a PrintedTrack of one instant."""
     return {
         "normal_force_N": float(found.normal_force),
@@ -106,7 +108,7 @@ def printed(found):
     }
 
 
-def over_cycle(found, course):
+def over_cycle(found, course) -> dict[Any, Any]:
     """One period as columns; ``found`` is a TrackMotion of shape (N,)."""
     shown = slice(None, None, EVERY)
     pairs = {"": found.walls, "_friction": found.wall_friction}
@@ -133,7 +135,7 @@ def over_cycle(found, course):
     }
 
 
-def document(found, settings):
+def document(found, settings) -> dict[Any, Any]:
     """Return all of one TrackStudy, for JSON; of one as published, the upper reversal by print.
 
     Parameters
@@ -195,7 +197,7 @@ def friction_needed(cycle):
     return dict(zip(CONTACTS, cycle.needed.max(axis=0).tolist()))
 
 
-def stays_on_wall(cycle):
+def stays_on_wall(cycle) -> bool | None:
     """Whether a wall contact is closed at every instant; None where it hops: the flight is not followed."""
     return None if HOP in cycle.state else bool(cycle.closed.any(axis=-1).all())
 
@@ -225,7 +227,7 @@ def summary(document):
     return tables.frame({"quantity": list(rows), "value": [shown_value(value) for value in rows.values()]})
 
 
-def _opening(document):
+def _opening(document) -> dict[Any, Any]:
     """Which contact a growing drive opens first, and when; or which carries nothing even at rest."""
     contact, factor = document["first_to_open"], document["opens_at_drive_factor"]
     if factor == 0.0:
@@ -264,17 +266,17 @@ def remarks(found):
     return lines
 
 
-def opened(closed):
+def opened(closed) -> list[Any]:
     """Return names of the wall contacts that have opened."""
     return [name for name, shut in zip(CONTACTS[1:], closed) if not shut]
 
 
-def _which(closed):
+def _which(closed) -> str:
     names = [name.replace("_", " ") for name, shut in zip(CONTACTS[1:], closed.T) if not shut.all()]
     return " and ".join(names)
 
 
-def _contacts(found):
+def _contacts(found) -> list[Any]:
     """Place of each wall contact from the foot of the centre of mass, and sigma."""
     places = found.seat.walls + np.array([0.0, 0.0, found.seat.height])
     sigma = np.degrees(np.arcsin(-found.seat.walls[:, 0] / found.bowl.track.radius))
@@ -284,7 +286,7 @@ def _contacts(found):
     ]
 
 
-def _axis(opening):
+def _axis(opening) -> dict[Any, Any]:
     return {
         "point_mm": opening.point / MM,
         "direction": opening.direction,
@@ -316,12 +318,12 @@ def map_remarks(grid):
     return lines
 
 
-def labels(grid):
+def labels(grid) -> tuple[Any, ...]:
     """Return what the axes of a map are called."""
     return tuple(" ".join(tables.heading(axis.column)) for axis in (grid.first, grid.second))
 
 
-def own_point(grid, bowl):
+def own_point(grid, bowl) -> tuple[Any, ...]:
     """Return the bowl's own values in the units of the map's axes."""
     return tuple(_value(bowl, axis) for axis in (grid.first, grid.second))
 
@@ -409,13 +411,13 @@ def cycle(found, course, title):
     return figure
 
 
-def mean(course):
+def mean(course) -> str:
     """Say the mean velocity of a cycle, and of what it is; a part that rolls or gets faster has none."""
     velocity = f"{course.mean / MM:.3g} mm/s" if course.settled else "none: it gets faster"
     return f"mean, with the\nwall's friction:\n{velocity}"
 
 
-def _above(axes, found):
+def _above(axes, found) -> None:
     """Across the track surface: X to the right, the wall below."""
     seat, now, posture = found.seat, found.now, found.posture
     style.tidy(
@@ -445,7 +447,7 @@ def _above(axes, found):
     shading.centre_of_mass(axes, 0.02 * size / MM)
 
 
-def _behind(axes, found):
+def _behind(axes, found) -> None:
     """Across the track: the wall to the right, up as gravity has it."""
     seat, now, posture = found.seat, found.now, found.posture
     style.tidy(
@@ -475,11 +477,11 @@ def _behind(axes, found):
 class _Scale:
     """Arrows of one picture in one scale; their lengths go with the root of the force."""
 
-    def __init__(self, now, size):
+    def __init__(self, now, size) -> None:
         self.longest = max(float(now.normal_force), float(np.linalg.norm(now.load)), *now.walls)
         self.length = LONGEST * size / MM
 
-    def draw(self, axes, start, direction, value, name, color, **style):
+    def draw(self, axes, start, direction, value, name, color, **style) -> None:
         """One force of so many newtons along a unit vector; none where it is zero."""
         if abs(value) > LEAST * self.longest:
             step = np.sign(value) * self.length * np.sqrt(abs(value) / self.longest) * np.asarray(direction)
@@ -503,7 +505,7 @@ def _unit(vector) -> tuple[np.ndarray, float]:
     return (vector / size if size > 0.0 else np.zeros(2)), size
 
 
-def _arcs(axes, found, size):
+def _arcs(axes, found, size) -> None:
     """The wall and the track's free edge."""
     track, seat = found.bowl.track, found.seat
     centre = seat.walls[:, 1].mean() + np.sqrt(track.radius**2 - np.square(seat.walls[:, 0]).mean())
@@ -524,7 +526,7 @@ def _arcs(axes, found, size):
         )  # fmt: skip
 
 
-def _section(axes, found, bank, size):
+def _section(axes, found, bank, size) -> None:
     """Track, wall and part across the direction of travel."""
     seat, posture, track = found.seat, found.posture, found.bowl.track
     at_wall = seat.walls[:, 1].mean()
@@ -548,7 +550,7 @@ def _section(axes, found, bank, size):
     )
 
 
-def _body(axes, polygon):
+def _body(axes, polygon) -> None:
     axes.add_patch(
         mpl_patches.Polygon(
             polygon, closed=True, facecolor=PART, edgecolor=style.INK, linewidth=1.3, zorder=2
@@ -557,7 +559,7 @@ def _body(axes, polygon):
     axes.plot(*polygon.T, alpha=0)
 
 
-def _contact(axes, polygon):
+def _contact(axes, polygon) -> None:
     axes.add_patch(
         mpl_patches.Polygon(polygon, closed=True, facecolor=CONTACT, edgecolor=CONTACT, alpha=0.25, zorder=3)
     )
@@ -566,7 +568,7 @@ def _contact(axes, polygon):
 SHOWN = "acceleration_x_m_s2"
 
 
-def offers(study, settings, grid):
+def offers(study, settings, grid) -> list[Any]:
     """Offer the files of a TrackStudy.
 
     Parameters
@@ -600,7 +602,7 @@ def offers(study, settings, grid):
     ]  # fmt: skip
 
 
-def at_one_point(study):
+def at_one_point(study) -> list[Any]:
     """Offer what needs no map, as a list of Offer."""
     return [
         offer.table("track_cycle.csv", over_cycle, study.cycle, study.course),
@@ -627,10 +629,10 @@ def _map(study, grid):
     )  # fmt: skip
 
 
-def _axes(grid):
+def _axes(grid) -> str:
     return " and ".join(label.partition(" [")[0] for label in labels(grid))
 
 
-def _title(study):
+def _title(study) -> str:
     heading = f"{np.degrees(study.seat.heading):.4g}°"
     return f"{study.part.name}, aspect {study.posture.name}, heading {heading}"

@@ -1,6 +1,7 @@
 """Files of ``feeder tune``."""
 
 import math
+from typing import Any
 
 from feederscrew import units
 from feederscrew.conveying.hop import hop
@@ -65,7 +66,7 @@ def remarks(study):
     return said
 
 
-def _solution_words(one):
+def _solution_words(one) -> str:
     key = one.solution.key
     return f"at {key.name} {one.solution.number:.6g} {key.unit}, {units.listed(one.over)}"
 
@@ -76,13 +77,13 @@ def _margin(value, letters):
     return text.rjust(len("to ") + letters)
 
 
-def _between(row):
+def _between(row) -> str:
     """The range of a rate as a cell, to three digits."""
     ends = (row["parts_per_minute_low"], row["parts_per_minute_high"])
     return " to ".join(f"{end:.3g}" if end < 999.5 else f"{end:.0f}" for end in ends)
 
 
-def _row(one, per_minute):
+def _row(one, per_minute) -> dict[Any, Any]:
     """Return one Tuned setting by column; ``per_minute`` are parts/min for each m/s of velocity."""
     found, key = one.solution.answer, one.solution.key
     leap = hop(one.driven)
@@ -107,7 +108,7 @@ def _row(one, per_minute):
     }
 
 
-def offers(study):
+def offers(study) -> list[Any]:
     """Offer the files of a TuneStudy, as a list of Offer."""
     return [
         offer.document("tune.json", document, study),

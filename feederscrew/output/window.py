@@ -1,13 +1,14 @@
 """Tables folded to the width of a window."""
 
 import textwrap
+from typing import Any
 
 GAP, LEAST = "  ", 12  # between columns; letters that a column always has
 SLENDER = 20  # letters of a column of texts that is never made narrower so that the others fit beside it
 MOST_NAMING = 3  # columns that name a row, at most
 
 
-def folded(columns, width):
+def folded(columns, width) -> list[Any]:
     """Fold a table to a window.
 
     Parameters
@@ -36,7 +37,7 @@ def folded(columns, width):
     return [_in_lines(piece) for piece in pieces]
 
 
-def narrowed(columns, texts, width):
+def narrowed(columns, texts, width) -> list[Any] | None:
     """Make the widest columns of texts narrower until all stand side by side.
 
     Parameters
@@ -115,7 +116,7 @@ def _wide(columns):
     return sum(len(column[0][0]) for column in columns) + len(GAP) * (len(columns) - 1)
 
 
-def _broken(column, most):
+def _broken(column, most) -> list[Any]:
     """The lines of each cell of a column, all of one width."""
     if len(column[0]) <= most:
         return [[cell] for cell in column]
@@ -124,7 +125,7 @@ def _broken(column, most):
     return [[line.ljust(width) for line in lines] for lines in listed]
 
 
-def _in_lines(columns):
+def _in_lines(columns) -> list[Any]:
     """The columns with as many lines for each row as its longest cell has."""
     heights = [max(map(len, cells)) for cells in zip(*columns)]
     return [
@@ -132,5 +133,5 @@ def _in_lines(columns):
     ]
 
 
-def _filled(lines, high):
+def _filled(lines, high) -> list[Any]:
     return [*lines, *[" " * len(lines[0])] * (high - len(lines))]

@@ -20,7 +20,7 @@ ZERO = (
 )
 
 
-def heading_note(text):
+def heading_note(text) -> str:
     """Return what the headings in a text are turned from, a sentence; '' where the text names none.
 
     Parameters

@@ -76,7 +76,7 @@ def _aspect_entries(root, faults):
     return block.value.entries
 
 
-def _directions(entries, faults):
+def _directions(entries, faults) -> tuple[Any, ...]:
     """Names with their unit vectors; what is wrong is added to ``faults``."""
     known: dict[str, tuple[str, tuple[float, ...]]] = {}  # by folded name: name, vector
     for entry in entries:

@@ -213,7 +213,7 @@ def _keywords(shown, row) -> Any:
     return renamed | {"faces": int(shown.get("faces", 1)), "solid_angle_in_sr": in_sr}
 
 
-def _unlisted_aspects(root, printed, aspects):
+def _unlisted_aspects(root, printed, aspects) -> list[Any]:
     """Faults of blocks that name an aspect the card does not list."""
     names = [aspect.get("name") for aspect in aspects]
     return [
@@ -227,7 +227,7 @@ def _unlisted_aspects(root, printed, aspects):
     ]
 
 
-def _inertia(root, rows, faults):
+def _inertia(root, rows, faults) -> tuple[Any, ...]:
     """(3, 3) [kg m2] symmetric inertia of a card, and what to say of it."""
     if rows is None:
         return np.zeros((3, 3)), ()

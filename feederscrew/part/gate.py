@@ -315,7 +315,7 @@ def _joined(joined, unit) -> str:
     return f"cracks up to {joined.width:.2g} {unit} wide between facets: {' and '.join(pieces)} joined"
 
 
-def _crossed(vertices, faces, tolerance, size, where, unit, allow_open):
+def _crossed(vertices, faces, tolerance, size, where, unit, allow_open) -> tuple[Any, ...]:
     """What to say of a surface that passes through itself; refused where it does so deeply."""
     found = crossings.find_crossings(vertices, faces, tolerance)
     deepest = float(found.depths.max(initial=0.0))
@@ -331,7 +331,7 @@ def _crossed(vertices, faces, tolerance, size, where, unit, allow_open):
     return (f"{what}: what lies inside twice counts twice",)
 
 
-def _without_area(count):
+def _without_area(count) -> tuple[Any, ...]:
     """What to say of facets left out because two of their corners are one."""
     return (f"{_many(count, 'facet')} without area removed: two corners in one place",) if count else ()
 
@@ -363,7 +363,7 @@ def _size(vertices, faces, where) -> float:
     return size
 
 
-def _precision(vertices, size, where, unit):
+def _precision(vertices, size, where, unit) -> tuple[Any, ...]:
     """Step between neighbouring numbers of single precision at the part; what to say of it."""
     reach = float(np.abs(vertices).max())
     step = float(np.spacing(np.float32(min(reach, 1e38))))
@@ -375,7 +375,7 @@ def _precision(vertices, size, where, unit):
     return step, (f"{text}: {EXPORT_NEAR_ORIGIN}",)
 
 
-def _opened(vertices, faces, edges, size, where, unit, allow_open):
+def _opened(vertices, faces, edges, size, where, unit, allow_open) -> tuple[Any, ...]:
     """What an open surface encloses with its holes filled in."""
     open_edges = int(np.abs(edges.net).sum())
     if open_edges > MAX_OPEN_EDGES:
@@ -446,7 +446,7 @@ def _place(point) -> str:
     return ", ".join(f"{x:.4g}" for x in np.asarray(point) + 0.0)
 
 
-def _closed(vertices, faces, edges, where, unit, allow_open):
+def _closed(vertices, faces, edges, where, unit, allow_open) -> tuple[Any, ...]:
     """A closed surface and what it encloses, cavities taken off; and which of its facets may cut others.
 
     A surface that an axis sees whole is one shell.

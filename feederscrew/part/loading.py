@@ -75,7 +75,7 @@ class PartFile:
     sha256: str
 
 
-def read_file(source, stdin=None):
+def read_file(source, stdin=None) -> PartFile:
     """Read the bytes of a part file.
 
     Parameters
@@ -184,7 +184,7 @@ def _bytes(source, where, stdin) -> Any:
         raise MeshError(where, f"cannot be read ({error})", "check what it comes from") from None
 
 
-def _misnamed(file, kind):
+def _misnamed(file, kind) -> tuple[Any, ...]:
     known = {suffix for format in FORMATS.values() for suffix in format.suffixes}
     if file.suffix not in known or file.suffix in FORMATS[kind].suffixes:
         return ()
@@ -569,7 +569,7 @@ def _refuse_beside_card(**options) -> None:
             raise ArgumentError(name, "a part card has its own", "leave it out")
 
 
-def _choose_unit(soup, wanted):
+def _choose_unit(soup, wanted) -> tuple[Any, ...]:
     """The unit of the file's numbers; what to say where it is not the wanted one."""
     stated, title = soup.unit, FORMATS[soup.format].title
     if stated is None or wanted in (None, stated):
@@ -581,7 +581,7 @@ def _choose_unit(soup, wanted):
     )
 
 
-def _size_warnings(vertices, unit, wanted):
+def _size_warnings(vertices, unit, wanted) -> tuple[Any, ...]:
     """A warning where the size cannot be that of a fed part."""
     size = float(np.ptp(vertices, axis=0).max())
     low, high = FED_PART_SIZE_M[0] if wanted else USUAL_PART_SIZE_M, FED_PART_SIZE_M[1]
@@ -597,7 +597,7 @@ def _size_warnings(vertices, unit, wanted):
     return (f"the largest dimension, {size * 1e3:.3g} mm, is {kind} for a fed part: {mend}",)
 
 
-def _read_centre(text, unit, homogeneous):
+def _read_centre(text, unit, homogeneous) -> tuple[Any, ...]:
     """(3,) [m] the centre of mass asked for, or that of the homogeneous solid."""
     if text is None:
         return homogeneous, ()

@@ -177,7 +177,7 @@ class MassBalance:
     extents: np.ndarray | None  # (3,) [m] of the bounding box
 
 
-def mass_balance(part):
+def mass_balance(part) -> MassBalance:
     """Return the mass properties of a part.
 
     Parameters

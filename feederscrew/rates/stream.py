@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -121,37 +122,37 @@ class Orientations:
     tipping: TrackTipping | None = None  # on the track of a bowl; None where no drive is known
 
     @property
-    def names(self):
+    def names(self) -> tuple[Any, ...]:
         """Of the stations: 'track', 'wiper_1', 'gap_2'."""
         return tuple(f"{name}_{place}" if place else name for place, name in enumerate(self.stations))
 
     @property
-    def aspects(self):
+    def aspects(self) -> tuple[Any, ...]:
         """(M,) names of the aspects."""
         return tuple(orientation.aspect for orientation in self.lying)
 
     @property
-    def headings(self):
+    def headings(self) -> np.ndarray:
         """(M,) [rad]."""
         return np.array([orientation.heading for orientation in self.lying])
 
     @property
-    def heading_shares(self):
+    def heading_shares(self) -> np.ndarray:
         """(M,) of the parts on that aspect; headings equal under a turn of the part are one."""
         return np.array([orientation.heading_share for orientation in self.lying])
 
     @property
-    def lengths(self):
+    def lengths(self) -> np.ndarray:
         """(M,) [m] along the track."""
         return np.array([orientation.length for orientation in self.lying])
 
     @property
-    def widths(self):
+    def widths(self) -> np.ndarray:
         """(M,) [m] across it."""
         return np.array([orientation.width for orientation in self.lying])
 
     @property
-    def rolls_back(self):
+    def rolls_back(self) -> np.ndarray:
         """(M,) bool, whether it lies on its round side, not along the track, and rolls down the climb."""
         return np.array([orientation.may_roll_back for orientation in self.lying], dtype=bool)
 
@@ -171,7 +172,7 @@ class Orientations:
         return np.where(self.rolls_back, 0.0, self.through + self.doubtful)
 
     @property
-    def carried(self):
+    def carried(self) -> "Orientations":
         """The same orientations, were those that roll back carried as what slides."""
         return replace(
             self, lying=tuple(replace(orientation, may_roll_back=False) for orientation in self.lying)
@@ -215,7 +216,7 @@ class Orientations:
         return self.decided & ~(self.rolls_back | rocks | loose | turns)
 
     @property
-    def _gone_at_any_heading(self):
+    def _gone_at_any_heading(self) -> np.ndarray:
         """(M,) bool, whether devices return every heading of its aspect by some margin."""
         gone = np.isfinite(self.margin) & (self.through <= 0.0)
         gone |= np.array([orientation.returned for orientation in self.lying], dtype=bool)
@@ -223,7 +224,7 @@ class Orientations:
         return np.array([aspect not in left for aspect in self.aspects], dtype=bool)
 
 
-def follow_orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):
+def follow_orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None) -> Orientations:
     """Return every stable aspect and heading of a part, and what becomes of it at each device.
 
     Source: docs/tooling.md, "1. The method".
@@ -248,7 +249,7 @@ def follow_orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):
     return along(tooling.orientations(part, aspects, track), aspects, chain, sigma, bowl)
 
 
-def along(lying, aspects, chain=(), sigma=0.0, bowl=None, rows=None):
+def along(lying, aspects, chain=(), sigma=0.0, bowl=None, rows=None) -> Orientations:
     """Return what becomes of known orientations, or of some rows alone; the rest as for ``orientations``."""
     lying, tips = (lying, None) if bowl is None else marked(lying, bowl)
     lying = at_entry(lying, chain)
@@ -283,7 +284,7 @@ def _clearing(passes, lying, chain, bowl):
     return times
 
 
-def _interval(aspects, lying):
+def _interval(aspects, lying) -> np.ndarray:
     limits = aspects.recommended
     if limits is None:
         return np.full((len(lying), 2), np.nan)

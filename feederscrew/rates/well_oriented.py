@@ -1,6 +1,7 @@
 """From velocity to well-oriented parts: pitch, probability of the orientation, devices, fill."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -108,16 +109,16 @@ class Range:
     high: float
 
     @property
-    def ends(self):
+    def ends(self) -> tuple[Any, ...]:
         """Its lowest and its highest."""
         return self.low, self.high
 
     @property
-    def all(self):
+    def all(self) -> tuple[Any, ...]:
         """Value, lowest, highest."""
         return self.value, self.low, self.high
 
-    def __mul__(self, factor):
+    def __mul__(self, factor) -> "Range":
         other = factor if isinstance(factor, Range) else Range(factor, factor, factor)
         return Range(self.value * other.value, self.low * other.low, self.high * other.high)
 
@@ -142,7 +143,7 @@ class Rate(ReadableRecord):
     clearing: float = 0.0  # [s] in the mean, of those that a blade sweeps off the track
 
 
-def wanted(part, aspects, track, name, heading=None):
+def wanted(part, aspects, track, name, heading=None) -> tuple[Any, ...]:
     """Return aspect and heading that a part shall leave the bowl in.
 
     Source: docs/mechanics.md, "Headings".
@@ -166,7 +167,7 @@ def wanted(part, aspects, track, name, heading=None):
     return lying.name, float(queue.headings[stable_row(queue, heading)])
 
 
-def velocity(bowl):
+def velocity(bowl) -> Range:
     """Return conveying velocity with what it may be.
 
     Parameters
@@ -233,7 +234,7 @@ def rate(queue, speed, target, rule, *, gap=0.0, fill=1.0):
     return replace(delivered, parts=parts)
 
 
-def _rate(queue, speed, target, rule, gap, fill):
+def _rate(queue, speed, target, rule, gap, fill) -> Rate:
     """The rate of what does not roll back."""
     row = _row(queue, target)
     _check_rule(queue, rule)
@@ -271,13 +272,13 @@ def _offered(freely, blocked):
     return 1.0 / (1.0 / freely + blocked) if freely > 0.0 else 0.0
 
 
-def _standing(queue, rule):
+def _standing(queue, rule) -> float:
     """Share of the parts offered that come to stand before a device."""
     chance, enters = entering(queue, rule)
     return float((chance * queue.stops.sum(axis=1)).sum() / enters) if enters > 0.0 else 0.0
 
 
-def _blocked(queue, rule):
+def _blocked(queue, rule) -> tuple[Any, ...]:
     """Mean time [s] for which a part that is offered blocks the track, and the same of those that do."""
     chance, enters = entering(queue, rule)
     does = chance * (queue.clearing > 0.0)
@@ -285,7 +286,7 @@ def _blocked(queue, rule):
     return (times / enters, times / float(does.sum())) if does.sum() > 0.0 else (0.0, 0.0)
 
 
-def _probability(queue, row, rule):
+def _probability(queue, row, rule) -> Range:
     """Probability of a row by a rule, within that rule's own interval or the range of all rules."""
     value = float(queue.rules[rule][row])
     if rule == RECOMMENDED_RULE and not np.isnan(queue.interval[row]).any():
@@ -320,13 +321,13 @@ def parts_per_metre(queue, target, rule, *, gap=0.0, fill=1.0):
     return parts
 
 
-def holds(queue, target):
+def holds(queue, target) -> None:
     """Raise a FeederError where a wanted orientation rolls back down the climb."""
     if queue.rolls_back[_row(queue, target)]:
         raise FeederError(_where(target), ROLLS_BACK_REMARK, HOLD_ADVICE)
 
 
-def _where(target):
+def _where(target) -> str:
     return f"aspect {target[0]}, heading {np.degrees(target[1]):.4g} deg"
 
 
@@ -340,7 +341,7 @@ def leaving_per_metre(queue, target, rule, *, gap=0.0, fill=1.0):
     return min(share * density, 1.0 / float(fed(queue, row).length))
 
 
-def _check_rule(queue, rule):
+def _check_rule(queue, rule) -> None:
     if rule not in queue.rules:
         mend = hint(rule, list(queue.rules))
         raise ArgumentError(f"rule {rule}", "has no probabilities of this part", mend)

@@ -1,6 +1,7 @@
 """The bowl as one body: made of swept, turned and extruded pieces."""
 
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 import shapely
@@ -39,12 +40,12 @@ class BowlSolid:
     step: object = None  # exact_file.StepFile, where it was asked for
 
     @property
-    def inertia(self):
+    def inertia(self) -> float:
         """Inertia [kg m2] about the axis."""
         return float(self.tensor[2, 2] + self.mass * (self.centre[0] ** 2 + self.centre[1] ** 2))
 
     @property
-    def unbalance(self):
+    def unbalance(self) -> Unbalance:
         """How its mass lies about the axis, over its underside: that lies on the leaves."""
         place = self.centre - [0.0, 0.0, self.plan.underside]
         about = mass.shift_inertia(self.tensor, self.mass, place)
@@ -57,7 +58,7 @@ class BowlSolid:
         )
 
     @property
-    def balance(self):
+    def balance(self) -> tuple[Any, ...]:
         """Mass [kg] and angle about Z [rad] of a weight on the wall that centres it."""
         x, y, _ = self.centre
         return float(self.mass * np.hypot(x, y) / self.balanced_at), float(np.arctan2(-y, -x))
@@ -68,14 +69,14 @@ class BowlSolid:
         return self.plan.path.radius + self.plan.material.wall
 
     @property
-    def weight(self):
+    def weight(self) -> tuple[Any, ...]:
         """The weight as mass [kg] and place (3,) [m] over the underside, as high as the centre of mass."""
         kilograms, angle = self.balance
         x, y = self.balanced_at * np.cos(angle), self.balanced_at * np.sin(angle)
         return kilograms, (float(x), float(y), float(self.centre[2] - self.plan.underside))
 
     @property
-    def remarks(self):
+    def remarks(self) -> tuple[Any, ...]:
         """What must not be overlooked, a tuple of str."""
         return (*self._shortened, *([] if self.segments is None else self.segments.remarks))
 
@@ -89,7 +90,7 @@ class BowlSolid:
         return replace(self, vertices=vertices, faces=faces, volume=volume)
 
     @property
-    def _shortened(self):
+    def _shortened(self) -> tuple[Any, ...]:
         if self.plan.stairs is not None or self.plan.turns >= SHORTER * self.turns_of_sheet:
             return ()
         what = (
@@ -99,7 +100,7 @@ class BowlSolid:
         return (str(FeederError("sizing.outlet_height", what, "sizing.shape: stepped has room for more")),)
 
 
-def body(plan):
+def body(plan) -> BowlSolid:
     """Return the bowl of a plan.
 
     Parameters
@@ -154,7 +155,7 @@ def screwed(solid, weight):
     return replace(solid, mass=float(total), centre=centre, tensor=tensor)
 
 
-def _weighed(plan, parts):
+def _weighed(plan, parts) -> tuple[Any, ...]:
     """Mass [kg], centre (3,) [m] and inertia (3, 3) [kg m2] about it of a bowl with its gates."""
     density = plan.material.density
     weights = [density * part.volume for part in parts]
@@ -166,7 +167,7 @@ def _weighed(plan, parts):
     return total, centre, inertia
 
 
-def pieces(plan, kit=facets):
+def pieces(plan, kit=facets) -> tuple[Any, ...]:
     """Return the bowl as one body [mm] of a kit and its gates (name, body), the outlet at the angle 0."""
     wall, *ends = [_wall(plan, kit)] if plan.stairs is None else stairs.shell(plan, kit)
     notches = [_notch(plan, kit, gate) for gate in _gates(plan)]
@@ -183,7 +184,7 @@ def pieces(plan, kit=facets):
     return kit.one_piece(whole, "devices"), gates
 
 
-def _floor(plan, kit):
+def _floor(plan, kit) -> list[Any]:
     """Floor with its dome, and the hub below it."""
     low, inner, outer = plan.underside, plan.ring, plan.path.radius + plan.material.wall
     edge = []
@@ -215,7 +216,7 @@ def _wall(plan, kit):
     )
 
 
-def _opening(plan, kit):
+def _opening(plan, kit) -> list[Any]:
     """Where the outlet passes through the wall."""
     end, far = plan.path.end, plan.path.end + 2.0 * plan.outlet
     ring = np.array([[end, 0.0], [far, 0.0], [far, plan.width], [end, plan.width]])
@@ -223,7 +224,7 @@ def _opening(plan, kit):
     return [kit.over(plan.path, ring, low, plan.top + lift + BEYOND_BOWL_M, plan.chord)]
 
 
-def _drilled(plan, kit):
+def _drilled(plan, kit) -> list[Any]:
     """Holes of the bolts, in the middle and on their circle, and drain holes."""
     angles = FULL_TURN * (np.arange(plan.bolts) + 0.5) / plan.bolts
     circle = [(0.0, 0.0)] + [
@@ -251,7 +252,7 @@ def _bores(plan, kit):
     return solid
 
 
-def _holes(plan):
+def _holes(plan) -> tuple[Any, ...]:
     return () if plan.stretch is None else tuple(cut for cut in plan.stretch.cuts if not cut.hangs)
 
 
@@ -259,7 +260,7 @@ def _blades(plan):
     return () if plan.stretch is None else plan.stretch.blades
 
 
-def _gates(plan):
+def _gates(plan) -> list[Any]:
     return [blade for blade in _blades(plan) if blade.alone]
 
 

@@ -1,6 +1,7 @@
 """What devices take from the track and set on it, unrolled, and how the track leans and drops."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import shapely
@@ -53,7 +54,7 @@ def lean_at_entry(devices):
     return leading([device for device in devices if device.placed])
 
 
-def laid_out(track, stations, orientations):
+def laid_out(track, stations, orientations) -> tuple[Any, ...]:
     """Return stations along a solid's track, with room for what leans and drops it.
 
     Parameters
@@ -92,7 +93,7 @@ def laid_out(track, stations, orientations):
     return moved, tuple(leans), tuple(ledges), _grooves(moved, entry, track, orientations), more
 
 
-def _grooves(stations, entry, track, orientations):
+def _grooves(stations, entry, track, orientations) -> tuple[Any, ...]:
     """Where the wall leans back; a groove at the entry is there from the first of the track on."""
     grooves: list[tuple[float, ...]] = []
     opens = max(orientation.length for orientation in orientations)
@@ -116,13 +117,13 @@ def _moved(station, by):
     return replace(station, start=station.start + by, **rings)
 
 
-def _twist(track, before, after, orientations):
+def _twist(track, before, after, orientations) -> float:
     """Length [m] over which one bank becomes another: the free edge rises or falls gently."""
     edge = track.width * abs(np.sin(after) - np.sin(before))
     return float(max(TWIST * room_of(orientations), edge / np.tan(MAX_EDGE_SLOPE_RAD)))
 
 
-def _ledge(station, orientations):
+def _ledge(station, orientations) -> TrackLedge | None:
     """The ledge of a station, None without one."""
     drop, aside = station.device.lower(orientations) or (0.0, 0.0)
     if aside <= 0.0:
@@ -146,7 +147,7 @@ class TrackHole:
     hangs: bool  # parts hang in it from there on: it goes on to the end of the track
 
     @property
-    def span(self):
+    def span(self) -> tuple[Any, ...]:
         """From and to [m] along the wall."""
         return float(self.ring[:, 0].min()), float(self.ring[:, 0].max())
 
@@ -200,7 +201,7 @@ class Stretch:
         return max((cut.span[1] for cut in self.cuts), default=None)
 
 
-def stretch(track, devices, orientations):
+def stretch(track, devices, orientations) -> Stretch:
     """Return the tooled stretch of a track.
 
     Parameters
@@ -248,7 +249,7 @@ def stretch(track, devices, orientations):
     )
 
 
-def _cut(station, drawn, width):
+def _cut(station, drawn, width) -> TrackHole:
     """A hole, carried a little over the edge of the track that it reaches, and into the wall."""
     s, y = station.hole.T
     corners = np.column_stack([s, np.where(y <= 1e-9, 0.0, y)])
@@ -256,7 +257,7 @@ def _cut(station, drawn, width):
     return TrackHole(station.label, station.device.kind, np.array(ring), station.device.hangs)
 
 
-def _blade(station, width):
+def _blade(station, width) -> TrackBlade:
     """The plate of a gate without its opening; it reaches into the wall."""
     free = shapely.union_all([shapely.Polygon(ring) for ring in station.openings])
     paths = ((0.0, 0.0), (-2.0 * CUT_OVERRUN_M, 0.0), (0.0, -2.0 * CUT_OVERRUN_M))

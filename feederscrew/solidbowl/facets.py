@@ -1,5 +1,7 @@
 """Bodies of our own facets, united and cut: the bowl's door to manifold3d."""
 
+from typing import Any
+
 import numpy as np
 import shapely
 from shapely import affinity
@@ -43,13 +45,13 @@ def swept(legs):
     return sound(Manifold(mesh), "a swept body")
 
 
-def in_space(sections, frames):
+def in_space(sections, frames) -> np.ndarray:
     """Return the corners (M, K, 3) [m] of sections (M, K, 2) in their frames (M, 2, 2)."""
     place, outward = frames[:, None, 0], frames[:, None, 1]
     return np.concatenate([place + sections[..., :1] * outward, sections[..., 1:]], axis=-1)
 
 
-def flattened(points):
+def flattened(points) -> np.ndarray:
     """Return points (K, 3) in an upright plane as (K, 2): along it and up."""
     far = points[np.argmax(((points - points[0])[:, :2] ** 2).sum(axis=1))] - points[0]
     along = far[:2] / np.hypot(*far[:2])
@@ -201,7 +203,7 @@ def unplaced(solid):
     return whole.mirror((0.0, 1.0, 0.0)) if solid.plan.left else whole
 
 
-def as_planned(plan, points):
+def as_planned(plan, points) -> np.ndarray:
     """Return points (N, 3) [m] of a bowl's files right-handed, with its outlet at the angle 0."""
     c, s = np.cos(plan.turned), np.sin(plan.turned)
     x, y, z = np.asarray(points).T
@@ -220,7 +222,7 @@ def _ray_hit(body, place, direction):
     return float(hits[0].position[2]) * MM if hits else None
 
 
-def section(body, angle):
+def section(body, angle) -> list[Any]:
     """Return what a plane through the axis cuts of a Manifold.
 
     Parameters
@@ -238,7 +240,7 @@ def section(body, angle):
     return [np.asarray(ring) * MM for ring in flat.slice(1e-3).to_polygons()]
 
 
-def first_met(body, start, towards):
+def first_met(body, start, towards) -> list[Any]:
     """Return the distances [m] of all surfaces on a straight line from a place (3,) to another (3,) [m]."""
     start, towards = np.asarray(start, float), np.asarray(towards, float)
     hits = body.ray_cast(tuple(start / MM), tuple(towards / MM))
@@ -261,7 +263,7 @@ def rod(axis, middle, size, deep):
     return solid.translate(tuple(np.asarray(middle) / MM))
 
 
-def cut_by(body, planes):
+def cut_by(body, planes) -> list[Any]:
     """Return a Manifold in cells, cut by planes (axis, place [m]) square to the axes."""
     cells = [body]
     for axis, at in planes:
@@ -270,7 +272,7 @@ def cut_by(body, planes):
     return [cell for cell in cells if not cell.is_empty()]
 
 
-def parts_of(body, least=MIN_PIECE_VOLUME_M3):
+def parts_of(body, least=MIN_PIECE_VOLUME_M3) -> list[Any]:
     """Return the pieces of a Manifold that hang together, those of less than a volume [m3] left out."""
     return [item for item in body.decompose() if item.volume() * MM**3 > least]
 

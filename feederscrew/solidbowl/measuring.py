@@ -1,6 +1,7 @@
 """What the finished solid measures, by rays on its surface; whether what falls through comes back."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import shapely
@@ -29,7 +30,7 @@ class Measures:
     extent: tuple[float, float, float]  # of a box around it
 
 
-def measures(solid):
+def measures(solid) -> Measures:
     """Measure a bowl.
 
     Parameters
@@ -105,7 +106,7 @@ def track_heights(plan, body, s, y):
     return facets.below(body, place + [0.0, 0.0, 0.5 * plan.headroom])
 
 
-def _towards(theta, far, z):
+def _towards(theta, far, z) -> tuple[Any, ...]:
     return far * np.cos(theta), far * np.sin(theta), z
 
 
@@ -165,7 +166,7 @@ def _lies(plan, whole, cut, s, y):
     raise _refused(cut, s, meet)
 
 
-def _slid(plan, whole, place, meet):
+def _slid(plan, whole, place, meet) -> tuple[Any, ...]:
     """Place and height where a part holds still that slides inwards from a place down steep slopes."""
     r = np.hypot(*place[:2])
     outward, steep = place / r * [1.0, 1.0, 0.0], np.tan(plan.stairs.slope - SURE)
@@ -193,14 +194,14 @@ def _on_the_turn_before(plan, place, meet):
     )
 
 
-def _refused(cut, s, meet):
+def _refused(cut, s, meet) -> FeederError:
     there = "nothing" if meet is None else f"the track at {1e3 * meet:.3g} mm"
     what = f"what falls through it {1e3 * s:.3g} mm behind the start of the devices meets {there}"
     mend = "give a lower sizing.outlet_height, sizing.shape: stepped, or fewer devices"
     return FeederError(f"devices: {cut.label}", what, mend)
 
 
-def _places(cut, width):
+def _places(cut, width) -> list[Any]:
     """Places (s, y) [m] spread over a cut, of those within the track."""
     area = (
         shapely.Polygon(cut.ring).buffer(0.0).intersection(shapely.box(-1.0, CUT_EDGE_MARGIN_M, 1e3, width))

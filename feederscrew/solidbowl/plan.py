@@ -1,6 +1,7 @@
 """The measures of a bowl as a solid, decided before a facet is made: material, track, bolts, drains."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import shapely
@@ -81,7 +82,7 @@ def bolt_hub(track, options, radius):
     return 0.5 * bolt_circle(track, options, radius) + 2.0 * options.bolt
 
 
-def check_bolts(track, options, extents, radius):
+def check_bolts(track, options, extents, radius) -> None:
     """Raise the fault of holes that the floor has no room for.
 
     Parameters
@@ -177,7 +178,7 @@ class TrackPath:
         """
         return -width * np.sin(self.bank) / np.tan(self.climb)
 
-    def plan(self, s, y):
+    def plan(self, s, y) -> np.ndarray:
         """Return the places (..., 2) [m] from above at lengths s and distances y."""
         s, y = np.broadcast_arrays(np.asarray(s, float), np.asarray(y, float))
         theta, straight = self.angle(s), np.maximum(s - self.end, 0.0)
@@ -199,17 +200,17 @@ class TrackPath:
         return risen
 
     @property
-    def highest(self):
+    def highest(self) -> float:
         """Greatest height [m] of the track by the wall, its steps down left out."""
         return float(max(self.risen(at) for at in (*(at for at, _ in self.bends), self.end)))
 
     @property
-    def lowest(self):
+    def lowest(self) -> float:
         """Least height [m] from the first other climb on."""
         ends = [*(at for at, _ in self.bends), *(at for at, _ in self.drops), self.end]
         return float(min(self.height(at) for at in ends))
 
-    def places(self, s, y):
+    def places(self, s, y) -> np.ndarray:
         """Return points (..., 3) [m] of the track's surface."""
         flat = self.plan(s, y)
         z = np.broadcast_to(self.height(s, y), flat.shape[:-1])
@@ -301,7 +302,7 @@ class BowlPlan:
         return int(np.ceil(FULL_TURN / (2.0 * np.arccos(1.0 - chord / self.path.radius)) / 4.0)) * 4
 
     @property
-    def outlet_height(self):
+    def outlet_height(self) -> float:
         """Height of the outlet's surface by the wall."""
         return float(self.path.height(self.path.end))
 
@@ -311,7 +312,7 @@ class BowlPlan:
         return -float(self.path.angle(0.0)) / FULL_TURN
 
     @property
-    def room(self):
+    def room(self) -> float:
         """Radius of a cylinder that holds as much as the lowest third of the bowl's rise."""
         return float(self.path.wall_radius(self.path.end / 6.0))
 
@@ -362,7 +363,7 @@ class SolidOptions:
     joint: str = "dowels"  # of ``segments.JOINTS``: what holds its segments together
 
 
-def plan(size, track, made_of, tooled, options, *, extents):
+def plan(size, track, made_of, tooled, options, *, extents) -> BowlPlan:
     """Return the measures of a bowl as a solid.
 
     Parameters
@@ -421,7 +422,7 @@ def plan(size, track, made_of, tooled, options, *, extents):
     )
 
 
-def _check(size, track):
+def _check(size, track) -> None:
     widest = MAX_TRACK_WIDTH_RATIO * track.radius
     if track.width > widest:
         what = f"{1e3 * track.width:.4g} mm is too wide for a bowl of {1e3 * size.diameter:.4g} mm"
@@ -433,7 +434,7 @@ def _check(size, track):
         raise FeederError("track.climb", what, "give a climb, as 3.5 deg, or leave it out")
 
 
-def _track_path(size, track, made_of, tooled, options, stepped):
+def _track_path(size, track, made_of, tooled, options, stepped) -> tuple[Any, ...]:
     """The way of the track, and where on it the tooled stretch begins."""
     needed = 0.0 if tooled is None else tooled.length + OUTLET_LEAD_M
     drops = () if tooled is None else tooled.drops
@@ -469,7 +470,7 @@ def _quarter(stepped):
     return MIN_CLEAR_TRACK_RAD if flare == 0.0 else -float(np.expm1(-flare * MIN_CLEAR_TRACK_RAD)) / flare
 
 
-def _check_long(height, end, least, gained, rise):
+def _check_long(height, end, least, gained, rise) -> None:
     if end >= least * SHORTEST:
         return
     what = f"{1e3 * end:.4g} mm of track, less than a quarter turn"
@@ -479,7 +480,7 @@ def _check_long(height, end, least, gained, rise):
     raise FeederError("sizing.depth", f"it leaves {what}", "give a larger one, or a smaller track.climb")
 
 
-def _gained(track, tooled, needed):
+def _gained(track, tooled, needed) -> float:
     """Height [m] by which the track's end lies over the begin of the tooled stretch."""
     if tooled is None:
         return 0.0
@@ -487,7 +488,7 @@ def _gained(track, tooled, needed):
     return float(stretch.height(needed))
 
 
-def _check_bends(path, stepped, round_once, tallest):
+def _check_bends(path, stepped, round_once, tallest) -> None:
     if path.bends and path.lowest < MIN_TRACK_HEIGHT_M:
         what = f"a device leads the track down to {1e3 * path.lowest:.3g} mm over the floor"
         least = 1e3 * (float(path.height(path.end)) + MIN_TRACK_HEIGHT_M - path.lowest)
@@ -501,7 +502,7 @@ def _check_bends(path, stepped, round_once, tallest):
         raise TrackTooLow("devices", what, "give a lower sizing.outlet_height")
 
 
-def _check_beside(path, stepped):
+def _check_beside(path, stepped) -> None:
     """Raise the fault of a track that goes down too near to the turn before, beside which it lies."""
     last = np.array([*(at for at, _ in path.bends), path.end])
     free = float((path.risen(last) - path.risen(path.at(path.angle(last) - FULL_TURN))).min())
@@ -513,14 +514,14 @@ def _check_beside(path, stepped):
         raise TrackTooLow("devices", what, mend)
 
 
-def _check_floor(end, stepped, rise):
+def _check_floor(end, stepped, rise) -> None:
     if stepped is not None and end > stepped.most:
         what = "leaves too small a floor: the wall steps outwards with the track"
         mend = f"give at most {1e3 * stepped.most * rise:.4g} mm, or a larger bowl"
         raise FeederError("sizing.outlet_height", what, mend)
 
 
-def _too_short(height, end, needed, least):
+def _too_short(height, end, needed, least) -> FeederError:
     if height > 0.0:
         what = f"{1e3 * height:.4g} mm leaves {1e3 * end:.4g} mm of track"
         what += f", and the devices take {1e3 * needed:.4g} mm"
@@ -529,7 +530,7 @@ def _too_short(height, end, needed, least):
     return FeederError("devices", what, "take fewer, a larger sizing.depth, or a larger bowl")
 
 
-def _check_height(height, end, most, highest):
+def _check_height(height, end, most, highest) -> None:
     if end > most:
         what = f"{1e3 * height:.4g} mm puts a turn of the track below the cuts: what falls stays on it"
         raise FeederError("sizing.outlet_height", what, f"give at most {1e3 * highest:.4g} mm")

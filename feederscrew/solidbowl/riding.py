@@ -1,5 +1,7 @@
 """A part as it lies on the track of a bowl, along its wall."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew.geometry.vectors import product
@@ -14,7 +16,7 @@ RIDER_CONTACT_M = 5e-6  # [m]
 BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs, and does not touch the wall
 
 
-def place_rider(plan, orientation, vertices, s):
+def place_rider(plan, orientation, vertices, s) -> np.ndarray:
     """Return a part on the track of a bowl, its side at the wall; one that hangs as it hangs.
 
     Parameters
@@ -49,7 +51,7 @@ def _set(plan, points, s, y):
     return plan.path.places(s, y) + product(points, np.stack(frame(plan, s, y)))
 
 
-def clearances(plan, points, near):
+def clearances(plan, points, near) -> tuple[Any, ...]:
     """Return by how much [m] the farthest of points lies beyond the wall, and the lowest over the track.
 
     The wall stands upright, leans back along a groove, or leans as a cone: it is met at the height of each
@@ -89,7 +91,7 @@ def leaning(plan, s):
     return leaning
 
 
-def frame(plan, s, y):
+def frame(plan, s, y) -> tuple[Any, ...]:
     """Return the track's axes at a place, outlet at the angle 0: ahead, inwards and off its surface."""
     path, d = plan.path, 1e-5
     ahead = path.places(s + d, y) - path.places(s - d, y)
@@ -99,7 +101,7 @@ def frame(plan, s, y):
     return ahead, np.cross(up, ahead), up
 
 
-def as_filed(plan, points):
+def as_filed(plan, points) -> np.ndarray:
     """Return points (N, 3) [m], outlet at the angle 0 and right-handed, as the bowl's files have them."""
     x, y, z = np.asarray(points).T
     c, s = np.cos(plan.turned), np.sin(plan.turned)

@@ -1,7 +1,9 @@
 """A bowl cut into segments that fit a printer, with dowels or screwed lugs across the seams."""
 
 import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import shapely
@@ -43,7 +45,7 @@ class Lug:
     under: float  # [m] by which it goes on beyond its nut, where it is carried at 45 deg
 
     @property
-    def holes(self):
+    def holes(self) -> list[Any]:
         """The hole of its screw and the pocket of its nut."""
         side = np.cross(self.along, self.out)
         axes = np.column_stack([self.out, side, self.along])
@@ -62,7 +64,7 @@ def _regular(corners, across):
     return shapely.Polygon(size * np.column_stack([np.cos(turns), np.sin(turns)]))
 
 
-def place_lugs(body, planes, tooled_area, extents):
+def place_lugs(body, planes, tooled_area, extents) -> tuple[Any, ...]:
     """Return the lugs along the seams of a bowl, none near its devices or its outlet.
 
     Parameters
@@ -97,7 +99,7 @@ def place_lugs(body, planes, tooled_area, extents):
     return lugs, len(seam_points - with_one), len(seam_points)
 
 
-def lug_remarks(bare, ends):
+def lug_remarks(bare, ends) -> tuple[Any, ...]:
     """Return what must not be overlooked of ends of seams without a lug, of how many; a tuple of str."""
     if not bare:
         return ()
@@ -105,7 +107,7 @@ def lug_remarks(bare, ends):
     return (str(FeederError("join", what, "glue those seams, or take a larger bed")),)
 
 
-def _upright(at, axis, extents):
+def _upright(at, axis, extents) -> Iterator[Any]:
     """Frames (place, along, out, across) of lugs at both ends of an upright seam."""
     low, high = extents[2] + [LUG_HALF_WIDTH_M + STANDS + 2e-3, -LUG_HALF_WIDTH_M - 1e-3]
     count = 1 + int((high - low) / SCREW_SPACING_M)
@@ -116,7 +118,7 @@ def _upright(at, axis, extents):
         yield at * unit[axis] + z * up, along, side * unit[1 - axis], up
 
 
-def _level(at, extents):
+def _level(at, extents) -> Iterator[Any]:
     """Frames of lugs round a level seam."""
     around = np.pi * (extents[0, 1] - extents[0, 0])
     up = np.array([0.0, 0.0, 1.0])
@@ -125,7 +127,7 @@ def _level(at, extents):
         yield at * up, up, out, np.cross(up, out)
 
 
-def _lug(body, frame, level, low):
+def _lug(body, frame, level, low) -> Lug | None:
     """A lug on the wall's outer face; None where that is not smooth there."""
     place, along, out, across = frame
     n, t = 0.5 * SCREW_LENGTH_M * np.linspace(-1.0, 1.0, 5), LUG_HALF_WIDTH_M * np.linspace(-1.0, 1.0, 3)
@@ -155,7 +157,7 @@ def _wall(body, place, out):
     return BEYOND_LUGS_M - first_met[0] if first_met else np.nan
 
 
-def _is_lug_clear(lug, tooled_area, lugs, planes):
+def _is_lug_clear(lug, tooled_area, lugs, planes) -> bool:
     """Whether a lug lies apart from devices, from other lugs and from other seams."""
     if tooled_area.distance(shapely.Point(lug.middle[:2])) < LUG_CLEARANCE_M:
         return False
@@ -207,12 +209,12 @@ class Segments:
     ends: tuple[int, int] = (0, 0)  # of seams, that have no screw where screws are asked for; and of how many
 
     @property
-    def dowels(self):
+    def dowels(self) -> int:
         """How many."""
         return len(self.places)
 
     @property
-    def remarks(self):
+    def remarks(self) -> tuple[Any, ...]:
         """What must not be overlooked of its screws, a tuple of str."""
         return lug_remarks(*self.ends)
 
@@ -222,7 +224,7 @@ class Segments:
         return self.lugs[:, 0]
 
 
-def bed(text):
+def bed(text) -> tuple[Any, ...]:
     """Return the size (x, y, z) [m] of a printer's bed as typed, '220x220x250mm'.
 
     Raises
@@ -248,7 +250,7 @@ def bed(text):
     return tuple(size)
 
 
-def segments(solid, size, joint=DOWELS):
+def segments(solid, size, joint=DOWELS) -> Segments:
     """Return a bowl in pieces that fit a bed, whole where it fits as it is.
 
     Parameters
@@ -306,7 +308,7 @@ def _lugs(solid, body, turn, planes):
     return placed_lugs
 
 
-def _joined(body, joints, turn):
+def _joined(body, joints, turn) -> tuple[Any, ...]:
     """The bowl with its lugs, and its surface in the bowl's own axes."""
     if not joints:
         return body, None
@@ -315,21 +317,21 @@ def _joined(body, joints, turn):
     return whole, whole_surface.mesh(whole.rotate((0.0, 0.0, float(np.degrees(turn)))))
 
 
-def _turned(places, turn):
+def _turned(places, turn) -> np.ndarray:
     """Places (..., 2 or 3) turned about Z."""
     c, s = np.cos(turn), np.sin(turn)
     x, y = places[..., 0], places[..., 1]
     return np.concatenate([np.stack([c * x - s * y, s * x + c * y], axis=-1), places[..., 2:]], axis=-1)
 
 
-def _piece(name, body):
+def _piece(name, body) -> Segment:
     low = body.bounding_box()[:3]
     vertices, faces = whole_surface.mesh(body.translate(tuple(-x for x in low)))
     x, y, z = map(float, vertices.max(axis=0))
     return Segment(name, vertices, faces, (x, y, z), body.volume() * MM**3)
 
 
-def _seams(solid, size, screwed):
+def _seams(solid, size, screwed) -> tuple[Any, ...]:
     """Segments along each axis, the turn of the seams, and the box (3, 2) [m] of the bowl turned back by it.
 
     The box has room for the lugs of screws.
@@ -353,12 +355,12 @@ def _seams(solid, size, screwed):
     return counts, turn, extents
 
 
-def _counts(extents, size):
+def _counts(extents, size) -> tuple[Any, ...]:
     room = extents[:, 1] - extents[:, 0]
     return tuple(int(np.ceil(item / side - 1e-9)) for item, side in zip(room, size))
 
 
-def _box(vertices, turn):
+def _box(vertices, turn) -> np.ndarray:
     points = _turned(vertices, -turn)
     return np.column_stack([points.min(axis=0), points.max(axis=0)])
 
@@ -376,7 +378,7 @@ def _seam_clearance(solid, turn, counts, extents):
     return min(seam_clearance)
 
 
-def _box_points(solid, turn):
+def _box_points(solid, turn) -> np.ndarray:
     """Places (N, 2) [m] along the devices, in the axes of the seams."""
     plan = solid.plan
     first, last = _tooled(plan)
@@ -384,12 +386,12 @@ def _box_points(solid, turn):
     return _turned(_filed(plan, plan.path.plan(s.ravel(), y.ravel())), -turn)
 
 
-def _tooled(plan):
+def _tooled(plan) -> tuple[Any, ...]:
     """From and to [m] along the wall where no dowel and, if it can be, no seam shall be."""
     return (plan.first, plan.path.end) if plan.stretch is not None else (plan.path.end - 1e-3, plan.path.end)
 
 
-def _filed(plan, flat):
+def _filed(plan, flat) -> np.ndarray:
     return _turned(flat * [1.0, -1.0] if plan.left else flat, plan.turned)
 
 
@@ -421,7 +423,7 @@ def _dowels(solid, body, turn, plane, size):
     return dowels
 
 
-def overhangs(solid):
+def overhangs(solid) -> dict[Any, Any]:
     """Return what hangs over by more than 45 deg, printed as the bowl stands.
 
     Parameters

@@ -7,6 +7,7 @@ stands upright again below the next turn.
 
 import itertools
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import shapely
@@ -41,7 +42,7 @@ class Stairs:
         """Least rise of a turn [m]: upright wall over the turn before, slope, upright wall below."""
         return self.upright + self.step * float(np.tan(self.slope)) + self.below
 
-    def sections(self, path, theta, low):
+    def sections(self, path, theta, low) -> np.ndarray:
         """Return the corners (M, K, 2) [m] of the wall's inner side: radius and height, from below upwards.
 
         Parameters
@@ -70,7 +71,7 @@ class Stairs:
         return np.stack([*corners, rows[-1]], axis=1)
 
 
-def stairs(track, made_of, tooled, options, extents):
+def stairs(track, made_of, tooled, options, extents) -> Stairs | None:
     """Return the steps of a wall; None of a cylinder.
 
     Parameters
@@ -122,14 +123,14 @@ def stairs(track, made_of, tooled, options, extents):
     )
 
 
-def _check(pitch, needed, length):
+def _check(pitch, needed, length) -> None:
     if pitch < needed:
         least = np.ceil(10.0 * np.degrees(np.arctan(needed / length))) / 10.0
         what = f"a turn rises {1e3 * pitch:.4g} mm, and a stepped wall needs {1e3 * needed:.4g} mm"
         raise FeederError("track.climb", what, f"give {least:.4g} deg, or sizing.shape: cylinder")
 
 
-def shell(plan, kit):
+def shell(plan, kit) -> list[Any]:
     """Return the wall of a stepped or conical bowl, with what closes it below its outlet.
 
     Parameters
@@ -148,7 +149,7 @@ def shell(plan, kit):
     return [kit.above(item, plan.underside + WALL_LIFT_M) for item in (kit.united(halves), _end(plan, kit))]
 
 
-def _leg(plan, kit, start, end):
+def _leg(plan, kit, start, end) -> tuple[Any, ...]:
     """Sections and frames of a quarter of the wall."""
     theta = np.linspace(start, end, (QUARTER_TURN_POINTS if kit.HAS_EXACT_CURVES else plan.segments // 4) + 1)
     inner = plan.stairs.sections(plan.path, theta, plan.underside - 2e-3)
@@ -164,7 +165,7 @@ def _leg(plan, kit, start, end):
     return sections, np.stack([np.zeros_like(towards), towards], axis=1)
 
 
-def _corners(steps, count):
+def _corners(steps, count) -> list[Any]:
     """Which corners of a section are none of the track's own: an edge on its surface cuts badly."""
     last = count - 1
     if steps.shape == CONICAL:
@@ -187,7 +188,7 @@ def _end(plan, kit):
     return kit.plank(shapely.Polygon(ring), plan.material.wall, axes, [0.0, 0.0, 0.0])
 
 
-def floor_edge(plan, kit):
+def floor_edge(plan, kit) -> np.ndarray:
     """Return the edge (K, 2) [m] of the floor, within the wall, seen from above."""
     theta = np.linspace(-STAIRS_TURN, 0.0, (64 if kit.HAS_EXACT_CURVES else plan.segments) + 1)[:-1]
     inner = plan.stairs.sections(plan.path, theta, plan.underside - 2e-3)

@@ -1,6 +1,7 @@
 """The track as a body: a plate along its way, the sides of its outlet, yokes, and a groove's other face."""
 
 import itertools
+from typing import Any
 
 import numpy as np
 
@@ -58,7 +59,7 @@ def slab(plan, kit):
     return kit.above(whole, plan.underside + 0.5 * TRACK_PIECE_OVERLAP_M)
 
 
-def _leg(plan, kit, leg, run):
+def _leg(plan, kit, leg, run) -> tuple[Any, ...]:
     """Sections and frames of a piece of a run, which goes on past its ends at the same height."""
     s = steps(plan, kit, *leg)
     inside = np.clip(s, run[0] + 1e-9, run[1] - 1e-9)
@@ -71,7 +72,7 @@ def steps(plan, kit, start, end):
     return _smooth_steps(plan, start, end) if kit.HAS_EXACT_CURVES else _steps(plan, start, end)
 
 
-def _smooth_steps(plan, start, end):
+def _smooth_steps(plan, start, end) -> np.ndarray:
     """Lengths along the wall through which a curve is led; the two ends of what is straight."""
     count = (
         2
@@ -81,7 +82,7 @@ def _smooth_steps(plan, start, end):
     return np.linspace(start, end, count)
 
 
-def frames(plan, s):
+def frames(plan, s) -> np.ndarray:
     """Return place and outward direction (M, 2, 2) of the wall's foot at lengths s, seen from above."""
     theta = plan.path.angle(s)
     outward = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
@@ -163,7 +164,7 @@ def _riser(plan, kit, at, drop):
     return kit.over(plan.path, ring, low - plate, low + drop - 0.5 * plate, plan.chord)
 
 
-def ledges(plan, kit):
+def ledges(plan, kit) -> list[Any]:
     """Return the ledges along the wall that stand on the track which goes on lower beside them.
 
     Parameters
@@ -188,7 +189,7 @@ def _ledge(plan, kit, ledge):
     return kit.swept([_ledge_leg(plan, kit, ledge, leg) for leg in itertools.pairwise(legs)])
 
 
-def _ledge_leg(plan, kit, ledge, leg):
+def _ledge_leg(plan, kit, ledge, leg) -> tuple[Any, ...]:
     """Sections and frames of a piece of a ledge."""
     path, half = plan.path, 0.5 * plan.material.plate
     at, end = plan.first + ledge.start, plan.first + ledge.end
@@ -226,7 +227,7 @@ def sides(plan, kit):
     return solid
 
 
-def _rails(plan):
+def _rails(plan) -> tuple[Any, ...]:
     return () if plan.stretch is None else tuple(cut for cut in plan.stretch.cuts if cut.hangs)
 
 
@@ -252,7 +253,7 @@ def slots(plan, kit):
     return solid
 
 
-def yokes(plan, kit):
+def yokes(plan, kit) -> list[Any]:
     """Return the brackets that carry the inner rail from below, behind the stretch that sorts.
 
     Parameters
@@ -307,7 +308,7 @@ STRIPS = 8  # of the face upwards: its facets are about as wide as high where it
 MAX_GROOVE_WALL_RAD = 0.85 * FULL_TURN  # [rad] before the outlet: above it the bowl's wall is open
 
 
-def groove_wall_cuts(plan, kit):
+def groove_wall_cuts(plan, kit) -> list[Any]:
     """Return what grooves take from the bowl's wall.
 
     Parameters
@@ -322,7 +323,7 @@ def groove_wall_cuts(plan, kit):
     return [_swept(plan, kit, groove, _cut) for groove in groove_spans(plan)]
 
 
-def groove_faces(plan, kit):
+def groove_faces(plan, kit) -> list[Any]:
     """Return the walls of grooves.
 
     Parameters
@@ -337,7 +338,7 @@ def groove_faces(plan, kit):
     return [_swept(plan, kit, groove, _face) for groove in groove_spans(plan)]
 
 
-def groove_spans(plan):
+def groove_spans(plan) -> list[Any]:
     """Return the grooves of a bowl: (from, to, lean, opens), lengths [m] along the wall, an angle [rad].
 
     They lie in the last turn: above them there is no other.
@@ -380,13 +381,13 @@ def _swept(plan, kit, groove, section):
     return kit.swept(solid)
 
 
-def _sloping(plan, lean):
+def _sloping(plan, lean) -> tuple[Any, ...]:
     """Unit vectors (M, 2) up the face and off its back; its width [m]."""
     c, s = np.cos(lean), np.sin(lean)
     return np.stack([s, c], axis=-1), np.stack([c, -s], axis=-1), plan.headroom + GROOVE_WALL_MARGIN_M
 
 
-def _face(plan, lean, strips):
+def _face(plan, lean, strips) -> np.ndarray:
     """Sections (M, K, 2) of the wall: outwards and up from the track's foot."""
     up, rearward, wide = _sloping(plan, lean)
     along = np.linspace(-GROOVE_WALL_FOOT_M, wide, strips + 1)[:, None]
@@ -394,7 +395,7 @@ def _face(plan, lean, strips):
     return np.concatenate([outer, along[::-1] * up[:, None]], axis=1)
 
 
-def _cut(plan, lean, strips):
+def _cut(plan, lean, strips) -> np.ndarray:
     """Sections (M, K, 2) of what is above it, out of the wall: its border is hidden in face and track."""
     up, _, wide = _sloping(plan, lean)
     along = np.linspace(-GROOVE_CUT_MARGIN_M, wide, strips + 1)[:, None]

@@ -8,8 +8,8 @@ from typing import Any, Unpack, cast
 
 import numpy as np
 
-from feederscrew import __version__, check, units
 from feederscrew import bowl as bowls
+from feederscrew import check, units
 from feederscrew.bowl.record import Bowl, Track, vibration_angle
 from feederscrew.bowl.settings import Setting, has_machine
 from feederscrew.conveying import answer
@@ -49,6 +49,7 @@ from feederscrew.studies.arguments import (
 from feederscrew.studies.rate import LEAST, arriving
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
+from feederscrew.version import __version__
 
 ASSUMED_DENSITY = 7850.0  # [kg/m3] of a fill of which nothing is known: steel, solid
 PART, FILE, ASSUMED = "of the part", "as sizing.fill_density says", "steel assumed: give the part"  # fills

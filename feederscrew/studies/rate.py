@@ -158,11 +158,14 @@ def likeliest(part: Part, bowl: Bowl) -> Aspects:
     Aspects
         Its ``likeliest`` is that of ``arriving``; its shares are of fewer parts.
     """
-    sample = shares(part, bowl, fed=CHOOSING)
+    from feederscrew.dropping import arrival
+
+    fed = min(CHOOSING, arrival.MAX_ARRIVALS)
+    sample = shares(part, bowl, fed=fed)
     answer = sample.aspects.recommended
     if not sample.fed or answer is None:
         return sample.aspects
-    low, high = wilson(np.nan_to_num(answer.p) * CHOOSING, CHOOSING)  # of the sample alone
+    low, high = wilson(np.nan_to_num(answer.p) * fed, fed)  # of the sample alone
     first = int(np.argmax(answer.p))
     is_clear = low[first] > np.delete(high, first).max(initial=0.0)
     return sample.aspects if is_clear else arriving(part, bowl)

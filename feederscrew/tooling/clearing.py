@@ -5,6 +5,7 @@ Source: docs/tooling.md, "What becomes of a part that does not pass".
 
 import functools
 import math
+from typing import Any
 
 from feederscrew.errors import FeederError
 
@@ -109,7 +110,7 @@ def along_blade(bowl, sweep, friction):
     return max(mean_velocity, 0.0)
 
 
-def _rubbed(u, v, track, most):
+def _rubbed(u, v, track, most) -> tuple[Any, ...]:
     """Velocity (2) [m/s] of a part after the track has taken at most so much of what is relative to it."""
     du, dv = u - track, v
     slip = math.hypot(du, dv)

@@ -3,6 +3,8 @@
 import functools
 import itertools
 import math
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import shapely
@@ -54,7 +56,7 @@ def may_lay_over(orientation, low):
     return (mu * c - s) / (1.0 - mu * mu) * lever + orientation.posture.height * s > behind * c
 
 
-def may_lay_aside(orientation, low, sweep):
+def may_lay_aside(orientation, low, sweep) -> bool:
     """Return whether a swept blade may lay a part over towards the free edge as it slides along the face.
 
     Source: moments about a side of the foot, Coulomb's friction; docs/tooling.md, "1. The method".
@@ -103,7 +105,7 @@ def may_turn_and_lie_over(orientation, low):
     return foot_sides is None or bool((orientation.grip * low > foot_sides[1]).any())
 
 
-def _foot_sides(orientation):
+def _foot_sides(orientation) -> tuple[Any, ...] | None:
     """Normals (K, 2) of the sides of a foot and their distances (K,) [m] from its weight; None of a line."""
     hull = shapely.MultiPoint(orientation.foot.corners).convex_hull
     if hull.geom_type != "Polygon":
@@ -223,7 +225,7 @@ def greatest_width(corners):
     return max(area.intersection(line).length for line in lines)
 
 
-def _first_contact(orientation, low):
+def _first_contact(orientation, low) -> tuple[Any, ...]:
     """How far ahead of the weight a part reaches over a height [m], and at which height it first does so."""
     points, faces = orientation.posture.surface, orientation.posture.solid.faces
     ahead, height = turned(points[:, :2], orientation.heading)[:, 0], points[:, 2]
@@ -253,7 +255,7 @@ CONVEX_FILL_SHARE = 0.99  # of its convex outline: a part that fills less may ca
 FORCE_SHARE_TOLERANCE = 1e-12  # of a share of a force
 
 
-def may_rest(section, width, friction, wall=False):
+def may_rest(section, width, friction, wall=False) -> bool:
     """Return whether a part may come to rest between two edges, tilted some way.
 
     Source: Coulomb's cones at two edges; docs/trial.md, "What other parts said of the rules".
@@ -293,14 +295,14 @@ def may_rest(section, width, friction, wall=False):
     return _settles(np.where(np.isinf(heights), -np.inf, heights), 1e-9 * np.ptp(ring, axis=0).max())
 
 
-def _settles(heights, same):
+def _settles(heights, same) -> bool:
     """Whether the height of a centre of mass has a lowest place among tilts at which the part is held."""
     around = np.concatenate([[np.inf], heights, [np.inf]])
     lowest = (heights <= around[:-2] + same) & (heights <= around[2:] + same)
     return bool((lowest & np.isfinite(heights)).any())
 
 
-def _leans(ring, width):
+def _leans(ring, width) -> tuple[Any, ...] | None:
     """Where a convex outline touches a wall and an edge at some distance from it, as ``_bridges``."""
     place = ring[:, 0].min() + width
     if ring[:, 0].max() <= place:
@@ -314,7 +316,7 @@ def _leans(ring, width):
     return (foremost, np.array([1.0, 0.0])), (on, normal)
 
 
-def _bridges(ring, width):
+def _bridges(ring, width) -> tuple[Any, ...] | None:
     """Where a convex outline lies on two edges: (point, normal into the part) of both; None: it goes through.
 
     Its lower level chord is as long as the edges are apart.
@@ -343,7 +345,7 @@ def _spans(ring, levels):
     return np.where(crosses, places, -np.inf).max(axis=1) - np.where(crosses, places, np.inf).min(axis=1)
 
 
-def _at(ring, level):
+def _at(ring, level) -> tuple[Any, ...]:
     """Where the sides of a convex outline meet a level, and their normals into it."""
     along, start = sides(ring), ring[:, 1]
     low, high = np.minimum(start, start + along[:, 1]), np.maximum(start, start + along[:, 1])
@@ -354,7 +356,7 @@ def _at(ring, level):
     return ring[crosses, 0] + share * along[crosses, 0], normals
 
 
-def _holds(two, friction):
+def _holds(two, friction) -> bool:
     """Whether forces within cones of friction at two places hold a weight at (0, any height)."""
     wrenches = []
     for point, normal in two:
@@ -382,7 +384,7 @@ def _det(basis):
     )
 
 
-def _shares(basis, weight):
+def _shares(basis, weight) -> np.ndarray:
     """How much of each of three wrenches makes a weight: Cramer's rule."""
     whole = _det(basis)
     return np.array([_det(np.where(np.arange(3)[:, None] == k, weight, basis)) / whole for k in range(3)])
@@ -400,7 +402,7 @@ FAR, ONE_LINE = 10.0, 1e-6  # [m] along any hole; half the width of a line acros
 PLACES, PIECES = 200, 8  # along a hole at which a part is tried; of a side of its outline
 
 
-def falls_through(orientation, cut):
+def falls_through(orientation, cut) -> bool:
     """Return whether a hole lets an orientation through that it does not carry.
 
     Source: own; docs/tooling.md, "1. The method": what becomes of a part that does not pass.
@@ -484,7 +486,7 @@ def surely_gone(device, orientation):
     return lets_go(device, orientation) and not turned
 
 
-def fits_as_it_lies(orientation, cut):
+def fits_as_it_lies(orientation, cut) -> bool:
     """Return whether an orientation fits through a hole as it lies, somewhere on its way over it.
 
     Parameters
@@ -513,7 +515,7 @@ def _over_the_edge(device, track):
     return span is not None and span[1] >= track.extent - 1e-9
 
 
-def _slips(orientation, span):
+def _slips(orientation, span) -> bool:
     """Whether no tilt of a part rests on both sides of a hole along the track, over which it slides on."""
     silhouette = shapely.affinity.translate(
         orientation.view_ahead, -orientation.distance, -orientation.posture.height
@@ -546,13 +548,13 @@ def _open(cut, width):
 
 
 @functools.lru_cache(maxsize=512)
-def _shadows(orientation):
+def _shadows(orientation) -> tuple[Any, ...]:
     """Convex outlines (K, 2) [m] from above, as it lies and as it tips, and their sizes (S, 2) [m]."""
     shadows = list(_tipped(orientation))
     return shadows, np.array([np.ptp(shadow, axis=0) for shadow in shadows])
 
 
-def _tipped(orientation):
+def _tipped(orientation) -> Iterator[Any]:
     points = orientation.posture.corners
     size = np.ptp(points, axis=0).max()
     c, s = np.cos(orientation.heading), np.sin(orientation.heading)
@@ -569,7 +571,7 @@ def _tipped(orientation):
         yield from (shapely.get_coordinates(ring)[:-1] for ring in rings)
 
 
-def _sides(part):
+def _sides(part) -> np.ndarray | None:
     """Half-planes (K, 3) [1, 1, m] that bound a convex polygon: normals and distances; None of another."""
     if part.interiors or part.area < (1.0 - RECTANGLE_TOLERANCE) * part.convex_hull.area:
         return None
@@ -580,12 +582,12 @@ def _sides(part):
     return np.column_stack([normal, (normal * ring[:-1][length > 0.0]).sum(axis=1)])
 
 
-def _fits(shadow, part, sides):
+def _fits(shadow, part, sides) -> bool:
     """Whether a convex shadow can be moved to lie within a polygon."""
     return _fits_between(shadow, sides) if sides is not None else _fits_within(shadow, part)
 
 
-def _fits_between(shadow, sides):
+def _fits_between(shadow, sides) -> bool:
     """Whether it can be moved to lie within half-planes: some corner of where it may be moved to exists."""
     (a, b), c = sides[:, :2].T, sides[:, 2]
     room = c - (a[:, None] * shadow[:, 0] + b[:, None] * shadow[:, 1]).max(axis=1)
@@ -597,7 +599,7 @@ def _fits_between(shadow, sides):
     return bool((a[:, None] * x + b[:, None] * y <= room[:, None] + FIT_TOLERANCE_M).all(axis=0).any())
 
 
-def _fits_within(shadow, part):
+def _fits_within(shadow, part) -> bool:
     """Whether it can be moved to lie within any polygon: what is left of it beside its own border."""
     shadow = shadow - shadow.mean(axis=0)
     rings = [part.exterior, *part.interiors]

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -26,12 +27,12 @@ class DeviceFlow:
     came: tuple[tuple[Orientation, ...], ...]  # (D,) the states as they are at each device
 
     @cached_property
-    def leaving(self):
+    def leaving(self) -> np.ndarray:
         """(M, S) [1] share of each orientation that leaves in each state."""
         return check.frozen(self._reached[-1])
 
     @cached_property
-    def passes(self):
+    def passes(self) -> np.ndarray:
         """(M, 1 + D) [1] share that the track and each device let on, of those that come to it."""
         reached, shares = self._reached, [self.starts]
         for step, matrix in enumerate(self.matrices):
@@ -41,7 +42,7 @@ class DeviceFlow:
         return check.frozen(np.column_stack(shares))
 
     @cached_property
-    def margins(self):
+    def margins(self) -> np.ndarray:
         """(M, 1 + D) [m] by which most of it passes or fails each device; NaN: not known."""
         rows, reached = np.arange(len(self.starts)), self._reached
         columns = [np.full(len(rows), np.nan)]
@@ -51,7 +52,7 @@ class DeviceFlow:
         return check.frozen(np.column_stack(columns))
 
     @cached_property
-    def decided(self):
+    def decided(self) -> np.ndarray:
         """(M,) bool, whether statics tells what every device that it comes to does with it."""
         sure = np.ones(len(self.starts), bool)
         for reached, verdicts in zip(self._reached, self.verdicts):
@@ -60,7 +61,7 @@ class DeviceFlow:
         return check.frozen(sure)
 
     @cached_property
-    def ends(self):
+    def ends(self) -> np.ndarray:
         """(M, 2, 1 + D) [1] share that the track and each device return, and that they stop."""
         count, reached = len(self.starts), self._reached
         shares = np.zeros((count, 2, 1 + len(self.devices)))
@@ -75,7 +76,7 @@ class DeviceFlow:
         return check.frozen(shares)
 
     @cached_property
-    def doubtful(self):
+    def doubtful(self) -> np.ndarray:
         """(M,) [1] share of each orientation that leaves as well where no verdict is sure to return it."""
         reached = self.starts[:, None] * np.eye(len(self.starts), len(self.states))
         for step, (matrix, verdicts) in enumerate(zip(self.matrices, self.verdicts)):
@@ -102,7 +103,7 @@ class DeviceFlow:
         return self.ends[:, 1]
 
     @cached_property
-    def fates(self):
+    def fates(self) -> tuple[Any, ...]:
         """(M,) str, what becomes of most of each orientation: carried, returned or stopped."""
         shares = np.column_stack([self.leaving.sum(axis=1), self.ends.sum(axis=2)])
         return tuple((CARRIED, RETURNED, STOPPED)[k] for k in np.round(shares, 9).argmax(axis=1))
@@ -121,7 +122,7 @@ class DeviceFlow:
         return reached
 
 
-def course(devices, orientations, sigma=0.0, rows=None):
+def course(devices, orientations, sigma=0.0, rows=None) -> DeviceFlow:
     """Return what becomes of every orientation along a chain of devices.
 
     Source: a chain of conditional shares; docs/tooling.md, "1. The method".
@@ -194,14 +195,14 @@ def _followed(transitions, count, rows):
     return rows_here
 
 
-def at_entry(orientations, devices):
+def at_entry(orientations, devices) -> tuple[Any, ...]:
     """Return orientations as they come: where devices that lean the track come first, they begin there."""
     for device in leading(devices):
         orientations = tuple(device.onward(orientation) for orientation in orientations)
     return tuple(orientations)
 
 
-def leading(devices):
+def leading(devices) -> tuple[Any, ...]:
     """Return the devices that come first and lean the track from its entry on, up to the end of a groove."""
     first_devices, grooved = [], False
     for device in devices:
@@ -212,7 +213,7 @@ def leading(devices):
     return tuple(first_devices)
 
 
-def _transitions(device, place, orientation, outcome, states):
+def _transitions(device, place, orientation, outcome, states) -> list[Any]:
     """Where a state goes on from a device: (place, share) of what passes; new hanging states are added."""
     if outcome.onto:
         return [(onto, share) for onto, share in outcome.onto if not states[onto].returned]

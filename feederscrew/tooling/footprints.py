@@ -5,7 +5,7 @@ The verdicts of feet over holes are compiled: ``kernel``.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -29,7 +29,7 @@ class Footprint:
     points: np.ndarray  # (P, 2) [m] points of contact
 
     @cached_property
-    def corners(self):
+    def corners(self) -> np.ndarray:
         """(V, 2) [m] every corner of it."""
         return np.concatenate([*self.rings, self.edges.reshape(-1, 2), self.points])
 
@@ -86,7 +86,7 @@ def _spots(foot):
     return Footprint(rings=foot.rings, edges=edges, points=np.empty((0, 2)))
 
 
-def _sector(start, end, middle):
+def _sector(start, end, middle) -> np.ndarray:
     """Angles and distances about the axis (4,) [rad, m] between which areas of such sides lie."""
     start, end = ([1.0, -1.0] * (ends - [0.0, middle]) for ends in (start, end))
     if len(start) == 0 or not start[:, 1].min() > 0.0:
@@ -120,7 +120,7 @@ def scratch(foot, hole):
     )
 
 
-def least(foot, hole, work=None, low=-np.inf, high=np.inf):
+def least(foot, hole, work=None, low=-np.inf, high=np.inf) -> tuple[Any, ...]:
     """Return the least margin [m] of a foot over a hole's passage, and the shift [rad] where it is.
 
     A margin below ``low`` may be given as any that is below it, one above ``high`` as any above.
@@ -147,7 +147,7 @@ def unheld(foot, hole, work=None, enough=np.inf):
     return float(kernel.longest(foot, hole, work or scratch(foot, hole), turn)) * foot.centre
 
 
-def _hull(x, y):
+def _hull(x, y) -> tuple[Any, ...]:
     """Corners of the convex hull about the origin, counter-clockwise, and the insets of its sides."""
     points = np.column_stack([x, y])
     order = polygons.convex(points)
@@ -158,7 +158,7 @@ def _hull(x, y):
     return order, (start[:, 0] * along[:, 1] - start[:, 1] * along[:, 0]) / np.hypot(*along.T)
 
 
-def over_ring(foot, low, high):
+def over_ring(foot, low, high) -> float:
     """Return the margin [m] of a foot on a track without what lies between two radii [m] about the axis.
 
     Source: docs/tooling.md, "1. The method".
@@ -168,7 +168,7 @@ def over_ring(foot, low, high):
     return float(ring.over_ring(foot, low, high, ring_scratch(foot)))
 
 
-def balcony(foot, radius):
+def balcony(foot, radius) -> float:
     """Return the least width of track [m] that carries a foot; infinite where none does.
 
     Source: docs/tooling.md, "1. The method".
@@ -229,7 +229,7 @@ SILHOUETTE_STEP_M = 3e-5  # [m] to which a silhouette is exact on a curved track
 FOOT_GRID_M = 1e-8  # [m] of its corners
 
 
-def find_footprint(posture, heading):
+def find_footprint(posture, heading) -> Footprint:
     """Return what touches the track.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -264,7 +264,7 @@ def find_footprint(posture, heading):
     return Footprint(rings=borders, edges=check.frozen(edges), points=check.frozen(single))
 
 
-def _of_polygon(corners):
+def _of_polygon(corners) -> Footprint:
     """The foot of a part that stands on the whole of a polygon (K, 2) [m]."""
     return Footprint(rings=(check.frozen(corners),), edges=np.empty((0, 2, 2)), points=np.empty((0, 2)))
 
@@ -307,7 +307,7 @@ def _below(corners, height, depth):
     return shapely.Polygon(out)
 
 
-def _bare(plan, low, faces, area, near):
+def _bare(plan, low, faces, area, near) -> tuple[Any, ...]:
     """Edges and points of the mesh on the track that no area covers."""
     around = area.buffer(near) if not area.is_empty else area
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
@@ -325,7 +325,7 @@ def _covered(points, area):
     return shapely.contains_xy(area, points) if not area.is_empty else np.zeros(len(points), dtype=bool)
 
 
-def rings(area, least=0.0):
+def rings(area, least=0.0) -> tuple[Any, ...]:
     """Return the borders of an area, those of its holes too, as corners (K, 2) without the one repeated.
 
     Parameters
@@ -428,7 +428,7 @@ def within(foot, distance, radius, width):
     return Footprint(rings=(), edges=np.empty((0, 2, 2)), points=check.frozen(nearest))
 
 
-def _without(foot, off):
+def _without(foot, off) -> Footprint:
     """What of a footprint lies outside an area."""
     area = shapely.union_all([shapely.Polygon()])
     for border in foot.rings:
@@ -449,7 +449,7 @@ def _nearest_side(foot, middle):
     return min([*rings, *lines], default=np.inf)
 
 
-def silhouette(posture, heading, distance, radius):
+def silhouette(posture, heading, distance, radius) -> tuple[Any, ...]:
     """Return the outline of a part seen along the track.
 
     Parameters
@@ -479,7 +479,7 @@ def silhouette(posture, heading, distance, radius):
     return rings(whole.simplify(FOOT_DETAIL_SHARE * size), SLIVER * size**2)
 
 
-def _short(corners, longest):
+def _short(corners, longest) -> np.ndarray:
     """Triangles halved along the track until none is longer than the curve allows."""
     done = []
     while len(corners):

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 import shapely
@@ -63,7 +63,7 @@ class Orientation:
     any_heading: bool = False  # on that aspect it is known however it is turned
 
     @property
-    def name(self):
+    def name(self) -> str:
         """Return 'D@179': aspect and heading in whole degrees, from 0 to 359."""
         return f"{self.aspect}@{round(np.degrees(self.heading)) % 360}"
 
@@ -83,7 +83,7 @@ class Orientation:
         return self.posture.height * np.tan(self.track.bank)
 
     @property
-    def rolls_along(self):
+    def rolls_along(self) -> bool:
         """Whether the axis about which it rolls lies more along the track than across it."""
         axis = self.posture.axis
         along, across = (0.0, 1.0) if axis is None else np.abs(turned(axis, self.heading))
@@ -100,7 +100,7 @@ class Orientation:
         return 0.5 * np.pi - self.groove if self.groove else 0.0
 
     @cached_property
-    def axes(self):
+    def axes(self) -> np.ndarray:
         """(3, 3) [1] the track's axes as rows, in the file's axes."""
         c, s, (x, y, z) = np.cos(self.heading), np.sin(self.heading), cast(np.ndarray, self.posture.axes)
         return np.array([c * x - s * y, s * x + c * y, z])
@@ -165,7 +165,7 @@ class Orientation:
         return footprints.longest_gap(self.standing, self.track.radius)
 
 
-def place(orientations):
+def place(orientations) -> tuple[Any, ...]:
     """Return orientations as they are where nothing carries them on; what is known of them stays."""
     return tuple(_place_one(orientation) for orientation in orientations)
 
@@ -187,7 +187,7 @@ def _place_one(orientation):
     return other
 
 
-def orientations(part, aspects, track):
+def orientations(part, aspects, track) -> tuple[Any, ...]:
     """Return every stable aspect and heading of a part on a track.
 
     Parameters
@@ -220,7 +220,7 @@ def orientations(part, aspects, track):
     return tuple(orientations)
 
 
-def travelling(orientations, bowl):
+def travelling(orientations, bowl) -> tuple[Any, ...]:
     """Return orientations that know how a bowl carries them on: over an edge, by friction, and rolling back.
 
     Parameters
@@ -287,7 +287,7 @@ def travel_speed(bowl):
     return max(float(velocity), 0.0) if np.isfinite(velocity) else 0.0
 
 
-def _tipping_time(orientation, spread, gravity):
+def _tipping_time(orientation, spread, gravity) -> float:
     """Time constant [s] of tipping over an edge below the centre of mass; ``spread`` as from ``gyration``."""
     height = orientation.posture.height
     return float(np.sqrt((spread + height**2) / (gravity * height)))
@@ -300,7 +300,7 @@ def _greatest(orientation):
     return (mean + np.hypot(lean, inertia[0, 1])) / orientation.posture.mass
 
 
-def gyration(orientation, angle):
+def gyration(orientation, angle) -> float:
     """Return the square of the radius of gyration [m2] about a level axis at an angle [rad] to the track.
 
     Source: Steiner's theorem about a level axis.
@@ -311,7 +311,7 @@ def gyration(orientation, angle):
     return float(moment / orientation.posture.mass)
 
 
-def orientation_at(lying, headings_of, row, chances, track):
+def orientation_at(lying, headings_of, row, chances, track) -> Orientation:
     """Return a Posture at row ``row`` of its Headings, with the chances of its aspect by rule."""
     share = float(headings_of.shares[row])
     return Orientation(
@@ -333,7 +333,7 @@ def orientation_at(lying, headings_of, row, chances, track):
     )
 
 
-def name_mirror_images(orientations):
+def name_mirror_images(orientations) -> tuple[Any, ...]:
     """Return orientations with the names of their mirror images, fore and aft.
 
     Parameters
@@ -354,7 +354,7 @@ def name_mirror_images(orientations):
     return tuple(replace(orientation, mirror=pairs.get(k, "")) for k, orientation in enumerate(orientations))
 
 
-def _support_and_moment(orientation):
+def _support_and_moment(orientation) -> tuple[Any, ...]:
     supports, moments = sameness.looks(orientation.posture, [orientation.heading])
     return supports[0], None if moments is None else moments[0]
 
@@ -404,12 +404,12 @@ class Hanging(Orientation):
         return self.aspect
 
     @property
-    def shift(self):
+    def shift(self) -> float:
         """A hanging part's weight pulls through its own slot, however the track is banked."""
         return 0.0
 
     @cached_property
-    def foot(self):
+    def foot(self) -> Footprint:
         """What of the head rests on the rails: a Footprint."""
         size = np.ptp(cast(np.ndarray, self.posture.corners), axis=0).max()
         for depth in (footprints.TOUCHING_SHARE * size, SEATED * self.height):
@@ -418,7 +418,7 @@ class Hanging(Orientation):
                 break
         return Footprint(rings=rings, edges=np.empty((0, 2, 2)), points=np.empty((0, 2)))
 
-    def over(self, span):
+    def over(self, span) -> float:
         """Return the margin [m] by which shank and head fit rails at another distance; negative if not."""
         first, last = (end - self.distance for end in span)
         (shank, head), wide = self.lies_on, self.neck
@@ -433,7 +433,7 @@ class Hanging(Orientation):
         return area.difference(footprints.ring(self.span, self.distance, self.track.radius, 2.0 * reach))
 
 
-def neck(orientation):
+def neck(orientation) -> Any:
     """Return shank and head of a part, as it lies.
 
     Parameters
@@ -451,7 +451,7 @@ def neck(orientation):
 class _Lying:
     """An orientation, equal to any other of the same solid that is turned alike, on whatever track."""
 
-    def __init__(self, orientation):
+    def __init__(self, orientation) -> None:
         self.orientation, self.solid, self.axes = (
             orientation,
             orientation.posture.solid,
@@ -466,7 +466,7 @@ class _Lying:
 
 
 @lru_cache(maxsize=512)
-def _neck(lying):
+def _neck(lying) -> Any:
     orientation = lying.orientation
     axis = _axis(orientation)
     if abs(axis[2]) > np.sin(MAX_SHANK_ANGLE_RAD) or abs(axis[1]) > np.sin(MAX_SHANK_ANGLE_RAD) * np.hypot(
@@ -495,7 +495,7 @@ def _neck(lying):
     return Neck(float(shank), float(head), widest, float(tip), rise, lever, check.frozen(down))
 
 
-def _turned_about(orientation, axis, end):
+def _turned_about(orientation, axis, end) -> tuple[Any, ...]:
     """Least width and diameter [m] of a head that turns about its axis: one that is flat turns edge on."""
     solid = orientation.posture.solid
     points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
@@ -566,7 +566,7 @@ class Shoulders:
     spare: float  # [m] from the foot to the border of what holds it: by how much it stands upright there
 
 
-def shoulders(orientation, width):
+def shoulders(orientation, width) -> Shoulders | None | None:
     """Return how a part goes down into a slot along the track as it lies and is held: a T-nut, stem down.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -591,7 +591,7 @@ def shoulders(orientation, width):
 
 
 @lru_cache(maxsize=512)
-def _shoulders(lying, height, radius, distance, width):
+def _shoulders(lying, height, radius, distance, width) -> Shoulders | None:
     """Shoulders of what lies so on a track of some radius at some distance from its wall [m]."""
     orientation = lying.orientation
     solid = orientation.posture.solid
@@ -672,7 +672,7 @@ def hang(orientation, span, hanging=()):
     return _hanging_record(orientation, headed, span, axes, points, rail, shank, len(hanging))
 
 
-def _neck_of(orientation, held):
+def _neck_of(orientation, held) -> Neck:
     """The Neck of a part that its shoulders hold as it lies: its stem is the shank."""
     solid = orientation.posture.solid
     points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
@@ -685,7 +685,7 @@ def _neck_of(orientation, held):
     return Neck(held.stem, wide, wide, held.middle, 0.0, lever, down)
 
 
-def _hanging_record(orientation, headed, span, axes, points, rail, shank, count):
+def _hanging_record(orientation, headed, span, axes, points, rail, shank, count) -> Hanging:
     """The record, from corners (V, 3) about the centre of mass and the height of the rails over it [m]."""
     points = points - [0.0, 0.0, rail]
     head = points[points[:, 2] > 0.0, 1]
@@ -722,7 +722,7 @@ def _hanging_record(orientation, headed, span, axes, points, rail, shank, count)
     )
 
 
-def _underside(points, faces, middle, half):
+def _underside(points, faces, middle, half) -> float:
     """Height [m] of the lowest place of a surface beyond half a slot's width to either side of its middle."""
     away = np.abs(points[:, 1] - middle)
     ends = np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])), axis=0)
@@ -745,7 +745,7 @@ def _axis(orientation):
     return best if best[0] > 0.0 else -best
 
 
-def _widths(orientation, axis):
+def _widths(orientation, axis) -> tuple[Any, ...]:
     """Places along an axis from the centre of mass (N,) [m], and the part's level width there (N,) [m]."""
     solid = orientation.posture.solid
     points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
@@ -764,7 +764,7 @@ def _widths(orientation, axis):
     return places, np.maximum(top - bottom, 0.0)
 
 
-def _long_axis(outline):
+def _long_axis(outline) -> float:
     """Direction [rad] across which a convex outline is narrowest."""
     along = sides(outline)
     along = along / np.hypot(*along.T)[:, None]

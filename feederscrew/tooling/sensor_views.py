@@ -1,6 +1,7 @@
 """What a sensor sees of an orientation, and by how much two differ."""
 
 import functools
+from typing import Any
 
 import numpy as np
 import shapely
@@ -68,7 +69,7 @@ def _askew(lies, sees):
     return max(outline_distance(_outline(lies, sees, by), _outline(lies, sees)) for by in VIEW_TURNS_RAD)
 
 
-def _lies(orientation, line, sees):
+def _lies(orientation, line, sees) -> tuple[Any, ...]:
     """What a sensor sees depends on: the posture, the heading, and how far from its line it lies [m]."""
     return orientation.posture, orientation.heading, orientation.distance - line if sees == "relief" else 0.0
 
@@ -107,7 +108,7 @@ def fitted(view, wanted, enough=0.0):
     return min(best, here, there)
 
 
-def _between(view, step):
+def _between(view, step) -> float:
     """By how much [m] an area may fit better than at the nearest of turns that are a step [rad] apart.
 
     A turn by half a step moves no place of it by more than its distance from the middle times that, and its
@@ -122,7 +123,7 @@ def outline_distance(first, second):
     return max(_reach(first, second), _reach(second, first))
 
 
-def _reach(area, other):
+def _reach(area, other) -> float:
     """Greatest distance [m] of the places of an area's border from another area's, and of holes alike."""
     places = shapely.get_coordinates(shapely.segmentize(area.boundary, 10.0 * BORDER_STEP_M))
     return float(shapely.distance(shapely.points(places), other.boundary).max())

@@ -1,6 +1,7 @@
 """The stretch of track as a solid: plate, wall and gates without the cuts; the one door to manifold3d."""
 
 import itertools
+from typing import Any
 
 import numpy as np
 import shapely
@@ -18,7 +19,7 @@ WALL_OVERLAP_M = 1e-3  # [m] by which wall and gates reach into plate and wall, 
 SEAM_WIDTH_M = 2e-5  # [m] of the plate left along the wall
 
 
-def solid(section):
+def solid(section) -> tuple[Any, ...]:
     """Return the closed surface of a track section with its cuts, as it lies in the bowl.
 
     Parameters
@@ -74,7 +75,7 @@ def _walls(section, low, high):
     return sum(walls[1:], walls[0])
 
 
-def leaning_wall(radius, start, stop, lean, high):
+def leaning_wall(radius, start, stop, lean, high) -> tuple[Any, ...]:
     """Return the vertices and faces of a wall that leans back [rad] between two places [m].
 
     Source: own; docs/tooling.md, "A groove".
@@ -96,7 +97,7 @@ def _leaning(radius, start, stop, lean, high):
     return body.rotate((0.0, 0.0, first)).translate((0.0, radius / MM, 0.0))
 
 
-def prism(area, low, high):
+def prism(area, low, high) -> tuple[Any, ...]:
     """Return the closed surface of a body over an area of the plane between two heights.
 
     Parameters
@@ -115,7 +116,7 @@ def prism(area, low, high):
     return np.asarray(mesh.vert_properties)[:, :3] * MM, np.asarray(mesh.tri_verts).astype(int)
 
 
-def _levels(section):
+def _levels(section) -> list[Any]:
     """Stretches of the track between steps: from, to (a little into the next one), height [m]."""
     levels, start, level = [], 0.0, 0.0
     for station in section.stations:
@@ -132,7 +133,7 @@ def _level(levels, station):
     return next(level for start, end, level in levels if place <= end)
 
 
-def _clear(ring, width):
+def _clear(ring, width) -> np.ndarray:
     """A hole moved a little off the wall and on over the track's other edge: no two faces then coincide."""
     clear = np.column_stack([ring[:, 0], np.maximum(ring[:, 1], SEAM_WIDTH_M)])
     return np.array(beyond_borders(clear.tolist(), width, WALL_OVERLAP_M))
@@ -166,7 +167,7 @@ def _gate(station, section):
     return blade.transform(_across(angle, section.track.radius / MM, lean))
 
 
-def _across(angle, radius, lean):
+def _across(angle, radius, lean) -> np.ndarray:
     """The 3 x 4 matrix that stands a plate (off the wall, height, thickness) [mm] across the track."""
     ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
     inwards = np.array([-np.sin(angle), np.cos(angle), 0.0])

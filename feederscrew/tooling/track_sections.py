@@ -3,6 +3,7 @@
 import itertools
 from dataclasses import dataclass, field, replace
 from functools import reduce
+from typing import Any
 
 import numpy as np
 import shapely
@@ -56,7 +57,7 @@ class TrackSection:
     stations: tuple[Station, ...]
 
     @property
-    def walls(self):
+    def walls(self) -> list[Any]:
         """Stretches of the wall, (from, to, lean) [m, m, rad]; a groove listed first begins at the entry."""
         first = leading([station.device for station in self.stations])
         turns = [
@@ -67,14 +68,14 @@ class TrackSection:
         ends = [(0.0, 0.0), *turns, (self.length, 0.0)]
         return [(begin, end, lean) for (begin, lean), (end, _) in itertools.pairwise(ends) if end > begin]
 
-    def bent(self, ring):
+    def bent(self, ring) -> np.ndarray:
         """Return a ring (K, 2) [m] unrolled as it lies in the bowl, its corners joined by short chords.
 
         The wall is tangent to the X axis at the origin and the bowl's axis is at (0, radius).
         """
         return bend_ring(ring, self.track.radius)
 
-    def outline_in_bowl(self, outline, place):
+    def outline_in_bowl(self, outline, place) -> np.ndarray:
         """Return an outline (K, 2) [m] from the wall as it lies in the bowl at a length along it."""
         c, s = np.cos(place / self.track.radius), np.sin(place / self.track.radius)
         x, up = outline[:, 0], self.track.radius - outline[:, 1]
@@ -110,7 +111,7 @@ def build_section(track, devices, orientations, lead=0.5):
     return replace(bare, length=start, stations=tuple(stations))
 
 
-def bend_ring(ring, radius, shift=0.0, chord=DRAWN_CHORD_M):
+def bend_ring(ring, radius, shift=0.0, chord=DRAWN_CHORD_M) -> np.ndarray:
     """Return a ring (K, 2) [m] of lengths along the wall and distances from it as it lies in the bowl.
 
     Parameters
@@ -142,7 +143,7 @@ def _width(track, devices, orientations):
     return min(max(needed) + DRAWN_TRACK_MARGIN_M, track.extent)
 
 
-def _station(device, start, length, section, orientations):
+def _station(device, start, length, section, orientations) -> Station:
     """A device at its start; a gate stands in the middle of its length."""
     cut = device.outline_on(replace(section.track, width=section.width), length)
     gate = device.opening(orientations, section.width)
@@ -172,7 +173,7 @@ def _wall_lean(device, track, orientations):
     return (slopes[-1].wall - slopes[-1].bank if slopes[-1].wall else 0.0) if slopes else None
 
 
-def _rings(area):
+def _rings(area) -> tuple[Any, ...]:
     """The outer borders of an area, without the last corner that repeats the first."""
     parts = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
     return tuple(np.asarray(part.exterior.coords)[:-1] for part in parts)
@@ -218,7 +219,7 @@ class Passage:
         return (station.start + 0.5 * station.length) / radius
 
 
-def worst_passage(device, orientation, orientations, hanging=()):
+def worst_passage(device, orientation, orientations, hanging=()) -> Passage:
     """Return an orientation at the place of a device where its margin is least.
 
     Parameters
@@ -271,7 +272,7 @@ def _within(hull, weight):
     return hull.boundary.distance(point) if hull.contains(point) else -hull.distance(point)
 
 
-def passage_fate(orientation, passages):
+def passage_fate(orientation, passages) -> str:
     """Return in words what becomes of an orientation at the end of its passages.
 
     Parameters

@@ -3,6 +3,7 @@
 import functools
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import shapely
@@ -141,7 +142,7 @@ class Turn:
     beyond: int  # ... and of that into which it goes if it is carried further
 
 
-def pitch_over(orientation, orientations):
+def pitch_over(orientation, orientations) -> Turn:
     """Return how an orientation turns over its leading edge, as a part does at a step: a Turn.
 
     Parameters
@@ -153,12 +154,12 @@ def pitch_over(orientation, orientations):
     return _turn(orientation, tuple(orientations), False)
 
 
-def roll_over(orientation, orientations):
+def roll_over(orientation, orientations) -> Turn:
     """Return how an orientation turns over inwards, as a part does at a ledge: a Turn."""
     return _turn(orientation, tuple(orientations), True)
 
 
-def over_step(orientation, orientations, height):
+def over_step(orientation, orientations, height) -> tuple[Any, ...]:
     """Return what a step does with an orientation.
 
     A drop below the barrier leaves every part as it lies: what it falls through lifts it over no more, unless
@@ -205,7 +206,7 @@ def _rear(orientation, height):
     ) * max(fell, 0.0)
 
 
-def beyond_ledge(orientation, orientations, width):
+def beyond_ledge(orientation, orientations, width) -> tuple[Any, ...]:
     """Return what becomes of an orientation whose weight lies beyond a ledge, over a second track.
 
     It tips about the edge until it leans on both tracks. If the second one lies so low that the part has
@@ -263,14 +264,14 @@ def _skew_lift(orientation):
     return float(lifts[askew].min(initial=math.inf))
 
 
-def _turned(turn, share, drop):
+def _turned(turn, share, drop) -> tuple[Any, ...]:
     """Orientations it is turned into, with their shares: half of them further where momentum may carry on."""
     if drop <= turn.holds:
         return ((turn.onto, share),) if share > 0.0 else ()
     return ((turn.onto, 0.5 * share), (turn.beyond, 0.5 * share)) if share > 0.0 else ()
 
 
-def _leaning(orientation, turn, width, drop):
+def _leaning(orientation, turn, width, drop) -> tuple[Any, ...]:
     """How a part leans over a ledge, one corner on the second track, onto which it has fallen.
 
     It turns about the edge, falls onto its inner corner and goes on about that, without rebound: its angular
@@ -308,7 +309,7 @@ def _arm(orientation, axis):
 
 
 @functools.lru_cache(maxsize=2048)
-def _turn(orientation, orientations, inwards):
+def _turn(orientation, orientations, inwards) -> Turn:
     solid = orientation.posture.solid
     hull = convex_hull(solid.vertices, solid.centre_of_mass, solid.source)
     x, y, z = orientation.axes
@@ -329,7 +330,7 @@ def _turn(orientation, orientations, inwards):
     )
 
 
-def _tipped(hull, frame, inwards):
+def _tipped(hull, frame, inwards) -> tuple[Any, ...]:
     """How a part tips from one frame of its own into another.
 
     A frame is three directions (3,) in the file's axes: to the side it tips to, along its axis, and down.
@@ -346,7 +347,7 @@ def _tipped(hull, frame, inwards):
     return angle, height, (np.cross(rear, rests) if inwards else np.cross(rests, rear), rear, rests)
 
 
-def _axes(frame, inwards):
+def _axes(frame, inwards) -> np.ndarray:
     """Axes (3, 3) of the track, ahead, inwards and up, of a frame."""
     side, rear, down = frame
     return np.array([rear, side, -down] if inwards else [side, rear, -down])
@@ -371,7 +372,7 @@ def _end(hull, down):
     return edges.normals[ends[0]] if ends[0] >= 0 else down
 
 
-def _landed(orientation, hull, axes, orientations):
+def _landed(orientation, hull, axes, orientations) -> int:
     """Place of the orientation that a part takes against the wall, set down with its axes (3, 3)."""
     corners = vectors.product(hull.vertices, axes.T)
     height = -corners[:, 2].min()
@@ -443,11 +444,11 @@ def _less(outcome, blur, meeting):
 class DeviceEncounter:
     """One orientation at a device: what a device asks of it, and how it says what becomes of it."""
 
-    def __init__(self, orientation, orientations=(), sigma=0.0):
+    def __init__(self, orientation, orientations=(), sigma=0.0) -> None:
         self.orientation, self.orientations, self.sigma = orientation, tuple(orientations), sigma
 
     @property
-    def size(self):
+    def size(self) -> float:
         """Its greatest length [m] in the plane of the track or across it."""
         return float(np.hypot(self.orientation.length, max(self.orientation.width, self.orientation.height)))
 
@@ -490,7 +491,7 @@ class DeviceEncounter:
         return float(distance - (self.orientation.track.width - self.orientation.distance))
 
     @property
-    def hanging(self):
+    def hanging(self) -> bool:
         """Whether it comes hanging between rails."""
         return isinstance(self.orientation, Hanging)
 
@@ -505,15 +506,15 @@ class DeviceEncounter:
                 return k
         raise ValueError(f"{orientation.name} is not one of the orientations")
 
-    def passing(self):
+    def passing(self) -> Verdict:
         """Return the verdict of a device that does nothing."""
         return Verdict(1.0, float("nan"))
 
-    def verdict(self, margin, shift=0.0, hangs=False):
+    def verdict(self, margin, shift=0.0, hangs=False) -> Verdict:
         """Return the verdict of a margin [m]; ``shift`` [rad] and ``hangs`` as in Verdict."""
         return Verdict(self.share(margin), float(margin), float(shift), hangs)
 
-    def turning(self, turned, margin):
+    def turning(self, turned, margin) -> Verdict:
         """Return the verdict of a device that turns shares of it into others: (place, share) each."""
         here = self.place
         stays = 1.0 - sum(part for _, part in turned)
@@ -592,11 +593,11 @@ class DeviceEncounter:
         """Return whether the tip of its shank goes down beside a rail that ends ``near`` [m] the wall."""
         return self.orientation.grip <= 0.0 or tip_goes_down(self.orientation, near)
 
-    def pitched(self):
+    def pitched(self) -> Turn:
         """Return how it turns over its leading edge: a Turn."""
         return pitch_over(self.orientation, self.orientations)
 
-    def pitched_over(self, height):
+    def pitched_over(self, height) -> tuple[Any, ...]:
         """Return what a step of some height [m] turns it into, and the margin [m]."""
         return over_step(self.orientation, self.orientations, height)
 
@@ -610,7 +611,7 @@ class DeviceEncounter:
             return self.passing()
         return Verdict(1.0, -UNSURE, onto=tuple((here if k < 0 else k, part) for k, part in landed))
 
-    def rolled_over(self, width):
+    def rolled_over(self, width) -> tuple[Any, ...]:
         """Return what a ledge of some width [m] turns it into if its weight lies beyond, and the margin."""
         return beyond_ledge(self.orientation, self.orientations, width)
 

@@ -5,6 +5,7 @@ surface touch, in a corner or along an edge, their corners are moved apart, each
 """
 
 import contextlib
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -26,7 +27,7 @@ SEPARATION_MM = 1e-3  # [mm] by which corners that meet are moved apart
 MAX_MERGE_ROUNDS = 60
 
 
-def mesh(body):
+def mesh(body) -> tuple[Any, ...]:
     """Return the surface of a Manifold, the same however it was made.
 
     Parameters
@@ -51,7 +52,7 @@ def mesh(body):
     return _surface(body, SIMPLER[-1])
 
 
-def _surface(body, simpler):
+def _surface(body, simpler) -> tuple[Any, ...]:
     """The surface of a body, corners nearer than a length [mm] made one; the fault where that changes it.
 
     The library's own simplifying takes whole wedges off some bodies, whatever the length.
@@ -72,7 +73,7 @@ def _surface(body, simpler):
     return check.frozen(points * MM), check.frozen(faces)
 
 
-def closed(points, faces):
+def closed(points, faces) -> tuple[Any, ...]:
     """Return points and faces of a surface that is closed by the places of its corners alone.
 
     Parameters
@@ -160,7 +161,7 @@ def _without_edge(faces, corner, gone):
     return np.where(faces == gone, corner, faces)[~both]
 
 
-def _with_area(points, faces):
+def _with_area(points, faces) -> tuple[Any, ...]:
     """The facets without those that rounding left no area, and the corners where that cannot be.
 
     The long side of such a facet is turned in its neighbour.
@@ -187,7 +188,7 @@ def _flat(points, faces):
     return slivers
 
 
-def _turned(faces, a, b, c):
+def _turned(faces, a, b, c) -> tuple[Any, ...]:
     """The faces without the flat one (a, b, c), and whether that could be."""
     following = np.roll(faces, -1, axis=1)
     own = (faces == a) & (following == b)

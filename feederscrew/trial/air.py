@@ -1,6 +1,7 @@
 """Jets of air and the lean of the track along a stretch of it, as the kernel takes them."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -27,11 +28,11 @@ class Pulses:
     def __init__(self):
         self.spans = []  # (begin, end) of each, those that are over left out
 
-    def set_off(self, begin, seconds):
+    def set_off(self, begin, seconds) -> None:
         """Let the jets blow from a time on, for so long."""
         self.spans.append((begin, begin + seconds))
 
-    def next(self, now):
+    def next(self, now) -> tuple[Any, ...]:
         """Return when the jets next blow, from and to; what overlaps is one pulse, and (inf, inf) none."""
         self.spans = sorted(span for span in self.spans if span[1] > now)
         if not self.spans:
@@ -56,7 +57,7 @@ class Air:
 STILL = Air(np.zeros((0, jets.END + 1)), (), ())
 
 
-def along(placed, track, every):
+def along(placed, track, every) -> Air:
     """Return what blows and leans along a stretch of track.
 
     Parameters
@@ -88,7 +89,7 @@ def along(placed, track, every):
     return Air(check.frozen(np.reshape(rows, (-1, jets.END + 1))), tuple(watches), tuple(slopes))
 
 
-def _row(jet, start, level, radius, mass):
+def _row(jet, start, level, radius, mass) -> list[Any]:
     """A jet in the bowl's frame; one that a sensor sets off does not blow."""
     x, y, z = jet.at
     theta, off = (start + x) / radius, radius - y
@@ -111,7 +112,7 @@ def blowing(rows, length, unit):
     return out
 
 
-def leaning(slopes, climb, bank, size, length):
+def leaning(slopes, climb, bank, size, length) -> np.ndarray:
     """Return how gravity, the bowl's axis and the wall lie in the track's frame along the wall, (K, 8).
 
     Parameters
@@ -135,7 +136,7 @@ def leaning(slopes, climb, bank, size, length):
     return np.array([_lean(*row) for row in rows])
 
 
-def _lean(place, climb, bank, wall):
+def _lean(place, climb, bank, wall) -> list[Any]:
     c, s, off = np.cos(climb), np.sin(climb), bank - wall
     axis, upright = [np.sin(bank), np.cos(bank)], [np.sin(off), np.cos(off)]
     return [place, -s, -c * np.sin(bank), -c * np.cos(bank), *axis, *upright]

@@ -19,7 +19,7 @@ NOBODY = Sent(
 ENDLESS = Limits(*(0.0 for _ in Limits._fields))  # of nobody
 
 
-def crowd_of(solid, surface, count):
+def crowd_of(solid, surface, count) -> Crowd:
     """Return arrays for so many parts.
 
     Parameters
@@ -35,10 +35,10 @@ def crowd_of(solid, surface, count):
     corners, edges, plates = len(solid.corners), len(solid.edges), len(surface.plates)
     rims, pairs = len(solid.rims), 2 * PAIRS if count > 1 else 0
 
-    def numbers(*shape):
+    def numbers(*shape) -> np.ndarray:
         return np.zeros((count, *shape))
 
-    def places(*shape):
+    def places(*shape) -> np.ndarray:
         return np.zeros((count, *shape), np.int64)
 
     return Crowd(
@@ -70,7 +70,7 @@ def crowd_of(solid, surface, count):
     )  # fmt: skip
 
 
-def move_on(known, surface, crowd, together):
+def move_on(known, surface, crowd, together) -> None:
     """Move a crowd on, all of it at once; fills ``crowd.strains`` and the notes of ``together``.
 
     Parameters

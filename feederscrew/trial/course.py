@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -109,7 +110,7 @@ def course(part, bowl, every, sent, devices, *, poses=None, leaves=None, run=USU
     def through(n):
         return _through(known, chain, rides, states[[n]], times[[n]])
 
-    def work(begin):
+    def work(begin) -> None:
         for done, task in enumerate([begin(through, n) for n in range(len(entered))]):
             task.result()
             run.tell(done + 1, len(entered))
@@ -153,7 +154,7 @@ def _led_on(states, station, begin, known):
     return states
 
 
-def axes(every, principal):
+def axes(every, principal) -> list[Any]:
     """Return the axes (N, 3) about which a part rolls, along its principal axes."""
     found = [
         vectors.product(one.posture.axis, vectors.product(one.posture.axes[:2], principal))
@@ -180,7 +181,7 @@ def rightly(leaving):
     return right | (np.eye(len(right), right.shape[1], dtype=bool) & ~right.any(axis=1)[:, None])
 
 
-def _chain(bowl, every, devices):
+def _chain(bowl, every, devices) -> list[Any]:
     """The bare track, then each device that is no measured yield."""
     size = max(one.length for one in every)
     made, slopes, slot = [], stations.at_entry(devices, bowl.track, every), ()
@@ -193,7 +194,7 @@ def _chain(bowl, every, devices):
     return [stations.plain(bowl.track, every, RUN_UP * size, first), *made]
 
 
-def _limits(bowl, station, every):
+def _limits(bowl, station, every) -> dict[Any, Any]:
     """How long a part has, and how often it is looked at, by the velocity of the point mass."""
     found = answer.answer(bowl).velocity
     speed = max(found if np.isfinite(found) else 0.0, SLOWEST)
@@ -221,7 +222,7 @@ class _Found:
         self.seconds, self.depths, self.gains = np.zeros(parts), np.zeros(parts), np.zeros(parts)
         self.rides, self.riders = [], []
 
-    def add(self, place, ride, riders, bowl):
+    def add(self, place, ride, riders, bowl) -> None:
         """Note what one station did."""
         self.rides.append(ride)
         self.riders.append(riders)
@@ -254,7 +255,7 @@ class _Found:
         first, last = station.cut
         return STOPPED if front > first - AT and rear < last + AT else STUCK
 
-    def course(self, length, principal, leaves, partial):
+    def course(self, length, principal, leaves, partial) -> Course:
         """All of it as a record; what leaves as it should has passed, what else leaves was turned."""
         out = self.orientations[-1]
         whole = self.fates == PASSED

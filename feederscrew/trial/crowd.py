@@ -1,6 +1,7 @@
 """Several parts on one track with all its devices: they push, carry and climb each other."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -55,16 +56,16 @@ def crowded(bowl, every, devices, room):
     if placed:  # a ledge goes on behind the outlet
         placed[-1] = (*placed[-1][:2], place + TAIL * size)
     ends = -room - size, place + TAIL * size
-    blows = air.along(blows, track, every)
+    blown = air.along(blows, track, every)
     first = [replace(one, climb=None) for one in stations.at_entry(devices, track, every)]
-    blows = replace(blows, slopes=(*staging.before(first), *blows.slopes))  # they come apart on a steeper way
+    blown = replace(blown, slopes=(*staging.before(first), *blown.slopes))  # they come apart on a steeper way
     made = staging.built(placed, track, size, ends)
     stage = staging.Stage(
         stations.BARE,
         *made,
         begin=-room,
         exit=np.inf,
-        air=blows,
+        air=blown,
         size=size,
         width=track.extent,
     )
@@ -84,7 +85,7 @@ class PartsOnTrack:
         Parts at most.
     """
 
-    def __init__(self, known, track, count):
+    def __init__(self, known, track, count) -> None:
         self.known, self.solid, self.stage = known, known.solid, track.stage
         self.hull = known.solid.corners[known.solid.outer]
         self.windows, self.levels = track.windows, track.levels
@@ -94,7 +95,7 @@ class PartsOnTrack:
         self.passed = np.full((PERIODS, count), np.nan)  # ways of each, of the last periods
         self.pulses = [air.Pulses() for _ in track.stage.air.watches]
 
-    def lay(self, n, state):
+    def lay(self, n, state) -> None:
         """Put part n onto the track."""
         self.arrays.states[n] = state
         # no list of it holds, and no impulse is known
@@ -103,7 +104,7 @@ class PartsOnTrack:
         self.passed[:, n] = np.nan
         self.on[n] = True
 
-    def take(self, n):
+    def take(self, n) -> None:
         """Take part n off the track."""
         self.on[n] = False
 
@@ -115,7 +116,7 @@ class PartsOnTrack:
         move_on(self.known, self.surface, self.arrays, together)
         return notes[travel.SUNK]
 
-    def slides_off(self, n):
+    def slides_off(self, n) -> bool:
         """Return whether part n is beyond the free edge, or too fast towards it to stay on the track."""
         out = travel.slides_to(self.surface, self.arrays.states[n])
         return bool(out > self.stage.width / self.known.length)
@@ -127,7 +128,7 @@ class PartsOnTrack:
         out = self.known.radius - np.sqrt(x * x + y * y)
         return out > self.stage.width / self.known.length + runs.OVER * self.solid.radius
 
-    def watch(self, lying, before, ways, turn):
+    def watch(self, lying, before, ways, turn) -> None:
         """Let sensors look at the parts whose centres of mass have come past them in a period.
 
         What is nearer to a part than the sensor can tell is one with it. Jets that a part sets off blow as
@@ -161,7 +162,7 @@ class PartsOnTrack:
                 rear, front = min(rear, reach[m][0]), max(front, reach[m][1])
         return found
 
-    def level(self, place):
+    def level(self, place) -> float:
         """Return the level [m] of the track at a place [m] along the wall."""
         return float(self.levels[int(np.searchsorted(self.windows[:, 1], place))])
 
@@ -170,7 +171,7 @@ class PartsOnTrack:
         """Return (N, 2) mean forces of others in the last period, from behind and below, over the weight."""
         return self.arrays.strains / self.period
 
-    def reaches(self, rows):
+    def reaches(self, rows) -> dict[Any, Any]:
         """Return, by part, how far it reaches along the wall, rear and front, and its lowest point."""
         states = self.arrays.states[list(rows)]
         return dict(zip(rows, whereabouts.reaches(states, self.hull, self.known.radius).tolist()))

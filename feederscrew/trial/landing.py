@@ -1,6 +1,7 @@
 """Parts that fall onto the moving track, come to lie as they do, and go through the devices so."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -36,12 +37,12 @@ class Landing:
         return self.fates.sum(axis=1)
 
     @property
-    def left(self):
+    def left(self) -> int:
         """Return how many left behind the last device."""
         return int(self.leaving.sum())
 
     @property
-    def efficiency(self):
+    def efficiency(self) -> float:
         """Return the share of the parts let fall that leaves in the orientation in which most do [1]."""
         return float(self.leaving[:-1].max(initial=0) / self.parts)
 
@@ -51,7 +52,7 @@ class Landing:
         return float(self.leaving[:-1].max(initial=0) / self.left) if self.left else np.nan
 
 
-def landing(part, bowl, aspects, every, poses, *, launch, parts, run=USUAL_RUN):
+def landing(part, bowl, aspects, every, poses, *, launch, parts, run=USUAL_RUN) -> Landing:
     """Let parts fall onto the bare, moving track and send those that lie on it through the devices.
 
     Parameters
@@ -97,7 +98,7 @@ def landing(part, bowl, aspects, every, poses, *, launch, parts, run=USUAL_RUN):
     return _told(launch, parts - int(on.sum()), aspects, poses, seen, below)
 
 
-def _fallen(part, bowl, every, shape, launch, parts, run):
+def _fallen(part, bowl, every, shape, launch, parts, run) -> tuple[Any, ...]:
     """Runs of parts from their launch to where they lie, and the times [s] at which they began."""
     solid, length, principal = solid_of(part)
     solid = rounded(solid, course.axes(every, principal))
@@ -116,7 +117,7 @@ def _fallen(part, bowl, every, shape, launch, parts, run):
     return ride, times
 
 
-def _told(launch, lost, aspects, poses, seen, below):
+def _told(launch, lost, aspects, poses, seen, below) -> Landing:
     """The record of what became of those that lay; ``seen`` is None where none did."""
     fates = np.zeros((len(aspects.names), len(course.FATES)), int)
     leaving, velocity = np.zeros(len(poses) + 1, int), np.nan

@@ -35,7 +35,7 @@ class Looks:
     Parts that hang swing and turn about the vertical: they are known by what of them is up.
     """
 
-    def __init__(self, every, solid, length, principal, radius):
+    def __init__(self, every, solid, length, principal, radius) -> None:
         self.directions, self.corners = spread(DIRECTIONS), solid.corners[solid.outer]
         self.ups = {
             k: vectors.product(principal.T, cast(np.ndarray, one.posture.axes)[2])
@@ -58,15 +58,15 @@ class Looks:
         corners = one.posture.corners - np.array([0.0, 0.0, one.posture.height])
         return vectors.product(vectors.product(corners, turn.T) / length, self.directions.T).max(axis=0)
 
-    def of(self, states):
+    def of(self, states) -> np.ndarray:
         """Return (N,) orientation of each state, OTHER where it is none of the known."""
         return np.array([self._of(state) for state in states], int)
 
-    def nearest(self, states):
+    def nearest(self, states) -> np.ndarray:
         """Return (N,) the orientation that is nearest as each comes to lie, however far off it is."""
         return np.array([self._nearest(state) for state in states], int)
 
-    def _nearest(self, state):
+    def _nearest(self, state) -> int:
         place = np.arctan2(state[0], self.radius - state[1])
         turn = whereabouts.matrix(whereabouts.moved(state[None], -place * self.radius, self.radius)[0])
         at_rest = self._at_rest(turn)
@@ -120,7 +120,7 @@ class Looks:
         return min((k for k in by if np.isfinite(by[k])), key=by.__getitem__, default=OTHER)
 
 
-def _gravity(track):
+def _gravity(track) -> np.ndarray:
     """Direction (3,) [1] of gravity along the wall, inwards and up, on a track that climbs and is banked."""
     c, s = np.cos(track.climb), np.sin(track.climb)
     return np.array([-s, -c * np.sin(track.bank), -c * np.cos(track.bank)])
@@ -138,12 +138,12 @@ def _shortest(normal):
 class AspectsBelow:
     """Tells on which aspect a part lies, or would come to lie if let go as it is, whatever its heading."""
 
-    def __init__(self, part, aspects):
+    def __init__(self, part, aspects) -> None:
         found = ground(part, aspects)
         self.shape, _ = shape_of_part(part, found)
         self.rows = found.rows
 
-    def of(self, states):
+    def of(self, states) -> np.ndarray:
         """Return (N,) row of each state's aspect, OTHER where it would come to lie on none."""
         return np.array([self._of(whereabouts.matrix(state)) for state in states], int)
 
@@ -153,7 +153,7 @@ class AspectsBelow:
         return OTHER if face == UNSETTLED else self.rows[face]
 
 
-def spread(count):
+def spread(count) -> np.ndarray:
     """Return unit vectors (count, 3) [1] spread over the sphere, along a spiral."""
     k = np.arange(count) + 0.5
     z, turn = 1.0 - 2.0 * k / count, np.pi * (1.0 + np.sqrt(5.0)) * k

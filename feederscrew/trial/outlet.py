@@ -1,6 +1,7 @@
 """On which aspects parts leave a queue, beside what somebody measured at the outlet of a bowl."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -27,12 +28,12 @@ class Outlet:
         return self.counts / total if total else np.full(len(self.counts), np.nan)
 
     @property
-    def ends(self):
+    def ends(self) -> np.ndarray:
         """Return (2, A) [1] Wilson interval of each share."""
         return np.array(wilson(self.counts, self.counts.sum()))
 
     @property
-    def apart(self):
+    def apart(self) -> dict[Any, Any]:
         """Return the root mean square difference and total variation [1] from each column, by its name."""
         own = self.shares
         return {
@@ -43,7 +44,7 @@ class Outlet:
         }
 
 
-def outlet(queue, lying, shares, aspects, columns=()):
+def outlet(queue, lying, shares, aspects, columns=()) -> Outlet:
     """Return what left a queue by aspect.
 
     Parameters

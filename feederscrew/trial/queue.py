@@ -173,7 +173,7 @@ class PartsQueue:
         """Return how many periods of the drive are followed in a time [s]: no less than the time, and one."""
         return max(math.ceil(seconds * self.bowl.drive.frequency - WHOLE), 1)
 
-    def follow(self, seconds, tell=None):
+    def follow(self, seconds, tell=None) -> None:
         """Go on until a time [s] since the queue began; what was followed before is not followed again.
 
         Parameters
@@ -237,7 +237,7 @@ class PartsQueue:
         state[body.Q : body.Q + 4] = turn / np.sqrt((turn**2).sum())
         return state, 0.0
 
-    def ride(self, turn):
+    def ride(self, turn) -> None:
         """Move all for one period of the drive, and look what became of them."""
         lying = np.flatnonzero(self.crowd.on)
         before = whereabouts.ways(self.crowd.arrays.states, self.known.radius)
@@ -258,7 +258,7 @@ class PartsQueue:
             self.look(n, ways[n], reach, order, fallen[n])
         self.enter()
 
-    def note(self):
+    def note(self) -> None:
         """Note where all parts are, for a film."""
         states = self.crowd.arrays.states
         poses = np.concatenate([states[:, :3] * self.known.length, states[:, body.Q : body.Q + 4]], axis=1)
@@ -266,14 +266,14 @@ class PartsQueue:
         self.poses.append(poses)
         self.moments.append((self.time, self.whole, self.returned))
 
-    def carried(self, lying, reach):
+    def carried(self, lying, reach) -> None:
         """Count parts that have come to lie on others."""
         for n in lying:
             on = self.crowd.forces[n, BELOW] > CARRIED and reach[n][2] > LIFTED
             self.climbs += bool(on and not self.on_others[n])
             self.on_others[n] = on
 
-    def look(self, n, way, reach, order, fell):
+    def look(self, n, way, reach, order, fell) -> None:
         """What became of one part: left, fell, stands at a device, goes on."""
         rear, front, _ = reach[n]
         if self.first is None and front > self.outlet and not fell:
@@ -310,7 +310,7 @@ class PartsQueue:
         across = whereabouts.reach(state, self.known.solid.corners, self.known.radius)
         return bool(across * self.known.length > min(at))
 
-    def leave(self, n):
+    def leave(self, n) -> None:
         """Count a part that has left: its orientation, and the aspect on which it lies."""
         state = self.at_outlet(n)
         orientation = self.looks.of([state])[0]
@@ -318,7 +318,7 @@ class PartsQueue:
         self.whole += 1
         self.left[orientation, OTHER if hangs else self.below.of([state])[0]] += 1
 
-    def stand(self, n, front, reach, order):
+    def stand(self, n, front, reach, order) -> None:
         """A part that stands: what pushes it, and whether it is what holds the others up."""
         at = np.flatnonzero((self.windows[:, 0] < front) & (front < self.windows[:, 1] + MOVED))
         if not len(at):
@@ -341,16 +341,16 @@ class PartsQueue:
         state[body.Z] -= self.track.levels[-1] / self.known.length
         return state
 
-    def again(self, n):
+    def again(self, n) -> None:
         """Take a part off the track; it waits to enter again."""
         self.crowd.take(n)
         self.waiting.append(n)
 
-    def outside(self, rear, front):
+    def outside(self, rear, front) -> float:
         """How much of a part has left [1]."""
         return float(np.clip((front - self.outlet) / (front - rear), 0.0, 1.0))
 
-    def seen(self, partial=False):
+    def seen(self, partial=False) -> QueuedParts:
         """Return what the parts did so far, QueuedParts; ``partial`` where the user stopped it."""
         length, seconds = self.known.length, self.time
         reach = self.crowd.reaches(np.flatnonzero(self.crowd.on))  # none of them has fallen

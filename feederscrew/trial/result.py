@@ -1,7 +1,9 @@
 """What a trial in one bowl shows: by orientation, beside what the static rule says of each."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -51,7 +53,7 @@ class TrialRun:
     landing: Landing | None = None  # the same
 
     @property
-    def partial(self):
+    def partial(self) -> bool:
         """Say whether the user stopped it before all was done."""
         return any(one.partial for one in (self.course, self.landing, self.queue) if one is not None)
 
@@ -68,7 +70,7 @@ class TrialRun:
         return self.counts.sum(axis=1)
 
     @property
-    def ends(self):
+    def ends(self) -> np.ndarray:
         """Return (M, 2) [1] Wilson intervals of the share that passes; 0 to 1 where none was tried."""
         rows = zip(self.counts[:, course.PASSED], self.tried)
         return np.array([[float(end[0]) for end in wilson([one], total)] for one, total in rows])
@@ -89,7 +91,7 @@ class TrialRun:
         return (self.shares[:, None] * self.matrix / tried).sum(axis=0)
 
     @property
-    def wanted(self):
+    def wanted(self) -> int | None:
         """Return the known orientation in which most leave; None where none does.
 
         What leaves in none of the known is many orientations, not one: it is never the wanted one.
@@ -98,7 +100,7 @@ class TrialRun:
         return int(np.argmax(known)) if known.any() else None
 
     @property
-    def efficiency(self):
+    def efficiency(self) -> float:
         """Return the share of the parts offered that leaves in that orientation [1]."""
         return float(self.leaving[:-1].max())
 
@@ -201,7 +203,7 @@ class TrialRun:
         return self.differs & clear
 
     @property
-    def sorts(self):
+    def sorts(self) -> bool:
         """Say whether what shall pass leaves, nothing else does, and nothing stops: sure of it or not."""
         passed = self.counts[:, course.PASSED]
         lost = self.predicted & (passed < HELD * self.tried)
@@ -209,7 +211,7 @@ class TrialRun:
         return not (lost.any() or kept.any() or self.jams)
 
     @cached_property
-    def wedging(self):
+    def wedging(self) -> np.ndarray:
         """Return (M,) [m], by how much too near to the wall the rails are between which each hung; else 0."""
         spans = [device.span for device in self.bowl.devices if device.hangs]
         hung = self.counts[:, [course.TURNED, course.HANGING]].any(axis=1)
@@ -224,7 +226,7 @@ class TrialRun:
         return found
 
     @property
-    def remarks(self):
+    def remarks(self) -> Iterator[Any]:
         """Say what a user must not overlook, a sentence each."""
         if self.throw_number > 1.0:
             known = hop(self.bowl)

@@ -1,6 +1,6 @@
 """Round sides that are round: the circles of a part's hull, which touch as circles."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -86,7 +86,7 @@ class Circle(NamedTuple):
     ends: np.ndarray  # (P, 2) int, those corners
 
 
-def joined_pairs(solid):
+def joined_pairs(solid) -> set[Any]:
     """Return which corners of a TrueSolid an edge of its surface joins, a set of (int, int)."""
     first = np.repeat(np.arange(len(solid.firsts) - 1), np.diff(solid.firsts))
     return set(zip(first.tolist(), solid.beside.tolist()))

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, fields
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -45,7 +46,7 @@ COLUMNS = tuple(one.name for one in fields(Runs) if one.name != "partial")
 class BowlOfPart:
     """A part in a bowl, without dimensions."""
 
-    solid: object  # trial.shape.TrueSolid
+    solid: Any  # trial.shape.TrueSolid
     length: float  # [m] the unit of length
     unit: float  # [s] the unit of time
     floor: Floor
@@ -57,7 +58,7 @@ class BowlOfPart:
     threshold: float
 
 
-def setting(solid, length, bowl):
+def setting(solid, length, bowl) -> BowlOfPart:
     """Return what the kernel needs of a bowl.
 
     Parameters
@@ -89,7 +90,7 @@ def setting(solid, length, bowl):
     )
 
 
-def ride(one, states, times, *, jobs=1, progress=None):
+def ride(one, states, times, *, jobs=1, progress=None) -> Runs:
     """Follow parts past one station.
 
     Parameters
@@ -117,7 +118,7 @@ def ride(one, states, times, *, jobs=1, progress=None):
     """
     one(states[:0], times[:0])  # compiled here, if need be
 
-    def batch(cut):
+    def batch(cut) -> list[Any]:
         made = one(states[cut], times[cut])
         return [getattr(made, name) for name in COLUMNS]
 
@@ -148,7 +149,7 @@ def past(known, station, *, limits, every, places):
     )
 
 
-def joined(rides):
+def joined(rides) -> Runs:
     """Return the Runs of several parts at one station as one."""
     columns = {name: np.concatenate([getattr(ride, name) for ride in rides]) for name in COLUMNS}
     return Runs(**{name: check.frozen(value) for name, value in columns.items()}, partial=False)
@@ -211,7 +212,7 @@ def compiled():
     return on_disk(travel.ride)
 
 
-def _followed(known, surface, limits, looks, states, times):
+def _followed(known, surface, limits, looks, states, times) -> Runs:
     """What became of some parts, looked at each so many steps, so often at most."""
     stride, places = looks
     ends, count = np.array(states, float), len(states)

@@ -13,7 +13,7 @@ from feederscrew.trial.kernel import jets
 SLOW = 1e-3  # [m/s] below which a part stands
 
 
-def blows_off(sensor, known, states, level=0.0):
+def blows_off(sensor, known, states, level=0.0) -> bool:
     """Return whether a sensor sees parts differ from all that it wants by more than its play.
 
     Parameters

@@ -1,6 +1,6 @@
 """A part's true surface without dimensions, as the trial's kernel needs it."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.spatial import ConvexHull
@@ -42,7 +42,7 @@ class TrueSolid(NamedTuple):
     radius: float  # largest distance of a corner
 
 
-def solid_of(part):
+def solid_of(part) -> tuple[Any, ...]:
     """Return a part's surface without dimensions.
 
     Parameters
@@ -102,7 +102,7 @@ def solid_of(part):
     )
 
 
-def _check_surface(part):
+def _check_surface(part) -> None:
     """Raise FeederError for a part without a surface, or with one of very many facets."""
     if part.vertices is None:
         raise FeederError(part.source, "has no surface, as a part card", "give the part as a mesh")
@@ -126,7 +126,7 @@ def onwards(corners, place, ends, hollow):
     return np.where(np.isin(ends, hollow), ONWARDS / length[:, None], 0.0)
 
 
-def _found_by(corners):
+def _found_by(corners) -> dict[Any, Any]:
     """How corners (C, 3) [L] are found near something; none is on a circle yet."""
     none, grouped = np.zeros(len(corners), bool), together(corners)
     return {
@@ -136,7 +136,7 @@ def _found_by(corners):
     }  # fmt: skip
 
 
-def alone(corners, ringed):
+def alone(corners, ringed) -> dict[Any, Any]:
     """Return ``singles``, ``single_blocks`` of corners (C, 3) [L] of which some are on circles, (C,) bool."""
     own = np.flatnonzero(on_hull(corners) & ~ringed)
     own = own[together(corners[own])] if len(own) else own
@@ -150,7 +150,7 @@ def on_hull(corners):
     return found
 
 
-def together(points):
+def together(points) -> np.ndarray:
     """Return an order (N,) of points (N, 3) [L] in which those of each block lie together.
 
     They are halved across where they lie furthest apart, by whole blocks, over and over.
@@ -182,7 +182,7 @@ def _normals(corners, faces):
     return normal / np.where(size > 0.0, size, 1.0)[:, None]
 
 
-def neighbours(triangles, count):
+def neighbours(triangles, count) -> tuple[Any, ...]:
     """Return which of the first corners of a surface are joined by an edge of a triangle.
 
     Parameters
@@ -203,7 +203,7 @@ def neighbours(triangles, count):
     return np.searchsorted(ends[:, 0], np.arange(count + 1)), np.ascontiguousarray(ends[:, 1])
 
 
-def convex_edges(corners, faces, normals):
+def convex_edges(corners, faces, normals) -> tuple[Any, ...]:
     """Return the edges at which a surface turns outwards, and the corners of those at which it turns inwards.
 
     Parameters

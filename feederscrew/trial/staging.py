@@ -1,6 +1,8 @@
 """What stands along the track as solid plates with borders in the bowl's own frame."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import shapely
@@ -46,7 +48,7 @@ def size_of(every):
     return max(np.hypot(one.length, max(one.width, one.height)) for one in every)
 
 
-def stage(device, standing, track, every, start=0.0, slopes=(), slot=()):
+def stage(device, standing, track, every, start=0.0, slopes=(), slot=()) -> Stage:
     """Return one device with enough track before and behind it.
 
     Parameters
@@ -81,7 +83,7 @@ def stage(device, standing, track, every, start=0.0, slopes=(), slot=()):
     )  # fmt: skip
 
 
-def plain(device, track, every, length, slopes=()):
+def plain(device, track, every, length, slopes=()) -> Stage:
     """Return a stretch of the bare track, from 0 to ``length`` [m]."""
     size = size_of(every)
     bare = built((), track, size, (-BEFORE * size, length + AFTER * size))
@@ -89,7 +91,7 @@ def plain(device, track, every, length, slopes=()):
     return Stage(device, *bare, begin=0.0, exit=length, size=size, width=track.extent, air=blows)
 
 
-def before(slopes):
+def before(slopes) -> tuple[Any, ...]:
     """Return slopes as they are where they began before what is drawn."""
     return tuple((-FAR, one.climb, one.bank, one.wall) for one in slopes)
 
@@ -141,13 +143,13 @@ def _slots(placed, size, ends, slot):
     return [*made, _rectangle(begin, ends[1] + BEHIND * size, slot)] if slot and begin < ends[1] else made
 
 
-def _rectangle(begin, end, span):
+def _rectangle(begin, end, span) -> tuple[Any, ...]:
     """A hole between two places along the wall and two distances from it: its outline, from the place 0."""
     low, high = span
     return np.array([[begin, low], [end, low], [end, high], [begin, high]]), 0.0
 
 
-def _up_to_rails(placed, k):
+def _up_to_rails(placed, k) -> Iterator[Any]:
     """Outlines (K, 2) [m] of the holes of the k-th device; its slot ends where other rails begin."""
     standing, start, _ = placed[k]
     ends = [begin for other, begin, _ in placed[k + 1 :] if other.slot] if standing.slot else []
@@ -156,7 +158,7 @@ def _up_to_rails(placed, k):
         yield np.column_stack([np.minimum(hole.outline[:, 0], far), hole.outline[:, 1]])
 
 
-def _floor(holes, track, size, ends, own, level, depth=THICK):
+def _floor(holes, track, size, ends, own, level, depth=THICK) -> tuple[Any, ...]:
     """A level surface: a sector about the bowl's axis between two places, without the holes."""
     behind, width = BEHIND * size, track.extent
     first, last = own
@@ -176,7 +178,7 @@ def _floor(holes, track, size, ends, own, level, depth=THICK):
     return frame, depth, OWN, rings(area, lambda a, b: drawn_end(a, b, track.radius, ends))
 
 
-def _arc(places, across, radius):
+def _arc(places, across, radius) -> np.ndarray:
     """Points (K, 2) [m] at lengths along the wall and one distance from it, in the bowl's frame."""
     theta, off = places / radius, radius - across
     return np.column_stack([off * np.sin(theta), radius - off * np.cos(theta)])
@@ -190,7 +192,7 @@ def drawn_end(a, b, radius, ends):
     return min(off) > radius + near or max(place) < ends[0] + near or min(place) > ends[1] - near
 
 
-def _blade(blade, track, start, size, level):
+def _blade(blade, track, start, size, level) -> tuple[Any, ...]:
     """A blade as a plate seen by the part that arrives: along its face from the foot, and upwards.
 
     It goes on into wall and track where it reaches them: a corner that touches either does not slip past it.
@@ -234,7 +236,7 @@ def rings(area, is_end):
     is_end : function
         Of both ends (2,) of a border: whether what is drawn ends there, not what is solid.
     """
-    found = []
+    found: list[Any] = []
     for one in shapely.get_parts(shapely.simplify(area, SMOOTH)):
         if one.geom_type != "Polygon" or one.area <= 0.0:
             continue
@@ -245,7 +247,7 @@ def rings(area, is_end):
     return np.array(found).reshape(-1, 10)
 
 
-def _ring(points, is_end):
+def _ring(points, is_end) -> Iterator[Any]:
     after, before = np.roll(points, -1, axis=0), np.roll(points, 1, axis=0)
     for p, q, o in zip(points, after, before):
         along, came = q - p, p - o
@@ -257,7 +259,7 @@ def _ring(points, is_end):
         yield [*p, *q, along[1] / size, -along[0] / size, float(corner), float(end), *before]
 
 
-def stacked(plates):
+def stacked(plates) -> tuple[Any, ...]:
     """Return plates as rows (P, 17), and all borders (B, 10) one below the other."""
     rows, first = [], 0
     for frame, depth, friction, borders in plates:

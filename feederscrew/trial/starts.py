@@ -1,5 +1,7 @@
 """How parts begin: laid on the track as they lie, or falling onto it."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew.dropping.kernel import body
@@ -13,7 +15,9 @@ TILT = np.radians(0.2)  # [rad] out of level: standard deviation, about any axis
 CLEAR = 1.02  # of the part's radius: as near to the wall as its centre of mass may come down
 
 
-def laid_down(bowl, every, entered, solid, principal, length, seed, *, play=PLAY, turn=TURN, tilt=TILT):
+def laid_down(
+    bowl, every, entered, solid, principal, length, seed, *, play=PLAY, turn=TURN, tilt=TILT
+) -> tuple[Any, ...]:
     """Return parts laid on the track, a little from the wall, askew and tilted, at any phase of the drive.
 
     Each lies out of level by ``tilt``, drawn from a normal distribution, about an axis in any direction along
@@ -100,7 +104,7 @@ def clear(state, solid, track, length, play, leans=0.0):
     return state
 
 
-def falling(bowl, launch, shape, count, length, seed):
+def falling(bowl, launch, shape, count, length, seed) -> tuple[Any, ...]:
     """Return parts that fall onto the track as a launch says, anywhere over its width.
 
     Parameters

@@ -1,5 +1,7 @@
 """Each device along the track as the trial takes it."""
 
+from typing import Any
+
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.fates import leading
 from feederscrew.trial import staging
@@ -27,7 +29,7 @@ def station(device, track, every, start=0.0, slopes=(), slot=()):
     return staging.stage(device, device.standing(track, every), track, every, start, slopes, slot)
 
 
-def at_entry(devices, track, every):
+def at_entry(devices, track, every) -> tuple[Any, ...]:
     """Return the slopes of the devices that come first and lean the track: they begin at its entry."""
     return tuple(slope for one in leading(devices) for slope in one.standing(track, every).slopes)
 

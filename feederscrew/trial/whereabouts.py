@@ -1,5 +1,7 @@
 """Where parts are: states laid on the track, turned about the bowl's axis, and how far they reach."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew.dropping.kernel import body
@@ -38,7 +40,7 @@ def laid(orientation, principal, length, track, *, place, aside=0.0, turn=0.0):
     return state
 
 
-def _about_z(angle):
+def _about_z(angle) -> np.ndarray:
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
@@ -60,7 +62,7 @@ def quaternion(axes):
     return found / vectors.length(found)
 
 
-def matrix(state):
+def matrix(state) -> np.ndarray:
     """Return the rotation matrix (3, 3) [1] of a state (13,), body to bowl; (3, 3, N) of states (13, N)."""
     a, b, c, d = state[body.Q : body.Q + 4]
     return np.array(
@@ -77,12 +79,12 @@ def ways(states, radius):
     return radius * np.arctan2(states[:, 0], radius - states[:, 1])
 
 
-def extents(state, corners, radius):
+def extents(state, corners, radius) -> tuple[Any, ...]:
     """Return how far a part reaches along the wall, rear and front, and its lowest point [any]."""
     return tuple(reaches(state[None], corners, radius)[0])
 
 
-def reaches(states, corners, radius):
+def reaches(states, corners, radius) -> np.ndarray:
     """Return how far parts reach along the wall, rear and front, and their lowest points, (N, 3) [L].
 
     Parameters
@@ -99,7 +101,7 @@ def reaches(states, corners, radius):
     return np.stack([along.min(axis=1), along.max(axis=1), z.min(axis=1)], axis=1)
 
 
-def reach(state, corners, radius):
+def reach(state, corners, radius) -> float:
     """Return how far a part reaches from the wall [any]."""
     spots = state[:2] + vectors.product(corners, matrix(state).T)[:, :2]
     return float(radius - np.hypot(spots[:, 0], radius - spots[:, 1]).min())

@@ -17,7 +17,7 @@ import pytest
 from click.testing import CliRunner
 
 from feederscrew import batch
-from feederscrew.batch import run, task
+from feederscrew.batch import batch_run, task
 from feederscrew.batch import work as works
 from feederscrew.errors import FeederError
 from feederscrew_cli.main import feeder
@@ -317,7 +317,7 @@ def test_resume_says_how_many_it_computes_and_why(tmp_path, three, monkeypatch):
     block(three[1].source, 1.0, 2.0, 3.0)
     assert stale() == {"results changed or incomplete": 1, "another file": 1}
     monkeypatch.setattr(task, "__version__", "9.9")
-    monkeypatch.setattr(run, "__version__", "9.9")
+    monkeypatch.setattr(batch_run, "__version__", "9.9")
     assert stale(three[2:]) == {"another version of the program or a library": 1}
     Path(three[2].source).rename(tmp_path / "away")
     ran(three[2:], out, workers=Here(), choices=choices)
@@ -435,7 +435,7 @@ def test_a_folder_of_other_things_is_refused(tmp_path, three):
 
 def test_two_batches_do_not_share_a_folder(tmp_path, three):
     with (
-        run.Store(tmp_path / "out"),
+        batch_run.Store(tmp_path / "out"),
         pytest.raises(FeederError, match="another batch is at work in it - wait for it, or stop it"),
     ):
         ran(three, tmp_path / "out", workers=Here())

@@ -348,7 +348,7 @@ def test_solids_of_what_falls_short_say_so_in_their_names_heads_and_bodies():
 def test_the_bowl_on_the_page_of_what_falls_short_bears_a_mark(monkeypatch):
     monkeypatch.setattr(solidbowl_views, "scene", lambda *_: {})
     way = SimpleNamespace(radius=0.15)
-    plan = SimpleNamespace(way=way, material=SimpleNamespace(name="steel"))
+    plan = SimpleNamespace(path=way, material=SimpleNamespace(name="steel"))
     solid = SimpleNamespace(plan=plan, mass=3.0)
     for mark in ("", marking.MARK):
         page = as_html.html(

@@ -99,13 +99,13 @@ def test_a_thumbnail_shows_the_aspect_that_is_named():
 
 
 def test_headings_name_their_axes_and_their_numbers_stand_apart():
-    study = headings(NUT, read().track)
+    study = headings(NUT, read())
     figure = headings_output.headings(study.postures[0], study.headings[0], study.track, "nut")
     assert (figure.get_supxlabel(), figure.get_supylabel()) == (
         "along the track [mm]",
         "away from the wall [mm]",
     )
-    small = headings(load(PARTS / "shcs_m3x8_simple.stl"), read().track, "B")
+    small = headings(load(PARTS / "shcs_m3x8_simple.stl"), read(), "B")
     beside = headings_output.headings(small.postures[0], small.headings[0], small.track, "screw")
     for drawn in (figure, beside):
         for axes in drawn.axes:

@@ -133,7 +133,7 @@ def test_the_folders_on_the_page_are_there():
 
 def test_a_release_knows_its_version_and_its_changes():
     text = (ROOT / "CHANGELOG.md").read_text()
-    version = re.search(r'__version__ = "(.*)"', (ROOT / "feederscrew/__init__.py").read_text())[1]
+    version = re.search(r'__version__ = "(.*)"', (ROOT / "feederscrew/version.py").read_text())[1]
     assert re.search(r"^## (\S+?),", text, re.MULTILINE)[1] == version
     said = subprocess.run([sys.executable, "docs/release.py"], cwd=ROOT, capture_output=True, text=True)
     assert f"git tag v{version}" in said.stdout and not said.stderr

@@ -26,10 +26,10 @@ CALLS = (
 SCRIPT = """
 import sys
 from click.testing import CliRunner
-from feederscrew.dropping.plate import arrival
+from feederscrew.dropping import arrival
 from feederscrew.studies import aspects
 from feederscrew_cli.main import feeder
-aspects.MOST, arrival.FIRST, arrival.MOST, arrival.LONGEST = 500, 60, 60, 60
+aspects.MOST, arrival.FIRST_PARTS, arrival.MAX_ARRIVALS, arrival.LONGER_TIME_PARTS = 500, 60, 60, 60
 calls, part, out = eval(sys.argv[1])
 batch = ["batch", part, "-o", out, "--jobs", "1", "--no-pictures"]
 for words in (*([*words, "--format", "csv"] for words in calls), batch):

@@ -131,9 +131,9 @@ def test_the_views_of_the_sheet_have_the_lugs():
         * 1e3
     )
     at = 1e3 * found.screws[:, :2] + 4.0 * found.lugs[:, 2, :2]
-    reach = np.sqrt((drawn**2).sum(axis=-1)).ravel()
-    for one in at:
-        near = np.sqrt(((drawn.reshape(-1, 2) - one) ** 2).sum(axis=1)) < 6.0
+    reach = np.sqrt((drawn**2).sum(axis=-1)).max(axis=1)
+    for screw in at:
+        near = shapely.distance(shapely.linestrings(drawn), shapely.Point(screw)) < 6.0
         assert (near & (reach > far + 8.0)).any()
     edges = [
         sum(layer == "EDGE" for layer, *_ in bowl_sheet.draw_sheets(study(one)).sheets[0])

@@ -81,7 +81,8 @@ def test_a_device_added_in_one_file_is_known_everywhere(ravine):
     out = ravine / "out"
     ran("tooling", part, "--aspect", "A", "--heading", "90", "--rule", "csa", "--static", "-o", str(out))
     files = {path.name: path for path in out.rglob("*")}
-    assert "ravine 8 mm" in files["tooling.dxf"].read_text() and "CUT" in files["tooling.dxf"].read_text()
+    drawn = files["tooling.dxf"].read_text()
+    assert all(word in drawn for word in ("ravine", "8 mm", "CUT"))
     assert "ravine: 8 mm" in files["tooling.yaml"].read_text()
     mesh = trimesh.load(io.BytesIO(files["tooling.stl"].read_bytes()), file_type="stl")
     assert mesh.is_watertight

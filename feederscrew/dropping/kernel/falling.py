@@ -32,7 +32,7 @@ class Scratch(NamedTuple):
     rows: np.ndarray  # (1,) int: how many rows of it are filled
 
 
-def scratch(shape, rows=0):
+def scratch(shape, rows=0) -> Scratch:
     """Make working arrays for a shape, with a trace of so many rows."""
     size = len(shape.vertices)
     room = size + touch.QUARTERS * len(shape.solid.rims)
@@ -89,7 +89,7 @@ class Launched(NamedTuple):
     frictions: np.ndarray  # (N,)
 
 
-def launched_one(state, restitution, friction):
+def launched_one(state, restitution, friction) -> Launched:
     """Return one body that is let go in a state (STATE,): Launched, of arrays as the kernels know them."""
     return Launched(*(check.frozen(np.array([one], float)) for one in (state, restitution, friction)))
 

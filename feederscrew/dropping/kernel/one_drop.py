@@ -1,6 +1,7 @@
 """Compiled drop: one body on a floor at rest, until its resting face is decided."""
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -126,7 +127,7 @@ def settle_all(shape, work, launched, steps, faces, times):
         faces[n], times[n], work.rows[0] = face, time, rows
 
 
-def settle(shape, work, restitution, friction, steps):
+def settle(shape, work, restitution, friction, steps) -> tuple[Any, ...]:
     """Follow one body until its face is decided.
 
     Source: docs/resting.md, "The drop test".

@@ -28,7 +28,7 @@ class Seen(NamedTuple):
     )  # (N,) int, looks taken; fewer than K only where the motion took far more steps than due
 
 
-def unseen(count, looks):
+def unseen(count, looks) -> Seen:
     """Return what is to be filled in of so many bodies: Seen."""
     faces = np.full((count, len(looks)), UNSETTLED)
     return Seen(looks, faces, np.full((*faces.shape, 2), np.nan), np.zeros(count, int))

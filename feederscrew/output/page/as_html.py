@@ -5,9 +5,11 @@ import csv
 import io
 import json
 import struct
+from collections.abc import Iterator
 from html import escape as html_escape
 from importlib import resources
 from itertools import groupby
+from typing import Any
 
 from feederscrew.errors import printable
 from feederscrew.output import DPI, tables
@@ -42,7 +44,7 @@ PLAYER = (
 LICENCE = "three.LICENSE.txt"
 
 
-def html(page):
+def html(page) -> str:
     """Return the page as HTML.
 
     Parameters
@@ -83,13 +85,13 @@ def _asset(name):
     return resources.files("feederscrew.output.page").joinpath(name).read_text(encoding="utf-8")
 
 
-def _scripts():
+def _scripts() -> Iterator[Any]:
     yield f"<!--\nThe 3-D views are drawn with three.js.\n\n{_asset(LICENCE)}-->"
     for name in SCRIPTS:
         yield f"<script>\n{_asset(name)}</script>"
 
 
-def _head(page):
+def _head(page) -> str:
     tiles = "\n".join(
         f'<div class="tile"><span>{escape(tile.label)}</span><strong>{escape(tile.value)}</strong>'
         f"<small>{escape(tile.note)}</small></div>"
@@ -108,7 +110,7 @@ def _head(page):
     )
 
 
-def _section(section):
+def _section(section) -> str:
     body = "\n".join(_run(*run) for run in groupby(section.blocks, _beside))
     anchor = f' id="{section.anchor}"' if section.anchor else ""
     title = f"<h2>{escape(section.title)}</h2>\n" if section.title else ""
@@ -125,7 +127,7 @@ def _beside(block):
     return width <= HALF and height <= TALL * width
 
 
-def _run(beside, blocks):
+def _run(beside, blocks) -> str:
     """Blocks that follow each other, in two columns of about the same height if they may be."""
     blocks = list(blocks)
     if not beside or len(blocks) == 1:
@@ -138,7 +140,7 @@ def _run(beside, blocks):
     return '<div class="beside">\n' + "\n".join(f"<div>\n{half}\n</div>" for half in halves) + "\n</div>"
 
 
-def _in_column(block):
+def _in_column(block) -> str:
     return _picture(block) if isinstance(block, kinds.Picture) else _block(block)
 
 
@@ -149,7 +151,7 @@ def _height(block):
     return HEADING + LINE * max(map(len, block.frame.values()), default=0)
 
 
-def _block(block):
+def _block(block) -> str:
     match block:
         case kinds.Text(text, quiet, printed):
             names = " ".join(name for name, holds in (("quiet", quiet), ("on-screen", not printed)) if holds)
@@ -178,7 +180,7 @@ def _block(block):
     raise ValueError(f"{type(block).__name__} is not a block of a page")
 
 
-def _picture(picture, scale=1.0):
+def _picture(picture, scale=1.0) -> str:
     """The picture at its own size or smaller; one that stands alone is larger."""
     width, height = (round(scale * pixels) for pixels in _size(picture))
     kind = "stand-in" if picture.printed else "plain"
@@ -189,16 +191,16 @@ def _picture(picture, scale=1.0):
     )
 
 
-def _size(picture):
+def _size(picture) -> list[Any]:
     """Width and height of a picture at its own size [px of a page]."""
     return [pixels * CSS_DPI / DPI for pixels in struct.unpack(">2I", picture.content[16:24])]
 
 
-def _list(lines, mark):
+def _list(lines, mark) -> str:
     return f'<ul class="{mark}">\n' + "\n".join(f"<li>{escape(line)}</li>" for line in lines) + "\n</ul>"
 
 
-def _table(frame):
+def _table(frame) -> str:
     heads, numeric, rows = cells(frame)
     marks = [' class="number"' if n else "" for n in numeric]
     head = "".join(
@@ -214,7 +216,7 @@ def _table(frame):
     return _grid(kind, head, lines)
 
 
-def _paddings(column):
+def _paddings(column) -> list[Any]:
     """What the style sheet adds unseen behind each number of a column, so that their points line up."""
     decimals = [len(cell.partition(".")[2]) for cell in column]
     most = max((count for cell, count in zip(column, decimals) if "e" not in cell), default=0)
@@ -233,7 +235,7 @@ def _pairs(block):
     return len(next(iter(block.frame.values()))) >= PAIRS
 
 
-def _sheet(file, text):
+def _sheet(file, text) -> str:
     """Every cell as the CSV file writes it, and the file itself to save."""
     head, *rows = csv.reader(io.StringIO(text))
     heads = "".join(f"<th>{escape(name)}</th>" for name in head)
@@ -242,12 +244,12 @@ def _sheet(file, text):
     return f"{_grid(marks, heads, lines)}\n{_saved(file, text)}"
 
 
-def _saved(file, text):
+def _saved(file, text) -> str:
     """A link that saves the file."""
     return f'<p><a download="{file}" href="{_data("text/csv", tables.encoded(text))}">Save {file}</a></p>'
 
 
-def _grid(marks, head, lines):
+def _grid(marks, head, lines) -> str:
     body = "\n".join(lines)
     return (
         f'<div class="wide"><table{marks}>\n<thead><tr>{head}</tr></thead>\n'
@@ -255,14 +257,14 @@ def _grid(marks, head, lines):
     )
 
 
-def _links(entries):
+def _links(entries) -> str:
     lines = [
         f'<li><a href="#{escape(to)}">{escape(label)}</a>: {escape(text)}</li>' for to, label, text in entries
     ]
     return '<ul class="notes">\n' + "\n".join(lines) + "\n</ul>"
 
 
-def _matrix(heads, rows, sortable):
+def _matrix(heads, rows, sortable) -> str:
     kind = "matrix sortable" if sortable else "matrix"
     numbers = [any(row[place].mark == "number" for row in rows) for place in range(len(heads))]
     marks = [' class="number"' if number else "" for number in numbers]
@@ -270,7 +272,7 @@ def _matrix(heads, rows, sortable):
     return _grid(f' class="{kind}"', head, [f"<tr>{''.join(map(_entry, row))}</tr>" for row in rows])
 
 
-def _entry(entry):
+def _entry(entry) -> str:
     mark = f' class="{entry.mark}"' if entry.mark else ""
     body = escape(entry.text)
     if entry.picture:
@@ -280,7 +282,7 @@ def _entry(entry):
     return f"<td{mark}>{body}</td>"
 
 
-def _views(views):
+def _views(views) -> str:
     player = PLAYER if views.plays else ""
     figures = "\n".join(
         _view(views.of, place, name, kind, bars, player, views.mark)
@@ -302,7 +304,7 @@ FOLLOWING = (  # what the script shows: its name, what a reader calls it
 )  # fmt: skip
 
 
-def _knobs(block):
+def _knobs(block) -> str:
     sliders = "\n".join(
         f'<label><span>{escape(one.label)}</span><input type="range" name="{one.name}" min="{one.low:g}" '
         f'max="{one.high:g}" step="any" value="{one.own:.10g}" data-own="{one.own:.10g}" '
@@ -330,7 +332,7 @@ def _knobs(block):
     )
 
 
-def _view(of, place, name, kind, bars, player, mark):
+def _view(of, place, name, kind, bars, player, mark) -> str:
     label = f"{of} {escape(name)} in three dimensions; arrow keys turn it"
     shares = "\n".join(_bar(bar) for bar in bars)
     across = f'<p class="across"><span>{escape(mark)}</span></p>\n' if mark else ""
@@ -342,7 +344,7 @@ def _view(of, place, name, kind, bars, player, mark):
     )
 
 
-def _bar(bar):
+def _bar(bar) -> str:
     mark, line, number = "bar", "", f"{100.0 * bar.share:.1f} %"
     if bar.interval:
         low, high = (100.0 * end for end in bar.interval)
@@ -354,5 +356,5 @@ def _bar(bar):
     )
 
 
-def _data(kind, content):
+def _data(kind, content) -> str:
     return f"data:{kind};base64,{base64.b64encode(content).decode()}"

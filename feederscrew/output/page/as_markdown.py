@@ -6,7 +6,7 @@ from feederscrew.output.page.numbers import cells
 ITALIC = "given"  # the mark of a cell that was not computed
 
 
-def markdown(page, beside=""):
+def markdown(page, beside="") -> str:
     """Write a page as Markdown, without 3-D.
 
     Parameters
@@ -61,7 +61,7 @@ def _entry(entry):
     return f"*{text}*" if entry.mark == ITALIC else text
 
 
-def _table(frame):
+def _table(frame) -> str:
     heads, numeric, rows = cells(frame)
     lines = [
         [f"{name} {unit}".strip() for name, unit in heads],

@@ -1,6 +1,7 @@
 """What a page is made of; the two writers turn each kind of block into HTML or Markdown."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from feederscrew.output.tables import Frame
 
@@ -165,11 +166,11 @@ class Page:
     kind: str = ""
 
     @property
-    def tiles(self):
+    def tiles(self) -> tuple[Any, ...]:
         """The answers of all sections, in their order."""
         return tuple(tile for section in self.sections for tile in section.tiles)
 
     @property
-    def warnings(self):
+    def warnings(self) -> tuple[Any, ...]:
         """What a reader must not overlook, each line once."""
         return tuple(dict.fromkeys(line for section in self.sections for line in section.warnings))

@@ -1,5 +1,7 @@
 """Frames and numbers as people read them on a page."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew.errors import printable
@@ -12,7 +14,7 @@ NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
 NOTHING = "–"
 
 
-def cells(frame):
+def cells(frame) -> tuple[Any, ...]:
     """Return a frame as texts for people.
 
     Parameters
@@ -48,7 +50,7 @@ def percent(share):
     return number(100.0 * share, SHORT)
 
 
-def _column(name, values):
+def _column(name, values) -> list[Any]:
     if not tables.is_numeric(values):
         return [_word(value) for value in values]
     if np.issubdtype(values.dtype, np.integer):

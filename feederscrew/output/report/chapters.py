@@ -27,7 +27,7 @@ CHAPTERS = (  # anchor, title, what computes it
 )
 
 
-def page(case, step=nullcontext, chapters=CHAPTERS):
+def page(case, step=nullcontext, chapters=CHAPTERS) -> Page:
     """Everything known of a part in a bowl.
 
     Parameters

@@ -1,8 +1,10 @@
 """Limitations of the methods, and what it takes to reproduce the numbers."""
 
 import platform
+from collections.abc import Iterator
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 from feederscrew import __version__
 from feederscrew.output import slide, tables
@@ -32,12 +34,12 @@ LIMITS = (
 )
 
 
-def limits(case):
+def limits(case) -> Chapter:
     """What the methods leave out, in plain words."""
     return Chapter((Notes(LIMITS),))
 
 
-def repeat(case):
+def repeat(case) -> Chapter:
     """The inputs: command, files, bowl values, versions, and the table of aspects to the last digit."""
     hashes = tables.frame({"input": list(case.inputs), "sha256": list(case.inputs.values())})
     return Chapter(
@@ -53,7 +55,7 @@ def repeat(case):
     )
 
 
-def _bowl_values(case):
+def _bowl_values(case) -> Iterator[Any]:
     """The values of the bowl that were given; on a screen those by default as well."""
     bowl = slide.settings(case.settings).only(("key", "value", "from", "meaning"))
     origins = [Path(origin).name for origin in bowl["from"]]  # the inputs have their folders
@@ -68,7 +70,7 @@ def _bowl_values(case):
     yield Text("Every other key of the bowl has its default (feeder config show).")
 
 
-def _versions():
+def _versions() -> Iterator[Any]:
     yield "feeder", __version__
     yield "python", platform.python_version()
     for name in LIBRARIES:

@@ -1,6 +1,8 @@
 """What the bowl's devices do with each orientation of the part, by the rule and in a trial."""
 
+from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 from feederscrew.output import tables as tables_of
 from feederscrew.output import tooling as tooling_files
@@ -17,7 +19,7 @@ CAME = ("aspect", "heading_deg", "share", "tried")  # columns of the trial's tab
 WENT = ("leaves_as", "ended_at", "predicted", "margin_mm", "disagrees")
 
 
-def tooling(case):
+def tooling(case) -> Chapter | None:
     """Where each orientation passes or falls; None in a bowl without devices."""
     study = case.passages
     if study is None:
@@ -32,7 +34,7 @@ def tooling(case):
     return Chapter(blocks, warnings=remark(study.orientations))
 
 
-def trial(case):
+def trial(case) -> Chapter | None:
     """Parts that were sent along the track one by one; None where no trial was asked for."""
     study = case.trial
     if study is None:
@@ -52,7 +54,7 @@ def trial(case):
     return Chapter(blocks, warnings=study.warnings)
 
 
-def columns(counts):
+def columns(counts) -> tuple[Any, ...]:
     """Return the columns of the trial's table on a page, from the parts of each orientation by fate.
 
     A fate has a column where a part met it: without one a row of parts tried adds up to less.
@@ -61,7 +63,7 @@ def columns(counts):
     return (*CAME, *met, *WENT)
 
 
-def _turning(study):
+def _turning(study) -> Iterator[Any]:
     """What is not certain of the devices."""
     kinds = [device.name for device in study.devices if device.turns]
     if kinds:
@@ -71,7 +73,7 @@ def _turning(study):
         )
 
 
-def _views(study):
+def _views(study) -> Iterator[Any]:
     """The part over the track, to be turned: the most frequent that leaves, and the nearest that falls."""
     given = study.devices, study.orientations, study.shares, study.wanted
     shown = tooling_views.poses(*given)

@@ -14,7 +14,7 @@ SIZED = (
 GIVEN = "The springs, the tuning and the drift of the machine of the bowl file."
 
 
-def bowl(case):
+def bowl(case) -> Chapter | None:
     """Bowl, springs and drift: of a target, or of the machine in the bowl file; None without either."""
     found = case.machine
     if found is None:
@@ -55,7 +55,7 @@ def _renamed(frame):
     return plain.frame({shown.get(name, name): column for name, column in frame.items()})
 
 
-def _tile(found):
+def _tile(found) -> Tile:
     if found.order is None:
         above = number(100.0 * found.detuning, SHORT)
         note = f"{above} % above the drive; gain {number(found.gain, SHORT)}"

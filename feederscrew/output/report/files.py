@@ -8,7 +8,7 @@ FORMATS = ("html", "md")
 BESIDE = "report/"  # folder of the pictures, beside the text
 
 
-def write(folder, page, format):
+def write(folder, page, format) -> None:
     """Write one HTML file, or Markdown with its pictures beside it.
 
     Parameters

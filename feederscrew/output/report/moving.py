@@ -1,6 +1,7 @@
 """What the bowl does with the part: slip, velocity, the track, the rate."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -38,14 +39,14 @@ WORDS = {  # of a regime, for a tile
 }
 
 
-def slide(case):
+def slide(case) -> Chapter:
     """When a part slips, over its heading and the drive."""
     study = case.slide
     pictures = _taken(slide_output.offers(study), "slide_regimes", "slide_contours")
     return Chapter((*_notes(slide_output.remarks(study)), Table(slide_output.summary(study.maps)), *pictures))
 
 
-def convey(case):
+def convey(case) -> Chapter:
     """Operating point and velocity."""
     study = case.convey
     document = convey_output.document(study)
@@ -62,7 +63,7 @@ def convey(case):
     )
 
 
-def floor(case):
+def floor(case) -> Chapter:
     """Forces and regimes on the bowl's floor."""
     found, settings = case.floor, bowls.texts(case.settings)
     document = floor_output.document(found, settings)
@@ -77,7 +78,7 @@ def floor(case):
     return Chapter((lead, *lines, Table(floor_output.summary(document)), *pictures))
 
 
-def headings(case):
+def headings(case) -> Chapter:
     """How the part lies along the wall."""
     study = case.headings
     result = headings_output.frame(study)
@@ -91,7 +92,7 @@ def headings(case):
     return Chapter((lead, Table(frame), *pictures), warnings=tuple(headings_output.remarks(study)))
 
 
-def track(case):
+def track(case) -> Chapter:
     """Reactions on the track, against the wall."""
     found = case.track
     settings, grid = bowls.texts(case.settings), found.over(case.settings)
@@ -105,7 +106,7 @@ def track(case):
     )
 
 
-def rate(case):
+def rate(case) -> Chapter:
     """Well-oriented parts a minute."""
     found = case.rate
     tried = bowls.verified(case.path)
@@ -146,7 +147,7 @@ def _knobs(case):
     return knobs(case, rate)
 
 
-def _velocity_tile(document):
+def _velocity_tile(document) -> Tile:
     if np.isnan(document["velocity_mm_s"]):
         return Tile("travels", NOTHING, document["status"])
     doubt = document["friction_doubt"]
@@ -157,7 +158,7 @@ def _velocity_tile(document):
     return Tile("travels", f"{number(document['velocity_mm_s'], SHORT)} mm/s", note)
 
 
-def _heading_tiles(found):
+def _heading_tiles(found) -> tuple[Any, ...]:
     if found.headings is None:
         return ()
     length, width = found.headings.lengths[found.row] / MM, found.headings.widths[found.row] / MM
@@ -165,7 +166,7 @@ def _heading_tiles(found):
     return (Tile("lies along the wall at", f"{np.degrees(found.seat.heading):.3g} deg", note),)
 
 
-def _rate_tile(document):
+def _rate_tile(document) -> Tile:
     low, high = (number(document[f"parts_per_minute_{end}"], SHORT) for end in ("low", "high"))
     share = f"{percent(document['p_orientation'])} % of drops"
     what = f"{document['aspect']} at {document['heading_deg']:.3g} deg, {share}"
@@ -180,7 +181,7 @@ def _rate_tile(document):
     )
 
 
-def _taken(offered, *starts):
+def _taken(offered, *starts) -> list[Any]:
     """Make the pictures whose files begin so, in that order."""
     return [
         Picture(one.name, one.make(), one.alt)
@@ -190,5 +191,5 @@ def _taken(offered, *starts):
     ]
 
 
-def _notes(lines):
+def _notes(lines) -> tuple[Any, ...]:
     return (Notes(tuple(lines)),) if lines else ()

@@ -1,6 +1,7 @@
 """The part, and how it comes to rest."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -35,7 +36,7 @@ SHOWN = (
 UJ = units.factor("uJ", "energy")
 
 
-def the_part(case):
+def the_part(case) -> Chapter:
     """Mass properties and warnings."""
     part = case.part
     result = inertia.rows(case.inertia)
@@ -53,7 +54,7 @@ def aspects(case):
     found = study.aspects
     table, said = aspects_output.aspects(study), aspects_output.remarks(study)
     offered = by_name(aspects_output.offers(study))
-    views = tuple(aspect_views(part, study))
+    views: tuple[Any, ...] = tuple(aspect_views(part, study))
     if part.vertices is not None:
         views = (*views[:1], _picture(offered["aspects.png"], printed=True), *views[1:])
     lines = (Notes(tuple(said)),) if said and part.vertices is not None else ()
@@ -68,7 +69,7 @@ def aspects(case):
     )
 
 
-def tips(case):
+def tips(case) -> Chapter:
     """The tipping graph, from exact tumbling."""
     ways, found = case.resting.transitions, case.resting.aspects
     shown = np.flatnonzero(found.stable)[: tipping_graph.MOST_GRAPH_ASPECTS]
@@ -95,7 +96,7 @@ def tips(case):
     return Chapter((lead, Table(table), picture), warnings=tuple(found.ground.tips.doubts))
 
 
-def numbers(case):
+def numbers(case) -> CsvSheet:
     """The table of aspects cell by cell, as ``aspects.csv`` has it."""
     return CsvSheet("aspects.csv", tables.text(aspects_output.aspects(case.resting), "csv"))
 
@@ -116,16 +117,16 @@ def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
         )
 
 
-def _picture(offer, **keywords):
+def _picture(offer, **keywords) -> Picture:
     return Picture(offer.name, offer.make(), offer.alt, **keywords)
 
 
-def _caption(found, row):
+def _caption(found, row) -> tuple[Any, ...]:
     kind = f"{found.forms[row]} ×{found.faces[row]}" if found.stable[row] else "not stable"
     return found.names[row], kind, tuple(_bars(found, row)) if found.stable[row] else ()
 
 
-def _bars(found, row):
+def _bars(found, row) -> Iterator[Any]:
     """The recommended answer with its interval; without one, every rule. The table has all of them."""
     answer = found.recommended
     if answer is not None:
@@ -137,13 +138,13 @@ def _bars(found, row):
         yield ShareBar(label, colour, float(values[row]))
 
 
-def _tile(case):
+def _tile(case) -> Tile:
     """Which aspect, and how likely."""
     first = case.aspect == case.likeliest
     return Tile("rests most often on" if first else "wanted", f"aspect {case.aspect}", _how_likely(case))
 
 
-def _how_likely(case):
+def _how_likely(case) -> str:
     """The recommended answer with its interval; for a card, what its rules span."""
     answer = case.resting.aspects.recommended
     if answer is not None:

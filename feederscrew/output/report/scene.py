@@ -1,5 +1,7 @@
 """The part for the viewer: its mesh once, in single precision, and a pose for each aspect."""
 
+from typing import Any
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -62,7 +64,7 @@ def over_cuts(part, met, every):
     }
 
 
-def _over_cut(met, place):
+def _over_cut(met, place) -> dict[Any, Any]:
     """Name, rotation from the file's axes to the track's, height, hull of the support, and the track."""
     one = met.orientation
     hull = np.zeros((0, 3))
@@ -79,7 +81,7 @@ def _over_cut(met, place):
     }
 
 
-def _pose(found, row, standing):
+def _pose(found, row, standing) -> dict[Any, Any]:
     """Name, rotation (x, y, z, w) from the file's axes to the floor's, height and contact polygon."""
     return {
         "name": found.names[row],

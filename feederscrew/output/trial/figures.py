@@ -1,5 +1,7 @@
 """Charts of trials: orientations in and out, and the paths over a device from above."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.patches import Polygon
 
@@ -103,7 +105,7 @@ def paths(run):
     return figure
 
 
-def unrolled(path, radius):
+def unrolled(path, radius) -> tuple[Any, ...]:
     """Return lengths along the wall and distances from it (K,) [m] of a path (K, 8), as far as it goes."""
     known = path[np.isfinite(path[:, 0])]
     x, y = known[:, 1], radius - known[:, 2]
@@ -123,7 +125,7 @@ def solids(station, plate=0):
     return rings
 
 
-def _track(axes, station, radius):
+def _track(axes, station, radius) -> None:
     axes.set_facecolor("white")
     for place, ring in enumerate(solids(station)):
         x, y = ring[:, 0], radius - ring[:, 1]

@@ -1,10 +1,12 @@
 """What ``feeder trial`` leaves in its folder."""
 
+from typing import Any
+
 from feederscrew.output import offers as offer
 from feederscrew.output.trial import tables
 
 
-def offers(study):
+def offers(study) -> list[Any]:
     """Offer the files of a TrialStudy, as a list of Offer."""
     run = study.runs[0]
     return [
@@ -17,7 +19,7 @@ def offers(study):
     ]
 
 
-def pictures(study):
+def pictures(study) -> list[Any]:
     """Offer the pictures of its first run: orientations in and out, paths, stills."""
     return [
         offer.picture("trial.png", "Orientations in and out", _matrix, study),

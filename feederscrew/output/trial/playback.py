@@ -1,5 +1,7 @@
 """Parts that go through a device, for the viewer: mesh and track once, and where the part is when."""
 
+from typing import Any
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -14,7 +16,7 @@ ABOVE = 1.5  # of the part's radius: how high the wall is
 STILL, AFTER = 0.05, 0.3  # [mm], [s] a part that moves no more than that to the end is left out after so long
 
 
-def scene(part, *tried):
+def scene(part, *tried) -> tuple[Any, ...]:
     """What the viewer plays: one part that passes a device and one that does not.
 
     Parameters
@@ -45,7 +47,7 @@ def scene(part, *tried):
     }, [(ride.orientation, ride.title(found).partition(" ")[2]) for ride in rides]
 
 
-def _pose(ride, path, place):
+def _pose(ride, path, place) -> dict[Any, Any]:
     """Where it starts."""
     return {
         "name": ride.orientation,

@@ -1,6 +1,7 @@
 """The track of one station as a solid to be seen: what the trial's kernel had the part meet."""
 
 import itertools
+from typing import Any
 
 import numpy as np
 import shapely
@@ -13,7 +14,7 @@ from feederscrew.trial.kernel import crowd_records
 WALL = 3e-3  # [m] thickness of the wall that is drawn
 
 
-def section(station, track, height):
+def section(station, track, height) -> tuple[Any, ...]:
     """Return the track with its cuts, its wall and its gates as one mesh in the bowl's frame.
 
     Parameters
@@ -35,7 +36,7 @@ def section(station, track, height):
     return corners, np.concatenate([faces + n for (_, faces), n in zip(meshes, first)])
 
 
-def _plate(station, k, track):
+def _plate(station, k, track) -> tuple[Any, ...]:
     """One plate as a body (V, 3) [m], as deep as it is, ended at the wall."""
     row = station.plates[k]
     area = shapely.Polygon()
@@ -48,7 +49,7 @@ def _plate(station, k, track):
     return row[:3] + np.einsum("vi,ij->vj", vertices, axes), faces
 
 
-def _wall(station, track, height):
+def _wall(station, track, height) -> list[Any]:
     """The wall behind the track, over its length, stretch by stretch."""
     corners = np.concatenate(solids(station))
     way, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), track.radius)

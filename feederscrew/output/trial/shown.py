@@ -16,7 +16,7 @@ class ShownRide:
     fate: str  # of course.FATES
     path: np.ndarray  # (K, 8) time [s], position [m], attitude w x y z (principal axes to bowl)
 
-    def title(self, found):
+    def title(self, found) -> str:
         """'A@0 at gap 9 mm: returned'; of a device of several values its kind alone."""
         device = found.stations[self.place].device
         value = "" if device.short.startswith(("{", "[")) else device.short
@@ -53,7 +53,7 @@ def _which(found, place, passes):
     return np.flatnonzero((found.rides[place].outcomes == runs.PASSED) == passes)
 
 
-def _loses(found):
+def _loses(found) -> bool:
     """Whether a part gets no farther than one of the devices."""
     return any((ride.outcomes != runs.PASSED).any() for ride in found.rides[1:])
 
@@ -68,7 +68,7 @@ def _station(found):
     return max(places, key=lambda place: (some[place], lost[place], -place))
 
 
-def _of(run, place, n):
+def _of(run, place, n) -> ShownRide:
     found, ride = run.course, run.course.rides[place]
     one = found.riders[place][n]
     passed = ride.outcomes[n] == runs.PASSED

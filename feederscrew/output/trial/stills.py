@@ -1,5 +1,8 @@
 """Stills of a part that passes a device and of one that does not, on the track as it is cut."""
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
@@ -57,7 +60,7 @@ def stills(part, run):
     return figure
 
 
-def _chosen(path, radius):
+def _chosen(path, radius) -> Iterator[Any]:
     """Moments of a path, evenly along the way, the fall and the turns: time, place and attitude."""
     turns = Rotation.from_quat(path[:, [5, 6, 7, 4]])
     moves = np.linalg.norm(np.diff(path[:, 1:4], axis=0), axis=1)

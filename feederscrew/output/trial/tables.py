@@ -1,5 +1,8 @@
 """Trials as tables and documents, in the units of the shop."""
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 
 from feederscrew.dropping.ensemble import wilson
@@ -31,7 +34,7 @@ def document(study):
     return entries
 
 
-def _run(study, run):
+def _run(study, run) -> dict[Any, Any]:
     return {
         "amplitude_mm": run.bowl.drive.amplitude / MM,
         "throw_number": run.throw_number,
@@ -56,7 +59,7 @@ def _run(study, run):
     }
 
 
-def orientations(run, *, people=False):
+def orientations(run, *, people=False) -> list[Any]:
     """Return one row an orientation tried, those that do not do what the static rule says first.
 
     For people devices are named as the trade does.
@@ -91,7 +94,7 @@ def orientations(run, *, people=False):
     ]
 
 
-def spare(study):
+def spare(study) -> tuple[Any, ...]:
     """Return groups of columns to leave out of a table that is too wide; fates of no part go first."""
     counts = sum(run.counts.sum(axis=0) for run in study.runs)
     none = [name for name, count in zip(course.FATES, counts) if not count and name != "passed"]
@@ -99,7 +102,7 @@ def spare(study):
     return measures, none, ("passed_low", "passed_high"), ("predicted",), ("leaves_as",), ("share",)
 
 
-def queue(study, run):
+def queue(study, run) -> dict[Any, Any]:
     """Return what the queue did, as a document."""
     found, seen = run.queue, outlet(study, run)
     whole = int(found.leaving.sum())
@@ -128,12 +131,12 @@ def queue(study, run):
     }
 
 
-def _left(run, leaving):
+def _left(run, leaving) -> list[Any]:
     """Names of the orientations in which parts left, and how many in each; the last is none of the known."""
     return [(_name(run, k if k < len(leaving) - 1 else -1), int(n)) for k, n in enumerate(leaving) if n]
 
 
-def landing(study, run):
+def landing(study, run) -> dict[Any, Any]:
     """Return what became of the parts that fell onto the track, as a document."""
     found, seen = run.landing, landed(study, run)
     return {
@@ -197,7 +200,7 @@ def stations(run):
     return tables.frame({name: [one[k] for one in made] for k, name in enumerate(names)})
 
 
-def summary(study):
+def summary(study) -> Iterator[Any]:
     """Return what is said beside the table, a sentence each."""
     yield f"orientations in the shares of {study.answer}"
     for run in study.runs:
@@ -222,7 +225,7 @@ def summary(study):
         yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
 
 
-def engine(study):
+def engine(study) -> Iterator[Any]:
     """Return how closely each run of the engine kept to the laws, a sentence each: for those who check it."""
     for run in study.runs:
         yield (
@@ -232,14 +235,14 @@ def engine(study):
         )
 
 
-def _staying(run):
+def _staying(run) -> Iterator[Any]:
     """Which orientations stay, and where most of them do."""
     held = run.counts[:, [course.HANGING, course.STOPPED, course.STUCK]].sum(axis=1)
     for k in np.flatnonzero(held):
         yield f"{run.known.lying[k].name} at {_ended(run, k) or 'the track'}"
 
 
-def _fallen(run):
+def _fallen(run) -> str:
     """What became of parts that fell onto the track, in a sentence."""
     found = run.landing
     most = _name(run, int(np.argmax(found.leaving[:-1]))) if found.leaving[:-1].any() else None
@@ -250,7 +253,7 @@ def _fallen(run):
     )
 
 
-def _queued(found):
+def _queued(found) -> str:
     """What a queue did, in a sentence."""
     way = "poured" if found.poured else "in a row"
     force = 1e3 * found.pressure.max(initial=0.0)
@@ -263,7 +266,7 @@ def _queued(found):
     )
 
 
-def _beside(found):
+def _beside(found) -> Iterator[Any]:
     """What left by aspect beside each column that was measured, a sentence each."""
     if found.columns and not found.counts.any():
         yield "no part has left the queue yet: there is nothing to set beside what was measured"
@@ -284,13 +287,13 @@ def _name(run, k):
     return run.known.states[k].name
 
 
-def _leaves(run, k):
+def _leaves(run, k) -> str:
     """The orientations in which those left that were not held: 'A@0 9, other 1'."""
     count = run.matrix[k]
     return ", ".join(f"{_name(run, m)} {count[m]}" for m in np.flatnonzero(count))
 
 
-def _ended(run, k, *, people=True):
+def _ended(run, k, *, people=True) -> str:
     """Where those ended that did not pass, with how many: 'gap 9'; for people as the trade names a device."""
     found = run.course
     own = (found.entered == k) & ~np.isin(found.fates, (course.PASSED, course.TURNED))
@@ -299,7 +302,7 @@ def _ended(run, k, *, people=True):
     return ", ".join(f"{one.name if people else one.kind} {n}" for one, n in zip(devices, counts))
 
 
-def _most(values):
+def _most(values) -> float:
     return float(values.max(initial=0.0))
 
 

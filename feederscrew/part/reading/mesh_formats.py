@@ -127,7 +127,7 @@ def read_off(data: bytes) -> Soup:
     return Soup(vertices, faces, "off", warnings=decimals.warnings)
 
 
-def _ring(words):
+def _ring(words) -> list[Any]:
     """Corners of the facet of one line; a colour may follow them."""
     size = int(words[0])
     if not 0 <= size < len(words):
@@ -245,7 +245,7 @@ def _ply_from_bytes(data, at, elements, order) -> Any:
     return columns
 
 
-def _rows_alike(data, at, element, order):
+def _rows_alike(data, at, element, order) -> tuple[Any, ...] | None:
     """Columns and the end of rows whose lists are as long as those of the first; None if they are not."""
     fields: list[Any] = []
     end = at
@@ -394,7 +394,7 @@ def _binary(data, where) -> Soup:
     return Soup(vertices, np.arange(len(vertices)).reshape(-1, 3), BINARY_STL, warnings=said)
 
 
-def _honest(data, where):
+def _honest(data, where) -> tuple[Any, ...]:
     """A binary STL whose count agrees with its size, and what had to be done for that."""
     if len(data) < STL_HEADER_BYTES:
         raise MeshError(

@@ -7,6 +7,7 @@ import posixpath
 import re
 from array import array
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 from urllib.parse import unquote
@@ -197,7 +198,7 @@ class Package3MF:
             refuse_size(0, self.facets)
             pieces += self._meshes(here, name, transform, item, title, role, bool(parents))
 
-    def _meshes(self, here, name, transform, item, title, role, inner):
+    def _meshes(self, here, name, transform, item, title, role, inner) -> Iterator[Any]:
         """The mesh of an object; several, where the slicer tells ranges of its facets apart."""
         self.corners += len(here.corners) // 3
         refuse_size(self.corners, self.facets)
@@ -390,7 +391,7 @@ def _refuse_doctype(*_) -> None:
     raise DamageError("its XML declares a document type")
 
 
-def _by_role(pieces, left_out, where):
+def _by_role(pieces, left_out, where) -> tuple[Any, ...]:
     """The parts, negative ones cut out of those of the same item, and what to say."""
     warnings = []
     left_out = left_out + Counter(piece.role for piece in pieces if piece.role in LEFT_OUT_ROLES)

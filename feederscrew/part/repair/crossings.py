@@ -1,5 +1,6 @@
 """Where a surface passes through itself: pairs of facets that cut each other along a line."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -148,7 +149,7 @@ def find_crossings(vertices, faces, tolerance) -> Crossings:
     return _cuts(corners, normals, _through_both(corners, normals, pairs, tolerance), tolerance)
 
 
-def _candidates(corners, normals):
+def _candidates(corners, normals) -> Iterator[Any]:
     """(N, 2) pairs of facets whose boxes overlap, but for many of one plane, some at a time."""
     import shapely
 

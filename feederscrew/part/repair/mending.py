@@ -24,7 +24,7 @@ class Seams:
     width: float  # [unit of the file] largest distance of a corner from such an edge
 
 
-def mend_facets(vertices, faces, tolerance, where, corners=True):
+def mend_facets(vertices, faces, tolerance, where, corners=True) -> tuple[Any, ...]:
     """Triangles after every repair that leaves the shape alone.
 
     Parameters
@@ -70,7 +70,7 @@ def mend_facets(vertices, faces, tolerance, where, corners=True):
     return vertices, faces, edges, said
 
 
-def leave_out_strays(vertices, faces, edges, tolerance):
+def leave_out_strays(vertices, faces, edges, tolerance) -> tuple[Any, ...]:
     """Leave out facets whose corners lie on a line and that close nothing: with them more edges are open.
 
     Facets without area that share edges stand and fall together. One that joins two facets, as the filler of
@@ -107,7 +107,7 @@ def _heights(vertices, faces) -> NDArray[np.float64]:
     return vectors.norm(vectors.cross(b - a, c - a)) / np.maximum(longest, np.finfo(float).tiny)
 
 
-def _without_repeats(vertices, faces, edges, tolerance, where):
+def _without_repeats(vertices, faces, edges, tolerance, where) -> tuple[Any, ...]:
     """Each facet once; pairs that lie back to back, as the walls between glued solids do, not at all."""
     if edges.count.max() < 3:
         return vertices, faces, ()
@@ -127,7 +127,7 @@ def _without_repeats(vertices, faces, edges, tolerance, where):
     return *topology.drop_unused_corners(vertices, faces[kept]), said
 
 
-def _near_corners_joined(vertices, faces, edges, tolerance, where):
+def _near_corners_joined(vertices, faces, edges, tolerance, where) -> tuple[Any, ...]:
     odd = edges.count % 2 == 1
     if not odd.any():
         return vertices, faces, ()
@@ -140,7 +140,7 @@ def _near_corners_joined(vertices, faces, edges, tolerance, where):
     return *topology.drop_unused_corners(vertices, target[faces]), (text,)
 
 
-def turn_one_way_round(vertices, faces, edges, tolerance, where):
+def turn_one_way_round(vertices, faces, edges, tolerance, where) -> tuple[Any, ...]:
     """Facets turned until neighbours agree, as few in each shell as can be."""
     two = np.flatnonzero(edges.count == 2)
     askew = edges.net[two] != 0
@@ -173,12 +173,12 @@ def _parity(mates, askew, count, where) -> Any:
     return as_is > reverse, shell
 
 
-def _seams_closed(vertices, faces, edges, tolerance, where):
+def _seams_closed(vertices, faces, edges, tolerance, where) -> tuple[Any, ...]:
     *surface, said, _ = close_seams(vertices, faces, edges, tolerance)
     return *surface, said
 
 
-def close_seams(vertices, faces, edges, tolerance):
+def close_seams(vertices, faces, edges, tolerance) -> tuple[Any, ...]:
     """Join edges that meet corners of their neighbours half way by facets without area.
 
     Parameters
@@ -211,7 +211,7 @@ def close_seams(vertices, faces, edges, tolerance):
     return vertices, joined, (text,), Seams(count, width)
 
 
-def _fans(vertices, rim, tails, heads, tolerance):
+def _fans(vertices, rim, tails, heads, tolerance) -> tuple[Any, ...]:
     """Facets (N, 3) between each edge and the rim corners on it, where there are any; the furthest off it."""
     from scipy.spatial import cKDTree
 

@@ -1,6 +1,7 @@
 """The surface exponent that a user's own counts ask for."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,7 +72,7 @@ def calibrate(counts, shares, heights, radius) -> Calibration:
     return _likeliest(loss, fitted, lambda p: chi_square(counts, p, estimated=1))
 
 
-def calibrate_passes(passed, rejected, paths, shares, heights, radius):
+def calibrate_passes(passed, rejected, paths, shares, heights, radius) -> Calibration:
     """Fit the exponent of surface_shares to what passed the devices of a bowl, by maximum likelihood.
 
     Source: maximum likelihood with a profile interval; docs/resting.md, "Surface-weighted tumbling".
@@ -172,7 +173,7 @@ class Fit:
     calibration: Calibration
 
 
-def fit_counts(part, aspects, measured):
+def fit_counts(part, aspects, measured) -> list[Any]:
     """Fit the surface exponent to every column of counts.
 
     Parameters
@@ -202,7 +203,7 @@ def fit_counts(part, aspects, measured):
     return [_fit_column(measured.source, column, tumbled) for column in columns]
 
 
-def fit_passes(part, aspects, counts, paths):
+def fit_passes(part, aspects, counts, paths) -> Fit:
     """Fit the surface exponent to what passed the devices of a bowl.
 
     Source: maximum likelihood; docs/resting.md, "Surface-weighted tumbling".
@@ -234,7 +235,7 @@ def fit_passes(part, aspects, counts, paths):
     return Fit(DEVICES_FIT, float((counts.passed + counts.rejected).max()), calibration)
 
 
-def _tumbled_by_aspect(part, aspects):
+def _tumbled_by_aspect(part, aspects) -> tuple[Any, ...]:
     """Exact tumbling by aspect: (A,) shares [1], (A,) heights [m], and the part's radius [m]."""
     basis = ground(part, aspects)
     rows = len(aspects.names)
@@ -243,7 +244,7 @@ def _tumbled_by_aspect(part, aspects):
     return shares, weighted / np.where(shares > 0.0, shares, 1.0), basis.hull.radius
 
 
-def _fit_column(source, column, tumbled):
+def _fit_column(source, column, tumbled) -> Fit:
     try:
         return Fit(column.name, float(column.values.sum()), calibrate(column.values, *tumbled))
     except ValueError as fault:

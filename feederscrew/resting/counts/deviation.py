@@ -138,7 +138,7 @@ def chi_square_between(first, second) -> ChiSquare:
     return _test(observed, expected)
 
 
-def chi_square_passes(passed, rejected, expected, estimated=0):
+def chi_square_passes(passed, rejected, expected, estimated=0) -> ChiSquare:
     """Test whether parts that passed several devices may come from given shares (one binomial a device).
 
     Source: Pearson's chi-square; docs/resting.md, "Surface-weighted tumbling".

@@ -317,11 +317,11 @@ class DeviceCounts:
         return self.passed / (self.passed + self.rejected)
 
     @property
-    def notes(self):
+    def notes(self) -> tuple[Any, ...]:
         """What the file was taken for, one line."""
         return (f"{self.source}: parts at {len(self.names)} device{'s' * (len(self.names) != 1)}",)
 
-    def warnings(self, part):
+    def warnings(self, part) -> tuple[Any, ...]:
         """Say, a sentence each, where the head was not written for a part."""
         return of_another_part(self.source, self.head, part)
 
@@ -331,7 +331,7 @@ def counts_by_device(table) -> bool:
     return table.header[0].lower() == BY_DEVICE
 
 
-def device_counts(table, where, sha256):
+def device_counts(table, where, sha256) -> DeviceCounts:
     """Understand the table of a feeding test.
 
     Parameters
@@ -371,7 +371,7 @@ def device_counts(table, where, sha256):
     return DeviceCounts(where, sha256, tuple(lines.values()), tuple(lines), passed, rejected, table.head)
 
 
-def read_device_counts(path):
+def read_device_counts(path) -> DeviceCounts:
     """Read the counts by device of a CSV file, as ``device_counts`` does."""
     text, sha256 = count_files.read_count_text(path)
     return device_counts(count_files.parse_count_sheet(text, str(path)), str(path), sha256)

@@ -64,7 +64,7 @@ class Rule:
     reference: str  # whose it is
 
     @property
-    def column(self):
+    def column(self) -> str:
         """Name of its column in tables."""
         return f"p_{self.name}"
 

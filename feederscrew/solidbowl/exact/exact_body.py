@@ -7,6 +7,7 @@ cubic spline through places every 0.1 rad: within 1e-4 mm of the helix for a bow
 import contextlib
 import contextvars
 import itertools
+from typing import Any
 
 import numpy as np
 import shapely
@@ -29,7 +30,7 @@ def axis():
     return gp_Ax1(point([0, 0, 0]), gp_Dir(0, 0, 1))
 
 
-def towards(angle):
+def towards(angle) -> tuple[Any, ...]:
     """Return the level unit vector (3,) at an angle [rad]."""
     return float(np.cos(angle)), float(np.sin(angle)), 0.0
 
@@ -94,7 +95,7 @@ def outwards(body):
     return body if volume(body) > 0.0 else body.Reversed()
 
 
-def broken(start, stop, end):
+def broken(start, stop, end) -> list[Any]:
     """Return both ends of a side of a ring, and the place between them where the way becomes straight."""
     low, high = sorted((start[0], stop[0]))
     if not low < end < high:
@@ -128,7 +129,7 @@ def edge(places):
     return BRepBuilderAPI_MakeEdge(curve(*spline(places))).Edge()
 
 
-def spline(places):
+def spline(places) -> tuple[Any, ...]:
     """Return poles (N, 3), knots, multiplicities and degree of a spline through places (M, 3)."""
     degree = min(3, len(places) - 1)
     fitted_curve = make_interp_spline(np.linspace(0.0, 1.0, len(places)), places, k=degree)
@@ -185,7 +186,7 @@ def closed(faces):
     return outwards(BRepBuilderAPI_MakeSolid(cast("Shell", shell)).Solid())
 
 
-def volume(body):
+def volume(body) -> float:
     """Return the volume [mm3] of a body."""
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
@@ -211,7 +212,7 @@ def kinds(body):
     return surface_kinds
 
 
-def valid(body):
+def valid(body) -> bool:
     """Say whether OpenCASCADE finds nothing wrong with a body."""
     from OCP.BRepCheck import BRepCheck_Analyzer
 
@@ -243,7 +244,7 @@ _near = contextvars.ContextVar("near", default=FUZZY_TOLERANCES_MM[0])
 MISSING = "pip install 'feederscrew[cad]'"
 
 
-def check(where="step"):
+def check(where="step") -> None:
     """Raise the line that says what to install where OpenCASCADE is not here.
 
     Raises

@@ -29,7 +29,7 @@ class StepFile:
     off: float  # [m] the most by which the track's height differs from the formula
 
 
-def step_file(solid):
+def step_file(solid) -> StepFile:
     """Return a bowl as a STEP file with exact faces.
 
     Parameters
@@ -54,7 +54,7 @@ def step_file(solid):
         return _tried(solid)
 
 
-def _tried(solid):
+def _tried(solid) -> StepFile:
     """A bowl as a STEP file, or the fault of what came out of it."""
     plan = solid.plan
     whole, gates = pieces(plan, exact_body)
@@ -69,7 +69,7 @@ def _tried(solid):
     return StepFile(data, sizes[0], exact_body.kinds(opened[0]), _off(plan, opened[0]))
 
 
-def _refused(what):
+def _refused(what) -> FeederError:
     return FeederError("bowl.step", f"OpenCASCADE {what}", "take bowl.stl or bowl.3mf")
 
 
@@ -103,7 +103,7 @@ def _opened(data):
         return exact_body.parts(reader.OneShape(), TopAbs_SOLID)
 
 
-def _off(plan, body):
+def _off(plan, body) -> float:
     """How far [m] the track's height lies off the formula, where no device is."""
     body = exact_body.placed_as(body, mirrored=False, turned=-plan.turned)
     body = exact_body.placed_as(body, mirrored=plan.left, turned=0.0)
@@ -117,7 +117,7 @@ def _off(plan, body):
     return float(max(off))
 
 
-def _quiet():
+def _quiet() -> None:
     """Keep what OpenCASCADE tells of each file off the terminal."""
     from OCP.Message import Message
 

@@ -93,7 +93,7 @@ class Standing:
     settles: float = 0.0  # of the part's size: how far behind the device parts go on until they are looked at
 
 
-def across(gate, width, orientations, place):
+def across(gate, width, orientations, place) -> Blade:
     """Return a Blade square across a track of some width [m], with an opening, at a place [m] along it."""
     import shapely
 
@@ -127,7 +127,7 @@ class Verdict:
         return not self.onto or self.margin >= 0.0
 
     @property
-    def sure(self):
+    def sure(self) -> bool:
         """Whether its margin is one: not where momentum, friction or the wall may decide otherwise."""
         return not -UNSURE <= self.margin <= 0.0
 
@@ -180,19 +180,19 @@ class Device:
         """Return what an entry of a bowl file gives of the fields, as a dict."""
         raise NotImplementedError(f"{cls.kind} cannot be written")
 
-    def misfits(self, width):
+    def misfits(self, width) -> list[Any]:
         """Return what is wrong with it on a track of some width [m], a ConfigError each."""
         return []
 
-    def span_on(self, track):
+    def span_on(self, track) -> Any:
         """Return from where to where (m, m) off the wall it takes the track away along its way, or None."""
         return None
 
-    def hole_on(self, track):
+    def hole_on(self, track) -> Any:
         """Return the HoleEdges of what it cuts, if that has an edge across the track, or None."""
         return None
 
-    def outline_on(self, track, length):
+    def outline_on(self, track, length) -> Any:
         """Return what it cuts away, unrolled from its start, (K, 2) [m], or None.
 
         Parameters
@@ -207,16 +207,16 @@ class Device:
         low, high = span
         return np.array([[0.0, low], [length, low], [length, high], [0.0, high]])
 
-    def goes_on(self, width):
+    def goes_on(self, width) -> float:
         """Return how far along a track of some width it goes beyond the room every device has [m]."""
         return 0.0
 
-    def footprint(self, place, width, thick):
+    def footprint(self, place, width, thick) -> np.ndarray:
         """Return where a blade of some thickness stands, unrolled, (4, 2) [m]: straight across the track."""
         return np.array([[place, 0.0], [place + thick, 0.0], [place + thick, width], [place, width]])
 
     @property
-    def face(self):
+    def face(self) -> Any:
         """Sweep [rad] and friction [1] or None of a blade's face that may clear itself; None of others."""
         return None
 
@@ -239,7 +239,7 @@ class Device:
         gate, lower = kind.opening is not Device.opening, kind.lower is not Device.lower
         return self.cuts or self.overhead or self.hangs or self.turns or gate or lower
 
-    def opening(self, orientations, width):
+    def opening(self, orientations, width) -> Any:
         """Return the opening of a gate, in distances from the wall and heights [m]: shapely, or None.
 
         Parameters
@@ -263,15 +263,15 @@ class Device:
         """
         return orientation.flight if type(self).hole_on is not Device.hole_on else orientation.hop
 
-    def gap(self, orientation, speed):
+    def gap(self, orientation, speed) -> float:
         """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
         return 0.0
 
-    def lower(self, orientations):
+    def lower(self, orientations) -> Any:
         """Return the track that goes on lower, (drop, from where off the wall) [m], or None."""
         return None
 
-    def edge(self, start, length, width):
+    def edge(self, start, length, width) -> Any:
         """Return the edge over which parts turn, unrolled, two corners (2, 2) [m], or None."""
         return None
 
@@ -299,7 +299,7 @@ class Device:
         """
         return encounter.passing()
 
-    def standing(self, track, orientations):
+    def standing(self, track, orientations) -> Standing:
         """Return all that stands along the track at it, a Standing: for the trial, drawings and solids.
 
         Parameters
@@ -320,21 +320,21 @@ class Device:
         """Return the value [m] of a device of this kind that an orientation just passes."""
         raise NotImplementedError(f"{cls.kind} is not one number")
 
-    def value_text(self):
+    def value_text(self) -> str:
         """Return its value as a bowl file has it, with every attribute that is not as by default."""
         return length_text(self.limit)
 
-    def rewritten(self):
+    def rewritten(self) -> "Device":
         """Return it with the text of its own attributes."""
         return replace(self, text=self.value_text())
 
     @classmethod
-    def proposal(cls, where, limit):
+    def proposal(cls, where, limit) -> "Device":
         """Return the device of a value [m] that a design tries."""
         return cls(where, limit=limit)
 
     @classmethod
-    def relieving(cls, wanted, margin, where):
+    def relieving(cls, wanted, margin, where) -> Any:
         """Return the device before the tooling at which orientations leave where they back up, or None."""
         return None
 
@@ -342,15 +342,15 @@ class Device:
         """Return it with another value [m], and with the text of that."""
         return replace(self, limit=limit).rewritten()
 
-    def acts(self, track):
+    def acts(self, track) -> bool:
         """Return whether it does anything at all on a track."""
         return True
 
-    def more(self, encounter):
+    def more(self, encounter) -> float:
         """Return by how much more [m] an orientation that travels passes it than one that is placed."""
         return 0.0
 
-    def document_values(self):
+    def document_values(self) -> dict[Any, Any]:
         """Return its values for a document, in mm."""
         if self.corners:
             return {"outline_mm": [[x / MM, y / MM] for x, y in self.corners]}
@@ -399,34 +399,34 @@ class Device:
         """What a shop buys and sets for it, a sentence each: sensor, nozzles, valve; () of plain steel."""
         return ()
 
-    def beside_track_fault(self, width):
+    def beside_track_fault(self, width) -> ConfigError:
         """Return the ConfigError of a hole that lies beside a track of some width [m]."""
         what = f"{self.kind} lies beside the track: the track is {1e3 * width:.4g} mm wide"
         return ConfigError(self.where, what, "move it onto the track")
 
-    def whole(self, width):
+    def whole(self, width) -> ConfigError:
         """Return the ConfigError of a hole that leaves nothing of a track of some width [m]."""
         what = f"{self.kind} leaves no track: the track is {1e3 * width:.4g} mm wide"
         return ConfigError(self.where, what, "give a smaller one, or a wider track")
 
 
-def length_text(value):
+def length_text(value) -> str:
     """Return a length [m] as a bowl file has it, to a ten-thousandth of a millimetre: '9.25 mm'."""
     steps = value / WRITTEN_STEP_M
     return f"{(round(steps) if math.isfinite(steps) else steps) * WRITTEN_STEP_M / MM:.9g} mm"
 
 
-def degrees_words(angle):
+def degrees_words(angle) -> str:
     """Return an angle [rad] for people: '30 deg'."""
     return f"{math.degrees(angle):.4g} deg"
 
 
-def length_words(length):
+def length_words(length) -> str:
     """Return a length [m] for people: '8.35 mm'."""
     return f"{length / MM:.4g} mm"
 
 
-def span_words(span):
+def span_words(span) -> str:
     """Return a span [m] off the wall for people: 'from 2 to 5 mm off the wall'."""
     return f"from {span[0] / MM:.4g} to {span[1] / MM:.4g} mm off the wall"
 
@@ -439,17 +439,17 @@ def keeps(orientations):
     return units.listed([f"{name} at heading {units.listed(turns)} deg" for name, turns in headings.items()])
 
 
-def angle_text(value):
+def angle_text(value) -> str:
     """Return an angle [rad] as a bowl file has it: '30 deg'."""
     return f"{math.degrees(value):.9g} deg"
 
 
-def corners_text(corners):
+def corners_text(corners) -> str:
     """Return corners [m] as a bowl file has them."""
     return f"[{', '.join(f'[{length_text(x)}, {length_text(y)}]' for x, y in corners)}]"
 
 
-def mapping_text(entries):
+def mapping_text(entries) -> str:
     """Return pairs of a key and a text as a bowl file has them on one line; without those of no text."""
     return f"{{{', '.join(f'{key}: {text}' for key, text in entries if text)}}}"
 
@@ -499,13 +499,13 @@ class Yield(Device):
     def read(cls, entry):
         return values.shares(entry)
 
-    def value_text(self):
+    def value_text(self) -> str:
         return mapping_text((units.quoted(name), f"{share:.9g}") for name, share in self.shares)
 
     @property
-    def value_words(self):
+    def value_words(self) -> str:
         return "passes " + ", ".join(f"{100.0 * share:.4g} % of {name}" for name, share in self.shares)
 
-    def judged(self, encounter):
+    def judged(self, encounter) -> Verdict:
         shares = {name.casefold(): share for name, share in self.shares}
         return Verdict(shares.get(encounter.orientation.aspect.casefold(), 1.0), math.nan)

@@ -3,7 +3,7 @@
 import itertools
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -57,7 +57,7 @@ class _Overhead(Device):
         return shapely.box(0.0, 0.0, width, self.limit)
 
     @property
-    def value_words(self):
+    def value_words(self) -> str:
         return f"{length_words(self.limit)} over the track"
 
     @classmethod
@@ -96,7 +96,7 @@ class Wiper(_Overhead):
     def read(cls, entry):
         return values.blade(entry)
 
-    def misfits(self, width):
+    def misfits(self, width) -> list[Any]:
         heights = [height for _, height in self.contour]
         if all(later <= before for before, later in itertools.pairwise(heights)):
             return []
@@ -104,7 +104,7 @@ class Wiper(_Overhead):
         return [ConfigError(self.where, what, "let it stay level or fall")]
 
     @classmethod
-    def proposal(cls, where, limit):
+    def proposal(cls, where, limit) -> "Wiper":
         return cls(where, limit=limit, sweep=PROPOSED_SWEEP_RAD)
 
     def value_text(self):
@@ -126,7 +126,7 @@ class Wiper(_Overhead):
         return edge + sweep
 
     @property
-    def face(self):
+    def face(self) -> tuple[Any, ...] | None:
         """Its sweep [rad] and friction [1], None: that of the track; None of one straight across."""
         return (self.sweep, self.friction) if self.sweep < SQUARE_FACE_RAD else None
 
@@ -154,7 +154,7 @@ class Wiper(_Overhead):
             )
         return encounter.verdict(encounter.through(self.opening(encounter.orientations, BEYOND_TRACK_M)))
 
-    def standing(self, track, orientations):
+    def standing(self, track, orientations) -> Standing:
         """Return its blade, which goes on over the free edge."""
         import shapely
 
@@ -172,7 +172,7 @@ class Wiper(_Overhead):
     def goes_on(self, width):
         return 0.0 if self.face is None else width / math.tan(self.sweep)
 
-    def footprint(self, place, width, thick):
+    def footprint(self, place, width, thick) -> np.ndarray:
         """Return where it stands, unrolled, (4, 2) [m]: leaning ahead towards the free edge."""
         lean = width / math.tan(self.sweep) if self.face else 0.0
         near, far = [place, 0.0], [place + lean, width]
@@ -183,7 +183,7 @@ class Wiper(_Overhead):
         own |= {} if self.friction is None else {"friction": self.friction}
         return super().document_values() | (own if self.face else {})
 
-    def _edge(self, width):
+    def _edge(self, width) -> list[Any]:
         """Its lower edge from the wall to the free edge: distances and heights [m]."""
         if not self.contour:
             return [(0.0, self.limit), (width, self.limit)]
@@ -238,7 +238,7 @@ class Profile(Device):
         return mapping_text((("of", orientation_names.written(aspect, heading)), ("play", length_text(play))))
 
     @property
-    def across(self):
+    def across(self) -> float:
         return 0.0
 
     def opening(self, orientations, width):

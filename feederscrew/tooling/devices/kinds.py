@@ -2,6 +2,7 @@
 
 import importlib
 import pkgutil
+from typing import Any
 
 from feederscrew.tooling import devices
 from feederscrew.tooling.devices.base import Device
@@ -29,7 +30,7 @@ def make_device(kind, where, **values):
     return KINDS[kind](where, **values)
 
 
-def names(**traits):
+def names(**traits) -> tuple[Any, ...]:
     """Return the names of the kinds that have some traits, such as ``hangs=True``: a tuple of str."""
     return tuple(
         name
@@ -43,12 +44,12 @@ def cost_class(devices):
     return max((device.cost_class for device in devices), default=1)
 
 
-def dearer(cost):
+def dearer(cost) -> tuple[Any, ...]:
     """Return the names of the kinds whose cost class is above one: a tuple of str."""
     return tuple(name for name, kind in KINDS.items() if kind.cost_class > cost)
 
 
-def leaning():
+def leaning() -> tuple[Any, ...]:
     """Return the kinds (type, ...) that lean the track."""
     return tuple(kind for kind in KINDS.values() if kind.leans)
 

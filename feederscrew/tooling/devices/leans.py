@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -32,7 +33,7 @@ class Lean(Device):
     angle: float = 0.0  # [rad]
 
     @classmethod
-    def holding(cls, orientation, wall_friction, where):
+    def holding(cls, orientation, wall_friction, where) -> tuple[Any, ...]:
         """Return what holds an orientation that rolls on the level, devices in order; none where it does not.
 
         Parameters
@@ -45,26 +46,26 @@ class Lean(Device):
         return ()
 
     @classmethod
-    def leanings(cls, orientation, where):
+    def leanings(cls, orientation, where) -> list[Any]:
         """Return other ways to lean the track for an orientation, a list of tuples of Device."""
         return []
 
     @classmethod
-    def parting(cls, where):
+    def parting(cls, where) -> None:
         """Return the stretch of track on which parts come apart, or None."""
         return None
 
-    def edge(self, start, length, width):
+    def edge(self, start, length, width) -> np.ndarray:
         """Return where it begins, unrolled: a line across the track."""
         return np.array(
             [[start, 0.0], [start + DRAWN_LINE_M, 0.0], [start + DRAWN_LINE_M, width], [start, width]]
         )
 
-    def document_values(self):
+    def document_values(self) -> dict[Any, Any]:
         return {"angle_deg": math.degrees(self.angle)}
 
     @property
-    def label(self):
+    def label(self) -> str:
         return f"{self.kind} {self.text}"
 
 
@@ -87,7 +88,7 @@ class Groove(Lean):
     layer = "SLOPE"
 
     @classmethod
-    def read(cls, entry):
+    def read(cls, entry) -> dict[Any, Any]:
         arguments = values.mapping(entry, ("angle",), "write {angle: 30 deg}")
         return {"angle": values.within(arguments, "angle", "angle", FLATTEST, STEEPEST_FACE_RAD)}
 
@@ -95,11 +96,11 @@ class Groove(Lean):
         return mapping_text((("angle", angle_text(self.angle)),))
 
     @property
-    def value_words(self):
+    def value_words(self) -> str:
         return f"both faces rise at {degrees_words(self.angle)}"
 
     @classmethod
-    def of(cls, degrees, where):
+    def of(cls, degrees, where) -> tuple[Any, ...]:
         """Return a groove of so many degrees, and the low bank that ends it."""
         groove = cls(where, angle=math.radians(degrees))
         return groove.rewritten(), Bank.of(LEAST, where)
@@ -109,7 +110,7 @@ class Groove(Lean):
         return cls.of(HOLDS, where) if orientation.rolls_along else ()
 
     @classmethod
-    def leanings(cls, orientation, where):
+    def leanings(cls, orientation, where) -> list[Any]:
         return (
             [cls.of(angle, where) for angle in ANGLES]
             if orientation.kind == "rolling" and orientation.rolls_along
@@ -128,7 +129,7 @@ class Groove(Lean):
         """Return what it does: it passes what lies in it as it came, and turns the rest."""
         return encounter.laid_in_groove(self.angle)
 
-    def standing(self, track, orientations):
+    def standing(self, track, orientations) -> Standing:
         slope = Slope(0.0, bank=self.angle, wall=0.5 * math.pi - self.angle)
         return Standing(GROOVE_ROOMS * room_of(orientations), slopes=(slope,))
 
@@ -151,7 +152,7 @@ class Bank(Lean):
     layer = "SLOPE"
 
     @classmethod
-    def read(cls, entry):
+    def read(cls, entry) -> dict[Any, Any]:
         return {"angle": values.within({entry.key: entry}, entry.key, "angle", 0.0, MAX_BANK_RAD)}
 
     @classmethod
@@ -163,18 +164,18 @@ class Bank(Lean):
         return angle_text(self.angle)
 
     @property
-    def value_words(self):
+    def value_words(self) -> str:
         return f"{degrees_words(self.angle)} towards the wall"
 
     @classmethod
-    def holding(cls, orientation, wall_friction, where):
+    def holding(cls, orientation, wall_friction, where) -> tuple[Any, ...]:
         """Return the bank at which the wall's friction holds an orientation, if that is none too steep."""
         steep = math.degrees(math.atan2(math.tan(max(orientation.track.climb, 0.0)), max(wall_friction, 0.0)))
         bank = max(LEAST, math.ceil(steep + MORE))
         return (cls.of(bank, where),) if wall_friction > 0.0 and bank <= MOST else ()
 
     @classmethod
-    def leanings(cls, orientation, where):
+    def leanings(cls, orientation, where) -> list[Any]:
         return [(cls.of(bank, where),) for bank in PROPOSED_BANKS_DEG]
 
     def onward(self, orientation):
@@ -185,7 +186,7 @@ class Bank(Lean):
             orientation, track=track, groove=0.0, may_roll_back=orientation.may_roll_back and not held
         )
 
-    def standing(self, track, orientations):
+    def standing(self, track, orientations) -> Standing:
         return Standing(0.5 * room_of(orientations), slopes=(Slope(0.0, bank=self.angle, wall=0.0),))
 
 
@@ -205,7 +206,7 @@ class Separation(Lean):
     layer = "SLOPE"
 
     @classmethod
-    def read(cls, entry):
+    def read(cls, entry) -> dict[Any, Any]:
         arguments = values.mapping(entry, ("climb",), "write {climb: -4 deg}")
         return {"angle": values.within(arguments, "climb", "angle", -MAX_BANK_RAD, MAX_BANK_RAD)}
 
@@ -217,11 +218,11 @@ class Separation(Lean):
         return mapping_text((("climb", angle_text(self.angle)),))
 
     @property
-    def value_words(self):
+    def value_words(self) -> str:
         return f"{'goes down' if self.angle < 0.0 else 'climbs'} at {degrees_words(abs(self.angle))}"
 
     @property
-    def serves(self):  # type: ignore[override]  # of others a text of the class
+    def serves(self) -> str:  # type: ignore[override]  # of others a text of the class
         """What it is for: on the way down parts come apart, on the way up rails begin."""
         return "makes the gaps a vision reject needs" if self.angle < 0.0 else "climbs again, as rails need"
 
@@ -229,7 +230,7 @@ class Separation(Lean):
         """Return an orientation as it goes on, on the steeper track."""
         return replace(orientation, track=replace(orientation.track, climb=self.angle))
 
-    def standing(self, track, orientations):
+    def standing(self, track, orientations) -> Standing:
         return Standing(room_of(orientations), slopes=(Slope(0.0, climb=self.angle),))
 
 

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -39,7 +39,7 @@ class _Turner(Device):
     def read(cls, entry):
         return values.length(entry)
 
-    def standing(self, track, orientations):
+    def standing(self, track, orientations) -> Standing:
         drop, aside = self.lower(orientations)
         width, far = (
             track.extent,
@@ -64,10 +64,10 @@ class Step(_Turner):
     )
     layer = "STEP"
 
-    def lower(self, orientations):
+    def lower(self, orientations) -> tuple[Any, ...]:
         return self.limit, 0.0
 
-    def edge(self, start, length, width):
+    def edge(self, start, length, width) -> np.ndarray:
         middle = start + 0.5 * length
         return np.array(
             [[middle, 0.0], [middle + DRAWN_EDGE_M, 0.0], [middle + DRAWN_EDGE_M, width], [middle, width]]
@@ -78,7 +78,7 @@ class Step(_Turner):
         return encounter.turning(turned, margin)
 
     @classmethod
-    def changes(cls, often):
+    def changes(cls, often) -> list[Any]:
         """Return the values [m] at which it changes what it does with some orientations, a Meeting each."""
         turns = [encounter.pitched() for encounter in often]
         return sorted({x for turn in turns for x in (turn.lift, turn.sure, turn.holds) if np.isfinite(x)})
@@ -98,13 +98,13 @@ class Tip(_Turner):
     layer = "LEDGE"
     inwards = True
 
-    def span_on(self, track):
+    def span_on(self, track) -> tuple[Any, ...] | None:
         return (self.limit, track.extent) if self.limit < track.extent else None
 
-    def lower(self, orientations):
+    def lower(self, orientations) -> tuple[Any, ...]:
         return below_ledge(orientations), self.limit
 
-    def edge(self, start, length, width):
+    def edge(self, start, length, width) -> np.ndarray:
         low, high = self.limit, self.limit + DRAWN_EDGE_M
         return np.array([[start, low], [start + length, low], [start + length, high], [start, high]])
 
@@ -120,7 +120,7 @@ class Tip(_Turner):
         return encounter.turning(turned, margin)
 
     @classmethod
-    def changes(cls, often):
+    def changes(cls, often) -> list[Any]:
         """Return the values [m] at which it changes what it does with some orientations, a Meeting each."""
         return sorted(
             {
@@ -172,7 +172,7 @@ class NarrowedTrack(_OneNumber):
     def fate(self, encounter):
         return RETURNED
 
-    def span_on(self, track):
+    def span_on(self, track) -> tuple[Any, ...] | None:
         return (self.limit, track.extent) if self.limit < track.extent else None
 
     @classmethod
@@ -202,7 +202,7 @@ class PressureBreak(_OneNumber):
     carries = True
     feature = DISTANCE
 
-    def span_on(self, track):
+    def span_on(self, track) -> tuple[Any, ...] | None:
         return (self.limit, track.extent) if self.limit < track.extent else None
 
     def fate(self, encounter):
@@ -253,10 +253,10 @@ class Canyon(_OneNumber):
     carries = True
     feature = DISTANCE
 
-    def misfits(self, width):
+    def misfits(self, width) -> list[Any]:
         return [self.whole(width)] if self.limit >= width else []
 
-    def span_on(self, track):
+    def span_on(self, track) -> tuple[Any, ...]:
         return 0.0, self.limit
 
     @classmethod
@@ -388,14 +388,14 @@ class Rails(Device):
             lead = (min(lead[0], span[0]), max(lead[1], span[1]), *lead[2:])
         return replace(self, span=tuple(span), lead=tuple(lead)).rewritten()
 
-    def value_text(self):
+    def value_text(self) -> str:
         return written(self.span, self.lead)
 
-    def hop_blur(self, orientation):
+    def hop_blur(self, orientation) -> float:
         """Return nothing: its margins are widths of head, shank and slot, which a hop does not change."""
         return 0.0
 
-    def standing(self, track, orientations):
+    def standing(self, track, orientations) -> Standing:
         """Return its slot, which goes on behind it: those that hang do not come back onto the track."""
         room, size = (
             room_of(orientations),
@@ -435,7 +435,7 @@ class Rails(Device):
         return f"{written(self.span)}, lead-in {near:.6g} to {far:.6g} mm"
 
     @property
-    def value_words(self):
+    def value_words(self) -> str:
         lead = f", lead-in {span_words(self.lead[:2])}" if self.lead else ""
         return f"slot {span_words(self.span)}{lead}"
 
@@ -448,7 +448,7 @@ class Rails(Device):
         }
 
 
-def written(span, lead=()):
+def written(span, lead=()) -> str:
     """Return a slot [m] and its lead-in as a bowl file has them."""
     names = ("from", "to", "length", "taper")
     lengths = ", ".join(f"{name}: {size / MM:.9g} mm" for name, size in zip(names, lead))

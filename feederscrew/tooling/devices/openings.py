@@ -1,7 +1,8 @@
 """Holes in the track about the bowl's axis, and the devices with an edge across it: gap and cut-out."""
 
 import math
-from typing import NamedTuple
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -23,7 +24,7 @@ class HoleEdges(NamedTuple):
     nodes: np.ndarray  # (P, 3) [rad, m] points of its border that what is left may end in; 1: corner
 
 
-def polygon(corners, radius):
+def polygon(corners, radius) -> HoleEdges:
     """Return a hole about the bowl's axis from its unrolled polygon.
 
     Parameters
@@ -45,7 +46,7 @@ def polygon(corners, radius):
     return HoleEdges(edges=np.array(rows), nodes=np.array(nodes).reshape(-1, 3))
 
 
-def gap(length, radius, width):
+def gap(length, radius, width) -> HoleEdges:
     """Return a gap across the track: the edge left is radial, the edge met is parallel to it.
 
     Parameters
@@ -66,7 +67,7 @@ def gap(length, radius, width):
     return HoleEdges(edges=np.array([*rows, inner]), nodes=np.empty((0, 3)))
 
 
-def gap_outline(length, radius, width):
+def gap_outline(length, radius, width) -> np.ndarray:
     """Return a gap unrolled from its start, (K, 2) [m], by the edges of its hole.
 
     Parameters
@@ -83,7 +84,7 @@ def gap_outline(length, radius, width):
     return np.vstack([[[sides[0][0], width], [sides[0][-1], 0.0]], np.column_stack([sides[1], across])[::-1]])
 
 
-def _edge(theta0, r0, theta1, r1):
+def _edge(theta0, r0, theta1, r1) -> list[Any]:
     """One straight edge of the unrolled polygon as `crossing` has it; from a later to an earlier angle the
     hole, on its left, lies nearer to the wall, and the track left beyond it bulges."""
     if r0 == r1:
@@ -98,7 +99,7 @@ def _turned_left(corners):
     return corners if twice > 0.0 else corners[::-1]
 
 
-def _sides(corners):
+def _sides(corners) -> list[Any]:
     """Start and end of each side of a ring of corners."""
     return list(zip(corners, (*corners[1:], corners[0])))
 
@@ -108,7 +109,7 @@ def through_the_wall(corners):
     return _moved_out(corners, math.inf, WALL_OVERCUT_M)
 
 
-def beyond_borders(corners, width, far):
+def beyond_borders(corners, width, far) -> list[Any]:
     """Return the corners [m] of a hole, in pairs, with edges along the wall and the free edge moved out.
 
     Edges that only end there stay as they are: what lies beside them in a corner carries parts.
@@ -139,7 +140,7 @@ def _moved_out(corners, width, far):
     return out
 
 
-def _reflex(corners):
+def _reflex(corners) -> Iterator[Any]:
     """The corners of the hole that point into it: there the track left has a corner."""
     sides = _sides(corners)
     for ((s0, y0), (s1, y1)), (_, (s2, y2)) in zip((sides[-1], *sides), sides):
@@ -147,7 +148,7 @@ def _reflex(corners):
             yield s1, y1
 
 
-def _bulging(start, end, radius):
+def _bulging(start, end, radius) -> Iterator[Any]:
     """Points along an edge beyond which the track left bulges, as nodes."""
     (s0, y0), (s1, y1) = start, end
     if s1 >= s0:
@@ -180,14 +181,14 @@ class Gap(Device):
     def read(cls, entry):
         return values.length(entry)
 
-    def hole_on(self, track):
+    def hole_on(self, track) -> HoleEdges:
         return gap(self.limit, track.radius, track.extent)
 
-    def outline_on(self, track, length):
+    def outline_on(self, track, length) -> np.ndarray:
         return gap_outline(self.limit, track.radius, track.extent)
 
     @property
-    def across(self):
+    def across(self) -> float:
         return 0.0
 
     @classmethod
@@ -226,14 +227,14 @@ class CutOut(Device):
     def value_text(self):
         return corners_text(self.corners)
 
-    def misfits(self, width):
+    def misfits(self, width) -> list[Any]:
         across = [y for _, y in self.corners]
         return [self.beside_track_fault(width)] if max(across) <= 0.0 or min(across) >= width else []
 
-    def hole_on(self, track):
+    def hole_on(self, track) -> HoleEdges:
         return polygon(np.array(self.corners), track.radius)
 
-    def outline_on(self, track, length):
+    def outline_on(self, track, length) -> np.ndarray:
         return np.array(self.corners)
 
     def goes_on(self, width):

@@ -1,6 +1,7 @@
 """The orientation that a text such as A@90 names."""
 
 import re
+from typing import Any
 
 import numpy as np
 
@@ -65,7 +66,7 @@ def rows(aspects, aspect, where, kind=FeederError):
     return rows_of_aspect
 
 
-def _places(aspects, aspect):
+def _places(aspects, aspect) -> list[Any]:
     return [k for k, name in enumerate(aspects) if name.casefold() == aspect.strip().casefold()]
 
 
@@ -96,5 +97,5 @@ def _turn(angle):
     return np.remainder(angle + np.pi, 2.0 * np.pi) - np.pi
 
 
-def _once(names):
+def _once(names) -> str:
     return ", ".join(dict.fromkeys(names))

@@ -6,6 +6,7 @@ Source: isentropic flow through a nozzle; docs/tooling.md.
 import functools
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import shapely
@@ -78,7 +79,7 @@ class Nozzles:
         """Thrust [N] of one."""
         return thrust(self.diameter, self.pressure)
 
-    def heights(self, orientations):
+    def heights(self, orientations) -> np.ndarray:
         """Return their heights [m] over the track, (N,), upwards.
 
         Where nothing is said of it, one nozzle blows at the lowest centre of mass. Several blow where each
@@ -87,7 +88,7 @@ class Nozzles:
         """
         return np.array(_heights(self, tuple(orientations)))
 
-    def _placed(self, orientations):
+    def _placed(self, orientations) -> np.ndarray:
         low, top = self.height, max(orientation.height for orientation in orientations)
         if low is None and self.count > 1:
             impulses = _meeting(
@@ -119,7 +120,7 @@ class Nozzles:
         pushes = [_share(orientation, self.diameter, float(height)) for height in heights]
         return sum(out - (orientation.grip or GRIP) * down for out, down in pushes)
 
-    def push(self, orientation, orientations, ahead=0.0):
+    def push(self, orientation, orientations, ahead=0.0) -> tuple[Any, ...]:
         """Return the force [N] outwards, and down, on an orientation whose centre of mass is before them.
 
         Or ``ahead`` [m] of them. Air gives a facet what of its momentum goes into that, so a slope is pressed
@@ -130,7 +131,7 @@ class Nozzles:
         ]
         return tuple(self.thrust * sum(push[k] for push in pushes) for k in range(2))
 
-    def jets(self, place, orientations, seconds=math.inf):
+    def jets(self, place, orientations, seconds=math.inf) -> tuple[Any, ...]:
         """Return their Jets at a place [m] along the device."""
         return tuple(
             Jet((place, 0.0, height), ACROSS, 0.5 * self.diameter, SPREAD, self.thrust, JET_REACH_M, seconds)
@@ -139,18 +140,18 @@ class Nozzles:
 
 
 @functools.lru_cache(maxsize=256)
-def _heights(nozzles, orientations):
+def _heights(nozzles, orientations) -> tuple[Any, ...]:
     """As `Nozzles.heights`."""
     return tuple(nozzles._placed(orientations))
 
 
-def _share(orientation, diameter, height, ahead=0.0):
+def _share(orientation, diameter, height, ahead=0.0) -> tuple[Any, ...]:
     """What of a jet's thrust an orientation takes [1]: outwards from the wall, and down."""
     return _taken(orientation.posture, orientation.heading, (ahead, orientation.distance), diameter, height)
 
 
 @functools.lru_cache(maxsize=4096)
-def _taken(posture, heading, place, diameter, height):
+def _taken(posture, heading, place, diameter, height) -> tuple[Any, ...]:
     points, faces = posture.surface, posture.solid.faces
     plan = turned(points[:, :2], heading) + place
     corners = np.column_stack([plan, points[:, 2]])[faces]
@@ -204,7 +205,7 @@ def _meeting(spans, radius):
     return met_shares
 
 
-def _spread(heights, top, count):
+def _spread(heights, top, count) -> np.ndarray:
     """Return some heights [m] and as many more as make a count, each amid the widest space up to a top."""
     spread_heights = sorted(heights)
     while len(spread_heights) < count:
@@ -335,17 +336,17 @@ class Sorter(Device):
         )
 
     @property
-    def full_name(self):
+    def full_name(self) -> str:
         return f"{self.name} ({SEEN_BY[self.sees][0]})"
 
     @property
-    def value_words(self):
+    def value_words(self) -> str:
         what, most = SEEN_BY[self.sees][1], length_words(self.like[2])
         pulse = "" if self.time == PULSE else f", air for {self.time / MS:.4g} ms"
         return f"keeps {keeps((self.like[:2], *self.also))}, rejects {what} by more than {most}{pulse}"
 
     @property
-    def shop_words(self):
+    def shop_words(self) -> tuple[Any, ...]:
         most = f"resolves {length_words(self.blur)}, rejects more than {length_words(self.like[2])}"
         nozzles = f"{self.nozzles:.0f} nozzles of {length_words(self.nozzle)} in the wall"
         valve = f"solenoid valve: opens within {REACTION / MS:.3g} ms, pulse of {self.time / MS:.4g} ms"
@@ -380,7 +381,7 @@ class Sorter(Device):
             return encounter.askew(self.sees)
         return min(encounter.differs(orientation, self.sees) for orientation in wanted)
 
-    def wanted(self, orientations):
+    def wanted(self, orientations) -> tuple[Any, ...]:
         """Return the orientations that it passes."""
         source = self.where, f"{self.kind} names"
         return tuple(
@@ -389,11 +390,11 @@ class Sorter(Device):
         )
 
     @property
-    def jet(self):
+    def jet(self) -> Nozzles:
         """Its Nozzles."""
         return Nozzles(self.nozzle, self.pressure, self.height, round(self.nozzles))
 
-    def standing(self, track, orientations):
+    def standing(self, track, orientations) -> Standing:
         """Return the sensor half a room behind its begin, and the nozzles in the wall behind it."""
         room = room_of(orientations)
         middle = 0.5 * room
@@ -430,11 +431,11 @@ class Sorter(Device):
             return encounter.verdict(0.0)  # it is carried on, whatever is seen
         return encounter.verdict(margin)
 
-    def edge(self, start, length, width):
+    def edge(self, start, length, width) -> np.ndarray:
         """Return what it sees, unrolled: the track as far as the longest part."""
         return np.array([[start, 0.0], [start + length, 0.0], [start + length, width], [start, width]])
 
-    def document_values(self):
+    def document_values(self) -> dict[Any, Any]:
         return {
             "value_mm": self.like[2] / MM,
             "sees": self.sees,
@@ -518,30 +519,30 @@ class SteadyJet(Device):
         return mapping_text((*entries, ("height", length_text(self.height))))
 
     @property
-    def value_words(self):
+    def value_words(self) -> str:
         bore, high = length_words(self.nozzle), length_words(self.height)
         return f"nozzle of {bore} at {self.pressure / BAR_PA:.4g} bar, {high} over the track"
 
     @property
-    def shop_words(self):
+    def shop_words(self) -> tuple[Any, ...]:
         bore = length_words(self.nozzle)
         return (
             f"1 nozzle of {bore} in the wall, blows steadily: regulator {self.pressure / BAR_PA:.4g} bar",
         )
 
     @property
-    def jet(self):
+    def jet(self) -> Nozzles:
         """Its Nozzles, one."""
         return Nozzles(self.nozzle, self.pressure, self.height)
 
     def fate(self, encounter):
         return RETURNED
 
-    def factor(self, encounter):
+    def factor(self, encounter) -> float:
         """Return its mean force on an orientation that passes, over the one that just moves it off [1]."""
         return float(np.mean(self._factors(encounter)))
 
-    def most(self, encounter):
+    def most(self, encounter) -> float:
         """Return the greatest such factor [1] at any place along an orientation."""
         return float(self._factors(encounter).max())
 
@@ -573,11 +574,11 @@ class SteadyJet(Device):
             margin = 0.0 if factor < 1.0 else -UNSURE
         return encounter.verdict(max(margin, -distance))
 
-    def standing(self, track, orientations):
+    def standing(self, track, orientations) -> Standing:
         room = room_of(orientations)
         return Standing(room, jets=self.jet.jets(0.5 * room, orientations))
 
-    def edge(self, start, length, width):
+    def edge(self, start, length, width) -> np.ndarray:
         """Return its beam, unrolled."""
         middle, near = start + 0.5 * length, 0.5 * self.nozzle
         far = near + SPREAD * width
@@ -585,15 +586,15 @@ class SteadyJet(Device):
             [[middle - near, 0.0], [middle + near, 0.0], [middle + far, width], [middle - far, width]]
         )
 
-    def document_values(self):
+    def document_values(self) -> dict[Any, Any]:
         return {"nozzle_mm": self.nozzle / MM, "pressure_bar": self.pressure / 1e5,
                 "height_mm": self.height / MM, "thrust_N": self.jet.thrust}  # fmt: skip
 
     @property
-    def label(self):
+    def label(self) -> str:
         return f"{self.kind} {self.text}"
 
 
-def _pressure(nozzle, force):
+def _pressure(nozzle, force) -> float:
     """The pressure [Pa] at which a nozzle [m] has a thrust [N], which the supply makes."""
     return float(brentq(lambda pressure: thrust(nozzle, pressure) - force, 0.0, MAX_JET_PRESSURE_PA))

@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 from feederscrew import units
 from feederscrew.errors import ConfigError
@@ -18,7 +19,7 @@ NOZZLE = {  # dimension and limits, in SI units, of what is said of a jet
 }
 
 
-def length(entry):
+def length(entry) -> dict[Any, Any]:
     """Read a length above 0, as {'limit': [m]}."""
     limit = _quantity(entry.value, entry.key, "length")
     if limit <= 0.0:
@@ -71,7 +72,7 @@ def sensor(entry, views):
     return any_of
 
 
-def nozzle(entry, more=(), needed=()):
+def nozzle(entry, more=(), needed=()) -> dict[Any, Any]:
     """Read {nozzle: 2 mm, pressure: 3 bar, height: 4 mm}, and the time of a pulse where there is one."""
     names = ("nozzle", "pressure", "height", *more)
     optional = [name for name in names if name not in needed]
@@ -95,7 +96,7 @@ def span(entry):
     return span_and(entry)[0]
 
 
-def span_and(entry, more=(), needed=()):
+def span_and(entry, more=(), needed=()) -> tuple[Any, ...]:
     """Read {from: 2 mm, to: 5 mm} with more entries beside it: {'span': (m, m)}, and all by key."""
     names = ("from", "to", *needed, *more)
     arguments = mapping(entry, names, "write {from: 2 mm, to: 5 mm}", more)
@@ -108,7 +109,7 @@ def span_and(entry, more=(), needed=()):
     return {"span": (first, last)}, arguments
 
 
-def shares(entry):
+def shares(entry) -> dict[Any, Any]:
     """Read the share that passes by aspect, as {'shares': ((aspect, 1), ...)}."""
     if entry.value.kind != "mapping" or not entry.value.entries:
         raise ConfigError(
@@ -117,7 +118,7 @@ def shares(entry):
     return {"shares": tuple((orientation.key, _share(orientation)) for orientation in entry.value.entries)}
 
 
-def polygon(entry):
+def polygon(entry) -> dict[Any, Any]:
     """Read a polygon of lengths, or the file that holds it, as 'corners' and an 'assumption'.
 
     The assumption is what was taken for granted of the file, a sentence; '' of nothing.
@@ -127,7 +128,7 @@ def polygon(entry):
     return {"corners": simple(corners, entry.value.where, entry.key), "assumption": assumption}
 
 
-def opening(entry):
+def opening(entry) -> dict[Any, Any]:
     """Read a polygon of the opening, or {of: A@90, play: 0.2 mm}, as {'corners': ...} or {'like': ...}."""
     if entry.value.kind != "mapping":
         return polygon(entry)
@@ -135,12 +136,12 @@ def opening(entry):
     return {"like": _like(arguments)}
 
 
-def _like(entry):
+def _like(entry) -> tuple[Any, ...]:
     """Aspect, heading [rad] and play [m] of an orientation that is named."""
     return (*_orientation(entry["of"].value), _play(entry))
 
 
-def _any_of(entry):
+def _any_of(entry) -> dict[Any, Any]:
     """The first orientation of those named with its play, as 'like', and the others as 'also'."""
     node = entry["of"].value
     if node.kind != "list":
@@ -151,7 +152,7 @@ def _any_of(entry):
     return {"like": (*first, _play(entry)), "also": tuple(rest)}
 
 
-def _orientation(node):
+def _orientation(node) -> tuple[Any, ...]:
     """Aspect and heading [rad] of an orientation, as A@90."""
     name, at, turn = node.text.partition("@")
     if not at or not name.strip():
@@ -167,7 +168,7 @@ def _play(entry):
     return play
 
 
-def simple(corners, where, kind):
+def simple(corners, where, kind) -> tuple[Any, ...]:
     """Return the corners of a polygon that neither crosses itself nor has no area.
 
     Parameters
@@ -244,7 +245,7 @@ def _corners(node, kind):
     return corners
 
 
-def _drawn(entry):
+def _drawn(entry) -> tuple[Any, ...]:
     """The one closed polyline of a layer of a DXF file, and what was taken for granted of its unit."""
     arguments = mapping(entry, ("dxf", "layer"), "write {dxf: tooling.dxf, layer: CUT}")
     node, layer = arguments["dxf"].value, arguments["layer"].value.text
@@ -283,7 +284,7 @@ def _parsed(text, where, name, dimension):
         raise ConfigError(where, f"{name}: {fault.what}", fault.mend) from None
 
 
-def crossed(corners):
+def crossed(corners) -> bool:
     """Return whether two sides of corners (K, 2) that are not neighbours meet, or two corners coincide."""
     sides = list(zip(corners, (*corners[1:], corners[0])))
     count = len(sides)

@@ -4,6 +4,7 @@ and why two orientations cannot be separated, and what change of the part would 
 
 import itertools
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import shapely
@@ -18,13 +19,13 @@ SHOP_STEP_M = 5e-5  # [m] of values that a shop makes
 SHOP_ROUNDING_M = 1e-7  # [m] to which a value is rounded
 
 
-def snap_to_shop_step(value, step, up):
+def snap_to_shop_step(value, step, up) -> float:
     """Return the nearest multiple of a step [m] that is not below a value, or not above it."""
     count = value / step
     return float((np.ceil(count - 1e-6) if up else np.floor(count + 1e-6)) * step)
 
 
-def in_mm(value):
+def in_mm(value) -> str:
     """Return a length [m] as a bowl file has it: '9.25 mm'."""
     return f"{1e3 * round_finely(value):.9g} mm"
 
@@ -67,17 +68,17 @@ class DesignConstraints:
     turn: bool = False  # devices that turn parts over, where returning them wastes too much
     air: bool = False  # air that blows all the time, where cuts and blades are not enough
 
-    def allows(self, *kinds):
+    def allows(self, *kinds) -> bool:
         """Return whether some kinds of devices may all be used."""
         return not set(kinds) & set(self.without)
 
     @property
-    def sensed(self):
+    def sensed(self) -> bool:
         """Whether a sensor may be used."""
         return any(self.allows(kind.kind) for kind in values_around())
 
     @property
-    def clearing(self):
+    def clearing(self) -> bool:
         """Whether a blade that clears itself may be used."""
         return any(self.allows(kind.kind) for kind in numbered() if kind.overhead)
 
@@ -137,7 +138,7 @@ def candidates(
                 [margin_at(device, orientation, orientations) for orientation in orientations]
             )
 
-    def unlike(view):
+    def unlike(view) -> list[Any]:
         equals = [orientations[k] for k in same if k != wanted]
         return [
             equal for equal in equals if DeviceEncounter(equal).differs(orientations[wanted], view) > margin
@@ -161,12 +162,12 @@ def pivot(kind, orientations, wanted, same=()):
     return (max if kind.bound == "upper" else min)(rows, key=lambda k: values[k])
 
 
-def values_around():
+def values_around() -> list[Any]:
     """Return the kinds that a design tries with the wanted orientation's own outline."""
     return [kind for kind in KINDS.values() if kind.proposed and kind.senses]
 
 
-def blowing():
+def blowing() -> list[Any]:
     """Return the kinds that a design tries that blow all the time."""
     return [kind for kind in KINDS.values() if kind.proposed and not (kind.senses or kind.bound)]
 
@@ -184,13 +185,13 @@ def margin_at(device, orientation, orientations):
     return margin if orientation.grip <= 0.0 or surely_gone(device, orientation) else max(margin, -UNSURE)
 
 
-def numbered():
+def numbered() -> list[Any]:
     """Return the kinds of one number that a design tries, in the order of their ranks: drops first."""
     kinds = [kind for kind in KINDS.values() if kind.proposed and kind.bound]
     return sorted(kinds, key=lambda kind: kind.rank)
 
 
-def limits(kind, orientations):
+def limits(kind, orientations) -> np.ndarray:
     """Return the value [m] of a device of one number that each orientation just passes, (M,)."""
     return np.array([kind.needed(orientation) for orientation in orientations])
 
@@ -228,7 +229,7 @@ def fewest(margins, competitors, margin, enough=0.0):
     return best
 
 
-def jams(margins, chosen, competitors, margin):
+def jams(margins, chosen, competitors, margin) -> bool:
     """Return whether an orientation that weighs comes to stand at a device, not returned before it."""
     gone = np.asarray(competitors) <= 0.0
     for device in chosen:
@@ -238,7 +239,9 @@ def jams(margins, chosen, competitors, margin):
     return False
 
 
-def place_devices(orientations, wanted, devices, must, least=np.inf, step=SHOP_ROUNDING_M, same=()):
+def place_devices(
+    orientations, wanted, devices, must, least=np.inf, step=SHOP_ROUNDING_M, same=()
+) -> tuple[Any, ...]:
     """Return the cuts of a chain, each value in the middle of what it may be.
 
     Source: own; docs/tooling.md, "5. Where it ends".
@@ -275,7 +278,7 @@ def shared_out(margins, devices, margin):
     return out
 
 
-def _cut(orientations, wanted, device, must, least, step):
+def _cut(orientations, wanted, device, must, least, step) -> Cut:
     if device.senses:
         return _sensor(orientations, wanted, device, must, step)
     if not device.bound:
@@ -301,7 +304,7 @@ def _cut(orientations, wanted, device, must, least, step):
     return judge_cut(orientations, wanted, chosen, must, *ends)
 
 
-def _sensor(orientations, wanted, device, must, step):
+def _sensor(orientations, wanted, device, must, step) -> Cut:
     least = device.like[2]
     outside = [
         device.differs(DeviceEncounter(orientation, orientations))
@@ -319,7 +322,7 @@ def _sensor(orientations, wanted, device, must, step):
     return judge_cut(orientations, wanted, chosen, must, at(widest), at(least))
 
 
-def _more(device, orientations):
+def _more(device, orientations) -> np.ndarray:
     """By how much more [m] than placed each orientation passes a device as it travels, (M,)."""
     return np.array([device.more(DeviceEncounter(orientation)) for orientation in orientations])
 
@@ -327,7 +330,7 @@ def _more(device, orientations):
 def _surest(orientations, must, at, middle, near, by=UNSURE):
     """The device of a value midway, or as near to that as it still returns what it has to, by a margin."""
 
-    def returns(device):
+    def returns(device) -> bool:
         return all(
             margin_at(device, orientation, orientations) < -by
             for orientation, some in zip(orientations, must)
@@ -342,7 +345,7 @@ def _surest(orientations, must, at, middle, near, by=UNSURE):
     return at(near)
 
 
-def judge_cut(orientations, wanted, device, must, smallest, largest):
+def judge_cut(orientations, wanted, device, must, smallest, largest) -> Cut:
     """Return a device as a Cut, with its true margins and what it returns."""
     margins = np.array([verdict(device, orientation, orientations).margin for orientation in orientations])
     return Cut(
@@ -368,7 +371,7 @@ class Difference:
     shift: tuple[float, float, float]  # [m] of the centre of mass within the hull: ahead, inwards, up
 
 
-def inseparable_reason(wanted, other, margin):
+def inseparable_reason(wanted, other, margin) -> str:
     """Return in one sentence why a chain leaves another orientation, and the smallest change that helps.
 
     Parameters
@@ -407,7 +410,7 @@ def inseparable_reason(wanted, other, margin):
     )
 
 
-def _inside(gap):
+def _inside(gap) -> str:
     """What differs of two orientations with the same outside."""
     ahead, inwards, up = (1e3 * abs(by) for by in gap.shift)
     return (
@@ -417,7 +420,7 @@ def _inside(gap):
     )
 
 
-def smallest_change(wanted, other, margin):
+def smallest_change(wanted, other, margin) -> str:
     """Return in words the least [m] that has to be added to what some device measures of a part."""
     feature, step = _nearest(wanted, other)
     if step >= 2.0 * margin:
@@ -431,14 +434,14 @@ def carries_more(orientation, other, margin):
     return lower and stands_on_all(orientation, other, margin)
 
 
-def stands_on_all(orientation, other, margin):
+def stands_on_all(orientation, other, margin) -> bool:
     """Return whether one orientation stands on all that another stands on: no hole lets it fall alone."""
     foot, within = (shapely.MultiPoint(k.foot.corners).convex_hull for k in (orientation, other))
     near = abs(orientation.distance - other.distance) < 2.0 * margin
     return bool(near and foot.buffer(margin).covers(within))
 
 
-def find_difference(wanted, other):
+def find_difference(wanted, other) -> Difference:
     """Return how two orientations differ as they lie on the track: a Difference.
 
     Parameters
@@ -461,7 +464,7 @@ def find_difference(wanted, other):
     return Difference(float(left.max()), SIDE_NAMES[axis][int(where[axis] < 0.0)], (x, y, z))
 
 
-def _nearest(wanted, other):
+def _nearest(wanted, other) -> tuple[Any, ...]:
     """What some device measures in which two orientations are farthest apart, and by how much [m]."""
     differences = [
         (-opening_margin(wanted.view_ahead, other), kind.kind, kind.feature)

@@ -93,7 +93,7 @@ def design_rails(task):
     return propose_needed(task, (*cuts, last), returned, same)
 
 
-def _before(task, passed, same, stage):
+def _before(task, passed, same, stage) -> tuple[Any, ...]:
     """Cuts before the rails that return what they neither let hang nor return, and which those return."""
     equals = np.flatnonzero(same & task.often)
     margins = chain.candidates(
@@ -126,7 +126,7 @@ def _slot_between(orientation, margin, step):
     return _rails(orientation, headed, headed.shank + play, step)
 
 
-def _ends(orientation, device, step):
+def _ends(orientation, device, step) -> tuple[Any, ...]:
     headed = neck(orientation)
     return tuple(_rails(orientation, headed, width, step) or device for width in (headed.shank, headed.head))
 
@@ -149,7 +149,7 @@ def _rails(orientation, headed, width, step):
     return Rails(chain.DESIGN_KEY, span=span, lead=lead).rewritten()
 
 
-def _lead(orientation, headed, span, step):
+def _lead(orientation, headed, span, step) -> tuple[Any, ...]:
     """Lead-in [m] of a slot: from under the tip of a shank that lies askew to as far beyond its middle.
 
     It is so narrow that a head with a flat underside rests on both rails wherever the shank stands in it:
@@ -174,7 +174,7 @@ TRIED = 4  # chains of each length
 MAX_STEP_SHARE = 0.5  # of the part's greatest length: over a higher step it tumbles freely
 
 
-def turning_chains(task):
+def turning_chains(task) -> list[Any]:
     """Return the chains worth a design behind them: those that bring most parts into the wanted orientation.
 
     Parameters
@@ -203,7 +203,7 @@ def turning_chains(task):
     return [_cuts(task, chosen) for chosen in chains]
 
 
-def _devices(task):
+def _devices(task) -> list[Any]:
     """Steps and ledges, one between each two values at which what they do changes."""
     orientations = task.orientations
     often = [orientation for orientation, some in zip(orientations, task.often & task.stays) if some]
@@ -221,7 +221,7 @@ def _changes(task, kind):
     return kind.changes([DeviceEncounter(orientation, task.orientations) for orientation in often])
 
 
-def _heights_between(heights):
+def _heights_between(heights) -> list[Any]:
     """Rounded middles between ascending values, and one above them all."""
     middles = [0.5 * (low + high) for low, high in itertools.pairwise(heights)]
     middles += [1.1 * heights[-1]] if heights else []
@@ -258,7 +258,7 @@ def _counted(task, device):
     return matrix
 
 
-def _share_after(task, matrices):
+def _share_after(task, matrices) -> float:
     """Share of the parts that is in the wanted orientation behind some devices."""
     share = task.coming
     for matrix in matrices:
@@ -266,14 +266,14 @@ def _share_after(task, matrices):
     return float(share[task.wanted])
 
 
-def _around(heights, limit):
+def _around(heights, limit) -> tuple[Any, ...]:
     """The values nearest to a limit at which what its device does changes; itself where there is none."""
     below = [height for height in heights if height <= limit]
     above = [height for height in heights if height >= limit]
     return max(below, default=limit), min(above, default=limit)
 
 
-def _cuts(task, devices):
+def _cuts(task, devices) -> tuple[Any, ...]:
     """Turning devices as cuts of a design, the second with what the first brings to it."""
     cuts, coming = [], task.coming
     for device in devices:
@@ -341,7 +341,7 @@ def varied_devices(orientations, wanted, margin, constraints, same=()):
     return margins
 
 
-def _margins(device, orientations):
+def _margins(device, orientations) -> np.ndarray:
     return np.array([chain.margin_at(device, orientation, orientations) for orientation in orientations])
 
 
@@ -480,7 +480,7 @@ def _plain(task, search):
     return replace(proposal, late=search.late)
 
 
-def _purer(proposal, other):
+def _purer(proposal, other) -> bool:
     """Whether a design leaves purer parts than another one."""
     return bool(np.nan_to_num(proposal.purity) > np.nan_to_num(other.purity) + PURITY_GAIN)
 
@@ -507,13 +507,13 @@ def _chosen(task, weight, stage) -> tuple[Any, np.ndarray]:
     return cuts, np.any([gone, *must], axis=0)
 
 
-def _left(task, returned):
+def _left(task, returned) -> bool:
     """Whether others that come often enough are left over."""
     left = ~returned & task.often & ~task.same
     return bool(task.coming[left].sum() > task.allowed) if left.any() else False
 
 
-def _with_holes(task, cuts, returned, search):
+def _with_holes(task, cuts, returned, search) -> tuple[Any, ...]:
     """Add cut-outs for those that are left, as long as one returns any."""
     returned = returned.copy()
     for _ in range(MOST_HOLES):

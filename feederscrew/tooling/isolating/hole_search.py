@@ -6,6 +6,7 @@ Their corners are round, as a cutter or a laser leaves them.
 import math
 import time
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 import shapely
@@ -39,7 +40,7 @@ class HoleSearch:
     spent: int = 0  # verdicts so far
     memo: dict = field(default_factory=dict)  # what whole searches found, and the verdicts each took
 
-    def started(self):
+    def started(self) -> "HoleSearch":
         """Return the same search for another orientation."""
         return replace(self, spent=0, late=False)
 
@@ -51,7 +52,7 @@ class HoleSearch:
         return self.late
 
 
-def cut_out(orientations, wanted, competitors, margin, search):
+def cut_out(orientations, wanted, competitors, margin, search) -> tuple[Any, ...] | None:
     """Return the hole that the wanted orientation passes and that returns the most others.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -97,7 +98,7 @@ def _search(orientations, wanted, competitors, margin, search):
     return best
 
 
-def _mirrored(orientations, wanted, competitors, margin, search):
+def _mirrored(orientations, wanted, competitors, margin, search) -> tuple[Any, ...] | None | None:
     """The same of the mirror images, fore and aft: a hole that parts those, mirrored, parts these."""
     places = {orientation.name: k for k, orientation in enumerate(orientations)}
     image = [places.get(orientation.mirror, k) for k, orientation in enumerate(orientations)]
@@ -129,7 +130,7 @@ class _Judge:
         self.scratch = {}
         self.order = list(range(len(competitors)))  # those that spoiled a hole last come first
 
-    def score(self, corners, beaten=-math.inf):
+    def score(self, corners, beaten=-math.inf) -> tuple[Any, ...]:
         """(score, margins of the others); (-infinity, None) where it does not pass or is not better."""
         hole = openings.polygon(corners, self.radius)
         self.search.spent += 1
@@ -166,7 +167,7 @@ class _Judge:
         nearly = [*margins[:k], math.nextafter(-self.margin, 0.0), *margins[k + 1 :]]  # not quite returned
         return -self.margin + max(self._worth(passing, nearly) - beaten, 0.0) + SCORE_TOLERANCE_M
 
-    def searched(self, rng):
+    def searched(self, rng) -> tuple[Any, ...] | None:
         """The best hole found, as (corners, margins), if it passes the wanted one and returns any other."""
         holes: list[tuple] = []  # (score, margins, corners), the best first
         for _ in range(STARTS):
@@ -185,7 +186,7 @@ class _Judge:
         """Return whether a hole of that score passes the wanted one and returns any other."""
         return score >= 500.0 * self.margin
 
-    def _climbed(self, start, rng):
+    def _climbed(self, start, rng) -> tuple[Any, ...]:
         """One hole improved by moving a corner, or all of it, at random."""
         score, margins, corners = start
         size = 0.15 * self.width
@@ -240,7 +241,7 @@ class _Judge:
             orientation.carry,
         )
 
-    def _least(self, k, foot, hole, low, high):
+    def _least(self, k, foot, hole, low, high) -> tuple[Any, ...]:
         """Least margin as far as it lies between two values, and the arrays kept for holes of that size."""
         key = k, len(hole.edges), 64 * (1 + len(hole.nodes) // 64)
         if key not in self.scratch:
@@ -261,7 +262,7 @@ def _as_cut(orientations, wanted, held, corners):
     def passes(share):
         return _margin(orientations[wanted], scaled(share)) >= 0.0
 
-    def returns(share):
+    def returns(share) -> bool:
         device = device_of(scaled(share))
         return all(verdict(device, orientations[k], orientations).margin < 0.0 for k in held)
 
@@ -299,7 +300,7 @@ ARC = 6  # chords of a quarter of a round corner
 BEYOND_HOLE_M = 1.0  # [m] beyond any hole
 
 
-def round_corners(task, hole, radius):
+def round_corners(task, hole, radius) -> tuple[Any, ...] | None | None:
     """Return a hole with corners of a radius [m], as a cutter leaves them, or None where it then does not do.
 
     Source: own; docs/tooling.md, "1. The method".

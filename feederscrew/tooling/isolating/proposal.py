@@ -1,6 +1,7 @@
 """What a design of tooling says, from what the whole chain does with every orientation."""
 
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -47,12 +48,12 @@ class Design:
         return min(self.surely, self.efficiency)
 
     @property
-    def stands(self):
+    def stands(self) -> bool:
         """Whether some orientation comes to stand at one of its devices."""
         return any(cut.stops for cut in self.cuts)
 
     @property
-    def devices(self):
+    def devices(self) -> tuple[Any, ...]:
         """Every device along the track: those of the bowl, then the design's own."""
         return (*self.before, *(cut.device for cut in self.cuts))
 
@@ -83,7 +84,7 @@ class DesignTask:
     constraints: DesignConstraints = field(default_factory=DesignConstraints)  # what it may use
 
     @property
-    def stays(self):
+    def stays(self) -> np.ndarray:
         """(M,) bool, whether the bare track carries it."""
         return np.array([not orientation.returned for orientation in self.orientations])
 
@@ -104,12 +105,14 @@ class DesignTask:
         """Share of others [1] that may leave beside the wanted one alone."""
         return self.allowed_beside(np.arange(len(self.orientations)) == self.wanted)
 
-    def allowed_beside(self, same):
+    def allowed_beside(self, same) -> float:
         """Return the share of others [1] that may leave beside those (M,) bool that leave as wanted."""
         return float(self.coming[same].sum() * (1.0 / self.purity - 1.0))
 
 
-def design_task(orientations, shares, wanted, margin, purity, before, turners=(), constraints=None):
+def design_task(
+    orientations, shares, wanted, margin, purity, before, turners=(), constraints=None
+) -> DesignTask:
     """Return what a design has to do behind the devices of the bowl and its own turning devices."""
     orientations = tuple(orientations)
     flow = course((*before, *(cut.device for cut in turners)), orientations)
@@ -125,7 +128,7 @@ def weights(task):
     return np.where(task.stays, weight, 0.0)
 
 
-def propose(task, cuts, returned, same=None, late=False):
+def propose(task, cuts, returned, same=None, late=False) -> Design:
     """Return the record of a chain, by what all of its devices do with every orientation.
 
     Parameters
@@ -189,7 +192,7 @@ def propose(task, cuts, returned, same=None, late=False):
     )
 
 
-def _surely(task, flow, states):
+def _surely(task, flow, states) -> float:
     """Share of the parts offered [1] that leaves as wanted and lies still on its way: the least of it.
 
     What is on a round side with nothing that holds it at the wall may roll, what the drive tips may rock, and
@@ -211,7 +214,7 @@ def _surely(task, flow, states):
     return float(share.sum() / total) if total > 0.0 else 0.0
 
 
-def _against(names):
+def _against(names) -> list[Any]:
     """What the purity counts as leaving though the devices reject it."""
     return (
         [f"no verdict is sure to return {' '.join(names)}: the purity counts it as leaving"]
@@ -220,7 +223,7 @@ def _against(names):
     )
 
 
-def _separated(task, cuts):
+def _separated(task, cuts) -> tuple[Any, ...]:
     """Cuts with a stretch that separates parts before the first of them that needs gaps.
 
     Before rails the track climbs as it did: where it falls, a head that comes first has no time to turn down.
@@ -238,12 +241,12 @@ def _separated(task, cuts):
     return (*cuts[:first], plain_cut(steeper), *cuts[first:last], *returning, *cuts[last:])
 
 
-def plain_cut(device):
+def plain_cut(device) -> Cut:
     """Return a stretch of track as a Cut: it passes all."""
     return Cut(device, np.nan, np.nan, device, device, ())
 
 
-def _with_stops(task, flow, cuts):
+def _with_stops(task, flow, cuts) -> tuple[Any, ...]:
     """Cuts with the names of those that come to stand at each."""
     first, names = 1 + len(task.before), [orientation.name for orientation in task.orientations]
     stands = flow.stops * (task.shares > 0.0)[:, None]
@@ -253,7 +256,7 @@ def _with_stops(task, flow, cuts):
     )
 
 
-def without_device(task, why):
+def without_device(task, why) -> Design:
     """Return the record of an orientation that nothing isolates, and why."""
     return Design(
         wanted=task.wanted,
@@ -307,7 +310,7 @@ def propose_needed(task, cuts, returned, same=None, late=False):
     return proposal
 
 
-def _returns(task, cut):
+def _returns(task, cut) -> np.ndarray:
     """(M,) bool, which orientations a cut returns by the margin that is asked for."""
     margins = [margin_at(cut.device, orientation, task.orientations) for orientation in task.orientations]
     return np.array([margin <= -task.margin for margin in margins], dtype=bool)

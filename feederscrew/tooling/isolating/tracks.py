@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -40,7 +41,7 @@ def holding_stretches(orientation, wall_friction, before, constraints):
     return min(_allowed(stretches, constraints), key=len, default=())
 
 
-def other_stretches(orientation, proposal, constraints):
+def other_stretches(orientation, proposal, constraints) -> list[Any]:
     """Return other stretches of track that may give an orientation more than a design does, one by one.
 
     Source: own; docs/tooling.md, "What a design takes".
@@ -67,7 +68,7 @@ def other_stretches(orientation, proposal, constraints):
     return sorted((stretch for stretch in stretches if stretch[0].grooved or not proposal.isolated), key=len)
 
 
-def _allowed(stretches, constraints):
+def _allowed(stretches, constraints) -> list[Any]:
     """Those of some ways to lean the track that are any, and whose kinds of devices may be used."""
     return [
         stretch
@@ -76,7 +77,7 @@ def _allowed(stretches, constraints):
     ]
 
 
-def led_on(orientations, leaning):
+def led_on(orientations, leaning) -> tuple[Any, ...]:
     """Return orientations as they are behind some stretches of track."""
     for device in leaning:
         orientations = tuple(device.onward(orientation) for orientation in orientations)

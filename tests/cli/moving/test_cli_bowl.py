@@ -279,7 +279,7 @@ def test_the_chapter_of_a_report(target):
     """With a target the quotation sheet, with a machine its sheet, and nothing without either."""
     (row,) = [row for row in CHAPTERS if row[0] == "bowl"]
     given = () if target else ("machine.leaves=10",)
-    (chapter,) = page(report(part.load(PART), None, given, target=target), chapters=[row]).sections
+    (chapter,) = page(report(part.load(PART), overrides=given, target=target), chapters=[row]).sections
     (picture,) = [block for block in chapter.blocks if isinstance(block, Picture)]
     tables = [block for block in chapter.blocks if isinstance(block, Table)]
     assert picture.content.startswith(b"\x89PNG") and len(tables) == 4

@@ -16,6 +16,7 @@ SAID = {
     ("alternatives.py", "--alternatives"),
     ("record.py", "--up"), ("nearest.py", "--up"),  # what a design offers its user to type
     ("bowl.py", "--aspect"), ("bowl.py", "--config"),  # the command line that finds devices
+    *(("site.py", f"--{name}") for name in ("density", "drive", "set", "target", "units")),  # of its design
 }  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 import pytest
 
-from feederscrew.batch import run as batches
+from feederscrew.batch import batch_run as batches
 from feederscrew.output import offers
 from feederscrew_cli.main import feeder
 

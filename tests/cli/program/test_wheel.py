@@ -53,6 +53,7 @@ CALLS = {
     "report": ["--help"],  # its files are asked for by name, above
     "reproduce": [],  # `aspects` draws
     "doctor": [],
+    "serve": ["--help"],
 }
 RUN = """
 import json, sys

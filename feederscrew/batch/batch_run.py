@@ -7,8 +7,10 @@ import os
 import shutil
 import tempfile
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from feederscrew import __version__
 from feederscrew.batch import summary
@@ -53,7 +55,7 @@ class Store:
         If it holds something else, cannot be written, or another batch is at work in it.
     """
 
-    def __init__(self, directory):
+    def __init__(self, directory) -> None:
         self.path = Path(directory)
         self.parts = self.path / PARTS
 
@@ -72,11 +74,11 @@ class Store:
             raise FeederError(self.path, f"cannot be written ({error.strerror})", mend) from error
         return self
 
-    def __exit__(self, *fault):
+    def __exit__(self, *fault) -> None:
         if self.lock is not None:
             os.close(self.lock)
 
-    def _check_ours(self):
+    def _check_ours(self) -> None:
         held = [p.name for p in self.path.iterdir() if not p.name.startswith(STALE)]
         if held and MARKER not in held:
             what = f"holds other files, such as {sorted(held)[0]}"
@@ -122,7 +124,7 @@ class Store:
         same = record.get("version") == __version__ and record.get("libraries") == libraries()
         return CHANGED_OPTIONS if same else CHANGED_PROGRAM
 
-    def keep(self, outcome):
+    def keep(self, outcome) -> None:
         """Put the results of one part in place, instead of those of an earlier run."""
         with self._writing(), tempfile.TemporaryDirectory(prefix=STALE, dir=self.path) as staging:
             fresh, place = Path(staging, "new"), self.parts / outcome.name
@@ -135,7 +137,7 @@ class Store:
                 place.rename(Path(staging, REPLACED, outcome.name))
             fresh.rename(place)
 
-    def _put_back(self, staging):
+    def _put_back(self, staging) -> None:
         """Put results back that a run had taken out of their place when it was killed."""
         for old in staging.glob(f"{REPLACED}/*"):
             if not (self.parts / old.name).exists():
@@ -151,7 +153,7 @@ class Store:
         path = self.path / name
         return path.read_text(encoding="utf-8", errors="replace") if path.exists() else None
 
-    def write(self, files, without=()):
+    def write(self, files, without=()) -> None:
         """Put files of the whole batch in place once all of them are written; until then the old ones stay.
 
         Parameters
@@ -179,7 +181,7 @@ class Store:
             what = f"cannot be written ({error.strerror or error})"
             raise FeederError(self.path, what, RESUME_STORE_ADVICE) from error
 
-    def foreign_folders(self, names):
+    def foreign_folders(self, names) -> list[Any]:
         """Return the folders of parts that are not in this batch, by name."""
         return sorted({p.name for p in self.parts.iterdir()} - set(names))
 
@@ -192,7 +194,7 @@ class Store:
         return record if isinstance(record, dict) else {}
 
 
-def _report_outcome(outcome):
+def _report_outcome(outcome) -> dict[Any, Any]:
     return {
         "version": __version__,
         "key": outcome.key,
@@ -234,7 +236,7 @@ class Batch:
     sources: tuple[str, ...]  # files of its parts
 
     @property
-    def faults(self):
+    def faults(self) -> tuple[Any, ...]:
         """Return one line a failed part."""
         return tuple(str(row["reason"]) for row in self.rows if row["status"] == FAILED)
 
@@ -242,7 +244,7 @@ class Batch:
 class StoppedBatchError(KeyboardInterrupt):
     """A batch that was stopped by Ctrl-C, or by a signal that is taken for it; what is finished is kept."""
 
-    def __init__(self, done, total, summary):
+    def __init__(self, done, total, summary) -> None:
         super().__init__(f"{done} of {total} parts are done")
         self.done, self.total = done, total  # parts that are finished, failed ones among them; all of them
         self.summary = summary  # Path of the table of those
@@ -261,7 +263,7 @@ def crew(jobs=None, scheduler=None):
     return Cluster(scheduler) if scheduler else Processes(jobs or processors())
 
 
-def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda run: None):
+def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda kept: None) -> Batch:
     """Compute every part and write the folder of the batch.
 
     Parameters
@@ -309,7 +311,7 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
             raise StoppedBatchError(len(done), len(requests), _stopped(store, requests, done)) from None
 
 
-def count_stale(requests, directory, choices=None):
+def count_stale(requests, directory, choices=None) -> dict[Any, Any]:
     """Count the parts that a batch with ``resume`` computes, by the reason.
 
     Parameters
@@ -352,7 +354,7 @@ class _UnderWay:
         self.kept = 0
         self.finished = set()  # folders of parts whose results are those asked for
 
-    def tasks(self, requests):
+    def tasks(self, requests) -> Iterator[Any]:
         """Yield a task for each request that needs one, its file read only when the task is asked for."""
         for request in requests:
             try:
@@ -369,7 +371,7 @@ class _UnderWay:
             else:
                 yield task
 
-    def finish(self, outcome):
+    def finish(self, outcome) -> None:
         """Put what came of a part in place."""
         self.store.keep(outcome)
         self.finished.add(outcome.name)
@@ -395,7 +397,7 @@ def _stopped(store, requests, finished):
     return store.path / name
 
 
-def _finished(store, requests, complete, workers):
+def _finished(store, requests, complete, workers) -> Batch:
     """Write the summary, the contact sheets and the index page, from what lies on the disk."""
     from feederscrew.output.page.as_html import html
 
