@@ -50,5 +50,6 @@ def test_few_parts_show_the_likeliest_aspect_where_its_share_is_clear(monkeypatc
         return rates.Shares(answer, fed=True)
 
     monkeypatch.setattr(rates, "shares", shares)
+    monkeypatch.setattr("feederscrew.dropping.arrival.MAX_ARRIVALS", 4000)  # tests feed fewer
     assert rates.likeliest(part, read_bowl()).likeliest == at_rest.names[0]
     assert counts == fed
