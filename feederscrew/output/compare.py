@@ -426,7 +426,7 @@ def look(name, place=0):
     name : str
         A rule in any case, 'MDBT_80', or a user's own.
     place : int
-        Of a user's own profile among its like.
+        Of a user's own profile among others of its kind.
 
     Returns
     -------

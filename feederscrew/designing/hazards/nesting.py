@@ -11,13 +11,13 @@ from feederscrew.geometry.lattice import chords
 from feederscrew.part.record import Part
 from feederscrew.trial.shape import solid_of
 
-LINES, NEAR, NESTED = 60, 0.02, 0.3  # lines through a part; of their longest; of a part that is in its like
+LINES, NEAR, NESTED = 60, 0.02, 0.3  # lines through a part; of their longest; of a part that is in another
 ROUND = 0.5  # mean of the sides' normals: what touches on one side only slides off
 
 
 @dataclass(frozen=True, eq=False)
 class Stack:
-    """A part in its like, shifted and not turned."""
+    """A part in another of its kind, shifted and not turned."""
 
     place: np.ndarray  # (3,) [m] of the second part from the first, in the file's axes
     height: float  # [m] of one of them along that direction
@@ -30,7 +30,7 @@ class Stack:
 
 
 def stack(part: Part, friction: float) -> Stack | None:
-    """Return how a part sits in its like, shifted and not turned, where friction holds it; else None.
+    """Return how a part sits in another, shifted and not turned, where friction holds it; else None.
 
     Two such parts touch where the upright chord of the one is longest, its hollows counted in: that is how
     far apart they are. Where their sides all round are steeper there than friction holds, they stay so.

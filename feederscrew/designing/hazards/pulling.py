@@ -40,7 +40,7 @@ class Pulled:
     def tried(
         self, turn: np.ndarray, place: np.ndarray, most: float
     ) -> tuple[np.ndarray, np.ndarray, int, int] | None:
-        """Return a pose with how often it was pulled, and how often in vain; None of none.
+        """Return a pose with how often it was pulled, and how often in vain; None where no pose was tried.
 
         It ends as soon as too few can hold, or of what is to hold in a share ``most`` [1], as too many do.
         """

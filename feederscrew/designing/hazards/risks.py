@@ -26,7 +26,7 @@ SHINGLES, CLIMBS, HOOKS, NESTS, WEDGES = "shingles", "climbs", "hooks", "nests",
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """A part and its like, or the walls that it stands between, as it is drawn."""
+    """A part and another of its kind, or the walls that it stands between, as it is drawn."""
 
     axes: np.ndarray  # (3, 3) [1] of the picture as rows, in the file's axes: along, across, up
     turn: np.ndarray | None = None  # (3, 3) [1] of the second part, in the file's axes
@@ -56,7 +56,7 @@ class QueueSeen(Protocol):
 
 
 def wedge(one: Orientation, lift: float = LIFT) -> float:
-    """Return the angle [rad] at which a part is pushed up on its like where it lies a little higher.
+    """Return the angle [rad] at which a part is pushed up on another where it lies a little higher.
 
     Two parts of one orientation follow each other along the track, one of them higher by ``lift``. They come
     together until their hulls touch, L apart. Pushed on, the higher one rises as the plane does in which they

@@ -79,7 +79,7 @@ def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle |
 
 
 def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the deepest poses of a part in its like that do not overlap: rotations and places.
+    """Return the deepest poses of a part in another of its kind that do not overlap: rotations and places.
 
     Parameters
     ----------

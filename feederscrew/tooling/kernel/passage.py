@@ -130,7 +130,7 @@ def status(foot, hole, scratch, i):
     phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
     for k in range(len(hole.nodes)):
         if hole.nodes[k, 2] != 0.0:
-            scratch.held[k] = _under(foot, hole.nodes[k, 0] + phi, hole.nodes[k, 1], scratch.points, 0)
+            scratch.held[k] = points_under(foot, hole.nodes[k, 0] + phi, hole.nodes[k, 1], scratch.points, 0)
     active = 0
     for k in range(len(scratch.rows)):
         if scratch.rows[k, SIDE] < 0.0:
@@ -245,7 +245,7 @@ def _border(foot, hole, held, phi, points, count):
     for k in range(len(hole.nodes)):
         theta, radius = hole.nodes[k, 0] + phi, hole.nodes[k, 1]
         if hole.nodes[k, 2] == 0.0:
-            count = _under(foot, theta, radius, points, count)
+            count = points_under(foot, theta, radius, points, count)
         elif held[k]:
             points[count, 0] = radius * math.sin(theta)
             points[count, 1] = foot.centre - radius * math.cos(theta)
@@ -253,13 +253,13 @@ def _border(foot, hole, held, phi, points, count):
     for j in range(len(hole.edges)):  # of an arc the point nearest to the foot of the centre of mass
         edge = hole.edges[j]
         if edge[ARC] > 0.0 and edge[BULGE] > 0.0 and edge[ALPHA] + phi <= 0.0 <= edge[KAPPA] + phi:
-            count = _under(foot, 0.0, edge[LOW], points, count)
+            count = points_under(foot, 0.0, edge[LOW], points, count)
     return count
 
 
 @compiled
-def _under(foot, theta, radius, points, count):
-    """Add a point if it lies under an area of the foot."""
+def points_under(foot, theta, radius, points, count):
+    """Add a point if it lies under an area of the foot; return how many there are."""
     if not foot.sector[2] < radius < foot.sector[3]:
         return count
     if not foot.sector[0] < theta < foot.sector[1] and abs(theta) < math.pi:

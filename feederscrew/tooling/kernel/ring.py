@@ -4,7 +4,7 @@ import math
 
 from feederscrew.geometry.compiled import apart, compiled, entry
 from feederscrew.tooling.kernel.hull_depth import inset_beside
-from feederscrew.tooling.kernel.passage import _under
+from feederscrew.tooling.kernel.passage import points_under
 
 
 @entry
@@ -42,11 +42,11 @@ def _ring_margin(foot, low, high, scratch):
         count = _crossed(foot, foot.sides[k], low, points, count)
         count = _crossed(foot, foot.sides[k], high, points, count)
     if low > 0.0:  # track left on the side of the axis bulges: its nearest point, and points beside it
-        count = _under(foot, 0.0, low, points, count)
+        count = points_under(foot, 0.0, low, points, count)
         for share in (1e-3, 0.1, 0.4):
             theta = share * foot.reach / low
-            count = _under(foot, theta, low, points, count)
-            count = _under(foot, -theta, low, points, count)
+            count = points_under(foot, theta, low, points, count)
+            count = points_under(foot, -theta, low, points, count)
     return inset_beside(points, count, foot, scratch.keep)
 
 
