@@ -1,6 +1,7 @@
 """``feeder trial``."""
 
 import os
+from typing import Any
 
 import click
 
@@ -14,9 +15,9 @@ SENT = ("aspect", "rule", "parts", "landing", "queue", "poured", "seconds", "mea
 class FilmFile(options.Place):
     """The name of a film, whose ending says its format."""
 
-    def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The name as typed, or a wrong call."""
-        if not value.lower().endswith(FILMS):
+        if not str(value).lower().endswith(FILMS):
             self.fail(f"{value!r} is not a name for a film - end it in {', '.join(FILMS)}", param, ctx)
         return super().convert(value, param, ctx)
 
