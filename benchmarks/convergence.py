@@ -8,7 +8,7 @@ its edge (flip), of a square nut's second face and of a T shape's flat side (fee
 alone, coarser and finer than what the kernel uses; and the coin against the sections of its file. A row's
 difference from the row above, over its standard error of sampling, says whether the setting still matters.
 Last all settings at once, with ten times the drops: how far the kernel's own are from the finest is the
-numerical error that the intervals carry (``ensemble.NUMERICAL``), said for a share of a half.
+numerical error that the intervals carry (``ensemble.NUMERICAL_SHARE_ERROR``), said for a share of a half.
 """
 
 import argparse

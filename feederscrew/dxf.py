@@ -72,7 +72,7 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
     Parameters
     ----------
     path : Path
-        A regular file of at most MAX_FILE_BYTES.
+        A regular file of at most MAX_DXF_BYTES.
     layer : str
         Upper and lower case are the same, as in any drawing.
     where : str

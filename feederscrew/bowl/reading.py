@@ -49,7 +49,7 @@ def settings(path: str | PathLike[str] | None = None, overrides: Iterable[str] =
     Returns
     -------
     tuple of Setting
-        One a key, in the order of ``schema.KEYS``, then one a device.
+        One a key, in the order of ``schema.BOWL_KEYS``, then one a device.
 
     Raises
     ------

@@ -64,7 +64,7 @@ def effective(own_settings: Mapping[str, Setting]) -> tuple[Setting, ...]:
     Returns
     -------
     tuple of Setting
-        One a key, in the order of ``schema.KEYS``, then one a device.
+        One a key, in the order of ``schema.BOWL_KEYS``, then one a device.
     """
     keyed = tuple(_effective(key, own_settings) for key in BOWL_KEYS)
     return (*keyed, *(s for name, s in own_settings.items() if name not in BY_NAME))

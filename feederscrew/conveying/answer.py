@@ -201,7 +201,7 @@ def cells(bowl) -> Any:
     -------
     dict of str to array
         velocity, low, high [m/s] over the starts; several, whether they differ by more than
-        ``COEXIST``; regime, a place in ``REGIMES``; throw_number [1]; status, a place in
+        ``COEXISTING_VELOCITY_GAP``; regime, a place in ``REGIMES``; throw_number [1]; status, a place in
         ``steady.STATUSES``.
 
     Raises

@@ -575,7 +575,7 @@ def _drawable(search, made, proposal):
 
 
 def _cause(tried, proposal):
-    """Which of CAUSES a trial shows: what loses the wanted orientation first, then what lets others leave."""
+    """Which fault a trial shows: what loses the wanted orientation first, then what lets others leave."""
     if not list(denied(tried)):
         return ""
     right = set(trying.wanted_rows(tried.known, tried.states))

@@ -50,7 +50,7 @@ class Arrival:
 
     @property
     def sure(self) -> bool:
-        """Whether every share is known to WIDTH."""
+        """Whether every share is known to ARRIVAL_HALF_WIDTH."""
         return (
             half_width(self.shaken.occupancy.plate_low, self.shaken.occupancy.plate_high)
             <= ARRIVAL_HALF_WIDTH
@@ -69,11 +69,12 @@ def arrival(part, aspects, bowl, *, drops=None, seed=1, jobs=1, progress=None) -
     bowl : Bowl
         Its drive, restitution and kinetic friction.
     drops : int, optional
-        Parts to follow; without it as many as make every share known to WIDTH, at most MOST, or LONGEST where
+        Parts to follow; without it as many as make every share known to ARRIVAL_HALF_WIDTH, at most
+        MAX_ARRIVALS, or LONGER_TIME_PARTS where
         the longer spell decides nothing.
     seed, jobs : int
     progress : function, optional
-        As in ``bowl_test.test``; it starts again for a longer spell.
+        As in ``plate_test.test``; it starts again for a longer spell.
 
     Returns
     -------
@@ -197,7 +198,7 @@ def steps_needed(hull, bowl) -> float:
 
 
 def enough(found) -> int:
-    """Return how many parts make every share known to WIDTH, by how they differed from part to part.
+    """Return how many parts make every share known to ARRIVAL_HALF_WIDTH, by how they differed.
 
     Parameters
     ----------
@@ -206,7 +207,7 @@ def enough(found) -> int:
     Returns
     -------
     int
-        At most MOST.
+        At most MAX_ARRIVALS.
     """
     width, parts = NORMAL_95 * found.shaken.occupancy.error.max(), found.shaken.parts
     rounds = np.ceil(parts * (width / ARRIVAL_HALF_WIDTH) ** 2 / plate_test.PARTS_A_LOOK)
@@ -249,8 +250,9 @@ def judged(shaken) -> Arrival:
     -------
     Arrival
         Settled where no share still changes and, once so many transitions were seen that they tell where
-        the shares lead and that more than WIDTH of the parts change in the longer spell, all shares have
-        come NEAR to it.
+        the shares lead and that more than ARRIVAL_HALF_WIDTH of the parts change in the longer spell, all
+        shares have
+        come ARRIVED_SHARE_GAP to it.
     """
     seen = shaken.occupancy
     lying = seen.plate.sum()

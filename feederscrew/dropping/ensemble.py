@@ -112,7 +112,7 @@ def drop(shape, launch, rng, *, count=None, aim=None, jobs=1, steps=None, progre
     count : int, optional
         How many drops, above 0; with ``aim``, at most so many.
     aim : Aim, optional
-        Looked at after every ROUND drops; once it is reached the run ends.
+        Looked at after every DROPS_A_LOOK drops; once it is reached the run ends.
     jobs : int
         Cores to use.
     steps : kernel.Steps, optional

@@ -17,7 +17,7 @@ from feederscrew.units import GRAVITY, QuantityError, factor, quantity, quantity
 
 DRAWS_A_DROP = 11  # uniform numbers a drop takes: 3 attitude, 3 spin, 2 drift, fall, restitution, friction
 ANY_AXIS, LEVEL_AXIS, FLIP_AXIS = "any", "horizontal", "in the greatest face"  # axes a launch spins about
-FLIP_LEAN_RAD = np.radians(40.0)  # of FLIP's axis from the level, at most: see docs/resting.md
+FLIP_LEAN_RAD = np.radians(40.0)  # of FLIP_AXIS's axis from the level, at most: see docs/resting.md
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Launch:
     speed: tuple[float, float]  # along the plane
     restitution: tuple[float, float]  # of a corner hit
     friction: tuple[float, float]
-    axis: str = ANY_AXIS  # it spins about: ANY, LEVEL, or FLIP
+    axis: str = ANY_AXIS  # it spins about: ANY, LEVEL, or FLIP_AXIS
 
     def but(self, **ranges) -> Any:
         """Return the launch with some ranges replaced; named 'own' once one is."""
@@ -61,7 +61,7 @@ PRESETS = {
     )
 }
 """What was done to the part. place: set down by hand. drop: let fall without spin. flip: spun up by hand, as
-a coin, about an axis in the plane of its greatest face, level to LEAN. roll: cast or poured
+a coin, about an axis in the plane of its greatest face, level to FLIP_LEAN_RAD. roll: cast or poured
 over a table, spinning about a horizontal axis. feed: out of a hopper into a bowl. docs/resting.md says where
 each range comes from."""
 
@@ -98,7 +98,7 @@ def sample(launch, shape, count, rng) -> Starts:
     shape : Shape
     count : int
     rng : numpy.random.Generator
-        Each drop takes DRAWS numbers, so that drops come out the same however they are batched.
+        Each drop takes DRAWS_A_DROP numbers, so that drops come out the same however they are batched.
 
     Returns
     -------
@@ -140,7 +140,7 @@ def _turns(kind, shape, u) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 def _held_level(axis, u) -> Any:
-    """(N, 4) attitudes that turn axes of the body (N, 3) to LEAN from the level at most, and the axes.
+    """(N, 4) attitudes that turn axes of the body (N, 3) to at most FLIP_LEAN_RAD from the level, and they.
 
     An axis and its opposite are as likely: the one that is nearer to where it is turned to is taken.
     """
@@ -222,11 +222,11 @@ def launch_of(preset, length, texts, gravity=GRAVITY) -> Launch:
     Parameters
     ----------
     preset : str
-        A key of ``launches.PRESETS``, or a former name.
+        A key of ``PRESETS``, or a former name.
     length : float [m]
         Of the part: cube root of its hull's volume.
     texts : dict of str to (str or None)
-        By key of KEYS: a quantity, or two with a colon between; None keeps the preset's.
+        By key of CONDITION_KEYS: a quantity, or two with a colon between; None keeps the preset's.
     gravity : float [m/s2]
 
     Returns

@@ -76,7 +76,8 @@ def occupancy(faces, places, rows, count, period, rng) -> Occupancy:
     A rate is the number of transitions over the time spent; its interval is that of a Poisson count
     (F. Garwood, Biometrika 28, 437-442, 1936). The interval of a share of time is Wilson's for so many
     parts, which is too wide where a part changes often: ``error`` knows of that. ``limit`` is the mean over
-    DRAWS of all rates, each from a Gamma distribution of its count (with PRIOR) and time, of where they lead
+    RATE_DRAWS of all rates, each from a Gamma distribution of its count (with
+    MISSED_TRANSITIONS) and time, of where they lead
     from the last look on; a class in which no time was spent is left out, as nothing is known of how it is
     left.
     """

@@ -244,7 +244,7 @@ def test(part, aspects, bowls, preset, own, *, drops=None, pace=EXACT_PACE, run=
         Ranges that replace the preset's, and the bowl's restitution and friction.
     drops : int, optional
         Parts on each plate; the same launches on all.
-    pace : Pace
+    pace : PlatePace
         How long each is followed, and how finely.
     run : RunSettings
         Its progress is told after every batch of the parts done, on all plates together, and how many there
@@ -296,7 +296,7 @@ def shaken_of(part, aspects, bowl, preset, pace, counted, seen) -> PlateResult:
     bowl : Bowl
     preset : str
         A key of ``launch.PRESETS``.
-    pace : Pace
+    pace : PlatePace
         Of that run.
     counted : (int, int, float [s])
         Parts, those that were lost, and the time counted for each.

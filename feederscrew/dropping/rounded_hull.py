@@ -51,8 +51,8 @@ def rims_of(edges, radius, axes=()) -> Rims:
 
     Notes
     -----
-    A rim is a run of coplanar corners at equal distances and turns of less than SMOOTH, the limit that parts
-    a bar of flats from a round one elsewhere. A full turn is a circle.
+    A rim is a run of coplanar corners at equal distances and turns of less than SMOOTH_ANGLE, the limit
+    that parts a bar of flats from a round one elsewhere. A full turn is a circle.
     """
     count = len(edges.vertices)
     found = []

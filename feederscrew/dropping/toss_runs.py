@@ -50,7 +50,7 @@ class LaunchFile:
     spins: np.ndarray  # (N, 3) [rad/s] in the axes of the part file
     frame: float  # [s] from one picture of the camera to the next; 0 where the file does not say
     ends: np.ndarray | None  # (N, 2) [m] where the centre of mass came to rest, as measured
-    faces: tuple[str, ...] | None  # (N,) of FACES: what points up at rest, as measured
+    faces: tuple[str, ...] | None  # (N,) of FACE_NAMES: what points up at rest, as measured
 
 
 def read_launches(path) -> LaunchFile:
@@ -186,14 +186,14 @@ class Tosses:
     """Where N tosses lead, each over K runs; the first run of each has the values as given."""
 
     runs: int
-    shares: np.ndarray  # (N, 6) [1] of the settled runs that end with each of FACES up
-    faces: np.ndarray  # (N,) index into FACES: what most runs end with; -1 where none settled
+    shares: np.ndarray  # (N, 6) [1] of the settled runs that end with each of FACE_NAMES up
+    faces: np.ndarray  # (N,) index into FACE_NAMES: what most runs end with; -1 where none settled
     rows: np.ndarray  # (N,) class of the aspect those runs rest on
     places: np.ndarray  # (N, 2) [m] where the centre of mass comes to rest: as given, or the median
     spreads: np.ndarray  # (N,) [m] half of those runs end so near that place
     times: np.ndarray  # (N,) [s] until rest, the median of those runs
     settled: np.ndarray  # (N,) int, runs that came to rest
-    released: np.ndarray  # (N,) index into FACES: what points up most at the launch
+    released: np.ndarray  # (N,) index into FACE_NAMES: what points up most at the launch
     partial: bool  # stopped by the user before all were done
 
 
@@ -227,7 +227,8 @@ def follow(part, found, launches, surface, rng, *, runs=DEFAULT_RUNS, jobs=1, pr
 
     Notes
     -----
-    What is not known: the restitution and friction of this toss (RESTITUTION_DOUBT, FRICTION), and the state
+    What is not known: the restitution and friction of this toss (RESTITUTION_DOUBT,
+    FRICTION_SPREAD), and the state
     one picture of the camera. In that time gravity changes a velocity by g times the time, and spin turns the
     part by the spin times the time: velocities, those of a point at half the part's length from the centre,
     and attitudes scatter as a value does that is anywhere in such an interval, by 1 / sqrt(12) of it. Rigid
@@ -371,7 +372,7 @@ def _summed(launches, length, principal, rows, runs, answers, partial) -> Tosses
 
 
 def _upward(quaternions, principal) -> Any:
-    """Index into FACES of the side that points up most, for (..., 4) attitudes along principal axes."""
+    """Index into FACE_NAMES of the side that points up most, for (..., 4) attitudes along principal axes."""
     w, x, y, z = np.moveaxis(quaternions, -1, 0)
     up = np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)], axis=-1)
     along = np.einsum("...j,ij->...i", up, principal)

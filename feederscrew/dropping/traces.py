@@ -28,8 +28,9 @@ TUMBLED_RAD = np.radians(90.0)  # of the underside, from which on a part has tum
 class DropTrace:
     """Motion of one drop, N rows, some hundreds: at even times, before and after every impact, and the end.
 
-    Rows are steps of the simulation, and of free flight between two of them, about EVERY sqrt(L / g) apart,
-    further if there would be more than MOST; of more than HITS impacts those that take most energy. Positions
+    Rows are steps of the simulation, and of free flight between two of them, about
+    ROW_INTERVAL sqrt(L / g) apart, further if there would be more than MAX_TRACE_ROWS; of more than
+    MAX_IMPACTS impacts those that take most energy. Positions
     are of the centre of mass, over the plane z = 0; the launch is at x = y = 0.
     """
 
@@ -132,7 +133,7 @@ def _to_rest(shape, start, restitution, friction, face) -> Any:
 
 
 def _filled(shape, states) -> NDArray[np.float64]:
-    """Rows with further ones in long steps of free flight, at most EVERY apart.
+    """Rows with further ones in long steps of free flight, at most ROW_INTERVAL apart.
 
     They are followed back from the end of the step: an impact may come before its flight.
     """
@@ -184,7 +185,7 @@ def _impacts(shape, states, steps) -> NDArray[np.bool_]:
 
 
 def _strongest(impacts, energies) -> NDArray[np.bool_]:
-    """(N,) bool, of the rows of impacts the HITS that take most energy."""
+    """(N,) bool, of the rows of impacts the MAX_IMPACTS that take most energy."""
     rows = np.flatnonzero(impacts)
     losses = energies[rows] - np.append(energies, energies[-1])[rows + 1]
     kept = np.zeros(len(impacts), bool)

@@ -320,7 +320,7 @@ def bring_target(search: DriveSearch, flow: Callable[[Bowl | None], sizing.Flow]
 
     Parameters
     ----------
-    search : Sought
+    search : DriveSearch
     flow : callable
         From a bowl, or from None for no drive at all, to the Flow along its track.
 
@@ -349,7 +349,7 @@ def with_own_drive(search: DriveSearch) -> Bowl:
 
     Parameters
     ----------
-    search : Sought
+    search : DriveSearch
 
     Returns
     -------
@@ -413,7 +413,7 @@ def _with_stroke(bowl: Bowl, amplitude: float, settings: Iterable[Setting]) -> B
 def on_leaves(bowl: Bowl, user_words: Collection[str]) -> Machine:
     """Return the machine of a bowl with the leaves that tune it to its drive at its stroke.
 
-    Source: ``tuning.sets``; docs/bowl.md, "1. The part, and the rate".
+    Source: ``springs.tuned_leaf_sets``; docs/bowl.md, "1. The part, and the rate".
 
     Parameters
     ----------
@@ -425,7 +425,7 @@ def on_leaves(bowl: Bowl, user_words: Collection[str]) -> Machine:
     Returns
     -------
     Machine
-        With the leaves that last and that a maker would take first: at most ``tuning.USUAL_A_BANK`` in a
+        With the leaves that last and that a maker would take first: at most ``springs.USUAL_A_BANK`` in a
         bank, tuned to the upper half of the range, because parts in the bowl lower the natural frequency.
         Of these, the ones of the width in use, of about the length in use, and of a usual number. Where none
         lasts, with those of least stress; as it is where no set tunes it.

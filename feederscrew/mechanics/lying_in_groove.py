@@ -61,7 +61,7 @@ def settled(points, angle):
 
 @functools.lru_cache(maxsize=32)
 def _turns(step) -> np.ndarray:
-    """Matrices (2 AXES, 3, 3) that turn rows by a step [rad] about axes spread over the sphere."""
+    """Matrices (2 STEP_AXES, 3, 3) that turn rows by a step [rad] about axes spread over the sphere."""
     axes = directions()[:: len(directions()) // STEP_AXES][:STEP_AXES]
     s, c = np.sin(step), np.cos(step)
     rotations = []
@@ -73,7 +73,7 @@ def _turns(step) -> np.ndarray:
 
 @functools.lru_cache(maxsize=2048)
 def _comes_to_lie(posture, heading, angle, turn):
-    """What it reaches (SEEN,) [m] as it lies in a groove, of one that comes turned by ``turn`` [rad]."""
+    """What one that comes turned by ``turn`` [rad] reaches (REACH_DIRECTIONS,) [m] as it lies in a groove."""
     return _reach(settled(_standing(posture, heading + turn), angle))
 
 
@@ -91,7 +91,7 @@ def _reach(points):
 
 @functools.lru_cache(maxsize=2048)
 def _reach_of_orientation(posture, heading) -> np.ndarray:
-    """What an orientation reaches (N, SEEN) [m], turned a little."""
+    """What an orientation reaches (N, REACH_DIRECTIONS) [m], turned a little."""
     return np.array([_reach(_standing(posture, heading + by)) for by in HEADING_OFFSETS])
 
 

@@ -532,7 +532,7 @@ class TrackMotion:
 def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=False) -> TrackMotion:
     """Return what a part on the track does at one phase of the vibration.
 
-    Source: ``system.sliding`` and ``system.held``; docs/mechanics.md, "The track".
+    Source: ``sliding`` and ``held``; docs/mechanics.md, "The track".
 
     Parameters
     ----------
@@ -581,7 +581,7 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
 def needed_at_rest(seat, bowl, phase) -> NDArray[np.float64]:
     """Return friction over normal force that holds a part at rest, (..., 3) [1]: floor and walls.
 
-    Source: Coulomb's law for the reactions of ``system.held``; docs/mechanics.md, "The track".
+    Source: Coulomb's law for the reactions of ``held``; docs/mechanics.md, "The track".
 
     Parameters
     ----------
@@ -627,7 +627,7 @@ def _coefficients(bowl) -> tuple[NDArray[Any], ...]:
 
 
 def _still(seat, bowl, axes, load) -> tuple[dict, NDArray[np.float64]]:
-    """The part at rest as ``system.held`` has it, and the friction that holds it there."""
+    """The part at rest as ``held`` has it, and the friction that holds it there."""
     static, _, wall = _coefficients(bowl)
     ratio = np.divide(wall, static, out=np.zeros(np.shape(static)), where=static > 0.0)
 
@@ -716,7 +716,7 @@ def _where(condition, first, second) -> Any:
 def sliding_acceleration(seat, bowl, axes, least) -> Callable[..., Any]:
     """Return the acceleration of a sliding part as a function of phase, speed and sense.
 
-    Source: ``system.sliding``, which is linear in the load.
+    Source: ``sliding``, which is linear in the load.
 
     Parameters
     ----------
@@ -760,7 +760,7 @@ def sliding_acceleration(seat, bowl, axes, least) -> Callable[..., Any]:
 def loose_windows(rest, needed, static, samples=cycle.PERIOD_SAMPLES) -> list[Any]:
     """Return the phases at which a part at rest breaks loose.
 
-    Source: Coulomb's law on the reactions of ``system.held``; docs/mechanics.md, "The track".
+    Source: Coulomb's law on the reactions of ``held``; docs/mechanics.md, "The track".
 
     Parameters
     ----------

@@ -287,11 +287,11 @@ OF: dict[str, tuple[Any, ...]] = {
 
 
 def frame(record, name=None):
-    """Return a table of a record as a DataFrame, as ``records.Shown.to_frame`` says.
+    """Return a table of a record as a DataFrame, as ``records.ReadableRecord.to_frame`` says.
 
     Parameters
     ----------
-    record : Shown
+    record : ReadableRecord
     name : str, optional
 
     Returns
@@ -307,11 +307,11 @@ def frame(record, name=None):
 
 
 def plot(record, name=None):
-    """Return a picture of a record as a matplotlib Figure, as ``records.Shown.plot`` says.
+    """Return a picture of a record as a matplotlib Figure, as ``records.ReadableRecord.plot`` says.
 
     Parameters
     ----------
-    record : Shown
+    record : ReadableRecord
     name : str, optional
 
     Returns
@@ -326,7 +326,7 @@ def html(record):
 
     Parameters
     ----------
-    record : Shown
+    record : ReadableRecord
 
     Returns
     -------

@@ -87,7 +87,7 @@ def read_file(source, stdin=None) -> PartFile:
 
     Returns
     -------
-    File
+    PartFile
 
     Raises
     ------
@@ -111,7 +111,7 @@ def read_soup(file) -> Soup:
 
     Parameters
     ----------
-    file : File
+    file : PartFile
 
     Returns
     -------
@@ -470,7 +470,7 @@ def load(
     centre_of_mass : str, optional
         'x,y,z' in the file's axes and units, or with units: where it is, if the part is not homogeneous.
     names : str or Path or AspectNames, optional
-        File of names of the aspects, or what ``naming.read`` made of it; letters without it.
+        File of names of the aspects, or what ``read_aspect_names`` made of it; letters without it.
     body : str, optional
         Which of several bodies in the file is the part: its number from 1, its name, or 'largest'.
     allow_open : bool

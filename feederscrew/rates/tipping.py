@@ -38,8 +38,8 @@ class Rocker:
     far: float  # [m] to the side opposite
     height: float  # [m] of the centre of mass
     spread: float  # [m2] square of its radius of gyration about the direction of the sides
-    force: np.ndarray  # (INSTANTS,) [m/s2] of the track, over the mass
-    offset: np.ndarray  # (INSTANTS,) [m] of that force towards the near side, with the part lying
+    force: np.ndarray  # (ROCKING_STEPS,) [m/s2] of the track, over the mass
+    offset: np.ndarray  # (ROCKING_STEPS,) [m] of that force towards the near side, with the part lying
     growth: float = 0.0  # [m/s] of the distance to the near side, from where it is at the start
 
 
@@ -135,7 +135,7 @@ def over_period(place: Seat, bowl: Bowl) -> tuple[np.ndarray, np.ndarray]:
 
     Returns
     -------
-    tuple of (INSTANTS,) float [m/s2], (INSTANTS, 2) float [m]
+    tuple of (ROCKING_STEPS,) float [m/s2], (ROCKING_STEPS, 2) float [m]
         Force of the track over the mass, and where it acts from the foot of the centre of mass.
     """
     phase = phases(ROCKING_STEPS)
@@ -147,7 +147,7 @@ def over_period(place: Seat, bowl: Bowl) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _senses(motions: list[track_balance.TrackMotion], step: float) -> np.ndarray:
-    """How the part slides at each instant of a settled period, (INSTANTS,) int: places in ``SENSES``."""
+    """How the part slides at each instant of a settled period, (ROCKING_STEPS,) int: places in ``SENSES``."""
     gains = [step * motion.acceleration[:, 0] for motion in motions]
     loose, speed = motions[0].slides, 0.0
     senses = np.zeros(ROCKING_STEPS, dtype=int)

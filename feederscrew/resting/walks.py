@@ -81,7 +81,7 @@ def next_corner(edges, x, corner, sign) -> tuple[int, tuple[float, float, float]
     """Return where the great circle through direction x and a corner leaves the corner's region.
 
     ``sign`` is -1 down the flow, away from the corner, and +1 up it, towards the corner. Returns the
-    half-edge to the corner that takes over, or LOST, and the direction there.
+    half-edge to the corner that takes over, or LOST_WALK, and the direction there.
     """
     v = row(edges.vertices, corner)
     here = dot(x, v)
@@ -128,7 +128,7 @@ def support(edges, x, corner):
 
 @compiled
 def roll_from_corner(edges, x, corner) -> int:
-    """Return the facet first reached by a part that rolls over a corner from x (3,) [1]; LOST if none.
+    """Return the facet first reached by a part that rolls over a corner from x (3,) [1]; LOST_WALK if none.
 
     A corner in the middle of a facet or an edge gives way to the lowest corner of the facet.
     """
@@ -147,7 +147,7 @@ def roll_from_corner(edges, x, corner) -> int:
 
 @compiled
 def next_facet(edges, facet) -> int:
-    """Return the facet to which a part first rolls from ``facet``: itself if it rests there, LOST if none."""
+    """Return the facet to which a part first rolls from ``facet``: itself at rest, LOST_WALK for none."""
     h, corner = exit_of(edges, facet)
     if h >= 0:
         return edges.facets[edges.twins[h] // 3]
@@ -156,7 +156,7 @@ def next_facet(edges, facet) -> int:
 
 @compiled
 def roll_from_facet(edges, facet) -> int:
-    """Return the facet on which a part comes to rest that is set down on ``facet``; LOST if none."""
+    """Return the facet on which a part comes to rest that is set down on ``facet``; LOST_WALK if none."""
     for _ in range(len(edges.normals) + 1):
         if facet == LOST_WALK:
             return LOST_WALK
@@ -217,8 +217,8 @@ def trace_saddles(edges, tops, saddles, directions, gauges, pairs, peaks, areas)
     saddles : (E,) half-edges
     directions : (E, 3) unit vectors, down on each saddle
     gauges : (M, 3) unit vectors from which each facet's fan is swept
-    pairs : (E, 2) filled with the facets the part rolls to on the half-edge's left and right, or LOST
-    peaks : (E, 2) filled with the corners in which the walks back up end, or LOST
+    pairs : (E, 2) filled with the facets the part rolls to on the half-edge's left and right, or LOST_WALK
+    peaks : (E, 2) filled with the corners in which the walks back up end, or LOST_WALK
     areas : (M,) [sr] zeros, to which each basin's area is added, or 4 pi less
     """
     for e in range(len(saddles)):
@@ -252,7 +252,7 @@ def trace_saddles_together(edges, tops, saddles, directions, gauges, pairs, peak
 
 
 def _ends(edges, starts) -> NDArray[np.int64]:
-    """(M + 1,) facet on which a part comes to rest that is set down on each facet; LOST if none.
+    """(M + 1,) facet on which a part comes to rest that is set down on each facet; LOST_WALK if none.
 
     Filled where walks from ``starts`` lead; the last entry stands for a lost walk.
     """

@@ -63,7 +63,7 @@ def bolt_circle(track, options, radius):
     Parameters
     ----------
     track : Track
-    options : Asked
+    options : SolidOptions
     radius : float [m]
         Of the floor, out to the wall.
     """
@@ -88,7 +88,7 @@ def check_bolts(track, options, extents, radius) -> None:
     Parameters
     ----------
     track : Track
-    options : Asked
+    options : SolidOptions
     extents : (3,) float [m]
         Of the part along its axes.
     radius : float [m]
@@ -373,7 +373,7 @@ def plan(size, track, made_of, tooled, options, *, extents) -> BowlPlan:
         Of that size.
     made_of : BowlMaterial
     tooled : Stretch or None
-    options : Asked
+    options : SolidOptions
     extents : (3,) float [m]
         Of the part along its axes.
 

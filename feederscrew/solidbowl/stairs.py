@@ -47,7 +47,7 @@ class Stairs:
 
         Parameters
         ----------
-        path : Way
+        path : TrackPath
         theta : (M,) float [rad]
             From a turn before the outlet to the outlet.
         low : float [m]
@@ -79,7 +79,7 @@ def stairs(track, made_of, tooled, options, extents) -> Stairs | None:
     track : Track
     made_of : Material
     tooled : Stretch or None
-    options : Asked
+    options : SolidOptions
     extents : (3,) float [m]
         Of the part along its axes.
 

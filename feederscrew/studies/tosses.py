@@ -105,7 +105,7 @@ def follow(
     part : Part
         From a mesh.
     launches : str
-        Path of a file of launches: see ``launch_file.read``.
+        Path of a file of launches: see ``toss_runs.read_launches``.
     own : dict of str to (str or None), optional
         ``restitution`` and ``friction`` as typed, a value or a range; else those of any launch.
     runs : int, optional

@@ -128,7 +128,7 @@ class Reproduction(ReadableRecord):
     items: tuple[Item, ...]
 
     def to_frame(self, name: str | None = None) -> "DataFrame":
-        """Return a table as ``Shown.to_frame``: each item's cells by verdict, or the cells of '3-9'."""
+        """Return a table: each item's cells by verdict, or the cells of '3-9'."""
         if name is None:
             return data_frame(overview(self.items))
         item_of = {item.id: item for item in self.items}
@@ -136,7 +136,7 @@ class Reproduction(ReadableRecord):
         return data_frame(entries(item_of[name]))
 
     def plot(self, name: str | None = None) -> "DrawnFigure":
-        """Return a figure of the thesis as ``Shown.plot``: the first, or '5-6'."""
+        """Return a figure of the thesis as ``ReadableRecord.plot``: the first, or '5-6'."""
         name = THESIS_FIGURES[0].number if name is None else name
         _require(name, FIGURE_OF, "figure")
         return drawing.draw(FIGURE_OF[name])

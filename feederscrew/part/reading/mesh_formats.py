@@ -310,7 +310,7 @@ def _row_by_row(
 
 
 def _ply_from_text(words, elements, decimals) -> Any:
-    """Columns as ``_from_bytes`` has them, of rows in text."""
+    """Columns as ``_ply_from_bytes`` has them, of rows in text."""
     columns: dict[str, Any] = {}
     at = 0
     for element in elements:

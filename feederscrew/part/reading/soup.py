@@ -42,7 +42,7 @@ def refuse_size(corners: int, facets: int) -> None:
     Raises
     ------
     TooManyFacetsError
-        Above ``MOST_CORNERS`` or ``MOST_FACETS``.
+        Above ``MAX_READ_CORNERS`` or ``MAX_READ_FACETS``.
     """
     for count, most, noun in ((facets, MAX_READ_FACETS, "facets"), (corners, MAX_READ_CORNERS, "corners")):
         if count > most:

@@ -133,7 +133,7 @@ def find_crossings(vertices, faces, tolerance) -> Crossings:
     Returns
     -------
     Crossings
-        None are looked for in more than ``MOST`` facets, nor after ``MOST_PAIRS`` pairs.
+        None are looked for in more than ``MOST`` facets, nor after ``MAX_BOX_PAIRS`` pairs.
 
     References
     ----------

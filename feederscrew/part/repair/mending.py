@@ -506,7 +506,8 @@ def cap_holes(vertices, rims) -> NDArray[np.float64]:
     Returns
     -------
     (N, 3, 3) float [unit of the file]
-        Of least area in all for a rim of at most ``LARGE`` corners, else a fan from its middle; either is
+        Of least area in all for a rim of at most ``FAN_RIM_CORNERS`` corners, else a fan from its middle;
+        either is
         exact where the rim is flat.
     """
     return np.concatenate([(_patch if len(rim) <= FAN_RIM_CORNERS else _fan)(vertices[rim]) for rim in rims])

@@ -39,7 +39,7 @@ class Recommended(ReadableRecord):
     """Probability of each class by the recommended rule, for one launch; A rows."""
 
     rule: str  # 'CSA, launch drop', 'drop test, launch flip'
-    launch: str  # one of LAUNCHES
+    launch: str  # a key of ``launch_conditions.PRESETS``
     p: np.ndarray  # (A,) [1]
     low: np.ndarray  # (A,) [1]
     high: np.ndarray  # (A,) [1]
@@ -72,7 +72,7 @@ def closed_form(chances, stable, kinds, launch, own=None) -> Recommended:
     kinds : sequence of str
         'rolling' among them, where the part has a rolling class.
     launch : str
-        One of LAUNCHES.
+        A key of ``launch_conditions.PRESETS``.
     own : str, optional
         The user's own surface, 'soft': then the surface-weighted rule is the answer whatever the launch.
 
@@ -134,7 +134,7 @@ def dropped(tally, launch) -> Recommended:
     tally : Tally
         Of that launch.
     launch : str
-        One of LAUNCHES.
+        A key of ``launch_conditions.PRESETS``.
 
     Returns
     -------
@@ -168,7 +168,7 @@ def launched(p, low, high, possible) -> tuple[NDArray[np.float64], NDArray[np.fl
 def shape(p) -> NDArray[np.float64]:
     """Return how wide intervals are at shares p, relative to a share of a half: (A,) [1].
 
-    It falls as the scatter of a count does, but for FLOOR.
+    It falls as the scatter of a count does, but for WIDTH_FLOOR.
 
     Source: own; docs/resting.md, "The recommended answer".
     """

@@ -547,7 +547,7 @@ class SteadyJet(Device):
         return float(self._factors(encounter).max())
 
     def _factors(self, encounter):
-        """The same (PLACES,) at places along its length: it may offer more ahead or behind than amid."""
+        """The same (JET_POSITIONS,) along its length: it may offer more ahead or behind than amid."""
         orientation = encounter.orientation
         wide = self.nozzle + SPREAD * orientation.width + orientation.length
         ends = orientation.outline[:, 0].min(), orientation.outline[:, 0].max()
