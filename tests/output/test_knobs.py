@@ -143,6 +143,9 @@ def test_what_the_script_is_given_is_the_bowl_and_the_chain_of_its_rate(chapter)
         "climb",
     ]
     assert all(one.low <= one.own <= one.high for one in given.knobs)
+    amplitude, *_ = given.knobs  # [mm]; its map is as high, in room for a drive some times as strong
+    assert amplitude.own == pytest.approx(1e3 * own.bowl.drive.amplitude, rel=1e-12)
+    assert 1.0 <= amplitude.high == given.values["top"] <= max(1.0, 5.0 * amplitude.own)
     factors, rate = rate_values(own.rate.rate), own.rate.rate
     offered = 1.0 / (1.0 / (rate.velocity.value * factors["density"]) + factors["blocked"])
     cap = rate.velocity.value / factors["length"]

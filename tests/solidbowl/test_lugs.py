@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import shapely
+import trimesh
 from test_drawing import study
 from test_solid import CHAINS, TRACK, closed, planned
 from test_stepped import STEEP, STEPPED
@@ -33,6 +34,16 @@ def cut(name):
     chain, track, asked, bed = SHAPES[name]
     solid = body(planned(CHAINS[chain], track=track, asked=asked, name="pla"))
     return solid, segments.segments(solid, bed, segments.SCREWS), bed
+
+
+@pytest.mark.parametrize(("half", "count"), [(16.0, 2), (19.0, 4)])
+def test_lugs_of_seams_that_cross_stand_two_screws_apart(half, count):
+    """Screws stand 6 mm off the walls of a square: 31.1 and 35.4 mm from the next, a screw is 16 mm long."""
+    box = trimesh.creation.box((2.0 * half, 2.0 * half, 60.0))
+    block = facets.placed(SimpleNamespace(vertices=box.vertices / 1e3, faces=box.faces))
+    extents = np.array([[-half, half], [-half, half], [-30.0, -4.0]]) / 1e3
+    lugs, bare, ends = segments.place_lugs(block, [(0, 0.0), (1, 0.0)], shapely.Point(9.0, 9.0), extents)
+    assert (len(lugs), bare, ends) == (count, 4 - count, 4)
 
 
 @pytest.mark.parametrize("name", SHAPES)

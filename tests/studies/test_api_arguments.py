@@ -4,6 +4,7 @@ import inspect
 import json
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 import shapes
@@ -104,3 +105,14 @@ def test_a_function_that_shares_its_name_with_a_room_hides_no_module(room, modul
     exec(f"import feederscrew.{room}.{module} as found", known)  # the statement itself is what is looked at
     assert known["found"].__name__ == f"feederscrew.{room}.{module}"
     assert getattr(fs, room) is function
+
+
+@pytest.mark.parametrize("void", [(), ("another part",)])
+def test_a_bowl_is_sized_at_the_stroke_of_a_trial_that_is_still_of_it(monkeypatch, void):
+    """`feeder bowl` keeps that stroke: the library denied it, and took the one of the static rule."""
+    asked = {}
+    tried = SimpleNamespace(void=lambda *_: iter(void))
+    monkeypatch.setattr("feederscrew.bowl.verified", lambda path: tried)
+    monkeypatch.setattr("feederscrew.studies.bowl.bowl", lambda *_, **options: asked.update(options))
+    fs.size_bowl(shapes.part(shapes.box(4.0, 5.0, 6.0)), "30/min", "A")
+    assert asked["as_tried"] is not bool(void)
