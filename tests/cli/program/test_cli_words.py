@@ -99,9 +99,9 @@ def test_drops_without_a_compiler():
 
 def test_a_part_that_does_not_move_on_the_plate_sticks():
     from feederscrew.output.floor import HATCHES
-    from feederscrew.output.slide import REGIMES
+    from feederscrew.output.words import regime_words
 
-    assert (REGIMES["stick"][1], HATCHES["stick"][2]) == ("sticks", "sticks")
+    assert (regime_words("stick"), HATCHES["stick"][2]) == ("sticks", "sticks")
 
 
 @pytest.mark.parametrize("name", list(feeder.commands))
