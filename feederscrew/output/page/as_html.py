@@ -25,6 +25,7 @@ UNEVEN = 1.5  # times the height of a column: the other is so high that its tabl
 PAIRS = 8  # rows from which a table of two columns that stands alone is set in two halves
 ALONE = 1.4  # times the size of a picture that has the whole width
 TALL = 1.5  # times its width: the height from which a picture has a page of paper to itself
+SCREEN = 360  # [px] of a telephone: a broader picture scrolls there, and says so
 BROAD = 1000  # [px] width from which a picture that is high as well takes half a page of paper
 LINE, HEADING = 29, 70  # [px] about the height of a row of a table, and of its head
 SCRIPTS = ("three.js", "viewer.js")
@@ -184,6 +185,7 @@ def _picture(picture, scale=1.0) -> str:
     """The picture at its own size or smaller; one that stands alone is larger."""
     width, height = (round(scale * pixels) for pixels in _size(picture))
     kind = "stand-in" if picture.printed else "plain"
+    kind += " scrolls" if width > SCREEN else ""
     kind += " tall" if height > TALL * width else " broad" if width > BROAD and height > 0.7 * width else ""
     return (
         f'<figure id="{picture.file}" class="{kind}"><img src="{_data("image/png", picture.content)}" '
@@ -325,9 +327,8 @@ def _knobs(block) -> str:
         f'<div class="knobs" hidden>\n<div class="tiles">\n{tiles}\n</div>\n<div class="turned">\n'
         f'<div class="sliders">\n{sliders}\n<button type="button">as in the bowl file</button>\n</div>\n'
         f'<figure><canvas width="720" height="440" role="img" aria-label="Regimes over vibration angle and '
-        f'amplitude, with the operating point"></canvas>\n<figcaption>vibration angle 2 to 60 deg across, '
-        f"amplitude 0 to {block.values['top']:.3g} mm up; a click sets both\n"
-        f'<div class="keys">\n{keys}\n</div></figcaption></figure>\n</div>\n'
+        f'amplitude, with the operating point"></canvas>\n<figcaption>vibration angle across, amplitude '
+        f'up; a click sets both\n<div class="keys">\n{keys}\n</div></figcaption></figure>\n</div>\n'
         f'<script type="application/json" class="knob-values">{values}</script>\n</div>'
     )
 

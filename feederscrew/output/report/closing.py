@@ -7,11 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from feederscrew import __version__
+from feederscrew import bowl as bowls
 from feederscrew.output import slide, tables
 from feederscrew.output.folder import LIBRARIES
 from feederscrew.output.page.blocks import Chapter, Code, Notes, Table, Text
 from feederscrew.output.report.resting import numbers
 
+CHANGED = "The bowl: the values that are not the default."
 DEFAULTS = "The bowl: the values by default."
 LIMITS = (
     "How often a part lands on an aspect: the rules compute from the part's shape and mass alone; only "
@@ -56,18 +58,21 @@ def repeat(case) -> Chapter:
 
 
 def _bowl_values(case) -> Iterator[Any]:
-    """The values of the bowl that were given; on a screen those by default as well."""
-    bowl = slide.settings(case.settings).only(("key", "value", "from", "meaning"))
-    origins = [Path(origin).name for origin in bowl["from"]]  # the inputs have their folders
-    bowl = tables.frame({name: origins if name == "from" else bowl[name] for name in bowl})
-    rows = list(bowl.rows())
-    for given, lead in ((True, "The bowl: the values that were given."), (False, DEFAULTS)):
-        chosen = [row for row in rows if (row["from"] != "default") == given]
+    """The values of the bowl that are not the default; on a screen the others as well."""
+    usual = {setting.key.name: setting.text for setting in bowls.settings()}
+    for is_changed, lead in ((True, CHANGED), (False, DEFAULTS)):
+        chosen = [
+            setting
+            for setting in case.settings
+            if (setting.is_own and setting.text != usual.get(setting.key.name)) == is_changed
+        ]
         if chosen:
-            frame = tables.frame({name: [row[name] for row in chosen] for name in bowl})
-            yield Text(lead, printed=given)
-            yield Table(frame, printed=given)
-    yield Text("Every other key of the bowl has its default (feeder config show).")
+            frame = slide.settings(chosen).only(("key", "value", "from", "meaning"))
+            files = [Path(origin).name for origin in frame["from"]]  # the inputs have their folders
+            frame = tables.frame({name: files if name == "from" else frame[name] for name in frame})
+            yield Text(lead, printed=is_changed)
+            yield Table(frame, printed=is_changed)
+    yield Text("A key that is not listed has its default (feeder config show).")
 
 
 def _versions() -> Iterator[Any]:

@@ -25,7 +25,6 @@ def bowl(case) -> Chapter | None:
     blocks = (
         Text(SIZED if sized else GIVEN),
         *_turned(case, mark),
-        *((Notes(found.remarks),) if found.remarks else ()),
         Picture(drawn.name, drawn.make(), drawn.alt),
         Table(machine.summary(found)),
         Table(machine.leaf_sets(found.changes)),

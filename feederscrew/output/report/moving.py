@@ -120,8 +120,13 @@ def rate(case) -> Chapter:
 
 
 def _passing(found, frame):
-    """The orientations with what each station lets pass as a share, which people read in percent."""
+    """The orientations with what each station lets pass as a share, which people read in percent.
+
+    Their sizes stand in the chapter before.
+    """
     stations = found.rate.orientations.names
+    empty = () if np.isfinite(frame["margin_mm"]).any() else ("margin_mm",)
+    frame = frame.without(("length_mm", "width_mm", *empty))
     return tables.frame({f"p_{name}" if name in stations else name: column for name, column in frame.items()})
 
 
