@@ -26,7 +26,7 @@ CONCERNED = ("commands", "rules", "bowl_file")  # pages that are made from the p
 
 @pytest.fixture
 def copy(tmp_path):
-    """A copy of the sources, of what is compiled and of the pages; the commands under their installed name."""
+    """A copy of the sources, compiled or not, and of the pages; the commands under their installed name."""
     ignore = shutil.ignore_patterns("*.pyc", "*.png")
     for name in COPIED:
         shutil.copytree(ROOT / name, tmp_path / name, ignore=ignore)
