@@ -162,7 +162,7 @@ docs/glossary.png: docs/glossary.py | $(READY)
 site: $(READY) ## the pages as a site in site/, with search, API pages and a gallery that is made anew
 	$(PYTHON) -m venv .venv-site
 	.venv-site/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
-	.venv-site/bin/python -m mkdocs build --quiet --strict --config-file docs/site/mkdocs.yml
+	NO_MKDOCS_2_WARNING=1 .venv-site/bin/python -m mkdocs build --quiet --strict
 
 wheels: ## sdist and wheel in dist/, tried in fresh environments on each Python at hand
 	$(PYTHON) docs/release.py --build
