@@ -97,7 +97,7 @@ results/%/slide.csv: configs/%.yaml | $(READY)
 TABLES := waits kernels
 BENCHES := conveying speed tooling
 
-bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minutes: the tables of docs/speed.md
+bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minutes: the tables of docs/method/speed.md
 	for name in $(TABLES); do $(BIN)/python benchmarks/$$name.py --write || exit 1; done
 	for name in $(BENCHES); do $(BIN)/python benchmarks/$$name.py || exit 1; done
 	$(BIN)/python benchmarks/aspects.py --repeats 1
