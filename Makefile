@@ -102,7 +102,7 @@ bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minut
 	for name in $(BENCHES); do $(BIN)/python benchmarks/$$name.py || exit 1; done
 	$(BIN)/python benchmarks/aspects.py --repeats 1
 
-PICTURES := aspects regimes drop bowl bowl_solid design tooling trial report conveying_map glossary
+PICTURES := aspects regimes drop bowl bowl_solid design tooling trial report conveying_map glossary_part glossary_track glossary_chain
 
 docs: $(PICTURES:%=docs/%.png) docs/trial_film.gif $(READY) ## pictures, outputs and tables of the pages
 	$(BIN)/python docs/readme.py
@@ -155,7 +155,7 @@ docs/report.png: parts/$(DEMO).stl docs/screenshot.py | $(READY)
 docs/conveying_map.png: docs/conveying_map.py | $(READY)
 	$(BIN)/python docs/conveying_map.py
 
-docs/glossary.png: docs/glossary.py | $(READY)
+docs/glossary_%.png: docs/glossary.py | $(READY)
 	$(BIN)/python docs/glossary.py
 
 # Its own environment: mkdocs and its theme are needed for nothing else. site/ needs no server and no network.
