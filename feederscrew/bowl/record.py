@@ -17,7 +17,7 @@ MAX_TRACK_WIDTH_SHARE = 0.95  # of the wall's radius: about the axis there is no
 
 @dataclass(frozen=True)
 class Drive:
-    """Vibration of the bowl: harmonic, and straight, unless its last three fields say otherwise."""
+    """Vibration of the bowl: harmonic, and straight, unless its last four fields say otherwise."""
 
     amplitude: float  # [m] half the peak-to-peak stroke, along the vibration direction
     frequency: float  # [Hz]
@@ -26,6 +26,14 @@ class Drive:
     phase: float = 0.0  # [rad] by which the motion along the normal leads the one along the track
     second_harmonic: float = 0.0  # [1] amplitude at twice the frequency, of ``amplitude``
     second_harmonic_phase: float = 0.0  # [rad] psi of sin(w t) + r sin(2 w t + psi)
+    second_harmonic_angle: float | None = None  # [rad] of a second mode; None: as vibration_angle
+
+    @property
+    def second_harmonic_turn(self) -> float:
+        """Angle from the direction of the first harmonic up to that of the second [rad]."""
+        if self.second_harmonic_angle is None:
+            return 0.0
+        return self.second_harmonic_angle - self.vibration_angle
 
 
 @dataclass(frozen=True)

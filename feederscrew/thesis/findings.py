@@ -16,7 +16,7 @@ from feederscrew import bowl
 from feederscrew.mechanics import limits
 from feederscrew.resting.counts.deviation import deviation
 from feederscrew.thesis import figures, parts
-from feederscrew.thesis.motion import TrackAsPublished, track
+from feederscrew.thesis.motion import TrackAsPublished, floor, track
 from feederscrew.thesis.recompute import cells, rounded_shares
 from feederscrew.thesis.tables import TOTAL, chapter_4, table
 
@@ -391,6 +391,34 @@ def _wall_pulls() -> str:
     return (
         f"At the upper reversal R1 + R2 is {printed.walls.sum() / MILLI:.2f} mN as printed; the complete"
         f" equations give {complete.walls.sum() / MILLI:.2f} mN, and open a contact rather than let it pull."
+    )
+
+
+@_evidence("normal-force-line")
+def _normal_force_line() -> str:
+    card, plain = parts.card("arc_chute"), bowl.read(None, SLIPS_ONE_WAY)
+    ahead = floor(card, plain, "5").now.offset[..., 0] / MILLI
+    return f"At the upper reversal N acts {float(ahead):.2f} mm ahead of the Arc Chute's centre of mass."
+
+
+@_evidence("seven-unknowns")
+def _seven_unknowns() -> str:
+    printed, complete = banked_arc_chute().printed, banked_arc_chute().now
+    radial, beside = (study.radial_friction / MILLI for study in (printed, complete))
+    return (
+        f"While the Arc Chute slides at 10 deg of bank the print has R3 = {radial:.2f} mN and no d_y;"
+        f" Coulomb's friction acts against the sliding, so R3 = {beside:.2f} mN and"
+        f" d_y = {complete.offset[..., 1] / MILLI:.3f} mm."
+    )
+
+
+@_evidence("one-instant")
+def _one_instant() -> str:
+    ratio, beta = 0.5, np.radians(20.0)
+    forward, backward = float(limits.published_limit(ratio, beta)), float(limits.backward_limit(ratio, beta))
+    return (
+        f"At G = {ratio:.1f} and beta 20 deg a part slips forward below {forward:.3f} and back below"
+        f" {backward:.3f}: between the two it slips one way only."
     )
 
 
