@@ -67,10 +67,10 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     with out.folder(solid.name, solid.inputs, effective) as folder:
         study = _study(solid, chosen, out)
         frame = aspects_output.aspects(study)
-        shown = aspects_output.printed(frame, columns) if columns or out.format == "table" else frame
+        printed = aspects_output.printed(frame, columns) if columns or out.format == "table" else frame
         offers.write(folder, aspects_output.offers(study, tipping=graph), pictures=pictures)
         out.say(*aspects_output.remarks(study) if folder and pictures else ())
-    out.show(shown, aspects_output.document(study))
+    out.show(printed, aspects_output.document(study))
 
 
 ONCE = (

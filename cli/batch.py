@@ -24,9 +24,9 @@ class Jobs(click.ParamType):
 
 
 def _grouped(command):
-    """Hand over what is computed as ``asked``, and what of it as ``choices``."""
+    """Hand over what is computed as ``inputs``, and what of it as ``choices``."""
     choices = options.packed(command, "choices", ("rule", "launch", "drops", "pictures"))
-    return options.packed(choices, "asked", ("sources", "configs", "overrides", "density"))
+    return options.packed(choices, "inputs", ("sources", "configs", "overrides", "density"))
 
 
 @grouped.command(short_help="Aspects, conveying and rate of any number of parts, in parallel.")
@@ -62,7 +62,7 @@ def _grouped(command):
 @options.output
 @_grouped
 @click.pass_context
-def batch(ctx, asked, choices, jobs, scheduler, resume, out):
+def batch(ctx, inputs, choices, jobs, scheduler, resume, out):
     """Example: feeder batch parts/ --config bowl.yaml -o results/all --jobs 2
 
     Compute every part in every bowl: its aspects, how it travels, and a rate. The rate is that of the
@@ -81,7 +81,7 @@ def batch(ctx, asked, choices, jobs, scheduler, resume, out):
 
     if out.directory is None:
         raise click.UsageError("Missing option '-o' - say where the results go")
-    requests = batches.gather(**asked)
+    requests = batches.gather(**inputs)
     out.warn(*dict.fromkeys(line for request in requests for line in request.conditions.warnings))
     workers = batches.crew(jobs, None if _typed(ctx, "jobs") else scheduler)
     chosen = batches.Choices(**choices)
@@ -89,7 +89,7 @@ def batch(ctx, asked, choices, jobs, scheduler, resume, out):
         _say_what_is_stale(batches.count_stale(requests, out.directory, chosen), len(requests), out)
     try:
         with Progress(len(requests), not out.quiet) as progress:
-            found = batches.run(
+            result = batches.run(
                 requests, out.directory, workers=workers, choices=chosen, resume=resume, tell=progress.tell
             )
     except batches.StoppedBatchError as stopped:
@@ -98,9 +98,9 @@ def batch(ctx, asked, choices, jobs, scheduler, resume, out):
         last = f"Stopped: {stopped.done} of {stopped.total} parts {verb} done; go on with --resume"
         click.echo(last, err=True)
         ctx.exit(INTERRUPTED)
-    out.depend(found.targets, found.sources)
-    _report(found, out)
-    ctx.exit(1 if found.faults else 0)
+    out.depend(result.targets, result.sources)
+    _report(result, out)
+    ctx.exit(1 if result.faults else 0)
 
 
 def _typed(ctx, name):
@@ -115,15 +115,15 @@ def _say_what_is_stale(reasons, total, out):
         out.say(f"Computes {sum(reasons.values())} of {total} parts: {why}")
 
 
-def _report(found, out):
+def _report(result, out):
     from feederscrew.batch import summary
     from feederscrew.units import counted
 
-    out.say(*(f"Error: {fault}" for fault in found.faults))
-    if found.foreign:
-        folders, one = counted(len(found.foreign), "folder"), len(found.foreign) == 1
-        text = f"{'is of a part' if one else 'are of parts'} not in this batch: {found.foreign[0]}"
-        out.warn(f"{folders} {text}{'' if one else ', ...'}")
-    kept = f", {found.reused} of them as they were" if found.reused else ""
-    out.say(f"Wrote {out.directory} ({counted(len(found.rows), 'part')}{kept}; open index.html)")
-    out.show(summary.frame(found.rows), {"parts": list(found.rows)}, hidden=summary.HIDDEN_SUMMARY_COLUMNS)
+    out.say(*(f"Error: {fault}" for fault in result.faults))
+    if result.foreign:
+        folders, is_single = counted(len(result.foreign), "folder"), len(result.foreign) == 1
+        text = f"{'is of a part' if is_single else 'are of parts'} not in this batch: {result.foreign[0]}"
+        out.warn(f"{folders} {text}{'' if is_single else ', ...'}")
+    reused = f", {result.reused} of them as they were" if result.reused else ""
+    out.say(f"Wrote {out.directory} ({counted(len(result.rows), 'part')}{reused}; open index.html)")
+    out.show(summary.frame(result.rows), {"parts": list(result.rows)}, hidden=summary.HIDDEN_SUMMARY_COLUMNS)

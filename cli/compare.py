@@ -128,5 +128,5 @@ def _over_files(sources, launch, as_published, pictures, out):
     out.warn(*study.warnings)
     with out.folder("measured", study.inputs) as folder:
         offers.write(folder, compare_output.sets_offers(study), pictures=pictures)
-    for shown in compare_output.sets_printed(study, out.format):
-        out.show(shown, compare_output.sets_document(study), spare=compare_output.SPARE_RULES)
+    for frame in compare_output.sets_printed(study, out.format):
+        out.show(frame, compare_output.sets_document(study), spare=compare_output.SPARE_RULES)

@@ -112,8 +112,8 @@ def drop(part, launch, test, launches, plate, pictures, out, **own):
 
 def _fitting(until, trace, plate, out):
     """Wrong calls."""
-    for option, given in (("--until", until), ("--trace", trace)):
-        if plate and given:
+    for option, value in (("--until", until), ("--trace", trace)):
+        if plate and value:
             raise click.UsageError(f"{option} is for a plane at rest - leave out {option} or --plate")
     if trace and out.directory is None:
         raise click.UsageError("--trace writes files: give -o DIR as well")

@@ -44,12 +44,12 @@ class Named(click.Option):
 
     def get_help_record(self, context):
         """The help with the names behind it."""
-        shown = self.help or ""
-        self.help = f"{shown.removesuffix('.')}: {', '.join(self.names())}."
+        text = self.help or ""
+        self.help = f"{text.removesuffix('.')}: {', '.join(self.names())}."
         try:
             return super().get_help_record(context)
         finally:
-            self.help = shown
+            self.help = text
 
 
 WHOLE = re.compile(r"[+-]?[0-9]{1,30}")

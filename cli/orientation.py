@@ -36,17 +36,17 @@ def chain(command):
     return options.stacked(options.packed(command, "wanted", WANTED), *CHAIN)
 
 
-def of_an_aspect(asked):
+def of_an_aspect(request):
     """Refuse a heading without the aspect that it is a heading of."""
-    if asked["heading"] is not None and asked["aspect"] is None:
+    if request["heading"] is not None and request["aspect"] is None:
         raise click.UsageError("--heading is given without --aspect - name the aspect as well")
 
 
-def name(asked):
+def name(request):
     """Return the name of the orientation that is asked for, 'A@90', or of its aspect; None where none is."""
-    if asked["aspect"] is None or asked["heading"] is None:
-        return asked["aspect"]
-    return f"{asked['aspect']}@{round(math.degrees(asked['heading'])) % 360}"
+    if request["aspect"] is None or request["heading"] is None:
+        return request["aspect"]
+    return f"{request['aspect']}@{round(math.degrees(request['heading'])) % 360}"
 
 
 LEAVES_MOST = click.option(
@@ -107,15 +107,15 @@ def arriving(out, part, taken, rule):
     """Return a function from a bowl to what ``shares`` returns of it; it shows how far the first one is."""
     from feederscrew.studies import rate as study
 
-    known: dict[Any, Any] = {}  # Shares by their Bowl
+    shares_by_bowl: dict[Any, Any] = {}  # Shares by their Bowl
 
-    def found(bowl):
-        if bowl not in known:
-            values = {} if known else telling(out)
-            known[bowl] = study.shares(part, bowl, **choice(taken), rule=rule, **values)
-        return known[bowl]
+    def shares_of(bowl):
+        if bowl not in shares_by_bowl:
+            values = {} if shares_by_bowl else telling(out)
+            shares_by_bowl[bowl] = study.shares(part, bowl, **choice(taken), rule=rule, **values)
+        return shares_by_bowl[bowl]
 
-    return found
+    return shares_of
 
 
 def few(part, taken, rule):
@@ -130,11 +130,13 @@ def few(part, taken, rule):
 
 def choice(taken):
     """Return the keywords of ``studies.rate.shares`` that the options name; a wrong call if two clash."""
-    asked = click.get_current_context().get_parameter_source("rule") is click.core.ParameterSource.COMMANDLINE
-    ways = [("--launch", taken["launch"]), ("--rule", asked), ("--fed", taken["fed"])]
-    others = [name for name, given in ways if given]
-    if taken["probabilities"] is not None and others:
-        raise click.UsageError(f"--probabilities takes the place of {others[0]} - leave one of them out")
+    has_rule = (
+        click.get_current_context().get_parameter_source("rule") is click.core.ParameterSource.COMMANDLINE
+    )
+    own_answers = [("--launch", taken["launch"]), ("--rule", has_rule), ("--fed", taken["fed"])]
+    names = [name for name, value in own_answers if value]
+    if taken["probabilities"] is not None and names:
+        raise click.UsageError(f"--probabilities takes the place of {names[0]} - leave one of them out")
     if taken["launch"] is not None and taken["fed"] is not None:
         raise click.UsageError("--fed is for parts on the moving floor - leave out --fed or --launch")
     return taken

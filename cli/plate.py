@@ -14,7 +14,7 @@ OPTIONS = {"paths": "--config", "overrides": "--set", "amplitudes": "--amplitude
 def plate(command):
     """--plate and what goes with it; the command receives ``plate``, None unless it is given."""
     return options.stacked(
-        options.packed(command, "plate", KEYWORDS, _given),
+        options.packed(command, "plate", KEYWORDS, _plate_options),
         click.option("--plate", "shaken", is_flag=True, help="The plane vibrates with a bowl's drive."),
         click.option(
             "--config",
@@ -64,7 +64,7 @@ def run(part, plate, launch, own, test, pictures, out):
     out.show(frame, plate_output.document(study), hidden=plate_output.HIDDEN, spare=plate_output.spare(frame))
 
 
-def _given(shaken, **others):
+def _plate_options(shaken, **others):
     """The options of a plate, or None; a wrong call where they come without ``--plate``."""
     if shaken:
         return others
@@ -80,8 +80,12 @@ def _bowls(plate):
 
     paths = plate["paths"] or (None,)
     settings = [bowls.settings(path, plate["overrides"]) for path in paths]
-    every = [bowls.at_strokes(bowls.record(one), plate["amplitudes"]) for one in settings]
-    names = [name for name, plates in zip(bowls.bowl_names(paths), every) for _ in plates]
+    driven = [
+        bowls.at_strokes(bowls.record(bowl_settings), plate["amplitudes"]) for bowl_settings in settings
+    ]
+    names = [name for name, plates in zip(bowls.bowl_names(paths), driven) for _ in plates]
     files = {source: digest for path in paths for source, digest in bowls.identity(path).items()}
-    values = {name: bowls.texts(one) for name, one in zip(bowls.bowl_names(paths), settings)}
-    return [bowl for plates in every for bowl in plates], names, files, values
+    values = {
+        name: bowls.texts(bowl_settings) for name, bowl_settings in zip(bowls.bowl_names(paths), settings)
+    }
+    return [bowl for plates in driven for bowl in plates], names, files, values

@@ -47,7 +47,7 @@ class Quantity(click.ParamType):
             return False
         return number > 0.0 or (number == 0.0 and not self.positive)
 
-    def _range(self, shown):
+    def _range(self, typed):
         low = "more than 0" if self.positive else "at least 0"
         most = "" if self.most is None else f" and at most {self.most:g}"
-        return f"{shown} is out of range - give {low}{most}"
+        return f"{typed} is out of range - give {low}{most}"

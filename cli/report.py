@@ -83,16 +83,16 @@ def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
     solid = out.part(part)
     waiting.conveying(out)
     chosen = orientation.choice(taken) | orientation.telling(out)
-    found = study(solid, bowl=bowl, **wanted, **chosen, command=repeated(out.arguments))
-    tried, kept = verified(bowl["path"]), record(found.settings)
-    found = replace(found, as_tried=proof.holds(tried, solid, kept, orientation.name(wanted)))
-    effective = columns.conditions(solid) | texts(found.settings)
+    result = study(solid, bowl=bowl, **wanted, **chosen, command=repeated(out.arguments))
+    tried, bowl_record = verified(bowl["path"]), record(result.settings)
+    result = replace(result, as_tried=proof.holds(tried, solid, bowl_record, orientation.name(wanted)))
+    effective = columns.conditions(solid) | texts(result.settings)
     gc.freeze()  # what is loaded stays: it need not be looked through after every chapter
-    with out.folder(solid.name, found.inputs, effective) as folder:
-        made = page(found, out.step)
-        out.warn(*(line for line in made.warnings if line not in solid.warnings))
-        out.warn(*proof.warnings(tried, solid, kept, found.aspect))
-        write(folder, made, format)
+    with out.folder(solid.name, result.inputs, effective) as folder:
+        built_page = page(result, out.step)
+        out.warn(*(line for line in built_page.warnings if line not in solid.warnings))
+        out.warn(*proof.warnings(tried, solid, bowl_record, result.aspect))
+        write(folder, built_page, format)
 
 
 def repeated(arguments):
@@ -107,5 +107,5 @@ def repeated(arguments):
     -------
     str
     """
-    kept = [argument for argument in talk.placeless(arguments) if argument not in TALK]
-    return shlex.join(["feeder", *kept])
+    words = [argument for argument in talk.placeless(arguments) if argument not in TALK]
+    return shlex.join(["feeder", *words])

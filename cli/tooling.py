@@ -13,9 +13,9 @@ ASKED = (
 )
 
 
-def _asked(command):
-    """What the design shall keep to; the command receives ``asked``."""
-    return options.packed(command, "asked", ASKED)
+def _request_options(command):
+    """What the design shall keep to; the command receives ``request``."""
+    return options.packed(command, "request", ASKED)
 
 
 @grouped.command(
@@ -103,8 +103,8 @@ def _asked(command):
 @options.title_block
 @options.pictures
 @options.output
-@_asked
-def tooling(part, asked, cad, static, taken, bowl, fields, pictures, out):
+@_request_options
+def tooling(part, request, cad, static, taken, bowl, fields, pictures, out):
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect, the
@@ -131,24 +131,24 @@ def tooling(part, asked, cad, static, taken, bowl, fields, pictures, out):
     from feederscrew.studies.tooling import tooling as study
     from feederscrew.studies.tooling import tooling_without
 
-    orientation.of_an_aspect(asked)
+    orientation.of_an_aspect(request)
     if cad:
         solid_files.check_opencascade()
     solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
-    known = orientation.shares(out, solid, record, taken, asked["rule"])
-    with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
-        given = {"known": known.aspects, **asked}
+    aspect_shares = orientation.shares(out, solid, record, taken, request["rule"])
+    with out.folder(solid.name, solid.inputs | aspect_shares.inputs, effective) as folder:
+        values = {"aspect_shares": aspect_shares.aspects, **request}
         with Progress(None, not out.quiet, "orientations") as bar:
-            found = study(solid, record, progress=heeding(bar.reach), **given)
+            result = study(solid, record, progress=heeding(bar.reach), **values)
         if not static:
-            again = partial(tooling_without, part=solid, bowl=record, **given)
-            found = own_trial.own_trials(found, again, before=lambda: waiting.trial(out))
-        document = tables.document(found) | {"trial": own_trial.document(found.trials)}
-        denied, agreed = tables.trials(found)
-        out.warn(*found.warnings, *denied)
-        out.say(*agreed, *tables.remarks(found, asked["efficiency"]))
-        made = files.offers(found, settings, cad, fields=marking.SheetFields(**fields))
-        offers.write(folder, made, pictures=pictures)
-        out.show(tables.summary(found, out.format), document, hidden=tables.HIDDEN, spare=tables.SPARE)
+            without_kinds = partial(tooling_without, part=solid, bowl=record, **values)
+            result = own_trial.own_trials(result, without_kinds, before=lambda: waiting.trial(out))
+        document = tables.document(result) | {"trial": own_trial.document(result.trials)}
+        denied, agreed = tables.trials(result)
+        out.warn(*result.warnings, *denied)
+        out.say(*agreed, *tables.remarks(result, request["efficiency"]))
+        offered = files.offers(result, settings, cad, fields=marking.SheetFields(**fields))
+        offers.write(folder, offered, pictures=pictures)
+        out.show(tables.summary(result, out.format), document, hidden=tables.HIDDEN, spare=tables.SPARE)

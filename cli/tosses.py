@@ -45,8 +45,8 @@ def run(part, path, own, test, pictures, out):
 def _fitting(own, test):
     """Wrong calls."""
     context = click.get_current_context()
-    given = context.get_parameter_source("launch") is click.core.ParameterSource.COMMANDLINE
-    foreign = ["--launch"] * given + [option for key, option in FOREIGN.items() if own[key] is not None]
+    has_launch = context.get_parameter_source("launch") is click.core.ParameterSource.COMMANDLINE
+    foreign = ["--launch"] * has_launch + [option for key, option in FOREIGN.items() if own[key] is not None]
     foreign += [option for key, option in (("until", "--until"), ("traced", "--trace")) if test[key]]
     if foreign:
         raise click.UsageError(f"{foreign[0]} cannot be combined with --launches - leave one of them out")

@@ -61,8 +61,8 @@ def _queued(command):
 
 def _together(queue, **others):
     """All of them by keyword; a wrong call if there are options of a queue without one."""
-    for name, given in (("--poured", others["poured"]), ("--with", others["measured"])):
-        if given and not queue:
+    for name, value in (("--poured", others["poured"]), ("--with", others["measured"])):
+        if value and not queue:
             raise click.UsageError(f"{name} is for a queue - give --queue N as well")
     return {"queue": queue, **others}
 
@@ -149,26 +149,30 @@ def trial(part, sent, taken, amplitudes, film, bowl, pictures, out):
     solid, settings = out.part(part), out.settings(bowl)
     driven = bowls.at_strokes(bowls.record(settings), amplitudes)
     effective = columns.conditions(solid) | bowls.texts(settings)
-    known = orientation.shares(out, solid, driven[0], taken, sent["rule"])
+    aspect_shares = orientation.shares(out, solid, driven[0], taken, sent["rule"])
     measured = sent.pop("measured")
-    beside = studies.at_outlet(measured, known) if measured else None
-    inputs = solid.inputs | known.inputs | ({measured: beside.sha256} if beside else {})
+    measured_at_outlet = studies.at_outlet(measured, aspect_shares) if measured else None
+    inputs = (
+        solid.inputs
+        | aspect_shares.inputs
+        | ({measured: measured_at_outlet.sha256} if measured_at_outlet else {})
+    )
     with out.folder(solid.name, inputs, effective) as folder:
         with waiting.bar(out, "runs") as bar:
-            found = studies.trial(
-                solid, driven, known=known, measured=beside, progress=bar.reach,
+            study = studies.trial(
+                solid, driven, aspect_shares=aspect_shares, measured=measured_at_outlet, progress=bar.reach,
                 before=lambda: waiting.trial(out), frames=films.QUEUE_FRAMES if film else 0,
                 **sent | {"jobs": sent["jobs"] or os.cpu_count()},
             )  # fmt: skip
-        document = tables.document(found)
-        out.warn(*found.warnings)
-        out.say(*tables.summary(found))
-        for line in tables.engine(found):
+        document = tables.document(study)
+        out.warn(*study.warnings)
+        out.say(*tables.summary(study))
+        for line in tables.engine(study):
             out.detail(line)
         if film:
-            films.write_film(film, found)
+            films.write_film(film, study)
             out.say(f"Wrote {film}")
-        offers.write(folder, files.offers(found), pictures=pictures)
-        shown = tables.frame(found, people=out.format == "table")
+        offers.write(folder, files.offers(study), pictures=pictures)
+        frame = tables.frame(study, people=out.format == "table")
         hidden = tables.HIDDEN if not out.verbose else ("fell_mm", "seconds")
-        out.show(shown, document, hidden=hidden, spare=tables.spare(found))
+        out.show(frame, document, hidden=hidden, spare=tables.spare(study))

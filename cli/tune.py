@@ -47,13 +47,13 @@ def tune(part, target, wanted, taken, worst, bowl, out):
     shares = solid, taken, wanted["rule"]
     arriving, rough = orientation.arriving(out, *shares), orientation.few(*shares)
     with out.folder(solid.name, solid.inputs | arriving(record).inputs, effective) as folder:
-        found = study(
+        result = study(
             solid, record, target=target, arriving=arriving, rough=rough, worst=worst,
-            progress=waiting.told(out, "settings"), **wanted,
+            progress=waiting.progress_in_bar(out, "settings"), **wanted,
         )  # fmt: skip
         tried = bowls.verified(bowl["path"])
         own = solid, record, orientation.name(wanted)
-        out.warn(*found.warnings, *tune_output.remarks(found), *proof.warnings(tried, *own))
-        offers.write(folder, tune_output.offers(found))
-        document = proof.beside(tune_output.document(found), tried, *own)
-        out.show(tune_output.printed(found, out.format), document, spare=())
+        out.warn(*result.warnings, *tune_output.remarks(result), *proof.warnings(tried, *own))
+        offers.write(folder, tune_output.offers(result))
+        document = proof.with_trial(tune_output.document(result), tried, *own)
+        out.show(tune_output.printed(result, out.format), document, spare=())

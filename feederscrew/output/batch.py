@@ -18,14 +18,14 @@ LETTERS = 26  # of a line of text
 LINES, BELOW = 8, 3  # of the reason why a part failed, and of what stands below a picture
 
 
-def thumbnail(part, found, aspect=None):
+def thumbnail(part, record, aspect=None):
     """Draw a small picture of a part on one of its aspects.
 
     Parameters
     ----------
     part : Part
         With a mesh.
-    found : Aspects
+    record : Aspects
     aspect : str, optional
         Its name; without one, the likeliest.
 
@@ -35,8 +35,8 @@ def thumbnail(part, found, aspect=None):
         A PNG of ``WIDTH`` by ``HEIGHT`` pixels, the same for the same part.
     """
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
-    row = found.names.index(aspect or found.likeliest)
-    return _png(shading.thumbnail(solid, found, row, (WIDTH, HEIGHT)))
+    row = record.names.index(aspect or record.likeliest)
+    return _png(shading.thumbnail(solid, record, row, (WIDTH, HEIGHT)))
 
 
 def sheet(tiles):
@@ -70,7 +70,7 @@ def _sheet(tiles):
 
 def _tile(figure, axes, left, bottom, tile) -> None:
     """One thumbnail and its text, ``bottom`` being that of the text."""
-    picture, name, said = tile
+    picture, name, lines = tile
     if picture is not None:
         figure.figimage(mpl_image.imread(io.BytesIO(picture)), left, bottom + TEXT)
     failed = picture is None
@@ -78,9 +78,9 @@ def _tile(figure, axes, left, bottom, tile) -> None:
     look = {"fontsize": 7, "color": colour, "ha": "center"}
     axes.text(middle, bottom + TEXT - 14, _shortened(name, LETTERS), fontweight="bold", va="center", **look)
     if failed:  # the reason has the place of the picture
-        axes.text(middle, bottom + TEXT + HEIGHT / 2, _wrapped(said, LINES), va="center", **look)
+        axes.text(middle, bottom + TEXT + HEIGHT / 2, _wrapped(lines, LINES), va="center", **look)
     else:
-        axes.text(middle, bottom + TEXT - 24, _wrapped(said, BELOW), va="top", **look)
+        axes.text(middle, bottom + TEXT - 24, _wrapped(lines, BELOW), va="top", **look)
 
 
 def _wrapped(text, most) -> str:

@@ -21,17 +21,17 @@ def exponents(study):
         The columns of ``calibrate.csv``.
     """
     fits = study.fits
-    found = [fit.calibration for fit in fits]
+    calibrations = [fit.calibration for fit in fits]
     return tables.frame(
         {
             "counts": [fit.name for fit in fits],
             "parts": [fit.parts for fit in fits],
-            "exponent": [each.exponent for each in found],
-            "exponent_low": [each.low for each in found],
-            "exponent_high": [each.high for each in found],
-            "chi_square": [each.chi_square.statistic for each in found],
-            "degrees_of_freedom": [each.chi_square.degrees_of_freedom or None for each in found],
-            "p_value": [each.chi_square.p_value for each in found],
+            "exponent": [each.exponent for each in calibrations],
+            "exponent_low": [each.low for each in calibrations],
+            "exponent_high": [each.high for each in calibrations],
+            "chi_square": [each.chi_square.statistic for each in calibrations],
+            "degrees_of_freedom": [each.chi_square.degrees_of_freedom or None for each in calibrations],
+            "p_value": [each.chi_square.p_value for each in calibrations],
         }
     )
 

@@ -49,9 +49,9 @@ def conditions(solid) -> dict[Any, Any]:
     -------
     dict
     """
-    known = part(solid)
+    facts = part(solid)
     names = ("units", "material", "density_g_cm3", "centre_of_mass_mm", "open_surface")
-    return {name: known[name] for name in names}
+    return {name: facts[name] for name in names}
 
 
 def _in(value, unit):

@@ -47,11 +47,11 @@ def printed(study, format):
     """
     if format != "table":
         return comparisons(study)
-    order = [one.name for one in study.measured.profiles]
+    order = [profile.name for profile in study.measured.profiles]
     own = [each for each in study.comparisons if each.first.name in order]
-    beside = [each for each in own if each.second.name not in order]
-    beside.sort(key=lambda each: (order.index(each.first.name), each.total_variation))
-    return _frame([*beside, *(each for each in own if each.second.name in order)])
+    against_rules = [each for each in own if each.second.name not in order]
+    against_rules.sort(key=lambda each: (order.index(each.first.name), each.total_variation))
+    return _frame([*against_rules, *(each for each in own if each.second.name in order)])
 
 
 def _frame(compared):
@@ -133,13 +133,13 @@ def feeding_frame(studies):
 
 def feeding_table(studies):
     """Return the table for people: without the rules, each share with its interval, files without folders."""
-    found = feeding_frame(studies)
-    columns = found.only(("set", "device", "passed", "rejected"))
-    columns["set"] = [Path(name).name for name in found["set"]]
+    rows = feeding_frame(studies)
+    columns = rows.only(("set", "device", "passed", "rejected"))
+    columns["set"] = [Path(name).name for name in rows["set"]]
     for name in ("measured", "predicted"):
-        ends = zip(found[name], found[f"{name}_low"], found[f"{name}_high"])
+        ends = zip(rows[name], rows[f"{name}_low"], rows[f"{name}_high"])
         columns[name] = ["{:.3f} ({:.3f} to {:.3f})".format(*three) for three in ends]
-    return tables.frame(columns | {"agrees": found["agrees"]})
+    return tables.frame(columns | {"agrees": rows["agrees"]})
 
 
 def feeding_hidden(study) -> tuple[Any, ...]:
@@ -169,7 +169,7 @@ def feeding_document(study) -> dict[Any, Any]:
 
 
 def _rules(studies) -> tuple[Any, ...]:
-    return tuple(dict.fromkeys(f"p_{rule}" for one in studies for rule in _own(one)))
+    return tuple(dict.fromkeys(f"p_{rule}" for study in studies for rule in _own(study)))
 
 
 def _own(study) -> list[Any]:
@@ -238,15 +238,21 @@ def sets_frame(study):
     Frame
         The columns of ``compare.csv``; an answer that a set does not have is empty.
     """
-    apart = [one.apart for one in study.sets]
+    distances = [set_study.distances for set_study in study.sets]
     rows = [
-        (set_label(one), _series(study, one), one.measured.head.launch or None, *_counted(one), away)
-        for one, away in zip(study.sets, apart)
+        (
+            set_label(set_study),
+            _series(study, set_study),
+            set_study.measured.head.launch or None,
+            *_counted(set_study),
+            away,
+        )
+        for set_study, away in zip(study.sets, distances)
     ]
     rows += [_mean(name, sets) for name, sets in study.series.items() if len(sets) > 1]
     names = ("set", "series", "launch", "parts", "rule", "aspects", "inside")
-    made = dict(zip(names, zip(*(row[:-1] for row in rows))))
-    return tables.frame(made | {name: [row[-1].get(name) for row in rows] for name in study.answers})
+    columns = dict(zip(names, zip(*(row[:-1] for row in rows))))
+    return tables.frame(columns | {name: [row[-1].get(name) for row in rows] for name in study.answers})
 
 
 def sets_table(study):
@@ -254,11 +260,11 @@ def sets_table(study):
 
     Of the rules those in ``SPARE`` are left out where a line would have more letters than a page.
     """
-    made = sets_frame(study)
-    columns = {"set": made["set"], "launch": made["launch"], "parts": _whole(made["parts"])}
-    known = zip(_whole(made["inside"]), made["aspects"])
-    columns["inside"] = [None if some is None else f"{some} of {all}" for some, all in known]
-    return tables.frame(columns | {name: _three(made[name]) for name in study.answers})
+    whole = sets_frame(study)
+    columns = {"set": whole["set"], "launch": whole["launch"], "parts": _whole(whole["parts"])}
+    inside = zip(_whole(whole["inside"]), whole["aspects"])
+    columns["inside"] = [None if some is None else f"{some} of {all}" for some, all in inside]
+    return tables.frame(columns | {name: _three(whole[name]) for name in study.answers})
 
 
 def _three(values) -> list[Any]:
@@ -270,38 +276,41 @@ def _whole(values) -> list[Any]:
     return [None if value is None or value != value else f"{value:.0f}" for value in values]
 
 
-def set_label(one):
+def set_label(set_study):
     """Return how a SetStudy is called: its file, and its column where there are several."""
-    stem = Path(one.measured.source).stem
-    return stem if len(one.measured.profiles) == 1 else f"{stem}, {one.profile.name}"
+    stem = Path(set_study.measured.source).stem
+    return stem if len(set_study.measured.profiles) == 1 else f"{stem}, {set_study.profile.name}"
 
 
-def _series(study, one):
-    return next(name for name, sets in study.series.items() if one in sets)
+def _series(study, set_study):
+    return next(name for name, sets in study.series.items() if set_study in sets)
 
 
-def _counted(one) -> tuple[Any, ...]:
+def _counted(set_study) -> tuple[Any, ...]:
     """Parts counted, rule of the recommended answer, aspects, and how many of them it holds."""
-    parts = int(one.profile.values.sum()) if one.profile.counted else None
-    rule = None if one.recommended is None else one.recommended.rule
-    return parts, rule, len(one.aspects.names), one.inside
+    parts = int(set_study.profile.values.sum()) if set_study.profile.counted else None
+    rule = None if set_study.recommended is None else set_study.recommended.rule
+    return parts, rule, len(set_study.aspects.names), set_study.inside
 
 
 def _mean(name, sets) -> tuple[Any, ...]:
     """The row of a series: the mean over its sets."""
-    apart, known = [one.apart for one in sets], [one.inside for one in sets if one.inside is not None]
-    answers = dict.fromkeys(answer for away in apart for answer in away)
-    means = {k: float(np.mean([away[k] for away in apart if k in away])) for k in answers}
-    launches = {one.measured.head.launch or None for one in sets}
-    parts = [int(one.profile.values.sum()) for one in sets if one.profile.counted]
+    distances, inside = (
+        [set_study.distances for set_study in sets],
+        [set_study.inside for set_study in sets if set_study.inside is not None],
+    )
+    answers = dict.fromkeys(answer for away in distances for answer in away)
+    means = {k: float(np.mean([away[k] for away in distances if k in away])) for k in answers}
+    launches = {set_study.measured.head.launch or None for set_study in sets}
+    parts = [int(set_study.profile.values.sum()) for set_study in sets if set_study.profile.counted]
     return (
         f"{name}, mean of {len(sets)}",
         name,
         launches.pop() if len(launches) == 1 else None,
         sum(parts) if len(parts) == len(sets) else None,
         None,
-        sum(len(one.aspects.names) for one in sets),
-        sum(known) if known else None,
+        sum(len(set_study.aspects.names) for set_study in sets),
+        sum(inside) if inside else None,
         means,
     )
 
@@ -318,26 +327,28 @@ def sets_document(study) -> dict[Any, Any]:
     dict
     """
     return {
-        "sets": [_set_document(one) for one in study.sets],
+        "sets": [_set_document(set_study) for set_study in study.sets],
         "total_variation": sets_frame(study),
-        "feeding_tests": [feeding_document(one) for one in study.feedings],
+        "feeding_tests": [feeding_document(set_study) for set_study in study.feedings],
     }
 
 
-def _set_document(one) -> dict[Any, Any]:
-    head = one.measured.head
-    known = one.recommended
+def _set_document(set_study) -> dict[Any, Any]:
+    head = set_study.measured.head
+    recommended = set_study.recommended
     return {
-        "file": one.measured.source,
-        "name": one.profile.name,
+        "file": set_study.measured.source,
+        "name": set_study.profile.name,
         **{key: value for key, value in vars(head).items() if value},
-        "kind": one.profile.kind,
-        "aspects": list(one.aspects.names),
-        "values": one.profile.values,
-        "fractions": one.profile.fractions,
-        "answers": {name: answer.fractions for name, answer in one.answers.items()},
-        "recommended": None if known is None else {"rule": known.rule, "low": known.low, "high": known.high},
-        "total_variation": one.apart,
+        "kind": set_study.profile.kind,
+        "aspects": list(set_study.aspects.names),
+        "values": set_study.profile.values,
+        "fractions": set_study.profile.fractions,
+        "answers": {name: answer.fractions for name, answer in set_study.answers.items()},
+        "recommended": None
+        if recommended is None
+        else {"rule": recommended.rule, "low": recommended.low, "high": recommended.high},
+        "total_variation": set_study.distances,
     }
 
 
@@ -355,9 +366,11 @@ def sets_figure(study):
     from feederscrew.output import style
 
     answers = study.answers
-    values = np.array([[one.apart.get(name, np.nan) for name in answers] for one in study.sets])
-    made = style.figure(COLUMN_IN * len(answers) + 2.6, ROW_IN * len(study.sets) + 1.4)
-    axes = made.add_subplot()
+    values = np.array(
+        [[set_study.distances.get(name, np.nan) for name in answers] for set_study in study.sets]
+    )
+    figure = style.figure(COLUMN_IN * len(answers) + 2.6, ROW_IN * len(study.sets) + 1.4)
+    axes = figure.add_subplot()
     axes.imshow(values, cmap="Blues", vmin=0.0, vmax=DARKEST_VARIATION, aspect="auto")
     for (row, column), value in np.ndenumerate(values):
         if np.isfinite(value):
@@ -365,15 +378,15 @@ def sets_figure(study):
             axes.text(column, row, f"{value:.3f}", ha="center", va="center", fontsize=7, color=colour)
     style.tidy(axes, title="Total variation between what was measured and each answer", grid="none")
     axes.set_xticks(range(len(answers)), [look(name)[0] for name in answers], rotation=30, ha="right")
-    axes.set_yticks(range(len(study.sets)), [_set_and_launch(one) for one in study.sets])
+    axes.set_yticks(range(len(study.sets)), [_set_and_launch(set_study) for set_study in study.sets])
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
-    return made
+    return figure
 
 
-def _set_and_launch(one):
-    launch = one.measured.head.launch
-    return f"{set_label(one)} ({launch})" if launch else set_label(one)
+def _set_and_launch(set_study):
+    launch = set_study.measured.head.launch
+    return f"{set_label(set_study)} ({launch})" if launch else set_label(set_study)
 
 
 def offers(study) -> list[Any]:
@@ -527,10 +540,10 @@ def _legend(figure, measured, rules) -> None:
 
 def _matrix(axes, measured, rules, compared) -> None:
     """Deviations of every profile from those that were measured, as a table of shades."""
-    names, known = [*measured, *rules], {frozenset(pair): value for pair, value in compared.items()}
+    names, deviations = [*measured, *rules], {frozenset(pair): value for pair, value in compared.items()}
     values = np.full((len(names), len(measured)), np.nan)
     for j, i in zip(*np.tril_indices(len(names), -1, len(measured))):
-        values[j, i] = known.get(frozenset((names[j], names[i])), np.nan)
+        values[j, i] = deviations.get(frozenset((names[j], names[i])), np.nan)
     rows = slice(1, None)  # the first has nothing before it
     top = max(np.nanmax(values, initial=0.0), 0.1)
     axes.imshow(values[rows], cmap="Blues", vmin=0.0, vmax=1.25 * top, aspect="equal")

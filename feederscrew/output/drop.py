@@ -231,9 +231,9 @@ def counts_figure(title, aspects, tally, rules):
     bars(axes, places, tally)
     for place, (name, values) in enumerate(rules.items()):
         label, colour = style.method(name, place)
-        beside = places + STEP * (place + 1)  # of the whisker, which stands in the middle
+        mark_places = places + STEP * (place + 1)  # of the whisker, which stands in the middle
         look = {"marker": MARKS[place % len(MARKS)], "ms": 5, "mec": "white", "mew": 0.6, "color": colour}
-        axes.plot(beside, 100.0 * values, ls="none", label=label, **look)
+        axes.plot(mark_places, 100.0 * values, ls="none", label=label, **look)
     style.named_ticks(axes, places, aspects.names)
     figure.legend(loc="outside lower center", ncols=min(len(rules) + 2, 6), frameon=False, fontsize=8)
     return figure
@@ -402,16 +402,16 @@ def strip(part, aspects, trace, title):
     """
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     rows = chosen(trace, ACROSS * DOWN)
-    laid, stances = _layout(solid, trace, rows)
-    figure = style.page(*laid.page)
-    page = _page(figure, laid, title)
+    layout, stances = _layout(solid, trace, rows)
+    figure = style.page(*layout.page)
+    page = _page(figure, layout, title)
     for panel, (row, standing) in enumerate(zip(rows, stances)):
-        place = laid.place(panel)
-        axes = figure.add_axes(_share(laid, *place), xticks=[], yticks=[])
+        place = layout.place(panel)
+        axes = figure.add_axes(_share(layout, *place), xticks=[], yticks=[])
         axes.spines[:].set_color(style.FAINT)
-        _still(axes, laid, standing, panel, row)
+        _still(axes, layout, standing, panel, row)
         _caption(page, place, panel + 1, still_caption(trace, row, aspects.names, _gap(solid, standing)))
-    axes = figure.add_axes(_share(laid, EDGE + 60, 66, laid.page[0] - 2 * EDGE - 240, CURVE - 116))
+    axes = figure.add_axes(_share(layout, EDGE + 60, 66, layout.page[0] - 2 * EDGE - 240, CURVE - 116))
     curve(axes, trace, aspects, rows)
     return figure
 
@@ -435,8 +435,8 @@ def _gap(solid, standing):
 def _layout(solid, trace, rows) -> tuple[Any, ...]:
     """The layout in which every still fits, all in one scale, and how the part stands in each."""
     places, points = trace.positions / solid.size, shading.outermost(solid.points)
-    way = places[rows[-1], :2] - places[rows[0], :2]
-    angle = np.arctan2(way[1], way[0])
+    displacement = places[rows[-1], :2] - places[rows[0], :2]
+    angle = np.arctan2(displacement[1], displacement[0])
     along = np.array([np.cos(angle - shading.TURN), np.sin(angle - shading.TURN), 0.0])
     stances = [
         shading.placed(points, turn.inv().apply([0.0, 0.0, -1.0]), place[2], turn.inv().apply(along))
@@ -457,21 +457,21 @@ def _layout(solid, trace, rows) -> tuple[Any, ...]:
     return Strip(solid, trace, places, heading, pixel, tuple(heights.tolist()), bottoms), stances
 
 
-def _still(axes, laid, standing, panel, row) -> None:
+def _still(axes, layout, standing, panel, row) -> None:
     """The part on its way, on a floor with a grid that stays where it is."""
-    _, _, width, height = laid.place(panel)
-    frame = shading.Shot(-0.5 * width * laid.pixel, laid.bottoms[panel], laid.pixel, width, height)
-    axes.imshow(_clear(laid.solid, standing, frame), extent=frame.extent, interpolation="nearest", zorder=3)
-    place, to_file = laid.places[row], laid.trace.turns[row].inv()
+    _, _, width, height = layout.place(panel)
+    frame = shading.Shot(-0.5 * width * layout.pixel, layout.bottoms[panel], layout.pixel, width, height)
+    axes.imshow(_clear(layout.solid, standing, frame), extent=frame.extent, interpolation="nearest", zorder=3)
+    place, to_file = layout.places[row], layout.trace.turns[row].inv()
     foot = np.linspace(place * [1.0, 1.0, 0.0], place, PIECES)
     for look, lines in (
-        (GRID, _grid(laid, place)),
-        (PAST, [laid.places[: row + 1]]),
-        (AHEAD, [laid.places[row:]]),
+        (GRID, _grid(layout, place)),
+        (PAST, [layout.places[: row + 1]]),
+        (AHEAD, [layout.places[row:]]),
         (FOOT, [foot]),
     ):
         for line in lines:
-            _draw(axes, laid.solid, standing.camera, to_file.apply(line - place), look)
+            _draw(axes, layout.solid, standing.camera, to_file.apply(line - place), look)
     axes.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
 
 
@@ -486,20 +486,20 @@ def _clear(solid, standing, frame):
 
 def _draw(axes, solid, camera, line, look) -> None:
     """Where a line (N, 3) about the centre of mass is not hidden by the solid."""
-    image, seen = camera.project(line), camera.sees(solid, line, away=BEHIND)
-    axes.plot(*np.where(seen[:, None], image, np.nan).T, **look)
+    image, visible = camera.project(line), camera.sees(solid, line, away=BEHIND)
+    axes.plot(*np.where(visible[:, None], image, np.nan).T, **look)
 
 
-def _grid(laid, place) -> Iterator[Any]:
+def _grid(layout, place) -> Iterator[Any]:
     """Lines on the plane about a still, along and across the way, a round number of millimetres apart."""
-    step = laid.step / laid.solid.size
-    ways = np.array([laid.heading, np.cross([0.0, 0.0, 1.0], laid.heading)])  # along, across
-    reaches, centre = (0.5 * WIDTH * laid.pixel, DEEP), ways @ place
-    for one, other in ((0, 1), (1, 0)):
+    step = layout.step / layout.solid.size
+    axes = np.array([layout.heading, np.cross([0.0, 0.0, 1.0], layout.heading)])  # along, across
+    reaches, centre = (0.5 * WIDTH * layout.pixel, DEEP), axes @ place
+    for across, other in ((0, 1), (1, 0)):
         run = centre[other] + np.linspace(-reaches[other], reaches[other], PIECES)
-        first, last = (centre[one] + sign * reaches[one] for sign in (-1.0, 1.0))
+        first, last = (centre[across] + sign * reaches[across] for sign in (-1.0, 1.0))
         for value in step * np.arange(np.ceil(first / step), last / step):
-            yield value * ways[one] + run[:, None] * ways[other]
+            yield value * axes[across] + run[:, None] * axes[other]
 
 
 def grid_step(longest):
@@ -508,21 +508,21 @@ def grid_step(longest):
     return MM * decade * max(step for step in (1.0, 2.0, 5.0) if step * decade * MM <= longest * (1.0 + 1e-9))
 
 
-def _share(laid, left, bottom, width, height) -> tuple[Any, ...]:
-    page = laid.page
+def _share(layout, left, bottom, width, height) -> tuple[Any, ...]:
+    page = layout.page
     return left / page[0], bottom / page[1], width / page[0], height / page[1]
 
 
-def _page(figure, laid, title):
+def _page(figure, layout, title):
     """Title and scale; the Axes over the whole page, in pixels."""
-    width, height = laid.page
+    width, height = layout.page
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set_axis_off()
     axes.set(xlim=(0, width), ylim=(0, height))
     axes.text(EDGE, height - 34, title, fontsize=13, fontweight="bold", color=style.INK, va="center")
-    text = f"grid on the plane: {laid.step / MM:g} mm; line: path of the centre of mass"
+    text = f"grid on the plane: {layout.step / MM:g} mm; line: path of the centre of mass"
     axes.text(EDGE, height - 66, text, fontsize=8, color=style.INK, va="center")
-    shading.scale_bar(axes, width - EDGE, height - 66, laid.pixel * laid.solid.size)
+    shading.scale_bar(axes, width - EDGE, height - 66, layout.pixel * layout.solid.size)
     return axes
 
 

@@ -26,9 +26,9 @@ def document(study):
     dict
         None where a part card is silent.
     """
-    shown, balance = columns.part(study.part), study.balance
-    warnings = shown.pop("warnings")
-    return shown | {
+    facts, balance = columns.part(study.part), study.balance
+    warnings = facts.pop("warnings")
+    return facts | {
         "inertia_at_origin_g_mm2": balance.inertia_at_origin / G_MM2,
         "principal_moments_g_mm2": balance.moments / G_MM2,
         "principal_axes": balance.axes,
@@ -69,18 +69,18 @@ def rows(study):
     Frame
         Columns ``quantity`` and ``value``; NaN where a part card is silent.
     """
-    shown = document(study)
+    facts = document(study)
     scalars = ("density_g_cm3", "mass_g", "volume_mm3", "hull_volume_mm3")
     listed = [
-        *((name, shown[name]) for name in scalars),
-        *_vector(shown["bounding_box_mm"], "bounding_box_{}_mm"),
-        *_vector(shown["bounding_box_corner_mm"], "bounding_box_corner_{}_mm"),
-        *_vector(shown["centre_of_mass_mm"], "centre_of_mass_{}_mm"),
-        *_matrix(shown["inertia_g_mm2"], "inertia_{}_g_mm2"),
-        *_matrix(shown["inertia_at_origin_g_mm2"], "inertia_at_origin_{}_g_mm2"),
-        *_vector(shown["principal_moments_g_mm2"], "principal_moment_{}_g_mm2", "123"),
+        *((name, facts[name]) for name in scalars),
+        *_vector(facts["bounding_box_mm"], "bounding_box_{}_mm"),
+        *_vector(facts["bounding_box_corner_mm"], "bounding_box_corner_{}_mm"),
+        *_vector(facts["centre_of_mass_mm"], "centre_of_mass_{}_mm"),
+        *_matrix(facts["inertia_g_mm2"], "inertia_{}_g_mm2"),
+        *_matrix(facts["inertia_at_origin_g_mm2"], "inertia_at_origin_{}_g_mm2"),
+        *_vector(facts["principal_moments_g_mm2"], "principal_moment_{}_g_mm2", "123"),
     ]
-    for number, axis in zip("123", shown["principal_axes"]):
+    for number, axis in zip("123", facts["principal_axes"]):
         listed += _vector(axis, f"principal_axis_{number}_{{}}")
     quantities, values = zip(*listed)
     return tables.frame({"quantity": quantities, "value": [np.nan if v is None else v for v in values]})

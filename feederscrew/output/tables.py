@@ -86,10 +86,10 @@ def frame(columns):
     ValueError
         If the columns are not equally long.
     """
-    found = Frame({name: _as_column(values) for name, values in columns.items()})
-    if len(lengths := {len(column) for column in found.values()}) > 1:
+    table = Frame({name: _as_column(values) for name, values in columns.items()})
+    if len(lengths := {len(column) for column in table.values()}) > 1:
         raise ValueError(f"columns of one table are not of the same length: {sorted(lengths)}")
-    return found
+    return table
 
 
 def data_frame(frame):
@@ -249,8 +249,8 @@ def _aligned(frame, width) -> str:
         pieces = [list(columns.values())]
     else:
         texts = [name for name, column in frame.items() if not is_numeric(column)]
-        beside = window.narrowed(columns, texts, width)
-        pieces = window.folded(columns, width) if beside is None else [beside]
+        side_by_side = window.narrowed(columns, texts, width)
+        pieces = window.folded(columns, width) if side_by_side is None else [side_by_side]
     return "\n".join("".join(f"{line}\n" for line in _lines(piece) if line) for piece in pieces)
 
 

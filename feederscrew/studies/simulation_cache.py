@@ -207,7 +207,7 @@ def _decoded(data: bytes, full: Mapping[str, str]) -> dict[str, np.ndarray] | No
         held = entry["arrays"]
         if hashlib.sha256(_line([full, held])).hexdigest() != entry["sha256"]:
             return None
-        return {str(name): _unpacked(**one) for name, one in held.items()}
+        return {str(name): _unpacked(**array) for name, array in held.items()}
     except (ValueError, TypeError, LookupError, AttributeError, RecursionError, binascii.Error):
         return None
 

@@ -154,7 +154,7 @@ def test_a_wrong_call_is_one_line(run, call, status, line):
 
 def test_progress_is_for_terminals_only(capsys):
     with progress.Progress(2) as shown:
-        shown.tell(kept=False)
+        shown.tell(is_reused=False)
     assert capsys.readouterr().err == ""
 
 
@@ -163,9 +163,9 @@ def test_progress_tells_what_is_left(capsys, monkeypatch):
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     monkeypatch.setattr("time.time", lambda: now[0])
     with progress.Progress(6) as shown:
-        shown.tell(kept=True)  # one part less to do
+        shown.tell(is_reused=True)  # one part less to do
         now[0] = 30.0
-        shown.tell(kept=False)
+        shown.tell(is_reused=False)
     lines = capsys.readouterr().err.split("\r")
     assert [line.strip("\n ").partition("]  ")[2] for line in lines if "]" in line] == [
         "0/6",
@@ -177,7 +177,7 @@ def test_progress_tells_what_is_left(capsys, monkeypatch):
 def test_progress_of_parts_that_are_all_there(capsys, monkeypatch):
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     with progress.Progress(1) as shown:
-        shown.tell(kept=True)
+        shown.tell(is_reused=True)
     assert "0/0" in capsys.readouterr().err
 
 
