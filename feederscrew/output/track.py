@@ -466,11 +466,11 @@ def _behind(axes, study) -> None:
         push = _unit(place(side.normals[k]) * now.walls[k] * MM)
         scale.draw(axes, place(seat.walls[k]) + lift, *push, f"R{k + 1}", color, pushing=True)
     foot = np.array([0.0, 0.0 if np.isnan(now.offset[1]) else now.offset[1], -seat.height])
-    scale.draw(axes, place(foot), *_unit(place([0, 0, 1.0]) * now.normal_force * MM), "N", NORMAL, beside=1)
+    scale.draw(axes, place(foot), *_unit(place([0, 0, 1.0]) * now.normal_force * MM), "N", NORMAL, side=1)
     scale.draw(axes, place(foot), *_unit(place([0, 1.0, 0]) * now.radial_friction * MM), "R3", FRICTION)
     weight = seat.mass * float(study.bowl.gravity)
     scale.draw(axes, np.zeros(2), np.array([0.0, -1.0]), weight, "weight", WEIGHT)
-    scale.draw(axes, np.zeros(2), *_unit(place(_drive(study)) * MM), "drive", DRIVE, beside=-1)
+    scale.draw(axes, np.zeros(2), *_unit(place(_drive(study)) * MM), "drive", DRIVE, side=-1)
     shading.centre_of_mass(axes, 0.02 * size / MM)
 
 
