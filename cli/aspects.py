@@ -3,6 +3,7 @@
 import click
 
 from feederscrew_cli import grouped, options, waiting
+from feederscrew_cli.values import Number, Whole
 
 SURFACES = click.Choice(["soft", "medium", "hard"])
 
@@ -22,9 +23,9 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
     type=SURFACES,
     help="What it lands on: p_surface is then the answer.  [default: hard]",
 )
-@click.option("--surface-exponent", type=options.Number(-10, 10), help="The same as a number, 0 to about 3.")
+@click.option("--surface-exponent", type=Number(-10, 10), help="The same as a number, 0 to about 3.")
 @click.option(
-    "--drops", type=options.Whole(0, 10**7), cls=options.Renamed, former=("--drop",),
+    "--drops", type=Whole(0, 10**7), cls=options.Renamed, former=("--drop",),
     help="How many drops; 0 for none.  [default: until every share is known to 1 %]",
 )  # fmt: skip
 @click.option(

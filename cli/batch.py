@@ -5,6 +5,7 @@ import click
 from feederscrew_cli import grouped, options, orientation
 from feederscrew_cli.interrupt import INTERRUPTED, ended_within
 from feederscrew_cli.progress import Progress
+from feederscrew_cli.values import WHOLE, Whole
 
 PATIENCE = 6.0  # [s] from Ctrl-C to the end, whatever is loading
 
@@ -18,15 +19,9 @@ class Jobs(click.ParamType):
         """The number; None for 'auto'."""
         if value == "auto":
             return None
-        if not options.WHOLE.fullmatch(value) or not int(value) > 0:
+        if not WHOLE.fullmatch(value) or not int(value) > 0:
             self.fail(f"{value!r} is not a number of processes - give 1, 2, ... or auto", param, ctx)
         return int(value)
-
-
-def _grouped(command):
-    """Hand over what is computed as ``inputs``, and what of it as ``choices``."""
-    choices = options.packed(command, "choices", ("rule", "launch", "drops", "pictures"))
-    return options.packed(choices, "inputs", ("sources", "configs", "overrides", "density"))
 
 
 @grouped.command(short_help="Aspects, conveying and rate of any number of parts, in parallel.")
@@ -46,7 +41,7 @@ def _grouped(command):
 @click.option(
     "--drops",
     metavar="N",
-    type=options.Whole(0, 10_000_000),
+    type=Whole(0, 10_000_000),
     default=0,
     help="Simulated drops of each part; none without it.",
 )
@@ -60,9 +55,8 @@ def _grouped(command):
 @click.option("--resume", is_flag=True, help="Go on where a batch stopped: only what is missing or changed.")
 @options.pictures
 @options.output
-@_grouped
 @click.pass_context
-def batch(ctx, inputs, choices, jobs, scheduler, resume, out):
+def batch(ctx, rule, launch, drops, pictures, jobs, scheduler, resume, out, **inputs):
     """Example: feeder batch parts/ --config bowl.yaml -o results/all --jobs 2
 
     Compute every part in every bowl: its aspects, how it travels, and a rate. The rate is that of the
@@ -84,7 +78,7 @@ def batch(ctx, inputs, choices, jobs, scheduler, resume, out):
     requests = batches.gather(**inputs)
     out.warn(*dict.fromkeys(line for request in requests for line in request.conditions.warnings))
     workers = batches.crew(jobs, None if _typed(ctx, "jobs") else scheduler)
-    chosen = batches.Choices(**choices)
+    chosen = batches.Choices(rule=rule, launch=launch, drops=drops, pictures=pictures)
     if resume:
         _say_what_is_stale(batches.count_stale(requests, out.directory, chosen), len(requests), out)
     try:

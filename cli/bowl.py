@@ -3,15 +3,9 @@
 import click
 from click.core import ParameterSource
 
-from feederscrew_cli import grouped, options, orientation, quantity, waiting
-from feederscrew_cli.quantity import Quantity
+from feederscrew_cli import grouped, options, orientation, waiting
 
-TARGET = click.option(
-    "--target",
-    type=Quantity("rate", positive=True),
-    metavar="RATE",
-    help="Parts that must leave the bowl: 120/min.  [needed with PART]",
-)
+TARGET = options.target("Parts that must leave the bowl: 120/min.  [needed with PART]")
 ASPECT = click.option(
     "--aspect",
     metavar="NAME",
@@ -40,7 +34,7 @@ SOLID = (
         "[default: dowels]",
     ),
     click.option("--step", is_flag=True, help="Write bowl.step, of exact faces; needs feederscrew[cad]."),
-    quantity.with_default(
+    options.quantity(
         "--chord",
         "length",
         "0.05 mm",
@@ -50,28 +44,14 @@ SOLID = (
 )
 
 
-def _wanted(command):
-    """The options of ``orientation.CHAIN``, none of them required."""
-    for option in reversed((TARGET, ASPECT, *orientation.CHAIN[1:])):
-        command = option(command)
-    return command
-
-
-def _of_the_solid(command):
-    """The options of SOLID, packed as ``solid_request``."""
-    return options.stacked(
-        options.packed(command, "solid_request", ("solid", "material", "chord", "bed", "join", "step")),
-        *SOLID,
-    )
-
-
 @grouped.command(
     short_help="Size the bowl for a part and a rate; its springs, tuning and drift.",
     rare=("heading", "gap", "fill", "material", "bed", "join", "step", "chord"),
 )
 @options.optional_part
-@_wanted
-@_of_the_solid
+@TARGET
+@options.group("wanted", ASPECT, *orientation.CHAIN[1:])
+@options.group("solid_request", *SOLID)
 @click.option(
     "--measured",
     metavar="VALUES",
@@ -82,7 +62,7 @@ def _of_the_solid(command):
 @options.title_block
 @options.pictures
 @options.output
-def bowl(part, target, solid_request, measured, bowl, fields, pictures, out, **wanted):
+def bowl(part, target, solid_request, measured, bowl, fields, pictures, out, wanted):
     """Example: feeder bowl parts/lbracket_30x20x15.stl --target 60/min -o results
 
     With PART and --target: the diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs
@@ -169,7 +149,7 @@ def _fitting(part, target, solid_request, measured):
         for option in _typed_options("material", "bed", "step", "chord"):
             raise click.UsageError(f"{option} is given without --solid - add --solid")
     if not part["source"]:
-        for option in _typed_options(*options.READING, *orientation.WANTED):
+        for option in _typed_options(*options.names(*options.READING, *orientation.CHAIN)):
             raise click.UsageError(f"{option} is given without PART - name the part's file")
     if solid_request["join"] and not solid_request["bed"]:
         raise click.UsageError("--join is given without --bed - give the printer's bed: --bed 220x220x250mm")

@@ -6,19 +6,12 @@ import os
 
 import click
 
-from feederscrew_cli import grouped, options, orientation, quantity, waiting
-from feederscrew_cli.angle import Angle
+from feederscrew_cli import grouped, options, orientation, waiting
 from feederscrew_cli.interrupt import INTERRUPTED, held_back, noted
-from feederscrew_cli.quantity import Quantity
-from feederscrew_cli.span import Span
+from feederscrew_cli.values import Angle, Span, Whole
 
 REQUEST = (  # what shall leave, and what may be used
-    click.option(
-        "--target",
-        type=Quantity("rate", positive=True),
-        metavar="RATE",
-        help="Parts that must leave the bowl: 60/min.",
-    ),
+    options.target("Parts that must leave the bowl: 60/min."),
     click.option(
         "--aspect",
         metavar="NAME",
@@ -59,7 +52,7 @@ REQUEST = (  # what shall leave, and what may be used
         metavar="LOW:HIGH",
         help="Least and greatest diameter of the bowl: 200mm:400mm.",
     ),
-    quantity.with_default(
+    options.quantity(
         "--tolerance", "length", "0.1 mm", "How much larger or smaller than its file a part may be."
     ),
     click.option(
@@ -67,7 +60,7 @@ REQUEST = (  # what shall leave, and what may be used
         "budget",
         cls=options.Renamed,
         former=("--budget",),
-        type=options.Whole(1, 1000),
+        type=Whole(1, 1000),
         default=16,
         show_default=True,
         help="Short trials of the search, at most.",
@@ -79,29 +72,14 @@ REQUEST = (  # what shall leave, and what may be used
     ),
     click.option(
         "--draws",
-        type=options.Whole(1, 1000),
+        type=Whole(1, 1000),
         default=20,
         show_default=True,
         help="Trials of the answer with part, friction, drive and cuts drawn from their spread.",
     ),
-    click.option(
-        "--seed",
-        type=options.Whole(0),
-        default=1,
-        show_default=True,
-        help="Seed of everything that is drawn.",
-    ),
-    click.option("--jobs", type=options.Whole(1, 256), metavar="N", help="Cores to use.  [default: all]"),
+    options.seed("Seed of everything that is drawn."),
+    options.jobs,
 )
-REQUESTED = (
-    "target", "aspect", "heading", "up", "outcome", "without", "drive", "diameter", "tolerance", "budget",
-    "alternatives", "draws", "seed", "jobs",
-)  # fmt: skip
-
-
-def _request_options(command):
-    """What shall leave, and what may be used; the command receives ``request_options``."""
-    return options.stacked(options.packed(command, "request_options", REQUESTED), *REQUEST)
 
 
 @grouped.command(
@@ -110,7 +88,7 @@ def _request_options(command):
 )
 @options.part
 @click.argument("more_parts", metavar="[PART...]", nargs=-1, type=options.FILE)
-@_request_options
+@options.group("request_options", *REQUEST)
 @click.option(
     "--batch", "listed", is_flag=True, help="PART is a list of parts and targets: part,target,aspect."
 )

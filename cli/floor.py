@@ -3,7 +3,7 @@
 import click
 
 from feederscrew_cli import grouped, options
-from feederscrew_cli.angle import Angle
+from feederscrew_cli.values import Angle
 
 
 @grouped.command(short_help="Forces and motion of a part on the bowl floor.")

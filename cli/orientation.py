@@ -5,8 +5,8 @@ from typing import Any
 
 import click
 
-from feederscrew_cli import options, quantity, waiting
-from feederscrew_cli.angle import Angle
+from feederscrew_cli import options, waiting
+from feederscrew_cli.values import Angle, Place, Whole
 
 CHAIN = (
     click.option(
@@ -20,20 +20,19 @@ CHAIN = (
         "[default: the most frequent that stays on the track]",
     ),
     options.rule,
-    quantity.with_default("--gap", "length", "0 mm", "Gap between one part and the next."),
-    quantity.with_default(
+    options.quantity("--gap", "length", "0 mm", "Gap between one part and the next."),
+    options.quantity(
         "--fill", "number", "1", "Share of the track that is occupied.", positive=True, most=1.0
     ),
 )
-WANTED = ("aspect", "heading", "rule", "gap", "fill")
-
-
-def chain(command):
-    """Add the options of the wanted orientation, and of what the rate depends on.
-
-    The command receives ``wanted``: ``aspect``, ``heading``, ``rule``, ``gap`` and ``fill``.
-    """
-    return options.stacked(options.packed(command, "wanted", WANTED), *CHAIN)
+LEAVES_MOST = click.option(
+    "--aspect",
+    metavar="NAME",
+    help="Aspect on which the part must leave the bowl.  [default: the one that leaves most often]",
+)
+# the wanted orientation, and what the rate depends on: aspect, heading, rule, gap and fill
+chain = options.group("wanted", *CHAIN)
+any_chain = options.group("wanted", LEAVES_MOST, *CHAIN[1:])  # where ``aspect`` may be left out
 
 
 def of_an_aspect(request):
@@ -49,48 +48,27 @@ def name(request):
     return f"{request['aspect']}@{round(math.degrees(request['heading'])) % 360}"
 
 
-LEAVES_MOST = click.option(
-    "--aspect",
-    metavar="NAME",
-    help="Aspect on which the part must leave the bowl.  [default: the one that leaves most often]",
-)
-
-
-def any_chain(command):
-    """As ``chain``, but ``aspect`` may be left out."""
-    return options.stacked(options.packed(command, "wanted", WANTED), LEAVES_MOST, *CHAIN[1:])
-
-
 LAUNCHED = click.option(
     "--launch",
     type=options.LAUNCHES,
     help="What is done to the part, on a floor at rest.  [default: fed onto the bowl's moving floor]",
 )
 FED = click.option(
-    "--fed", metavar="N", type=options.Whole(1, 10**6),
+    "--fed", metavar="N", type=Whole(1, 10**6),
     help="Feed N parts onto the moving floor.  [default: until every share is known to 2 %]",
 )  # fmt: skip
-SEED = click.option(
-    "--seed", type=options.Whole(0), default=1, show_default=True, help="Seed of the parts that are fed."
-)
+SEED = options.seed("Seed of the parts that are fed.")
 PROBABILITIES = click.option(
     "--probabilities",
     metavar="CSV",
-    type=options.Place(),
+    type=Place(),
     help="Take the shares of a file of counts, or of drop.csv.",
 )
 
 
-def taken(command):
-    """Add the options that say whose shares of the aspects are taken; the command receives ``taken``."""
-    names = ("launch", "probabilities", "fed")
-    return options.stacked(options.packed(command, "taken", names), LAUNCHED, PROBABILITIES, FED)
-
-
-def taken_of_a_seed(command):
-    """Add the same with ``--seed``, for a command that has no seed of its own."""
-    names = ("launch", "probabilities", "fed", "seed")
-    return options.stacked(options.packed(command, "taken", names), LAUNCHED, PROBABILITIES, FED, SEED)
+# whose shares of the aspects are taken; with a seed for a command that has none of its own
+taken = options.group("taken", LAUNCHED, PROBABILITIES, FED)
+taken_of_a_seed = options.group("taken", LAUNCHED, PROBABILITIES, FED, SEED)
 
 
 def shares(out, part, bowl, taken, rule):
@@ -153,17 +131,12 @@ def telling(out):
     return {"before": before, "progress": bar.reach}
 
 
-def doubt(command):
-    """How far part and cut may be off; the command receives ``play`` and ``tolerance``."""
-    return options.stacked(command, *DOUBT)
-
-
-DOUBT = (
-    quantity.with_default(
+DOUBT = (  # how far part and cut may be off
+    options.quantity(
         "--position-deviation play", "length", "0 mm",
         "Standard deviation of where a part is over a cut.", former=("--play",),
     ),
-    quantity.with_default(
+    options.quantity(
         "--edge-deviation tolerance", "length", "0 mm",
         "Standard deviation of where a cut's edge is.", former=("--tolerance",),
     ),

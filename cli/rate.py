@@ -12,7 +12,8 @@ from feederscrew_cli import grouped, options, orientation
 @options.part
 @orientation.any_chain
 @orientation.taken_of_a_seed
-@orientation.doubt
+@orientation.DOUBT[0]
+@orientation.DOUBT[1]
 @options.bowl
 @options.output
 def rate(part, wanted, taken, play, tolerance, bowl, out):

@@ -4,20 +4,17 @@ from dataclasses import replace
 
 import click
 
-from feederscrew_cli import options, waiting
+from feederscrew_cli import waiting
 from feederscrew_cli.interrupt import held_back
+from feederscrew_cli.values import Place
 
 FOREIGN = {"fall": "--height", "spin": "--spin", "speed": "--speed"}  # what the file says instead
-
-
-def launches(command):
-    """--launches; the command receives ``launches``, a path or None."""
-    return click.option(
-        "--launches",
-        metavar="FILE",
-        type=options.Place(),
-        help="Follow each launch of a CSV file from its own state, in place of random ones.",
-    )(command)
+launches = click.option(
+    "--launches",
+    metavar="FILE",
+    type=Place(),
+    help="Follow each launch of a CSV file from its own state, in place of random ones.",
+)
 
 
 def run(part, path, own, test, pictures, out):

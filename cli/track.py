@@ -3,7 +3,7 @@
 import click
 
 from feederscrew_cli import completion, grouped, options
-from feederscrew_cli.angle import Angle
+from feederscrew_cli.values import Angle
 
 
 @grouped.command(short_help="Reactions and motion of a part on the track, against the wall.")

@@ -3,18 +3,11 @@
 import click
 
 from feederscrew_cli import grouped, options, orientation, waiting
-from feederscrew_cli.quantity import Quantity
 
 
 @grouped.command(short_help="Amplitude, angle or frequency that reaches a rate.", rare=("gap", "fill"))
 @options.part
-@click.option(
-    "--target",
-    type=Quantity("rate", positive=True),
-    required=True,
-    metavar="RATE",
-    help="Correctly oriented parts: 120/min.",
-)
+@options.target("Correctly oriented parts: 120/min.", required=True)
 @orientation.chain
 @orientation.taken_of_a_seed
 @click.option("--worst", is_flag=True, help="Give the rate at the worst friction and restitution.")
