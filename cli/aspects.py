@@ -60,7 +60,8 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     from feederscrew.output import offers
     from feederscrew.output.columns import conditions
 
-    _files_wanted(graph, out)
+    if graph and out.directory is None:
+        raise click.UsageError("--graph writes files: give -o DIR as well")
     solid = out.part(part)
     exponent = chosen.pop("surface_exponent")
     chosen["surface"] = chosen["surface"] if exponent is None else exponent
@@ -80,11 +81,6 @@ ONCE = (
 EACH = (
     "PMI counts each of the equal faces of an aspect: --as-published counts it once, as Tables 3-8 and 3-9."
 )
-
-
-def _files_wanted(graph, out):
-    if graph and out.directory is None:
-        raise click.UsageError("--graph writes files: give -o DIR as well")
 
 
 def _study(solid, chosen, out):

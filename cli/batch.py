@@ -80,7 +80,10 @@ def batch(ctx, rule, launch, drops, pictures, jobs, scheduler, resume, out, **in
     workers = batches.crew(jobs, None if _typed(ctx, "jobs") else scheduler)
     chosen = batches.Choices(rule=rule, launch=launch, drops=drops, pictures=pictures)
     if resume:
-        _say_what_is_stale(batches.count_stale(requests, out.directory, chosen), len(requests), out)
+        reasons = batches.count_stale(requests, out.directory, chosen)
+        if reasons:
+            why = ", ".join(f"{count} {reason}" for reason, count in reasons.items())
+            out.say(f"Computes {sum(reasons.values())} of {len(requests)} parts: {why}")
     try:
         with Progress(len(requests), not out.quiet) as progress:
             result = batches.run(
@@ -100,13 +103,6 @@ def batch(ctx, rule, launch, drops, pictures, jobs, scheduler, resume, out, **in
 def _typed(ctx, name):
     """Whether an option stands on the command line."""
     return ctx.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
-
-
-def _say_what_is_stale(reasons, total, out):
-    """Say how many parts are computed, and why; nothing where all stay as they are."""
-    if reasons:
-        why = ", ".join(f"{count} {reason}" for reason, count in reasons.items())
-        out.say(f"Computes {sum(reasons.values())} of {total} parts: {why}")
 
 
 def _report(result, out):

@@ -11,8 +11,11 @@ from feederscrew.output import columns, style, tables, tipping_graph
 from feederscrew.output import offers as offer
 from feederscrew.output.columns import G_MM2, MM2, UJ
 from feederscrew.output.heavy import heavy
+from feederscrew.output.tables import Frame
+from feederscrew.part.record import Part
 from feederscrew.resting import names_file
 from feederscrew.resting.aspects import postures
+from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.units import DEG, MM, quantity_text
 
 shading = heavy("feederscrew.output.shading")
@@ -26,18 +29,10 @@ PRINTED = (  # the table for people, unless they ask for more
 )  # fmt: skip
 
 
-def aspects(study):
-    """Return the classes of resting aspects, one row each.
+def aspects(study: AspectsStudy) -> Frame:
+    """Return the classes of resting aspects, one row each: the columns of ``aspects.csv``.
 
-    Parameters
-    ----------
-    study : AspectsStudy
-        An open surface is labelled in every row, and tumbling that fails a self-check.
-
-    Returns
-    -------
-    Frame
-        The columns of ``aspects.csv``.
+    An open surface is labelled in every row, and tumbling that fails a self-check.
     """
     resting = study.aspects
     return tables.frame(
@@ -144,18 +139,11 @@ def _labels(name, text, wanted, count) -> dict[Any, Any]:
     return {name: [text] * count} if wanted else {}
 
 
-def document(study):
+def document(study: AspectsStudy) -> dict[str, Any]:
     """Return all that is known of a part and its aspects.
 
-    Parameters
-    ----------
-    study : AspectsStudy
-
-    Returns
-    -------
-    dict
-        That of `columns.part`; ``recommended``, the rule of the columns ``p_recommended...``, None for a
-        card; ``aspects``, the table.
+    That of `columns.part`; ``recommended``, the rule of the columns ``p_recommended...``, None for a card;
+    ``aspects``, the table.
     """
     answer = study.recommended
     rule = None if answer is None else answer.rule
@@ -168,18 +156,8 @@ def names(study):
     return names_file.text(study.part, study.aspects)
 
 
-def profiles(study) -> tuple[Any, ...]:
-    """Return the names of the stable aspects that a chart shows, and their probabilities by rule.
-
-    Parameters
-    ----------
-    study : AspectsStudy
-
-    Returns
-    -------
-    names : list of str
-    profiles : dict of str to (A,) float [1]
-    """
+def profiles(study: AspectsStudy) -> tuple[Any, ...]:
+    """Return the names of the stable aspects that a chart shows, and their (A,) probabilities [1] by rule."""
     resting = study.aspects
     stable = np.flatnonzero(resting.stable)[:MOST_DRAWN_ASPECTS]
     return [resting.names[row] for row in stable], {
@@ -208,19 +186,10 @@ def remarks(study) -> list[Any]:
     )
 
 
-def offers(study, *, tipping=False):
-    """Offer the table of aspects and its pictures.
+def offers(study: AspectsStudy, *, tipping=False) -> list[offer.Offer]:
+    """Offer the table of aspects, its pictures and, with ``tipping``, the tipping graph.
 
-    Parameters
-    ----------
-    study : AspectsStudy
-    tipping : bool
-        Offer the tipping graph as well.
-
-    Returns
-    -------
-    list of Offer
-        ``names.yaml`` and ``aspects.png`` only of a part that has a shape.
+    ``names.yaml`` and ``aspects.png`` only of a part that has a shape.
     """
     offered = [
         offer.table("aspects.csv", aspects, study),
@@ -237,17 +206,8 @@ def offers(study, *, tipping=False):
     return offered + (tipping_graph.offers(study) if tipping else [])
 
 
-def probability_chart(study):
-    """Draw the probability of each stable aspect: the recommended answer first, then every rule.
-
-    Parameters
-    ----------
-    study : AspectsStudy
-
-    Returns
-    -------
-    Figure
-    """
+def probability_chart(study: AspectsStudy):
+    """Draw the probability of each stable aspect: the recommended answer first, then every rule."""
     part = study.part
     title = f"{part.name} (open surface)" if part.open_surface else part.name
     names, by_rule = profiles(study)
@@ -257,18 +217,8 @@ def probability_chart(study):
     return answer_bars(names, shares, by_rule, title=title)
 
 
-def aspect_sheet(study):
-    """Draw the part as it rests on each of its first aspects.
-
-    Parameters
-    ----------
-    study : AspectsStudy
-        Of a part with a mesh.
-
-    Returns
-    -------
-    Figure
-    """
+def aspect_sheet(study: AspectsStudy):
+    """Draw the part, which has a mesh, as it rests on each of its first aspects."""
     rows = range(min(len(study.aspects.names), MOST_DRAWN_ASPECTS))
     return aspect_views(study.part, study.aspects, rows, study.recommended)
 
@@ -284,21 +234,10 @@ BROAD, FEW, MANY = 6.0, 3, 5  # [in] width from which a legend has many columns,
 UPRIGHT_IN = 0.31  # [in] below this width of a bar its number stands on end
 
 
-def profile_bars(names, profiles, title=""):
-    """Draw the chart of several profiles side by side, grouped by aspect.
+def profile_bars(names, profiles, title: str = ""):
+    """Draw the chart of several profiles side by side, grouped by the A aspects that ``names`` lists.
 
-    Parameters
-    ----------
-    names : sequence of str
-        The A aspects.
-    profiles : dict of str to (A,) float [1]
-        Probability by aspect, by rule or by the name of an experiment; NaN draws no bar.
-    title : str
-        Over the chart.
-
-    Returns
-    -------
-    Figure
+    ``profiles`` are (A,) probabilities [1] by rule or by the name of an experiment; NaN draws no bar.
     """
     width = float(np.clip(len(names) * (len(profiles) + 1.0) * BAR_IN + 1.0, NARROW_IN, WIDE_IN))
     figure = style.figure(width, 3.4)
@@ -308,23 +247,11 @@ def profile_bars(names, profiles, title=""):
     return figure
 
 
-def answer_bars(names, answer, profiles, title=""):
+def answer_bars(names, answer, profiles, title: str = ""):
     """Draw the recommended answer with its interval as a bar, and every rule as a small mark beside it.
 
-    Parameters
-    ----------
-    names : sequence of str
-        The A aspects.
-    answer : (3, A) array_like [1]
-        Probability, and the lower and upper end of its interval.
-    profiles : dict of str to (A,) float [1]
-        Probability by rule.
-    title : str
-        Over the chart.
-
-    Returns
-    -------
-    Figure
+    ``answer`` is (3, A) [1], the probability of each aspect and the ends of its interval; ``profiles`` are
+    (A,) probabilities [1] by rule.
     """
     width = float(np.clip(len(names) * GROUP_IN + 1.0, NARROW_IN, WIDE_IN))
     figure = style.figure(width, 3.4)
@@ -359,16 +286,9 @@ def _first_in_legend(figure, axes, columns) -> None:
 
 
 def grouped_bars(axes, names, profiles, room=UPRIGHT_IN) -> None:
-    """Draw the bars of several profiles on an Axes, each with its value over it.
+    """Draw the bars of several profiles, as for ``profile_bars``, on an Axes, each with its value over it.
 
-    Parameters
-    ----------
-    axes : Axes
-        To draw on.
-    names, profiles
-        As in `probabilities`.
-    room : float [in]
-        Width of paper a bar has; decides whether its number is written across or on end.
+    ``room`` [in], the width of paper that a bar has, decides whether its number is written across or on end.
     """
     places = np.arange(len(names))
     width = 1.0 / (len(profiles) + 1.0)
@@ -442,23 +362,10 @@ class Sheet:
         return column * width, top - height
 
 
-def aspect_views(part, resting, rows, answer=None):
-    """Draw the part on each of its aspects.
+def aspect_views(part: Part, resting, rows, answer=None):
+    """Draw a part with a mesh on those of its aspects whose ``rows`` are given, in this order.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    resting : Aspects
-        Its classes.
-    rows : sequence of int
-        Which of them are drawn, in this order.
-    answer : Recommended, optional
-        Told first, with its interval.
-
-    Returns
-    -------
-    Figure
+    The recommended ``answer``, where there is one, stands first below each, with its interval.
     """
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     points = shading.outermost(solid.points)

@@ -4,22 +4,14 @@ from typing import Any
 
 from feederscrew.output import offers as offer
 from feederscrew.output import tables
+from feederscrew.output.tables import Frame
+from feederscrew.studies.calibrate import CalibrateStudy
 
 UNLIKELY = 0.01  # p-value below which no exponent explains the counts
 
 
-def exponents(study):
-    """Return the exponents, one row a column of counts.
-
-    Parameters
-    ----------
-    study : CalibrateStudy
-
-    Returns
-    -------
-    Frame
-        The columns of ``calibrate.csv``.
-    """
+def exponents(study: CalibrateStudy) -> Frame:
+    """Return the exponents, one row a column of counts: the columns of ``calibrate.csv``."""
     fits = study.fits
     calibrations = [fit.calibration for fit in fits]
     return tables.frame(
@@ -36,17 +28,8 @@ def exponents(study):
     )
 
 
-def document(study) -> dict[Any, Any]:
-    """Return the calibration as one JSON document.
-
-    Parameters
-    ----------
-    study : CalibrateStudy
-
-    Returns
-    -------
-    dict
-    """
+def document(study: CalibrateStudy) -> dict[str, Any]:
+    """Return the calibration as one JSON document."""
     fitted = {fit.name: dict(zip(study.aspects.names, fit.calibration.shares)) for fit in study.fits}
     return {"part": study.part.name, "calibrations": exponents(study), "p_surface": fitted}
 
@@ -62,17 +45,8 @@ def remarks(study):
     return listed
 
 
-def offers(study) -> list[Any]:
-    """Offer the table and the document of a calibration.
-
-    Parameters
-    ----------
-    study : CalibrateStudy
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: CalibrateStudy) -> list[offer.Offer]:
+    """Offer the table and the document of a calibration."""
     return [
         offer.table("calibrate.csv", exponents, study),
         offer.document("calibrate.json", document, study),

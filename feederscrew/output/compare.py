@@ -9,7 +9,9 @@ import numpy as np
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.heavy import heavy
+from feederscrew.output.tables import Frame
 from feederscrew.resting.rules import registry
+from feederscrew.studies.compare import CompareStudy, SetsStudy
 from feederscrew.studies.passages import FeedingStudy
 
 mpl_patches = heavy("matplotlib.patches")
@@ -17,33 +19,18 @@ mpl_patches = heavy("matplotlib.patches")
 TESTS = ("chi_square", "degrees_of_freedom", "p_value")  # columns of the test, which needs counts
 
 
-def comparisons(study):
-    """Return every pair of profiles, a row each.
+def comparisons(study: CompareStudy) -> Frame:
+    """Return every pair of profiles, a row each: the columns of ``compare.csv``.
 
-    Parameters
-    ----------
-    study : CompareStudy
-
-    Returns
-    -------
-    Frame
-        The columns of ``compare.csv``; those of the test are empty where neither profile holds counts.
+    Those of the test are empty where neither profile holds counts.
     """
     return _frame(study.comparisons)
 
 
-def printed(study, format):
+def printed(study: CompareStudy, format: str) -> Frame:
     """Return what is printed: for people each measured profile with the rules, the nearest one first.
 
-    Parameters
-    ----------
-    study : CompareStudy
-    format : str
-        Of what is printed; the table leaves out how far rules are from each other, which the files hold.
-
-    Returns
-    -------
-    Frame
+    The table leaves out how far rules are from each other, which the files hold.
     """
     if format != "table":
         return comparisons(study)
@@ -74,17 +61,8 @@ def hidden(study):
     return () if any(each.chi_square.degrees_of_freedom for each in study.comparisons) else TESTS
 
 
-def document(study) -> dict[Any, Any]:
-    """Return the comparison as one JSON document.
-
-    Parameters
-    ----------
-    study : CompareStudy
-
-    Returns
-    -------
-    dict
-    """
+def document(study: CompareStudy) -> dict[str, Any]:
+    """Return the comparison as one JSON document."""
     listed = [
         {"name": p.name, "kind": p.kind, "values": p.values, "fractions": p.fractions} for p in study.profiles
     ]
@@ -104,17 +82,10 @@ def feeding_offers(study) -> list[Any]:
     return [offer.table(FEEDING_FILE, device_comparisons, study)]
 
 
-def device_comparisons(study):
-    """Return what passed each device, measured and predicted, a row a device.
+def device_comparisons(study: FeedingStudy) -> Frame:
+    """Return what passed each device, measured and predicted, a row a device: the columns of ``devices.csv``.
 
-    Parameters
-    ----------
-    study : FeedingStudy
-
-    Returns
-    -------
-    Frame
-        The columns of ``devices.csv``: shares of the parts that came to the device.
+    They are shares of the parts that came to the device.
     """
     return feeding_frame([study])
 
@@ -147,17 +118,8 @@ def feeding_hidden(study) -> tuple[Any, ...]:
     return ("set", *_rules([study]))
 
 
-def feeding_document(study) -> dict[Any, Any]:
-    """Return one feeding test as a JSON document.
-
-    Parameters
-    ----------
-    study : FeedingStudy
-
-    Returns
-    -------
-    dict
-    """
+def feeding_document(study: FeedingStudy) -> dict[str, Any]:
+    """Return one feeding test as a JSON document."""
     head = study.measured.head
     return {
         "part": study.part.name,
@@ -226,17 +188,10 @@ def sets_printed(study, form):
     return ([sets_table(study)] if study.sets else []) + tested
 
 
-def sets_frame(study):
+def sets_frame(study: SetsStudy) -> Frame:
     """Return the total variation of every set from every answer, a row a set, then a row a series.
 
-    Parameters
-    ----------
-    study : SetsStudy
-
-    Returns
-    -------
-    Frame
-        The columns of ``compare.csv``; an answer that a set does not have is empty.
+    The columns of ``compare.csv``; an answer that a set does not have is empty.
     """
     distances = [set_study.distances for set_study in study.sets]
     rows = [
@@ -315,17 +270,8 @@ def _mean(name, sets) -> tuple[Any, ...]:
     )
 
 
-def sets_document(study) -> dict[Any, Any]:
-    """Return many measured sets and every answer for them as one JSON document.
-
-    Parameters
-    ----------
-    study : SetsStudy
-
-    Returns
-    -------
-    dict
-    """
+def sets_document(study: SetsStudy) -> dict[str, Any]:
+    """Return many measured sets and every answer for them as one JSON document."""
     return {
         "sets": [_set_document(set_study) for set_study in study.sets],
         "total_variation": sets_frame(study),
@@ -352,17 +298,8 @@ def _set_document(set_study) -> dict[Any, Any]:
     }
 
 
-def sets_figure(study):
-    """Draw the total variation of every set from every answer as a table of shades.
-
-    Parameters
-    ----------
-    study : SetsStudy
-
-    Returns
-    -------
-    Figure
-    """
+def sets_figure(study: SetsStudy):
+    """Draw the total variation of every set from every answer as a table of shades."""
     from feederscrew.output import style
 
     answers = study.answers
@@ -389,17 +326,8 @@ def _set_and_launch(set_study):
     return f"{set_label(set_study)} ({launch})" if launch else set_label(set_study)
 
 
-def offers(study) -> list[Any]:
-    """Offer the table of comparisons and their picture.
-
-    Parameters
-    ----------
-    study : CompareStudy
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: CompareStudy) -> list[offer.Offer]:
+    """Offer the table of comparisons and their picture."""
     alt = "What was measured beside each rule, and how far every two profiles are apart"
     return [
         offer.table("compare.csv", comparisons, study),
@@ -431,19 +359,11 @@ UPRIGHT = 0.3  # [in] of a bar below which its number stands upright
 LEAST_ROOM = 0.17  # [in] of a bar below which its number is left out
 
 
-def look(name, place=0):
+def look(name: str, place=0):
     """Return label and colour of a profile, the same in every chart.
 
-    Parameters
-    ----------
-    name : str
-        A rule in any case, 'MDBT_80', or a user's own.
-    place : int
-        Of a user's own profile among others of its kind.
-
-    Returns
-    -------
-    label, colour : str
+    ``name`` is a rule in any case, 'MDBT_80', or a user's own; ``place`` is that of a user's own profile
+    among others of its kind.
     """
     series, _, amplitude = name.rpartition("_")
     if series in RAMPS and amplitude in ("78", "80", "82"):
@@ -456,20 +376,10 @@ def look(name, place=0):
 
 
 def bars(axes, names, profiles, printed=None, room=BAR) -> None:
-    """Draw the grouped bars on an Axes, with a tick where print has the number.
+    """Draw grouped bars on an Axes, with a tick where print has the number.
 
-    Parameters
-    ----------
-    axes : Axes
-        To draw on.
-    names : sequence of str
-        The A aspects.
-    profiles : dict of str to (A,) float [1]
-        By profile name.
-    printed : dict of str to (A,) float [1]
-        Published numbers of some of them.
-    room : float [in]
-        Width of paper a bar has.
+    ``names`` are the A aspects, ``profiles`` (A,) shares [1] by name, ``printed`` the published ones of some;
+    ``room`` [in] is the width of paper that a bar has.
     """
     places, width = np.arange(len(names)), 1.0 / (len(profiles) + 0.9)
     for place, (name, values) in enumerate(profiles.items()):
@@ -489,22 +399,11 @@ def bars(axes, names, profiles, printed=None, room=BAR) -> None:
     axes.set_ylim(0.0, above * max(values.max() for values in profiles.values()))
 
 
-def comparison(title, names, measured, rules, compared):
+def comparison(title: str, names, measured, rules, compared):
     """Draw one chart a rule against everything measured, and how far each profile is from what was measured.
 
-    Parameters
-    ----------
-    title : str
-        The part's name.
-    names : sequence of str
-        The A aspects.
-    measured, rules : dict of str to (A,) float [1]
-    compared : dict of (str, str) to float [1]
-        Deviation of each pair of profiles.
-
-    Returns
-    -------
-    Figure
+    ``names`` are the A aspects, ``measured`` and ``rules`` (A,) shares [1] by name, ``compared`` the
+    deviation [1] of each pair of profiles.
     """
     width = float(np.clip(len(names) * (len(measured) + 1.9) * BAR + 1.0, 4.2, 12.0))
     side, tall = max(3.1, 0.42 * len(measured) + 1.5), 0.42 * (len(measured) + len(rules)) + 1.3

@@ -12,6 +12,7 @@ from feederscrew.output import style, tables
 from feederscrew.output.heavy import heavy
 from feederscrew.output.tables import heading
 from feederscrew.output.words import PHASE_WORDS, regime_words
+from feederscrew.studies.convey import ConveyStudy
 from feederscrew.units import MM_S, factor
 
 matplotlib = heavy("matplotlib")
@@ -85,17 +86,8 @@ def summary(document):
     return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
 
 
-def remarks(document):
-    """Return what a reader of one operating point must not overlook.
-
-    Parameters
-    ----------
-    document : dict
-
-    Returns
-    -------
-    list of str
-    """
+def remarks(document) -> list[str]:
+    """Return what a reader of the document of one operating point must not overlook, a sentence each."""
     lines = []
     low, high = document["velocity_low_mm_s"], document["velocity_high_mm_s"]
     if document["status"] == "no steady state":
@@ -171,17 +163,9 @@ def _changed(point, pair, change) -> dict[Any, Any]:
 
 
 def rebound(bowl, neighbours) -> dict[Any, Any] | None:
-    """Return a document's entry on the spread of restitution.
+    """Return a document's entry on the spread of restitution; None where nothing is thrown up.
 
-    Parameters
-    ----------
-    bowl : Bowl
-    neighbours : Neighbours or None
-        From ``sensitivity.restitution_doubt``; None where nothing is thrown up.
-
-    Returns
-    -------
-    dict or None
+    ``neighbours`` are those of ``sensitivity.restitution_doubt``.
     """
     if neighbours is None:
         return None
@@ -274,19 +258,8 @@ def phase_summary(best):
     return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
 
 
-def offers(study, settings) -> list[Any]:
-    """Offer the files of a ConveyStudy.
-
-    Parameters
-    ----------
-    study : ConveyStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: ConveyStudy, settings) -> list[offer.Offer]:
+    """Offer the files of a ConveyStudy."""
     return [
         offer.document("convey.json", lambda: document(study) | {"bowl": settings}),
         offer.picture("convey.png", "Plate and part over one steady cycle", _cycle, study),
@@ -358,16 +331,7 @@ WAY = "[mm]"
 def cycle(trace, amplitude, solved):
     """Draw plate and part over one steady cycle, along the track and along its normal.
 
-    Parameters
-    ----------
-    trace : CycleTrace
-    amplitude : float [m]
-    solved : Answer
-        To the same setting.
-
-    Returns
-    -------
-    Figure
+    ``amplitude`` [m] is the plate's, ``solved`` the Answer to the setting of the CycleTrace ``trace``.
     """
     figure = style.figure(6.4, 5.2)
     top, bottom = figure.subplots(2, 1, sharex=True)
@@ -397,19 +361,10 @@ def cycle_title(trace, solved) -> str:
 
 
 def velocity_map(grid, curve=None):
-    """Draw velocity and regimes over two keys of the bowl.
+    """Draw velocity and regimes over two keys of the bowl; hatched where several velocities coexist.
 
-    Parameters
-    ----------
-    grid : Grid
-        Of a ConveyMap.
-    curve : two (N,) float, optional
-        The operating points of one bowl over its radius, in the units of the axes.
-
-    Returns
-    -------
-    Figure
-        Hatched where several velocities coexist.
+    ``grid`` is that of a ConveyMap; ``curve``, two (N,) arrays in the units of the axes, has the operating
+    points of one bowl over its radius.
     """
     figure = style.figure(11.0, 4.6)
     left, right = figure.subplots(1, 2, sharey=True)
@@ -424,19 +379,8 @@ def velocity_map(grid, curve=None):
     return figure
 
 
-def curve(frame, title):
-    """Draw velocity over the first column, with its range where several coexist.
-
-    Parameters
-    ----------
-    frame : Frame
-        Of ``tables.points``.
-    title : str
-
-    Returns
-    -------
-    Figure
-    """
+def curve(frame, title: str):
+    """Draw the velocity of ``points`` over the first column, with its range where several coexist."""
     figure = style.figure()
     column = next(iter(frame))
     label = " ".join(heading(column))
@@ -450,18 +394,10 @@ def curve(frame, title):
 
 
 def on_axes(spans, bowl) -> tuple[Any, ...] | None:
-    """Return operating points of a bowl in the units of a map's axes.
+    """Return operating points of a bowl, two (N,) arrays in the units of a map's axes, of two KeyRange.
 
-    Parameters
-    ----------
-    spans : two KeyRange
-    bowl : Bowl
-        One operating point, or arrays of them as of ``radius.at_radius``.
-
-    Returns
-    -------
-    two (N,) float, or None
-        None where the axes are not vibration angle and stroke.
+    The bowl has one operating point, or arrays of them as of ``radius.at_radius``. None where the axes
+    are not vibration angle and stroke.
     """
     values = {"drive.vibration_angle": bowl.drive.vibration_angle, "drive.amplitude": bowl.drive.amplitude}
     if {span.key.field for span in spans} != set(values):

@@ -11,6 +11,9 @@ from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.aspects import MARKS
 from feederscrew.output.heavy import heavy
+from feederscrew.output.tables import Frame
+from feederscrew.part.record import Part
+from feederscrew.studies.drop import DropStudy
 from feederscrew.units import MM
 
 mpl_ticker = heavy("matplotlib.ticker")
@@ -18,18 +21,10 @@ ndimage = heavy("scipy.ndimage")
 shading = heavy("feederscrew.output.shading")
 
 
-def counts(study):
-    """Return how many drops rest on each aspect, one row an aspect.
+def counts(study: DropStudy) -> Frame:
+    """Return how many drops rest on each aspect, one row an aspect: the columns of ``drop.csv``.
 
-    Parameters
-    ----------
-    study : DropStudy
-        One that the user stopped is labelled in every row.
-
-    Returns
-    -------
-    Frame
-        The columns of ``drop.csv``.
+    A test that the user stopped is labelled in every row.
     """
     aspects, tally = study.aspects, study.result.tally
     partial = {"partial": [True] * len(aspects.names)} if study.result.drops.partial else {}
@@ -50,17 +45,8 @@ def counts(study):
     )
 
 
-def document(study) -> dict[Any, Any]:
-    """Return the drop test as one JSON document.
-
-    Parameters
-    ----------
-    study : DropStudy
-
-    Returns
-    -------
-    dict
-    """
+def document(study: DropStudy) -> dict[str, Any]:
+    """Return the drop test as one JSON document."""
     result = study.result
     return {
         "part": study.part.name,
@@ -116,19 +102,11 @@ def title(study):
 NONE = "none"  # the class of a drop that never settles
 
 
-def traces(study):
-    """Return one row a moment of each followed drop.
+def traces(study: DropStudy) -> Frame:
+    """Return one row a moment of each followed drop: the columns of ``drop_traces.csv``.
 
-    Parameters
-    ----------
-    study : DropStudy
-        With at least one trace.
-
-    Returns
-    -------
-    Frame
-        The columns of ``drop_traces.csv``: the centre of mass over the plane, the quaternion from the
-        file's axes to the plane's, total energy over m g, what happens, and the aspect the drop ends on.
+    They are the centre of mass over the plane, the quaternion from the file's axes to the plane's, total
+    energy over m g, what happens, and the aspect the drop ends on.
     """
     followed = study.result.traces
     positions = np.concatenate([trace.positions for trace in followed]) / MM
@@ -173,17 +151,8 @@ def _events(trace):
     return events
 
 
-def offers(study):
-    """Offer the counts of a drop test and, where drops were followed, their motion.
-
-    Parameters
-    ----------
-    study : DropStudy
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: DropStudy) -> list[offer.Offer]:
+    """Offer the counts of a drop test and, where drops were followed, their motion."""
     offered = [
         offer.table("drop.csv", counts, study),
         offer.document("drop.json", document, study),
@@ -210,21 +179,8 @@ def _strip(study):
 STEP = 0.09  # of a group: from the whisker to the mark of a rule, and from there to the next
 
 
-def counts_figure(title, aspects, tally, rules):
-    """Draw the chart of a drop test with its intervals, beside what the rules say.
-
-    Parameters
-    ----------
-    title : str
-    aspects : Aspects
-    tally : Tally
-    rules : dict of str to (A,) float [1]
-        Drawn as marks over each bar.
-
-    Returns
-    -------
-    Figure
-    """
+def counts_figure(title: str, aspects, tally, rules):
+    """Draw the chart of a drop test with its intervals; ``rules``, (A,) [1] by name, are marks."""
     places = np.arange(len(aspects.names))
     figure = style.figure(float(np.clip(0.9 * len(places) + 2.0, 5.2, 12.0)), 3.4)
     axes = style.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
@@ -256,16 +212,9 @@ LEGEND = (0.96, 0.87)  # places of its lines, of the axis
 
 
 def curve(axes, trace, aspects, rows) -> None:
-    """Draw the energy and height of the centre of mass over time, with the stills' numbers.
+    """Draw the energy and height of the centre of mass over time on an Axes.
 
-    Parameters
-    ----------
-    axes : Axes
-        To draw on.
-    trace : DropTrace
-    aspects : Aspects
-    rows : (S,) int
-        Rows of the stills.
+    The numbers of the stills stand at the (S,) ``rows`` of the trace.
     """
     times, energies, heights = 1e3 * trace.times, trace.energies / MM, trace.positions[:, 2] / MM
     style.tidy(axes, x="time [ms]", y="energy as height [mm]", grid="none")
@@ -292,17 +241,7 @@ def curve(axes, trace, aspects, rows) -> None:
 
 
 def references(trace, aspects):
-    """Return heights to compare with: (mm, text, style), of every aspect and of the way out of the last.
-
-    Parameters
-    ----------
-    trace : DropTrace
-    aspects : Aspects
-
-    Returns
-    -------
-    list of (float, str, dict)
-    """
+    """Return heights to compare with: (mm, text, style), of every aspect and of the way out of the last."""
     plain = {"color": style.FAINT, "linewidth": 0.9, "zorder": 0}
     strong = {"color": style.INK, "linewidth": 0.9, "zorder": 1}
     lines = []
@@ -384,22 +323,8 @@ class Strip:
         return EDGE + column * (WIDTH + GAP), self.page[1] - above, WIDTH, self.heights[row]
 
 
-def strip(part, aspects, trace, title):
-    """Draw one drop.
-
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    aspects : Aspects
-        Of that part.
-    trace : DropTrace
-    title : str
-
-    Returns
-    -------
-    Figure
-    """
+def strip(part: Part, aspects, trace, title: str):
+    """Draw one drop of a part with a mesh in stills, and its energy below."""
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     rows = chosen(trace, ACROSS * DOWN)
     layout, stances = _layout(solid, trace, rows)

@@ -11,6 +11,7 @@ from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, ON_THE_LINE,
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.heavy import heavy
+from feederscrew.output.tables import Frame
 from feederscrew.studies.floor import FloorStudy
 from feederscrew.units import MM, factor
 
@@ -43,20 +44,8 @@ LABELS = {  # what people read
 }
 
 
-def instant(motion, posture, bowl) -> dict[Any, Any]:
-    """Return the upper reversal under the names of the JSON contract.
-
-    Parameters
-    ----------
-    motion : FloorMotion or PrintedFloor
-        At one instant.
-    posture : Posture
-    bowl : Bowl
-
-    Returns
-    -------
-    dict
-    """
+def instant(motion, posture, bowl) -> dict[str, Any]:
+    """Return the upper reversal under the names of the JSON contract, of a FloorMotion or PrintedFloor."""
     size = np.hypot(*motion.acceleration)
     return {
         "normal_force_N": float(motion.normal_force),
@@ -73,17 +62,7 @@ def instant(motion, posture, bowl) -> dict[Any, Any]:
 
 
 def over_cycle(motion, course) -> dict[Any, Any]:
-    """One period as columns.
-
-    Parameters
-    ----------
-    motion : FloorMotion of shape (N,)
-    course : Cycle
-
-    Returns
-    -------
-    dict of str to sequence
-    """
+    """Return one period as columns; ``motion`` is a FloorMotion of shape (N,), ``course`` its Cycle."""
     samples = slice(None, None, EVERY)
     return {
         "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[samples],
@@ -102,19 +81,8 @@ def over_cycle(motion, course) -> dict[Any, Any]:
     }
 
 
-def document(study, settings) -> dict[Any, Any]:
-    """Return all of one FloorStudy, for JSON; of one as published, the upper reversal by print.
-
-    Parameters
-    ----------
-    study : FloorStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-
-    Returns
-    -------
-    dict
-    """
+def document(study, settings) -> dict[str, Any]:
+    """Return all of one FloorStudy, for JSON; of one as published, the upper reversal by print."""
     posture, bowl = study.posture, study.bowl
     now, values = instant(study.now, posture, bowl), {}
     if study.printed is not None:
@@ -160,20 +128,8 @@ def summary(document):
     return tables.frame({"quantity": list(rows), "value": [shown_value(value) for value in rows.values()]})
 
 
-def difference(printed, complete, terms):
-    """Return printed against complete values, with the omitted term named.
-
-    Parameters
-    ----------
-    printed, complete : dict of str to float
-        Under the names of ``terms``.
-    terms : dict of str to str
-        Omitted term by quantity.
-
-    Returns
-    -------
-    Frame
-    """
+def difference(printed, complete, terms) -> Frame:
+    """Return printed against complete values by quantity, with the omitted term of each."""
     rows = [(name, printed[name], complete[name], term) for name, term in terms.items()]
     names, first, second, omitted = zip(*rows)
     gap = np.array(first, dtype=float) - np.array(second, dtype=float)
@@ -310,18 +266,7 @@ LONGEST = 0.62  # of the part's size: the longest arrow
 def plan(posture, heading, motion):
     """Draw the part from above at the upper reversal, with what acts on it along the floor.
 
-    Parameters
-    ----------
-    posture : Posture
-        With an outline.
-    heading : float [rad]
-        theta.
-    motion : FloorMotion
-        At that instant.
-
-    Returns
-    -------
-    Figure
+    The posture has an outline; ``heading`` [rad] is theta, ``motion`` the FloorMotion at that instant.
     """
     spread = np.ptp(turned(posture.outline, heading), axis=0)
     figure = style.figure(6.4, 1.5 + 5.0 * float(np.clip(1.3 * spread[1] / spread[0], 0.5, 1.0)))
@@ -347,19 +292,8 @@ def plan(posture, heading, motion):
     return figure
 
 
-def cycle(motion, course, title):
-    """Draw forces, acceleration and velocity over one settled period.
-
-    Parameters
-    ----------
-    motion : FloorMotion of shape (N,)
-    course : Cycle
-    title : str
-
-    Returns
-    -------
-    Figure
-    """
+def cycle(motion, course, title: str):
+    """Draw forces, acceleration and velocity over one settled period; arguments as of ``over_cycle``."""
     figure = style.figure(6.8, 5.6)
     upper, lower = figure.subplots(2, 1, sharex=True)
     phase = np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)
@@ -386,20 +320,10 @@ def cycle(motion, course, title):
     return figure
 
 
-def alignment_figure(grid, direction, title):
+def alignment_figure(grid, direction, title: str):
     """Draw the alignment acceleration over the heading, where known by print, with the stable heading.
 
-    Parameters
-    ----------
-    grid : dict of str to array
-        ``heading_deg``, ``alignment_acceleration_rad_s2`` and, where known, ``published_alignment_rad_s2``.
-    direction : float [deg]
-        Stable heading, NaN for none.
-    title : str
-
-    Returns
-    -------
-    Figure
+    ``grid`` has the columns of ``alignment``; ``direction`` [deg] is the stable heading, NaN for none.
     """
     figure = style.figure(6.4, 3.8)
     axes = style.tidy(
@@ -461,19 +385,14 @@ def _part(axes, posture, heading, size) -> None:
     )
     axes.plot(*outline.T, alpha=0)
     shading.centre_of_mass(axes, 0.022 * size, (0.0, 0.0))
-    _heading_line(axes, heading, size)
+    end = 0.72 * size * np.array([np.cos(heading), np.sin(heading)])  # x', the thesis's Z'
+    axes.plot([0, end[0]], [0, end[1]], color=style.INK, linewidth=0.8, linestyle=(0, (6, 3)), zorder=4)
+    axes.annotate("x'", end, (3, 10), textcoords="offset points", fontsize=9, color=style.INK, style="italic")
     middle = centroid(contact)
     axes.plot(*middle, "+", color=CONTACT, markersize=9, markeredgewidth=1.6, zorder=5)
     if posture.axis is not None:
         along = turned(posture.axis, heading) * 0.6 * size
         axes.plot([-along[0], along[0]], [-along[1], along[1]], zorder=4, **shading.AXIS)
-
-
-def _heading_line(axes, heading, size) -> None:
-    """The body's own direction, x' (the thesis's Z')."""
-    end = 0.72 * size * np.array([np.cos(heading), np.sin(heading)])
-    axes.plot([0, end[0]], [0, end[1]], color=style.INK, linewidth=0.8, linestyle=(0, (6, 3)), zorder=4)
-    axes.annotate("x'", end, (3, 10), textcoords="offset points", fontsize=9, color=style.INK, style="italic")
 
 
 def _legend(figure, posture, pressed) -> None:
@@ -538,28 +457,11 @@ THROWS = (1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0, 100.0)  # that a 
 LETTERS = 100  # of a line under a title
 
 
-def regime_map(grid, column, *, title, labels, value, own=None, note=()):
-    """Draw values in colour with contour lines, and every region where they mean something else.
+def regime_map(grid, column: str, *, title: str, labels, value: str, own=None, note=()):
+    """Draw a column of a Grid in colour with contour lines, and every region where it means something else.
 
-    Parameters
-    ----------
-    grid : Grid
-        Of maps.evaluate.
-    column : str
-        Whose values are shown.
-    title : str
-    labels : pair of str
-        Of the two axes.
-    value : str
-        What the colour bar shows.
-    own : pair of float, optional
-        The bowl's own point, in the axes' units.
-    note : sequence of str
-        Told under the title, a line each.
-
-    Returns
-    -------
-    Figure
+    ``labels`` are those of the two axes, ``value`` that of the colour bar. ``own`` is the bowl's own
+    point in the axes' units. Each ``note`` is a line under the title.
     """
     figure = style.figure(6.8, 4.8)
     axes = style.tidy(figure.add_subplot(), title=title, x=labels[0], y=labels[1], grid="none")
@@ -571,22 +473,22 @@ def regime_map(grid, column, *, title, labels, value, own=None, note=()):
     if own is not None:
         _own_point(axes, own)
     if note:
-        _map_note(axes, note)
+        # sentences under the title, each from a line of its own
+        listed = [piece for line in note for piece in textwrap.wrap(line, LETTERS)]
+        axes.text(
+            0.0, 1.01, "\n".join(listed), transform=axes.transAxes, fontsize=7.5, color=style.INK, va="bottom"
+        )
+        axes.set_title(
+            axes.get_title(loc="left"),
+            loc="left",
+            fontsize=10,
+            color=style.INK,
+            fontweight="bold",
+            pad=6 + 10 * len(listed),
+        )
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     _map_legend(figure, regions)
     return figure
-
-
-def _map_note(axes, lines) -> None:
-    """Sentences under the title, each from a line of its own."""
-    listed = [piece for line in lines for piece in textwrap.wrap(line, LETTERS)]
-    axes.text(
-        0.0, 1.01, "\n".join(listed), transform=axes.transAxes, fontsize=7.5, color=style.INK, va="bottom"
-    )
-    axes.set_title(
-        axes.get_title(loc="left"), loc="left", fontsize=10, color=style.INK, fontweight="bold",
-        pad=6 + 10 * len(listed),
-    )  # fmt: skip
 
 
 def state_band(axes, phase, states, names) -> None:
@@ -721,19 +623,8 @@ ALTS = {
 }
 
 
-def offers(study, settings) -> list[Any]:
-    """Offer the files of a FloorStudy.
-
-    Parameters
-    ----------
-    study : FloorStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: FloorStudy, settings) -> list[offer.Offer]:
+    """Offer the files of a FloorStudy."""
     plan = offer.picture("floor_plan.png", "The part from above, with the forces on it", _plan, study)
     return [
         offer.document("floor.json", document, study, settings),

@@ -10,6 +10,7 @@ from feederscrew.output import style, tables
 from feederscrew.output.floor import CONTACT, PART
 from feederscrew.output.heavy import heavy
 from feederscrew.part.size_limits import small_part_remarks
+from feederscrew.studies.headings import HeadingsStudy
 from feederscrew.units import MM
 
 mpl_patches = heavy("matplotlib.patches")
@@ -36,19 +37,8 @@ def frame(study):
     return tables.frame({name: [row[name] for row in listed] for name in listed[0]})
 
 
-def document(study, settings) -> dict[Any, Any]:
-    """Return a HeadingsStudy as the JSON document.
-
-    Parameters
-    ----------
-    study : HeadingsStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-
-    Returns
-    -------
-    dict
-    """
+def document(study: HeadingsStudy, settings) -> dict[str, Any]:
+    """Return a HeadingsStudy as the JSON document."""
     return {
         "part": study.part.name,
         "answer": study.answer,
@@ -107,21 +97,8 @@ NARROWEST = 0.4  # half a picture's width, over its height above the foot
 TICKS = 4  # steps of an axis, at most: their numbers stand apart in it
 
 
-def headings(posture, stable, track, title):
-    """Draw the part in each stable heading, the wall below, the track's free edge dashed.
-
-    Parameters
-    ----------
-    posture : Posture
-    stable : Headings
-        Of that posture.
-    track : Track
-    title : str
-
-    Returns
-    -------
-    Figure
-    """
+def headings(posture, stable, track, title: str):
+    """Draw the part in each stable heading, the wall below, the track's free edge dashed."""
     count = min(len(stable.headings), MOST)
     columns = min(COLUMNS, count)
     lines = -(-count // columns)
@@ -191,19 +168,8 @@ def _track(axes, distance, track, size) -> None:
             axes.fill_between(x / MM, y / MM, y / MM - 0.12 * size / MM, color=WALL, alpha=0.35, linewidth=0)
 
 
-def offers(study, settings) -> list[Any]:
-    """Offer the files of a HeadingsStudy.
-
-    Parameters
-    ----------
-    study : HeadingsStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: HeadingsStudy, settings) -> list[offer.Offer]:
+    """Offer the files of a HeadingsStudy."""
     return [
         offer.document("headings.json", document, study, settings),
         offer.table("headings.csv", frame, study),

@@ -9,7 +9,9 @@ from feederscrew.dropping.occupancy import MIN_TRANSITIONS
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.heavy import heavy
+from feederscrew.output.tables import Frame
 from feederscrew.resting.rules import registry
+from feederscrew.studies.plate import PlateStudy
 from feederscrew.units import MM, MM_S, counted
 
 matplotlib = heavy("matplotlib")
@@ -19,17 +21,10 @@ HIDDEN = ("velocity_low_mm_s", "velocity_high_mm_s")  # in a table for people
 TIMES = 101  # rows an aspect in the course over time, at most
 
 
-def plates(study):
+def plates(study: PlateStudy) -> Frame:
     """Return how often parts lie on each aspect of each plate, and how fast they travel there.
 
-    Parameters
-    ----------
-    study : PlateStudy
-
-    Returns
-    -------
-    Frame
-        The columns of ``plate.csv``, one row a plate and aspect.
+    The columns of ``plate.csv``, one row a plate and aspect.
     """
     return _labelled(study, _plate)
 
@@ -71,17 +66,8 @@ def travels(result, digits) -> str:
     return f"travels at {speed} mm/s" + f" ({low} to {high})" * (result.parts > 1)
 
 
-def document(study) -> dict[Any, Any]:
-    """Return the test as one JSON document.
-
-    Parameters
-    ----------
-    study : PlateStudy
-
-    Returns
-    -------
-    dict
-    """
+def document(study: PlateStudy) -> dict[str, Any]:
+    """Return the test as one JSON document."""
     return {
         "part": study.part.name,
         "seed": study.seed,
@@ -238,18 +224,8 @@ APART = 0.012  # of the range of throw numbers: from one aspect's points to the 
 GREY = "#aab4bd"
 
 
-def plate_figure(study):
-    """Draw shares over time on one plate, and beside them how parts lay at first, later and in the end.
-
-    Parameters
-    ----------
-    study : PlateStudy
-        Its first plate is drawn.
-
-    Returns
-    -------
-    Figure
-    """
+def plate_figure(study: PlateStudy):
+    """Draw shares over time on the first plate, and how parts lay at first, later and in the end."""
     aspects, result = study.aspects, study.plates[0]
     title = f"{study.part.name}: {counted(result.parts, 'part')}, throw number {result.throw_number:.3g}"
     figure = style.figure(8.2, 3.8)
@@ -299,17 +275,8 @@ def shares(axes, aspects, occupancy) -> None:
     axes.tick_params(axis="x", length=0)
 
 
-def trend(study):
-    """Draw shares and velocity over the throw number, a line an aspect.
-
-    Parameters
-    ----------
-    study : PlateStudy
-
-    Returns
-    -------
-    Figure
-    """
+def trend(study: PlateStudy):
+    """Draw shares and velocity over the throw number, a line an aspect."""
     aspects = study.aspects
     title = f"{study.part.name} on {len(study.plates)} plates" + ", partial" * study.plates[-1].partial
     figure = style.figure(8.2, 3.8)
@@ -376,17 +343,8 @@ def colour(k):
     return COLOURS[k] if k < len(COLOURS) else matplotlib.colormaps["viridis"]((0.37 * k) % 1.0)
 
 
-def offers(study) -> list[Any]:
-    """Offer the tables of a dynamic bowl test, its document and its chart.
-
-    Parameters
-    ----------
-    study : PlateStudy
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: PlateStudy) -> list[offer.Offer]:
+    """Offer the tables of a dynamic bowl test, its document and its chart."""
     return [
         offer.table("plate.csv", plates, study),
         offer.table("plate_rates.csv", rates, study),

@@ -9,6 +9,7 @@ from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.heavy import heavy
 from feederscrew.output.words import regime_words
+from feederscrew.studies.slide import SlideMap, SlideStudy
 
 matplotlib = heavy("matplotlib")
 mpl_colors = heavy("matplotlib.colors")
@@ -52,19 +53,8 @@ def summary(slides):
     return tables.frame({"at the bowl's own point": names, **columns})
 
 
-def document(study, settings) -> dict[Any, Any]:
-    """Return a SlideStudy as the JSON document.
-
-    Parameters
-    ----------
-    study : SlideStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-
-    Returns
-    -------
-    dict
-    """
+def document(study: SlideStudy, settings) -> dict[str, Any]:
+    """Return a SlideStudy as the JSON document."""
     maps = [_map(slide_map) for slide_map in study.maps]
     return {"bowl": settings, "as_published": study.as_published, "maps": maps}
 
@@ -153,17 +143,8 @@ OWN = "this bowl"
 LABEL = {"fontsize": 8.5, "color": style.INK, "zorder": 4}
 
 
-def surface(slide):
-    """Draw limiting friction [4.27] over (alpha - theta, G), as Figures 5-2 to 5-4, up to friction 2.
-
-    Parameters
-    ----------
-    slide : SlideMap
-
-    Returns
-    -------
-    Figure
-    """
+def surface(slide: SlideMap):
+    """Draw limiting friction [4.27] over (alpha - theta, G), as Figures 5-2 to 5-4, up to friction 2."""
     figure = style.figure(6.4, 5.2)
     axes = figure.add_subplot(projection="3d", computed_zorder=False)
     angles, ratios, friction = slide.sheet(HIGHEST)
@@ -190,18 +171,8 @@ def surface(slide):
     return figure
 
 
-def contours(slide):
-    """Draw lines of equal limiting friction [4.27], as Figure 5-5, with the hop and the bowl's own point.
-
-    Parameters
-    ----------
-    slide : SlideMap
-        Of many cells.
-
-    Returns
-    -------
-    Figure
-    """
+def contours(slide: SlideMap):
+    """Draw lines of equal limiting friction [4.27], as Figure 5-5, with the hop and the bowl's own point."""
     figure, axes = _map_axes(slide, "Limiting friction")
     _levels(axes, slide)
     _hop_region(axes, slide, slide.level_hop)
@@ -209,18 +180,8 @@ def contours(slide):
     return figure
 
 
-def regimes(slide):
-    """Draw what the bowl's own friction allows in each cell, with the bowl's own point.
-
-    Parameters
-    ----------
-    slide : SlideMap
-        Of many cells.
-
-    Returns
-    -------
-    Figure
-    """
+def regimes(slide: SlideMap):
+    """Draw what the bowl's own friction allows in each cell, with the bowl's own point."""
     figure, axes = _map_axes(slide, f"Regimes at static friction {slide.friction:g}")
     widest, top = axes.get_xlim()[1], axes.get_ylim()[1]
     colours = (
@@ -240,17 +201,7 @@ def regimes(slide):
 
 
 def curves(slides):
-    """Draw limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28].
-
-    Parameters
-    ----------
-    slides : sequence of SlideMap
-        One a vibration angle.
-
-    Returns
-    -------
-    Figure
-    """
+    """Draw limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28]."""
     figure = style.figure(6.4, 4.2)
     axes = style.tidy(
         figure.add_subplot(), title="Limiting friction of an aligned part, α = θ", x=RATIO, y=FRICTION

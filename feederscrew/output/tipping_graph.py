@@ -8,20 +8,15 @@ import numpy as np
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.columns import UJ
+from feederscrew.output.tables import Frame
+from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.units import GRAVITY, MM
 
 
-def transitions(study):
+def transitions(study: AspectsStudy) -> Frame:
     """Return the tipping graph, one row a way from one aspect into another or into its equal.
 
-    Parameters
-    ----------
-    study : AspectsStudy
-
-    Returns
-    -------
-    Frame
-        The columns of ``graph.csv``.
+    The columns of ``graph.csv``.
     """
     tips, names = study.transitions, study.aspects.names
     axes = np.array([tip.axis for tip in tips]).reshape(-1, 3)
@@ -39,17 +34,8 @@ def transitions(study):
     )
 
 
-def offers(study) -> list[Any]:
-    """Offer the table and the drawing of what tips into what.
-
-    Parameters
-    ----------
-    study : AspectsStudy
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: AspectsStudy) -> list[offer.Offer]:
+    """Offer the table and the drawing of what tips into what."""
     alt = "Tipping graph: which aspect tips into which, and the lift it takes"
     return [
         offer.table("graph.csv", transitions, study),
@@ -80,24 +66,12 @@ EQUAL_LIFT = 1.001  # of the lowest lift out of a disc, up to which another is a
 REACH = 1.45  # of the picture, where the ring of discs has radius 1
 
 
-def graph(title, names, tips, shares, drawn=None):
-    """Draw the aspects on a ring, joined by arrows that carry the lift in mm.
+def graph(title: str, names, tips, shares, drawn=None):
+    """Draw the A aspects on a ring, joined by arrows that carry the lift in mm.
 
-    Parameters
-    ----------
-    title : str
-    names : sequence of str
-        Of the A aspects.
-    tips : sequence of Transition
-    shares : (A,) float [1]
-        Quasi-static probability; an aspect where it is NaN is left out.
-    drawn : function, optional
-        Gives the picture (H, W, C) of an aspect by its row; without it a disc stands for each aspect, whose
-        area grows with its share.
-
-    Returns
-    -------
-    Figure
+    ``tips`` are Transitions, ``shares`` (A,) [1] quasi-static probabilities: an aspect where it is NaN is
+    left out. ``drawn`` gives the picture (H, W, C) of an aspect by its row; without it a disc stands for
+    each aspect, whose area grows with its share.
     """
     figure = style.figure(6.4, 6.4)
     axes = figure.add_subplot()
@@ -128,18 +102,10 @@ def graph(title, names, tips, shares, drawn=None):
     return figure
 
 
-def of_part(study, tips, shares):
+def of_part(study: AspectsStudy, tips, shares):
     """Draw the graph of an AspectsStudy or report case with the part in each aspect, where it has a shape.
 
-    Parameters
-    ----------
-    study : AspectsStudy
-    tips : sequence of Transition
-    shares : (A,) float [1]
-
-    Returns
-    -------
-    Figure
+    ``tips`` are Transitions, ``shares`` (A,) [1].
     """
     part, resting = study.part, study.aspects
     if part.vertices is None:
@@ -188,23 +154,9 @@ def _arrows(axes, tips, places, sizes, names) -> None:
 def arrow(axes, begin, end, lift, easiest, taken=(), other_labels=()) -> tuple[Any, ...]:
     """Draw one way between two discs (place, size), bent to leave room for the way back.
 
-    Parameters
-    ----------
-    axes : Axes
-    begin, end : pair of (2,) float and float
-        Place and size of a disc.
-    lift : float [m]
-    easiest : bool
-        Out of that disc.
-    taken : sequence of 4 float
-        Boxes of discs and labels that are there already: middle, half width, half height.
-    other_labels : sequence of (K, 2) float
-        Points of the other arrows: a number stands where it is none of theirs.
-
-    Returns
-    -------
-    tuple of 4 float
-        The box of its own label.
+    ``lift`` [m] is its label; the ``easiest`` out of that disc stands out. ``taken`` are boxes of discs
+    and labels that are there already: middle, half width, half height. ``other_labels`` are (K, 2) points
+    of the other arrows: a number stands where it is none of theirs. Returns the box of its own label.
     """
     (start, from_size), (end, to_size) = begin, end
     colour, text = style.ACCENT if easiest else PALE, _lift_mm(lift)

@@ -9,6 +9,8 @@ from feederscrew.dropping import toss_runs
 from feederscrew.dropping.toss_runs import FACE_NAMES
 from feederscrew.output import columns, style, tables
 from feederscrew.output import offers as offer
+from feederscrew.output.tables import Frame
+from feederscrew.studies.tosses import TossStudy
 from feederscrew.units import MM
 
 NONE = "none"  # the side that points up where no run came to rest
@@ -16,18 +18,8 @@ BY_SIDE = tuple(f"p_{'plus' if side[0] == '+' else 'minus'}_{side[1]}" for side 
 HIDDEN = ("p_low", "p_high", *BY_SIDE, "settled_runs", "time_s", "x_measured_mm", "y_measured_mm")
 
 
-def tosses(study):
-    """Return where each toss leads, one row a toss.
-
-    Parameters
-    ----------
-    study : TossStudy
-
-    Returns
-    -------
-    Frame
-        The columns of ``tosses.csv``.
-    """
+def tosses(study) -> Frame:
+    """Return where each toss leads, one row a toss: the columns of ``tosses.csv``."""
     result, launches = study.result, study.launches
     count = len(result.faces)
     low, high = study.intervals
@@ -57,17 +49,8 @@ def tosses(study):
     )
 
 
-def document(study) -> dict[Any, Any]:
-    """Return the tosses as one JSON document.
-
-    Parameters
-    ----------
-    study : TossStudy
-
-    Returns
-    -------
-    dict
-    """
+def document(study: TossStudy) -> dict[str, Any]:
+    """Return the tosses as one JSON document."""
     agreement = study.agreement
     measured = None
     if agreement is not None:
@@ -138,17 +121,8 @@ def _numbered(names):
     return np.array([int(name) for name in names]) if all(name.isdecimal() for name in names) else list(names)
 
 
-def offers(study):
-    """Offer where each toss leads.
-
-    Parameters
-    ----------
-    study : TossStudy
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: TossStudy) -> list[offer.Offer]:
+    """Offer where each toss leads."""
     offered = [
         offer.table("tosses.csv", tosses, study),
         offer.document("tosses.json", document, study),
@@ -166,17 +140,7 @@ LOOKS = (  # what is computed of the upper side: label, marker, colour
 
 
 def plan(study):
-    """Draw where each toss came to rest, from the place measured to the place computed.
-
-    Parameters
-    ----------
-    study : TossStudy
-        Of a file with measured ends.
-
-    Returns
-    -------
-    Figure
-    """
+    """Draw where each toss came to rest, from the place measured to the place computed."""
     computed = study.result.places / MM
     measured = study.launches.ends[: len(computed)] / MM
     figure = style.figure(6.4, 5.6)

@@ -34,6 +34,7 @@ from feederscrew.output.floor import (
     tips,
 )
 from feederscrew.output.heavy import heavy
+from feederscrew.studies.track import TrackStudy
 from feederscrew.units import MM
 
 mpl_patches = heavy("matplotlib.patches")
@@ -135,19 +136,8 @@ def over_cycle(motion, course) -> dict[Any, Any]:
     }
 
 
-def document(study, settings) -> dict[Any, Any]:
-    """Return all of one TrackStudy, for JSON; of one as published, the upper reversal by print.
-
-    Parameters
-    ----------
-    study : TrackStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-
-    Returns
-    -------
-    dict
-    """
+def document(study: TrackStudy, settings) -> dict[str, Any]:
+    """Return all of one TrackStudy, for JSON; of one as published, the upper reversal by print."""
     values = {}
     if study.printed is not None:
         values = {"instant": printed(study.printed), "difference": differences(study)}
@@ -342,18 +332,8 @@ LEAST = 1e-3  # of the longest: shorter arrows are left out
 BARE = 0.02  # [m] size of a picture of a part card, which has no outline
 
 
-def part(study, title):
-    """The part on the track at the upper reversal, seen from above and from behind, with what acts on it.
-
-    Parameters
-    ----------
-    study : TrackStudy
-    title : str
-
-    Returns
-    -------
-    Figure
-    """
+def part(study: TrackStudy, title: str):
+    """Draw the part on the track at the upper reversal, from above and from behind, with what acts on it."""
     figure = style.figure(11.0, 5.4)
     above, behind = figure.subplots(1, 2)
     state = MOTION_STATES[int(study.now.state)]
@@ -374,19 +354,8 @@ def part(study, title):
     return figure
 
 
-def cycle(motion, course, title):
-    """Draw reactions and velocity over one settled period.
-
-    Parameters
-    ----------
-    motion : TrackMotion of shape (N,)
-    course : Cycle
-    title : str
-
-    Returns
-    -------
-    Figure
-    """
+def cycle(motion, course, title: str):
+    """Draw reactions and velocity over one settled period; arguments as of ``over_cycle``."""
     figure = style.figure(6.8, 6.4)
     upper, middle, lower = figure.subplots(3, 1, sharex=True)
     phase = np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)
@@ -568,21 +537,8 @@ def _contact(axes, polygon) -> None:
 SHOWN = "acceleration_x_m_s2"
 
 
-def offers(study, settings, grid) -> list[Any]:
-    """Offer the files of a TrackStudy.
-
-    Parameters
-    ----------
-    study : TrackStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-    grid : Grid
-        Of ``study.over``.
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: TrackStudy, settings, grid) -> list[offer.Offer]:
+    """Offer the files of a TrackStudy, with the map of a Grid of ``study.over``."""
     printed_beside = [
         offer.table("track_difference.csv", differences, study),
         offer.table("track_omitted_terms.csv", omitted_terms, study),

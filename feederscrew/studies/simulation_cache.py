@@ -79,7 +79,8 @@ def write(key: Mapping[str, str], arrays: Arrays) -> None:
         Of float, int or bool.
     """
     folder, full = _folder(), _full(key)
-    data = _encoded(arrays, full)
+    held = {name: _packed(np.asarray(array)) for name, array in arrays.items()}
+    data = _line({"key": full, "arrays": held, "sha256": hashlib.sha256(_line([full, held])).hexdigest()})
     if folder is None or len(data) > MAX_ENTRY_BYTES:
         return
     with contextlib.suppress(OSError):
@@ -185,11 +186,6 @@ def _name(full: Mapping[str, str]) -> str:
 
 def _line(value: Any) -> bytes:
     return json.dumps(value, sort_keys=True).encode()
-
-
-def _encoded(arrays: Arrays, full: Mapping[str, str]) -> bytes:
-    held = {name: _packed(np.asarray(array)) for name, array in arrays.items()}
-    return _line({"key": full, "arrays": held, "sha256": hashlib.sha256(_line([full, held])).hexdigest()})
 
 
 def _packed(array: np.ndarray) -> dict[str, Any]:
