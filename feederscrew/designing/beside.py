@@ -275,7 +275,7 @@ def _sized(
     Where the static rule lets nothing or too little through, it is the bowl at the stroke that was tried,
     whose settings are ``tried``; where that makes no solid, that of a track without devices.
     """
-    wanted = solidbowl.asked(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
+    wanted = solidbowl.solid_options(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
     target = study.request.target
     for own, as_tried in ((settings, False), (tried, True)):
         try:

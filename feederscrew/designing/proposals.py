@@ -191,9 +191,9 @@ def proposed(part, bowl, aspects, row, known, request, way):
     one = known.lying[row]
     without = tuple(dict.fromkeys((*request.without, *way.without, *ON_THE_TRACK)))
     found = tooling(
-        part, bowl, one.aspect, heading=one.heading, rule=request.rule, margin=way.margin, known=aspects,
-        seed=request.seed, verdicts=VERDICTS, outcome=way.outcome, without=without, turn=way.turns,
-        air=way.cost_class > COST_CLASSES[0],
+        part, bowl, one.aspect, heading=one.heading, rule=request.rule, margin=way.margin,
+        aspect_shares=aspects, seed=request.seed, verdicts=VERDICTS, outcome=way.outcome, without=without,
+        turn=way.turns, air=way.cost_class > COST_CLASSES[0],
         purity=ENOUGH, up=request.up, play=0.0, tolerance=0.0, vary=False,  # draws and the loop have them
     ).design  # fmt: skip
     if found is None or not found.efficiency > 0.0 or not (found.cuts or found.before):

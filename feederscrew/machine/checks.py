@@ -142,7 +142,7 @@ def _throw(sheet: Any) -> Iterator[FeederError]:
 def _lowest(sheet: Any) -> Iterator[FeederError]:
     low, wanted = sheet.lowest, sheet.order.target
     if low.rate < wanted * (1.0 - 1e-6):
-        there = f"{60.0 * low.rate:.3g}/min at {100.0 * low.level:.3g} % of the fill, {low.way}"
+        there = f"{60.0 * low.rate:.3g}/min at {100.0 * low.level:.3g} % of the fill, {low.control}"
         what = f"{60.0 * wanted:.3g}/min are not kept as the bowl empties: {there}"
         yield FeederError("target", what, "hold the level with a hopper, or lower the target")
 

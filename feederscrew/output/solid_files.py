@@ -98,16 +98,18 @@ def bowl_3mf(solid, title, mark=""):
 
 def segments_3mf(pieces, title, mark=""):
     """Return segments of a bowl as the bytes of a 3MF file, one object each, beside each other."""
-    across = np.cumsum([0.0, *(one.size[0] + BETWEEN for one in pieces)])
+    across = np.cumsum([0.0, *(segment.size[0] + BETWEEN for segment in pieces)])
     moved = zip(across, pieces)
-    return pack_3mf([(one.name, one.vertices + [x, 0.0, 0.0], one.faces) for x, one in moved], title, mark)
+    return pack_3mf(
+        [(segment.name, segment.vertices + [x, 0.0, 0.0], segment.faces) for x, segment in moved], title, mark
+    )
 
 
 def pack_3mf(objects, title, mark=""):
     """Return objects (name, vertices (V, 3) [m], faces (F, 3)) as the bytes of a 3MF file."""
     objects = [(marking.marked_title(name, mark), *surface) for name, *surface in objects]
     model = MODEL + f'<metadata name="Title">{quoteattr(title)[1:-1]}</metadata>\n<resources>\n'
-    model += "".join(_object(k + 1, *one) for k, one in enumerate(objects))
+    model += "".join(_object(k + 1, *member) for k, member in enumerate(objects))
     items = "".join(f'<item objectid="{k + 1}"/>' for k in range(len(objects)))
     model += f"</resources>\n<build>{items}</build>\n</model>\n"
     contents = {"[Content_Types].xml": TYPES, "_rels/.rels": RELATIONS, "3D/3dmodel.model": model}
@@ -225,5 +227,7 @@ def _face(corners):
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
     from OCP.gp import gp_Pnt
 
-    wire = BRepBuilderAPI_MakePolygon(*(gp_Pnt(*(float(x) for x in one)) for one in corners), True).Wire()
+    wire = BRepBuilderAPI_MakePolygon(
+        *(gp_Pnt(*(float(x) for x in corner)) for corner in corners), True
+    ).Wire()
     return BRepBuilderAPI_MakeFace(wire, True).Face()

@@ -79,7 +79,8 @@ def write(key: Mapping[str, str], arrays: Arrays) -> None:
         Of float, int or bool.
     """
     folder, full = _folder(), _full(key)
-    data = _encoded(arrays, full)
+    held = {name: _packed(np.asarray(array)) for name, array in arrays.items()}
+    data = _line({"key": full, "arrays": held, "sha256": hashlib.sha256(_line([full, held])).hexdigest()})
     if folder is None or len(data) > MAX_ENTRY_BYTES:
         return
     with contextlib.suppress(OSError):
@@ -187,11 +188,6 @@ def _line(value: Any) -> bytes:
     return json.dumps(value, sort_keys=True).encode()
 
 
-def _encoded(arrays: Arrays, full: Mapping[str, str]) -> bytes:
-    held = {name: _packed(np.asarray(array)) for name, array in arrays.items()}
-    return _line({"key": full, "arrays": held, "sha256": hashlib.sha256(_line([full, held])).hexdigest()})
-
-
 def _packed(array: np.ndarray) -> dict[str, Any]:
     kind = {"f": "float", "i": "int", "b": "bool"}[array.dtype.kind]
     data = np.ascontiguousarray(array).astype(KINDS[kind]).tobytes()
@@ -207,7 +203,7 @@ def _decoded(data: bytes, full: Mapping[str, str]) -> dict[str, np.ndarray] | No
         held = entry["arrays"]
         if hashlib.sha256(_line([full, held])).hexdigest() != entry["sha256"]:
             return None
-        return {str(name): _unpacked(**one) for name, one in held.items()}
+        return {str(name): _unpacked(**array) for name, array in held.items()}
     except (ValueError, TypeError, LookupError, AttributeError, RecursionError, binascii.Error):
         return None
 

@@ -279,7 +279,7 @@ def test_what_is_not_sure_to_be_returned_counts_against_a_chain():
     known = shares(part, bowl, rule="csa")
     lying = next(one for one in every if one.length > 0.019)
     found = rate(
-        part, bowl, lying.aspect, heading=lying.heading, rule="csa", known=known, devices=(low,)
+        part, bowl, lying.aspect, heading=lying.heading, rule="csa", aspect_shares=known, devices=(low,)
     ).rate
     chance = found.orientations.rules["csa"]
     leaves = chance[~tall] @ found.orientations.leaves[~tall]
