@@ -17,7 +17,6 @@ import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
-from feederscrew.errors import FeederError
 from feederscrew.output import (
     designs,
     shading,
@@ -293,20 +292,6 @@ def test_a_table_of_polygons_fits_a_page():
     names = " ".join(f"A@{k}" for k in range(100, 120))
     assert tooling_tables._few(names, 34) == "A@100 A@101 A@102 A@103 A@104 and 15 more"
     assert tooling_tables._few("A@90, all of C", 34) == "A@90, all of C"
-
-
-@pytest.mark.needs("OCP")
-def test_step_where_opencascade_is(lying):
-    short = build_section(lying[0].track, lying[0].devices[1:3], lying[1])
-    made = solid_files.section_step(short)
-    assert made == solid_files.section_step(short)
-    assert made.startswith(b"ISO-10303-21;") and b"track section" in made
-
-
-def test_step_says_what_to_install(monkeypatch):
-    monkeypatch.setitem(sys.modules, "OCP.STEPControl", None)
-    with pytest.raises(FeederError, match=r"^step: needs OpenCASCADE, which is not installed - pip"):
-        solid_files.check_opencascade()
 
 
 def test_a_margin_that_is_none_is_not_printed_as_a_number():
