@@ -313,3 +313,17 @@ def test_a_verdict_that_is_not_sure_has_no_margin_on_the_page():
     )
     assert table["wiper 1_mm"][0] == pytest.approx(-2.0) and not table["wiper 1_mm"][1] < np.inf
     assert list(table["outcome"]) == ["stopped by the wiper", "stopped by the wiper, not sure"]
+
+
+def test_the_view_of_a_vision_reject_has_its_sensor_its_nozzles_and_their_air(lying):
+    """A mouth a nozzle; air at what is rejected alone."""
+    wanted = lying[1][0]
+    name, heading = wanted.aspect, wanted.heading
+    sorter = make_device("sorter", "here", like=(name, heading, 0.5e-3), sees="outline").rewritten()
+    figure = tooling_views.figure([sorter], lying[1], np.full(len(lying[1]), 0.2), 0)
+    passes, rejected = figure.axes
+    jets = track_sections.build_section(lying[0].track, [sorter], lying[1]).stations[0].standing.jets
+    assert len(passes.patches) == len(jets) > 0  # mouths; nothing blows at what is kept
+    assert len(rejected.patches) == 2 * len(jets)
+    for axes in (passes, rejected):
+        assert [text.get_text() for text in axes.texts] == ["sensor"]
