@@ -110,15 +110,16 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request):
 
     from feederscrew import bowl as bowls
     from feederscrew.designing import own_trial
-    from feederscrew.output import columns, marking, offers, solid_files
+    from feederscrew.output import columns, marking, offers
     from feederscrew.output import tooling as files
     from feederscrew.output import tooling_tables as tables
+    from feederscrew.solidbowl.exact import exact_body
     from feederscrew.studies.tooling import tooling as study
     from feederscrew.studies.tooling import tooling_without
 
     orientation.of_an_aspect(request)
     if cad:
-        solid_files.check_opencascade()
+        exact_body.check()
     solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
