@@ -275,11 +275,11 @@ def _folder(out, solid, inputs, settings):
 
 def _written(out, folder, found, settings, pictures):
     """What one design leaves in its folder; returns the design with what its machine is out of limits in."""
-    from feederscrew.designing import beside
+    from feederscrew.designing import built_bowl
     from feederscrew.output import design_pages, designs, offers
 
-    made = beside.Built() if found.partial else beside.built(found, settings)
-    found = beside.with_machine(found, made)
+    made = built_bowl.Built() if found.partial else built_bowl.built(found, settings)
+    found = built_bowl.with_machine(found, made)
     if found.bowl is not None:  # read back and compared, whether or not it is kept
         designs.bowl_file(found, settings, made.sheet)
     out.warn(*found.warnings, *([f"no solid of the bowl is made: {made.why}"] if made.why else []))

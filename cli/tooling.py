@@ -124,7 +124,7 @@ def tooling(part, asked, cad, static, taken, bowl, fields, pictures, out):
     from functools import partial
 
     from feederscrew import bowl as bowls
-    from feederscrew.designing import own_trial
+    from feederscrew.designing import tooling_trials
     from feederscrew.output import columns, marking, offers, solid_files
     from feederscrew.output import tooling as files
     from feederscrew.output import tooling_tables as tables
@@ -144,8 +144,8 @@ def tooling(part, asked, cad, static, taken, bowl, fields, pictures, out):
             found = study(solid, record, progress=heeding(bar.reach), **given)
         if not static:
             again = partial(tooling_without, part=solid, bowl=record, **given)
-            found = own_trial.own_trials(found, again, before=lambda: waiting.trial(out))
-        document = tables.document(found) | {"trial": own_trial.document(found.trials)}
+            found = tooling_trials.own_trials(found, again, before=lambda: waiting.trial(out))
+        document = tables.document(found) | {"trial": tooling_trials.document(found.trials)}
         denied, agreed = tables.trials(found)
         out.warn(*found.warnings, *denied)
         out.say(*agreed, *tables.remarks(found, asked["efficiency"]))

@@ -6,7 +6,7 @@ from typing import Unpack, overload
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl import Bowl
-from feederscrew.designing import beside, families, loop
+from feederscrew.designing import built_bowl, families, loop
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import OUTCOMES, DesignRequest, DesignStudy
 from feederscrew.errors import ArgumentError
@@ -155,12 +155,14 @@ def design(
         raise ArgumentError("outcome", f"is {request.outcome!r}", f"give {listed(list(OUTCOMES))}")
     plain = arguments.a_bowl(bowls.default() if bowl is None else bowl, overrides, settings)
     kept_keys = frozenset(given) | {setting.key.name for setting in plain.settings if setting.is_own}
-    kept_settings = beside.settings_of(plain, kept_keys)
+    kept_settings = built_bowl.settings_of(plain, kept_keys)
     if isinstance(part, (list, tuple)) and part:
         parts = [arguments.a_part(one) for one in part]
         family = families.family(parts, plain, kept_keys, request, told=progress)
-        members = (beside.with_machine(one, beside.built(one, kept_settings)) for one in family.members)
+        members = (
+            built_bowl.with_machine(one, built_bowl.built(one, kept_settings)) for one in family.members
+        )
         return replace(family, members=tuple(members))
     shared = the_shares(known)
     study = loop.design(arguments.a_part(part), plain, kept_keys, request, known=shared, told=progress)
-    return beside.with_machine(study, beside.built(study, kept_settings))
+    return built_bowl.with_machine(study, built_bowl.built(study, kept_settings))

@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from feederscrew.designing import calm_drive, exploring, loop, proposals
-from feederscrew.designing.alternatives import merit
+from feederscrew.designing.exploring import Search
+from feederscrew.designing.loop import merit
 from feederscrew.designing.record import FALLS_SHORT, HOLDS, NONE, NOT_PROVED, DesignStudy
-from feederscrew.designing.searching import Search
 from feederscrew.errors import FeederError
 from feederscrew.records import ReadableRecord
 from feederscrew.studies.aspects import answered
@@ -192,7 +192,7 @@ def common_limits(chains):
 
 def _at(cut, limit, member):
     """A cut of a member at another value; itself where that is its own."""
-    if limit is None or abs(limit - cut.device.limit) < 0.5 * proposals.STEP:
+    if limit is None or abs(limit - cut.device.limit) < 0.5 * proposals.VALUE_STEP_M:
         return cut
     return proposals.moved(cut, limit, member.tooling.orientations, member.turn)
 

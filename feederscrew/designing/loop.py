@@ -1,30 +1,34 @@
 """The loop: an orientation and its chain, a short trial, what the trial denies changed, and the proof."""
 
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying.hop import hop
 from feederscrew.designing import (
-    alternatives,
-    beside,
     calm_drive,
     exploring,
+    hazards,
     nearest,
     proposals,
     queues,
-    trying,
+    short_trials,
 )
-from feederscrew.designing.alternatives import merit
-from feederscrew.designing.hazards import risks
+from feederscrew.designing.exploring import Candidate, Progress, Search
 from feederscrew.designing.long_rides import LongRide, long_ride
+from feederscrew.designing.proposals import COST_CLASSES
 from feederscrew.designing.record import (
     DRAWS_HELD,
     HOLDS,
+    NONE,
+    NOT_TRIED,
     RATE_KEPT,
+    Alternative,
+    Attempt,
     DesignRequest,
     DesignStudy,
     FilledQueue,
@@ -32,17 +36,19 @@ from feederscrew.designing.record import (
     RobustRun,
 )
 from feederscrew.designing.robust import robust_run
-from feederscrew.designing.searching import Candidate, Progress, Search
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
 from feederscrew.part.record import Part
 from feederscrew.part.size_limits import refuse_many_facets
-from feederscrew.resting.aspects import find
+from feederscrew.rates.stream import Orientations
+from feederscrew.resting.aspects import Aspects, find
 from feederscrew.studies.rate import Shares
-from feederscrew.studies.tooling import may_be_left_out, may_be_up
+from feederscrew.studies.tooling import ToolingStudy, may_be_left_out, may_be_up
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.devices.orientation_names import rows
+from feederscrew.tooling.isolating import proposal as static
+from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.isolating.design import place
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial.result import TrialRun
@@ -127,7 +133,7 @@ def design(
 def _listed(search: Search, proofs: Proofs, searched: list[int], best: DesignStudy) -> DesignStudy:
     """The design with every short trial, and beside the best of each cost class."""
     studies = [study for study, _ in proofs] + ([best] if best.queues else [])
-    rows = alternatives.alternatives(studies, search.attempts, searched)
+    rows = alternatives(studies, search.attempts, searched)
     return replace(best, attempts=tuple(search.attempts), alternatives=rows)
 
 
@@ -330,8 +336,8 @@ def proved(
         study = _in_queues(search, study, candidate, known, ride.entering, whole=whole)
     except KeyboardInterrupt:
         return replace(study, partial=True)
-    every = [ways.lying[k] for k in trying.often(candidate.weights)]
-    found = risks.risks(ways.lying[row], bowl, study.queues, every=every, seed=search.request.seed)
+    every = [ways.lying[k] for k in short_trials.often(candidate.weights)]
+    found = hazards.risks(ways.lying[row], bowl, study.queues, every=every, seed=search.request.seed)
     return replace(study, risks=found)
 
 
@@ -339,7 +345,7 @@ def _at_the_tooling(search: Search, candidate: Candidate) -> tuple[LongRide, Can
     """A ride along the track to the tooling, and the candidate with the mix that arrives there."""
     search.told(f"ride along the track: {candidate.attempt.wanted}")
     ways, weights = candidate.ways, candidate.weights
-    wanted = trying.wanted_rows(ways, candidate.tried.states)
+    wanted = short_trials.wanted_rows(ways, candidate.tried.states)
     ride = long_ride(search.part, candidate.bowl, ways.lying, weights, wanted, search.request.run)
     return ride, replace(candidate, weights=ride.arriving)
 
@@ -352,7 +358,7 @@ def _drawn(search: Search, candidate: Candidate, shares: np.ndarray, *, whole: b
     return robust_run(
         search.part, candidate.bowl, candidate.ways, shares, candidate.proposal.rows,
         draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
-        any_heading=candidate.proposal.any_heading, spared=trying.spared_rows(candidate.tried),
+        any_heading=candidate.proposal.any_heading, spared=short_trials.spared_rows(candidate.tried),
         enough=search.enough(candidate.attempt),
         allowed=None if whole else math.floor((1.0 - DRAWS_HELD) * request.draws + 1e-9),
     )  # fmt: skip
@@ -403,9 +409,56 @@ def _unproved(search: Search, candidate: Candidate, known: Shares) -> DesignStud
         static_rate=_static(search, candidate),
         slowed=calm_drive.kept(bowl),
         trials=tuple(TrialRun(bowl, throw_number(bowl), ways, weights, one) for one in candidate.tried.seen),
-        tooling=beside.tooled(
-            search.part, bowl, known.aspects, ways, weights, candidate.proposal, request, margin
-        ),
+        tooling=tooled(search.part, bowl, known.aspects, ways, weights, candidate.proposal, request, margin),
+    )
+
+
+def tooled(
+    part: Part,
+    bowl: Bowl,
+    aspects: Aspects,
+    ways: Orientations,
+    weights: np.ndarray,
+    proposal: proposals.Proposal,
+    request: DesignRequest,
+    margin: float,
+) -> ToolingStudy | None:
+    """Return a chain as `feeder tooling` would have found it; None without one.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        With its devices.
+    aspects : Aspects
+    ways : Orientations
+        Through the devices; M of them.
+    weights : (M,) float [1]
+        In which they come.
+    proposal : Proposal
+    request : DesignRequest
+    margin : float [m]
+
+    Returns
+    -------
+    ToolingStudy or None
+    """
+    if not proposal.cuts:
+        return None
+    given = static.design_task(
+        ways.lying,
+        weights,
+        proposal.row,
+        margin,
+        1.0,
+        proposal.before,
+        constraints=DesignConstraints(up=request.up),
+    )
+    same = np.isin(ways.leaves_as, proposal.states(ways))
+    found = static.propose(given, proposal.cuts, ways.through < 0.5, same)
+    designs = tuple(found if k == proposal.row else None for k in range(len(weights)))
+    return ToolingStudy(
+        part, bowl, aspects, request.rule, margin, ways.lying, weights, designs, proposal.row, request.up
     )
 
 
@@ -418,7 +471,7 @@ def _counting(name: str, request: DesignRequest) -> str:
 def _static(search: Search, candidate: Candidate) -> float:
     """Wanted parts [1/s] that the static rule promises."""
     ways, weights = candidate.ways, candidate.weights
-    gain = trying.gain(ways, weights, candidate.tried.states)
+    gain = short_trials.gain(ways, weights, candidate.tried.states)
     return calm_drive.speed(candidate.bowl) * gain / float((weights * ways.lengths).sum())
 
 
@@ -427,4 +480,62 @@ def _without(search: Search) -> DesignStudy:
     source = "" if search.known is None else search.known.aspects.source(search.request.rule)
     return DesignStudy(
         search.part, search.request, None, None, None, attempts=tuple(search.attempts), source=source
+    )
+
+
+def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
+    """Return what of two designs is the better one: holds, then clean, then the most parts."""
+    return study.status == HOLDS, study.jams == 0, study.robust.share, study.delivered[1]
+
+
+def alternatives(
+    studies: Sequence[DesignStudy], attempts: Sequence[Attempt], searched: Collection[int]
+) -> tuple[Alternative, ...]:
+    """Return the best of each cost class, the cheapest class first.
+
+    Parameters
+    ----------
+    studies : sequence of DesignStudy
+        That were proved, as far as they were.
+    attempts : sequence of Attempt
+        Every short trial.
+    searched : collection of int
+        Cost classes of which chains were looked for.
+    """
+    best_of: list[Alternative] = []
+    holds = any(study.status == HOLDS for study in studies)
+    for number in COST_CLASSES:
+        own = [one for one in studies if one.bowl is not None and cost_class_of(one.devices) == number]
+        tried = [one for one in attempts if one.cost_class == number]
+        if own:
+            best_of.append(of_study(max(own, key=merit)))
+        elif tried:
+            best = max(tried, key=lambda one: (one.clean, one.efficiency, one.rate))
+            faults = ", ".join(best.faults[:2]) or "too slow in its short trial"
+            best_of.append(Alternative(number, NONE, chain=best.chain, why=f"{best.wanted}: {faults}"))
+        elif number in searched:
+            best_of.append(
+                Alternative(number, NONE, why="no chain of this class tells what is wanted from the rest")
+            )
+        else:
+            why = "a cheaper one holds: --alternatives proves this class too" if holds else "it was stopped"
+            best_of.append(Alternative(number, NOT_TRIED, why=why))
+    return tuple(best_of)
+
+
+def of_study(study: DesignStudy) -> Alternative:
+    """Return a design as the alternative of its cost class."""
+    purity, share = study.purity[0], study.efficiency
+    shown = bool(study.queues) and not study.partial  # what was stopped is no evidence
+    sensors: list[Any] = [one for one in study.devices if one.senses]
+    return Alternative(
+        cost_class=cost_class_of(study.devices),
+        status=study.status,
+        delivered=study.delivered if shown else None,
+        purity=None if np.isnan(purity) or not shown else purity,
+        efficiency=None if np.isnan(share) or not shown else share,
+        chain=tuple(f"{one.kind}: {one.text}" for one in study.devices),
+        chain_words=tuple(f"{one.full_name}: {one.value_words}" for one in study.devices),
+        sees=tuple(one.sees for one in sensors),
+        why="; ".join(study.shortfalls) if study.status != HOLDS else "",
     )

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.designing import calm_drive, exploring, proposals, queues, trying
+from feederscrew.designing import calm_drive, exploring, proposals, queues, short_trials
+from feederscrew.designing.exploring import Candidate, Search
 from feederscrew.designing.record import (
     DRAWS_HELD,
     HEADING_OFF,
@@ -18,7 +19,6 @@ from feederscrew.designing.record import (
     DesignStudy,
     NearestDesign,
 )
-from feederscrew.designing.searching import Candidate, Search
 from feederscrew.dropping.plate_test import throw_number
 
 MINUTE = 60.0
@@ -302,7 +302,7 @@ def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
             same=proposals.alike(lying, candidate.proposal.row, request.up),
             any_heading=proposals.free_headings(lying, candidate.proposal.row, request),
         )
-        states = trying.wanted_states(candidate.ways, proposal.rows)
+        states = short_trials.wanted_states(candidate.ways, proposal.rows)
         other = replace(
             candidate, proposal=proposal, tried=replace(candidate.tried, state=states[0], states=states)
         )
@@ -314,7 +314,7 @@ def _one_device_more(search: Search, study: DesignStudy, candidate: Candidate) -
     """The chain with a drop before it for what left a queue instead of what is wanted; None without one."""
     names = {name.partition("@")[0].removesuffix(HEADING_OFF) for name, _ in study.left_instead}
     ways, proposal = candidate.ways, candidate.proposal
-    wanted = trying.wanted_rows(ways, candidate.tried.states)
+    wanted = short_trials.wanted_rows(ways, candidate.tried.states)
     others = [k for k, one in enumerate(ways.lying) if one.aspect in names and k not in wanted]
     changed = proposals.dropped_before(proposal, others, wanted, ways.lying)
     if changed is None:

@@ -1,20 +1,25 @@
 """Chains to be tried for an orientation, and how a value is moved that a trial denies."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from feederscrew.designing import pulses, trying
+from feederscrew.designing import short_trials
 from feederscrew.designing.record import RobustRun
 from feederscrew.designing.robust import CARRIED
-from feederscrew.designing.slots import STEP, widened
+from feederscrew.designing.short_trials import Tried
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import KINDS, cost_class, dearer, names
 from feederscrew.tooling.devices.orientation_names import nearest
 from feederscrew.tooling.devices.orientation_names import rows as rows_of
-from feederscrew.tooling.isolating.chain import DESIGN_KEY, in_mm, judge_cut, limits, numbered
+from feederscrew.tooling.devices.pneumatics import PULSE
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, Cut, in_mm, judge_cut, limits, numbered
+from feederscrew.tooling.isolating.design import RAIL
+from feederscrew.tooling.orientations import Orientation, neck
+from feederscrew.tooling.verdicts import DeviceEncounter
 
 ROWS = 6  # orientations for which chains are proposed, the most frequent first
 HOLES = names(searched=True)  # holes of several corners, which a shop's tolerance soon spoils
@@ -29,6 +34,11 @@ ON_THE_TRACK = names(leans=True, grooved=False)  # a bank is the bowl's own, and
 VERDICTS = 3000  # of the search for holes: values that a shop's tolerance does not lose are found early
 GUARDS = tuple(kind for kind in numbered() if kind.carries)
 LEAST_WINDOW = 1e-3  # [m] between what passes such a drop and what it rejects
+VALUE_STEP_M = 5e-5  # [m] to which a shop makes a value
+SLOT_WIDENING, WIDEST_SLOT = 0.35, 0.8  # of head less slot; of the head, that a slot may be
+PULSE_STEP_S, SHORTEST_PULSE_STEPS = 5e-3, 4  # [s] to which a pulse is set; steps of the shortest one
+PULSE_RESERVE = 6.0  # times what blows off a part before the nozzles: they do not blow at its middle
+LONGER_PULSE = 2.0  # times, where something is carried through all the same
 
 
 @dataclass(frozen=True)
@@ -105,7 +115,7 @@ class Proposal:
 
     def states(self, known):
         """Return the states in which what is wanted leaves, its own first."""
-        return trying.wanted_states(known, self.rows)
+        return short_trials.wanted_states(known, self.rows)
 
     @property
     def rows(self) -> tuple[Any, ...]:
@@ -136,7 +146,9 @@ def alike(lying, row, up) -> tuple[Any, ...]:
 
 def free_headings(lying, row, request):
     """Return the aspects that count as a wanted row at any heading, by what a DesignRequest asks for."""
-    return trying.aspects_at_any_heading(lying, row, request.up, heading_given=request.heading is not None)
+    return short_trials.aspects_at_any_heading(
+        lying, row, request.up, heading_given=request.heading is not None
+    )
 
 
 def _folded(names) -> set[Any]:
@@ -145,7 +157,7 @@ def _folded(names) -> set[Any]:
 
 def promising(known, shares, request):
     """Return rows (R,) of the orientations worth a try: those asked for, the most frequent first."""
-    rows = [k for k in trying.often(shares) if not known.lying[k].returned]
+    rows = [k for k in short_trials.often(shares) if not known.lying[k].returned]
     names = {request.aspect.strip()} if request.aspect is not None else set(request.up)
     if names:
         asked = [k for k, one in enumerate(known.lying) if one.aspect.casefold() in _folded(names)]
@@ -165,7 +177,7 @@ def bare(known, shares, request, devices):
     best = max(rows, key=lambda k: leaving[known.leaves_as[k]])
     same, free = alike(known.lying, best, request.up), free_headings(known.lying, best, request)
     made = Proposal(best, (), tuple(devices), "no device", same, free)
-    pure = trying.gain(known, shares, made.states(known)) / max(leaving.sum(), 1e-300)
+    pure = short_trials.gain(known, shares, made.states(known)) / max(leaving.sum(), 1e-300)
     return made if pure >= ENOUGH else None
 
 
@@ -198,7 +210,7 @@ def proposed(part, bowl, aspects, row, known, request, way):
     ).design  # fmt: skip
     if found is None or not found.efficiency > 0.0 or not (found.cuts or found.before):
         return None
-    cuts = tuple(pulses.quickened(rounded(cut, known.lying, row), known.lying) for cut in found.cuts)
+    cuts = tuple(quickened(rounded(cut, known.lying, row), known.lying) for cut in found.cuts)
     step = f"proposed with margins of {in_mm(way.margin)}"
     same, free = alike(known.lying, row, request.up), free_headings(known.lying, row, request)
     hopeful = found.hopeful or 0.0
@@ -212,10 +224,10 @@ def proposed(part, bowl, aspects, row, known, request, way):
 
 def _guarded_stops(proposal, through, rule):
     """The proposal with a drop before what stops some orientations; None where none tells them."""
-    stops = (through.stops.sum(axis=1) > 0.0) & (np.nan_to_num(through.rules[rule]) >= trying.SELDOM)
+    stops = (through.stops.sum(axis=1) > 0.0) & (np.nan_to_num(through.rules[rule]) >= short_trials.SELDOM)
     if not stops.any():
         return proposal
-    wanted = trying.wanted_rows(through, proposal.states(through))
+    wanted = short_trials.wanted_rows(through, proposal.states(through))
     return dropped_before(proposal, list(np.flatnonzero(stops)), wanted, through.lying)
 
 
@@ -223,12 +235,12 @@ def rounded(cut, every, row):
     """Return a cut whose value a shop can make, where that keeps what it returns."""
     if not np.isfinite(cut.device.limit):
         return cut
-    return moved(cut, float(np.round(cut.device.limit / STEP) * STEP), every, row)
+    return moved(cut, float(np.round(cut.device.limit / VALUE_STEP_M) * VALUE_STEP_M), every, row)
 
 
 def moved(cut, limit, every, row):
     """Return a cut of one number at another value, with its margins there."""
-    limit = float(np.round(limit / STEP) * STEP)
+    limit = float(np.round(limit / VALUE_STEP_M) * VALUE_STEP_M)
     device = cut.device.valued(limit)
     must = np.array([one.name in cut.returns for one in every])
     return judge_cut(every, row, device, must, cut.smallest, cut.largest)
@@ -250,7 +262,7 @@ def mended(proposal, tried, every):
             continue
         end = cut.smallest.limit if lost else cut.largest.limit
         limit = 0.5 * (cut.device.limit + end)
-        if not np.isfinite(limit) or abs(limit - cut.device.limit) < STEP:
+        if not np.isfinite(limit) or abs(limit - cut.device.limit) < VALUE_STEP_M:
             continue
         other = moved(cut, limit, every, proposal.row)
         if other.device.limit == cut.device.limit or not other.margin_pass > 0.0:
@@ -303,13 +315,13 @@ def better(proposal, tried, every, drawn=None):
     drawn : RobustRun, optional
         Draws that deny what the trial itself does not.
     """
-    right = set(trying.wanted_rows(tried.known, tried.states))
+    right = set(short_trials.wanted_rows(tried.known, tried.states))
     lost = any(k in right and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
     if drawn is not None:
         return widened(proposal, every) if "lost" in drawn.worst else cut_more(proposal, tried, drawn, every)
     wider = widened(proposal, every) if lost else None
     moved_one = wider or swept(proposal, tried, every) or mended(proposal, tried, every)
-    moved_one = moved_one or pulses.longer(proposal, tried, every)
+    moved_one = moved_one or longer(proposal, tried, every)
     return moved_one or guarded(proposal, tried, every)
 
 
@@ -331,10 +343,10 @@ def cut_more(proposal, tried, drawn, every):
         if not cut.device.bound or name not in cut.returns or not np.isfinite(cut.largest.limit):
             continue
         other = moved(cut, 0.5 * (cut.device.limit + cut.largest.limit), every, proposal.row)
-        if abs(other.device.limit - cut.device.limit) >= STEP and other.margin_pass > 0.0:
+        if abs(other.device.limit - cut.device.limit) >= VALUE_STEP_M and other.margin_pass > 0.0:
             cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
             return replace(proposal, cuts=cuts, step=f"{cut.device.kind} moved to {other.device.text}")
-    wanted = trying.wanted_rows(tried.known, tried.states)
+    wanted = short_trials.wanted_rows(tried.known, tried.states)
     rows = [k for k, one in enumerate(every) if one.name == name and k not in wanted]
     return dropped_before(proposal, rows, wanted, every)
 
@@ -373,7 +385,7 @@ def relieved(candidate):
     proposal, every = candidate.proposal, candidate.ways.lying
     if any(device.relieves for device in proposal.devices):
         return None
-    wanted = [every[k] for k in trying.wanted_rows(candidate.ways, candidate.tried.states)]
+    wanted = [every[k] for k in short_trials.wanted_rows(candidate.ways, candidate.tried.states)]
     makers = [KINDS[kind] for kind in names(relieves=True)]
     found = [kind.relieving(wanted, MARGINS[-1], DESIGN_KEY) for kind in makers] if wanted else []
     device = next((one for one in found if one is not None), None)
@@ -389,7 +401,7 @@ def guarded(proposal, tried, every):
 
     Only devices through which what they reject falls are taken: a queue hardly notices them.
     """
-    wanted = trying.wanted_rows(tried.known, tried.states)
+    wanted = short_trials.wanted_rows(tried.known, tried.states)
     wrong = [k for n, k in enumerate(tried.rows) if tried.wrong[n] or tried.held[n]]
     return dropped_before(proposal, [k for k in wrong if k not in wanted], wanted, every)
 
@@ -423,7 +435,7 @@ def dropped_before(proposal, others, wanted, every):
     if chosen is None:
         return None
     (kind, middle, listed), room = chosen, best[1]
-    limit = float(np.round(middle / STEP) * STEP)
+    limit = float(np.round(middle / VALUE_STEP_M) * VALUE_STEP_M)
     device = kind.proposal(DESIGN_KEY, limit).rewritten()
     must = np.array([k in listed for k in range(len(every))])
     ends = [device.valued(limit + way) for way in (-0.5 * room, 0.5 * room)]
@@ -433,7 +445,7 @@ def dropped_before(proposal, others, wanted, every):
 
 def lost_at(tried, kind) -> bool:
     """Return whether the wanted orientation ends at a device of a kind."""
-    right = set(trying.wanted_rows(tried.known, tried.states))
+    right = set(short_trials.wanted_rows(tried.known, tried.states))
     ends = [tried.places[n] for n, k in enumerate(tried.rows) if k in right]
     own = KINDS[kind]
     name = own.trade or own.kind.replace("_", " ")  # as a trial names the device
@@ -443,3 +455,89 @@ def lost_at(tried, kind) -> bool:
 def known_through(part, aspects, bowl):
     """Return what becomes of every orientation on the track and through the devices of a bowl."""
     return stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
+
+
+def quickened(cut: Cut, every: Sequence[Orientation]) -> Cut:
+    """Return a cut whose pulse is the shortest that blows off what it returns, with a reserve.
+
+    Source: own; docs/design.md, "The loop".
+
+    Parameters
+    ----------
+    cut : Cut
+    every : sequence of Orientation
+        Of the part.
+
+    Returns
+    -------
+    Cut
+        Itself where its pulse is as short, or it has none.
+    """
+    device: Any = cut.device  # a sorter, where it senses
+    if not device.senses:
+        return cut
+    gone = [DeviceEncounter(one, every) for one in every if one.name in cut.returns]
+    pushes = [device.jet.push(met.orientation, every) for met in gone]
+    for steps in range(SHORTEST_PULSE_STEPS, round(device.time / PULSE_STEP_S)):
+        time = steps * PULSE_STEP_S
+        if all(met.blown(out, down, time / PULSE_RESERVE) > 0.0 for met, (out, down) in zip(gone, pushes)):
+            return replace(cut, device=_timed(device, time))
+    return cut
+
+
+def longer(proposal: Any, tried: Tried, every: Sequence[Orientation]) -> Any:
+    """Return a proposal with a longer pulse where something is carried through that it should blow off.
+
+    Parameters
+    ----------
+    proposal : Proposal
+    tried : Tried
+    every : sequence of Orientation
+
+    Returns
+    -------
+    Proposal or None
+        None where nothing is, or the pulse is as long as it was proposed.
+    """
+    for place, cut in enumerate(proposal.cuts):
+        device: Any = cut.device
+        slipped = any(tried.wrong[n] and every[k].name in cut.returns for n, k in enumerate(tried.rows))
+        if not device.senses or not slipped or device.time >= PULSE:
+            continue
+        other = _timed(device, min(LONGER_PULSE * device.time, PULSE))
+        cuts = (*proposal.cuts[:place], replace(cut, device=other), *proposal.cuts[place + 1 :])
+        return replace(proposal, cuts=cuts, step=f"pulse of {_milliseconds(other.time)}")
+    return None
+
+
+def _timed(device: Any, time: float) -> Any:
+    return device.with_pulse(time)
+
+
+def _milliseconds(time: float) -> str:
+    return f"{1e3 * time:.0f} ms"
+
+
+def widened(proposal: Any, every: Sequence[Orientation]) -> Any:
+    """Return the proposal with a wider slot between its rails; None without rails that can be wider.
+
+    A part lies askew along the wall: it comes to rails narrowed to its shank beside them, and slides on. The
+    slot grows towards the head, about its middle, as long as the head is held by the rails.
+    """
+    for place, cut in enumerate(proposal.cuts):
+        found = neck(every[proposal.row]) if cut.device.hangs else None
+        if found is None:
+            continue
+        first, last = cut.device.span
+        more = float(
+            np.round(0.5 * SLOT_WIDENING * (found.head - (last - first)) / VALUE_STEP_M) * VALUE_STEP_M
+        )
+        span = max(first - more, RAIL), last + more
+        if more < VALUE_STEP_M or span == cut.device.span or last - first > WIDEST_SLOT * found.head:
+            continue
+        device = cut.device.with_span(span)
+        must = np.array([one.name in cut.returns for one in every])
+        other = judge_cut(every, proposal.row, device, must, cut.smallest, cut.largest)
+        cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
+        return replace(proposal, cuts=cuts, step=f"slot widened to {in_mm(span[1] - span[0])}")
+    return None

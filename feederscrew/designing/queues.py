@@ -12,7 +12,7 @@ import numpy as np
 from scipy.stats import binom
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.designing import trying
+from feederscrew.designing import short_trials
 from feederscrew.designing.record import (
     HEADING_OFF,
     PURE,
@@ -28,7 +28,11 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.tooling.orientations import Hanging
 from feederscrew.trial.queue import GAPS, PartsQueue, QueuedParts, QueuePlan
 
-FILLS = (("low", trying.LOW), ("normal", GAPS), ("high", 0.0))  # free way between parts over their length
+FILLS = (
+    ("low", short_trials.LOW),
+    ("normal", GAPS),
+    ("high", 0.0),
+)  # free way between parts over their length
 PARTS, SECONDS = 12, 60.0  # in a queue at a time; for so long at the most
 FIRST = 20.0  # [s] of each fill before anything is said to hold, and in which the track has filled
 LOOK = 10.0  # [s] of each fill after which all of them are looked at
@@ -58,7 +62,7 @@ class FollowedRow:
 
     def queue(self, gaps: float, seed: int) -> PartsQueue:
         """Return a queue of PARTS that come with a mean free way of so many lengths between them."""
-        poses = trying.counted(self.known, self.states, self.any_heading)
+        poses = short_trials.counted(self.known, self.states, self.any_heading)
         shares = self.shares if gaps > 0.0 or self.touching is None else self.touching
         plan = QueuePlan(PARTS, SECONDS, gaps)
         return PartsQueue(

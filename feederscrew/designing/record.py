@@ -10,7 +10,7 @@ from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import DRAWS_HELD, FALLS_SHORT, HOLDS, PURE, RATE_KEPT
 from feederscrew.designing.calm_drive import DRIVES, LEAF_SPRING
-from feederscrew.designing.hazards.risks import Risk
+from feederscrew.designing.hazards import Risk
 from feederscrew.designing.long_rides import LongRide
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import ArgumentError

@@ -11,7 +11,7 @@ import shapely
 
 from feederscrew import check
 from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
-from feederscrew.designing import trying
+from feederscrew.designing import short_trials
 from feederscrew.designing.record import RobustRun
 from feederscrew.dropping.pool import gather
 from feederscrew.dropping.toss_runs import scattered
@@ -254,15 +254,15 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, any_heading, spare
         even = np.full(len(ways.lying), 1.0 / len(ways.lying))
         own: dict[str, Any] = {"aspects": aspects, "any_heading": tuple(sorted(free))}
         wanted_rows = [rows[0], *alike]
-        tried = trying.single(
+        tried = short_trials.single(
             other, driven, ways, even, wanted_rows, rows=list(dict.fromkeys(rows)), each=1,
             run=RunSettings(sum(seed)), **own,
         )  # fmt: skip
-        counting = trying.wanted_rows(ways, tried.states[:1])
+        counting = short_trials.wanted_rows(ways, tried.states[:1])
         if any(came_back(tried, row) for row in tried.rows if row in counting):
             again = wanted_of(known, shares, wanted, spared)
             places = [matched(known.lying[k], lying) for k in again]
-            more = trying.single(
+            more = short_trials.single(
                 other, driven, ways, even, wanted_rows, rows=list(dict.fromkeys(places)), each=AGAIN,
                 run=RunSettings(sum(seed) + 1), **own,
             )  # fmt: skip
@@ -292,7 +292,7 @@ def drawn_rows(known, shares, rows, rng, spared=()) -> list[Any]:
     list of int
         No orientation twice.
     """
-    wanted = trying.wanted_rows(known, trying.wanted_states(known, rows)[:1]) or [rows[0]]
+    wanted = short_trials.wanted_rows(known, short_trials.wanted_states(known, rows)[:1]) or [rows[0]]
     wanted = [k for k in wanted if k not in spared] or wanted
     likely = np.where([k in wanted for k in range(len(shares))], shares + 1e-12, 0.0)
     first = int(rng.choice(len(shares), p=likely / likely.sum()))
@@ -317,8 +317,8 @@ def wanted_of(known, shares, rows, spared=()):
     shares : (M,) float [1]
     rows, spared : sequence of int
     """
-    own = trying.wanted_rows(known, trying.wanted_states(known, rows)[:1]) or [rows[0]]
-    some = [k for k in own if k not in spared and shares[k] >= trying.SELDOM]
+    own = short_trials.wanted_rows(known, short_trials.wanted_states(known, rows)[:1]) or [rows[0]]
+    some = [k for k in own if k not in spared and shares[k] >= short_trials.SELDOM]
     return some or [rows[0]]
 
 
@@ -344,7 +344,7 @@ def faults(tried, spared=()):
     What counts as the wanted one and comes back is a loss of parts a minute only; so is that of orientations
     that are ``spared``, rows.
     """
-    found, right = [], set(trying.wanted_rows(tried.known, tried.states[:1])) - set(spared)
+    found, right = [], set(short_trials.wanted_rows(tried.known, tried.states[:1])) - set(spared)
     for place, k in enumerate(tried.rows):
         name = tried.known.lying[k].name
         if k in right:
@@ -363,7 +363,7 @@ def denied(tried) -> Iterator[Any]:
     """Say what a short trial denies: what leaves or stays though rejected, and what is lost in the main."""
     if not tried.efficiency > 0.0:
         yield "nothing leaves as wanted"
-    right, spared = set(trying.wanted_rows(tried.known, tried.states)), trying.spared_rows(tried)
+    right, spared = set(short_trials.wanted_rows(tried.known, tried.states)), short_trials.spared_rows(tried)
     for one in faults(tried, spared):
         name = one.split(" ", 1)[0]
         place = next(n for n, k in enumerate(tried.rows) if tried.known.lying[k].name == name)

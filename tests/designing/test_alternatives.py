@@ -9,9 +9,9 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import exploring, loop, proposals
-from feederscrew.designing.alternatives import alternatives
+from feederscrew.designing.exploring import Search
+from feederscrew.designing.loop import alternatives
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy, FilledQueue, RobustRun
-from feederscrew.designing.searching import Search
 from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
 from feederscrew.tooling.devices.kinds import make_device

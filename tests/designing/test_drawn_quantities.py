@@ -14,9 +14,9 @@ from scipy import stats
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
-from feederscrew.designing import exploring, proposals, robust, trying
+from feederscrew.designing import exploring, proposals, robust, short_trials
+from feederscrew.designing.exploring import Search
 from feederscrew.designing.record import Attempt, DesignRequest
-from feederscrew.designing.searching import Search
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
 
@@ -214,7 +214,7 @@ def test_a_row_brings_its_velocity_over_its_pitch_times_what_leaves(block):
     shares[:2] = 0.25, 0.75
     own = {"velocity": 0.06, "state": 0, "states": (0,), "deepest": 0.0, "places": ({}, {})}
     counts = (np.array([2, 2]), np.array([2, 0]), np.array([0, 0]), np.array([0, 2]))
-    seen = trying.Tried(ways, shares, np.array([0, 1]), *counts, **own)
+    seen = short_trials.Tried(ways, shares, np.array([0, 1]), *counts, **own)
     mean = 0.25 * ways.lengths[0] + 0.75 * ways.lengths[1]
     assert seen.rate == pytest.approx(0.06 / (1.5 * mean) * 0.25, rel=1e-12)
     assert replace(seen, apart=8.0 * MM).rate == pytest.approx(

@@ -9,7 +9,8 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying.hop import hop
-from feederscrew.designing import calm_drive, exploring, nearest, proposals, queues, trying
+from feederscrew.designing import calm_drive, exploring, nearest, proposals, queues, short_trials
+from feederscrew.designing.exploring import Candidate, Search
 from feederscrew.designing.record import (
     CAUSES,
     Attempt,
@@ -19,7 +20,6 @@ from feederscrew.designing.record import (
     NearestDesign,
     RobustRun,
 )
-from feederscrew.designing.searching import Candidate, Search
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
@@ -58,7 +58,7 @@ def attempt(rate=30.0, faults=(), cause="", wanted="A@0", **more):
 
 
 def candidate(ways, bowl=BOWL, fault=(), **more):
-    tried = trying.Tried(
+    tried = short_trials.Tried(
         ways, np.full(len(ways.lying), 1.0 / len(ways.lying)), np.array([0]), np.array([2]), np.array([2]),
         np.array([0]), np.array([0]), ({},), 0.1, 0, (0,), 0.0,
     )  # fmt: skip

@@ -8,7 +8,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import families, loop, proposals, queues, trying
+from feederscrew.designing import families, loop, proposals, queues, short_trials
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.robust import robust_run
 from feederscrew.resting.aspects import find
@@ -80,8 +80,8 @@ def test_parts_that_a_stopped_trial_has_not_tried_are_no_verdict(monkeypatch):
     ways = proposals.known_through(CUBE, find(CUBE), bowls.default())
     shares = np.full(len(ways.lying), 1.0 / len(ways.lying))
     seen = SimpleNamespace(partial=True, orientations=np.zeros((1, 1)), fates=np.zeros(1))
-    monkeypatch.setattr(trying.course, "course", lambda *_, **__: seen)
+    monkeypatch.setattr(short_trials.course, "course", lambda *_, **__: seen)
     with pytest.raises(KeyboardInterrupt):
-        trying.single(CUBE, bowls.default(), ways, shares, 0, rows=(0,), each=2, run=RunSettings(1))
+        short_trials.single(CUBE, bowls.default(), ways, shares, 0, rows=(0,), each=2, run=RunSettings(1))
     drawn = robust_run(CUBE, bowls.default(), ways, shares, 0, draws=3, tolerance=1e-5, run=RunSettings(1))
     assert drawn.partial and drawn.draws == 0

@@ -14,22 +14,16 @@ from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import BOWL_KEYS
 from feederscrew.bowl.settings import Setting, of_device
 from feederscrew.designing.nearest import tried_nearest
-from feederscrew.designing.proposals import Proposal
-from feederscrew.designing.record import HOLDS, DesignRequest, DesignStudy
+from feederscrew.designing.record import HOLDS, DesignStudy
 from feederscrew.errors import FeederError
 from feederscrew.machine import checks, drive_sizing
 from feederscrew.machine.drive_sizing import is_two_axis
 from feederscrew.part.record import Part
-from feederscrew.rates.stream import Orientations
-from feederscrew.resting.aspects import Aspects
 from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import solidbowl
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.rate import LEAST
-from feederscrew.studies.tooling import ToolingStudy
-from feederscrew.tooling.isolating import proposal as static
-from feederscrew.tooling.isolating.chain import DesignConstraints
 
 DRIVE = (
     ("frequency", 1.0, "Hz"),
@@ -43,55 +37,6 @@ TRACK = (
     ("width", 1e-3, "mm"),
 )
 FIGURES = ": asked for "  # between what is wrong with a drive and its figures, in a DriveMismatch
-
-
-def tooled(
-    part: Part,
-    bowl: Bowl,
-    aspects: Aspects,
-    ways: Orientations,
-    weights: np.ndarray,
-    proposal: Proposal,
-    request: DesignRequest,
-    margin: float,
-) -> ToolingStudy | None:
-    """Return a chain as `feeder tooling` would have found it; None without one.
-
-    Parameters
-    ----------
-    part : Part
-    bowl : Bowl
-        With its devices.
-    aspects : Aspects
-    ways : Orientations
-        Through the devices; M of them.
-    weights : (M,) float [1]
-        In which they come.
-    proposal : Proposal
-    request : DesignRequest
-    margin : float [m]
-
-    Returns
-    -------
-    ToolingStudy or None
-    """
-    if not proposal.cuts:
-        return None
-    given = static.design_task(
-        ways.lying,
-        weights,
-        proposal.row,
-        margin,
-        1.0,
-        proposal.before,
-        constraints=DesignConstraints(up=request.up),
-    )
-    same = np.isin(ways.leaves_as, proposal.states(ways))
-    found = static.propose(given, proposal.cuts, ways.through < 0.5, same)
-    designs = tuple(found if k == proposal.row else None for k in range(len(weights)))
-    return ToolingStudy(
-        part, bowl, aspects, request.rule, margin, ways.lying, weights, designs, proposal.row, request.up
-    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.designing import trying
+from feederscrew.designing import short_trials
 from feederscrew.designing.proposals import alike
 from feederscrew.designing.robust import denied
 from feederscrew.dropping.ensemble import wilson
@@ -162,10 +162,10 @@ def _tried(study: ToolingStudy, one: Design, run: RunSettings) -> TriedDesign:
     shares = study.shares / total if total > 0.0 else np.full(len(study.shares), 1.0 / len(study.shares))
     rows = _rows_tried(ways, shares, one.wanted)
     wanted = (one.wanted, *alike(ways.lying, one.wanted, study.up))
-    free = trying.aspects_at_any_heading(ways.lying, one.wanted, study.up)
+    free = short_trials.aspects_at_any_heading(ways.lying, one.wanted, study.up)
 
-    def single(tried_rows: Any, each: Any, how: RunSettings) -> trying.Tried:
-        return trying.single(
+    def single(tried_rows: Any, each: Any, how: RunSettings) -> short_trials.Tried:
+        return short_trials.single(
             study.part, bowl, ways, shares, wanted, rows=tried_rows, each=each, run=how,
             aspects=study.aspects, any_heading=free,
         )  # fmt: skip
@@ -229,7 +229,9 @@ def further_parts(shares: np.ndarray) -> np.ndarray:
     return np.floor(MORE * shares / total + 0.5).astype(int) if total > 0.0 else np.zeros(len(shares), int)
 
 
-def shares_leaving(tried: trying.Tried) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+def shares_leaving(
+    tried: short_trials.Tried,
+) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     """Return efficiency and purity [1] of a short trial, each as value, low and high end.
 
     What was not tried counts as the static rule says; what that is not sure to return, as wrong at the lower
