@@ -118,9 +118,9 @@ def section(
     rules = plain.sizing
     if diameter is not None:
         rules = replace(rules, least_diameter=diameter[0], greatest_diameter=diameter[1])
-    known = {"diameter": "track.radius", "width": "track.width", "climb": "track.climb"}
-    kept = {"diameter": 2.0 * plain.track.radius, "width": plain.track.width, "climb": plain.track.climb}
-    own = {name: kept[name] for name, key in known.items() if key in given}
+    keys = {"diameter": "track.radius", "width": "track.width", "climb": "track.climb"}
+    values = {"diameter": 2.0 * plain.track.radius, "width": plain.track.width, "climb": plain.track.climb}
+    own = {name: values[name] for name, key in keys.items() if key in given}
     size = sizing.size_bowl(sizing.find_lying(part, aspects), part.source, rules, sorts=True, **own)
     track = Track(
         climb=_tenths(size.climb, np.radians(0.1)) if "climb" not in own else size.climb,
@@ -210,9 +210,9 @@ def calmer(made: PlainBowl, bowl: Bowl) -> Bowl | None:
     height = hop(bowl).height
     if height > 0.0 and not is_two_axis(bowl.drive):
         levels = itertools.chain(*_kinds(made, True))
-        rows = [one for one in itertools.chain(*levels) if _is_calmer(one, height)]
+        rows = [other for other in itertools.chain(*levels) if _is_calmer(other, height)]
         order = sorted(rows, key=_fast, reverse=True)
-        return next((one for one in order if _fast(one) > 0.0 and _can_build(made, one)), None)
+        return next((other for other in order if _fast(other) > 0.0 and _can_build(made, other)), None)
     other = driven(made, CALMER * speed(bowl))
     gentler = throw_number(bowl) > CALM + CALMER_STEP or speed(other) <= CALMER_SHARE * speed(bowl)
     return other if gentler and 0.0 < throw_number(other) <= CALM + CALMER_STEP else None
@@ -238,8 +238,8 @@ def livelier(made: PlainBowl, bowl: Bowl) -> Bowl | None:
         return None
     levels = itertools.chain(*_kinds(made, True))
     order = sorted(itertools.chain(*levels), key=_calmness)
-    rows = (one for one in order if hop(one).height >= height and speed(one) > 0.0)
-    return next((one for one in rows if _can_build(made, one)), None)
+    rows = (other for other in order if hop(other).height >= height and speed(other) > 0.0)
+    return next((other for other in rows if _can_build(made, other)), None)
 
 
 def _is_calmer(bowl: Bowl, height: float) -> bool:
@@ -269,8 +269,8 @@ def _leaf_spring_drives(made: PlainBowl) -> Iterator[Bowl]:
     frequencies, angles = _frequencies(made), _angles(made)
     for frequency, angle in itertools.product(frequencies, angles):
         own = {"frequency": frequency, "vibration_angle": angle, "phase": 0.0}
-        kept = {"phase": made.bowl.drive.phase} if "drive.phase" in made.given else {}
-        bowl = replace(made.bowl, drive=replace(made.bowl.drive, **own | kept))
+        kept_phase = {"phase": made.bowl.drive.phase} if "drive.phase" in made.given else {}
+        bowl = replace(made.bowl, drive=replace(made.bowl.drive, **own | kept_phase))
         if made.has_stroke:
             yield bowl
             continue
@@ -310,11 +310,11 @@ def _angles(made: PlainBowl) -> tuple[float, ...]:
 
 def _two_axis_drives(made: PlainBowl, hops: bool) -> Iterator[Bowl]:
     """Every drive with two magnets, the simplest first."""
-    plain, given = made.bowl, made.given
+    plain, kept_keys = made.bowl, made.given
     for throw, row in itertools.product((CALM, *LIVELY) if hops else (CALM,), ELLIPTIC):
         own = dict(zip(("frequency", "vibration_angle", "phase"), row))
-        kept = {name: getattr(plain.drive, name) for name in own if f"drive.{name}" in given}
-        bowl = replace(plain, drive=replace(plain.drive, **own | kept))
+        kept_values = {name: getattr(plain.drive, name) for name in own if f"drive.{name}" in kept_keys}
+        bowl = replace(plain, drive=replace(plain.drive, **own | kept_values))
         yield bowl if made.has_stroke else _thrown(bowl, throw)
 
 
@@ -340,7 +340,7 @@ def with_amplitude(bowl: Bowl, amplitude: float) -> Bowl:
 def _slowed(bowl: Bowl, velocity: float) -> Bowl:
     """The bowl at the least amplitude that is as fast as that, down to the next lower throw number."""
     throw, high = float(throw_number(bowl)), bowl.drive.amplitude
-    lower = [one for one in THROW_NUMBERS if one < throw - CALMER_STEP]
+    lower = [number for number in THROW_NUMBERS if number < throw - CALMER_STEP]
     low = high * max(lower) / throw if lower and not is_two_axis(bowl.drive) else 0.0
     for _ in range(HALVINGS if low == 0.0 else HALVINGS // 2):
         middle = 0.5 * (low + high)
@@ -384,7 +384,7 @@ def speed(bowl: Bowl) -> float:
 @functools.lru_cache(maxsize=4096)
 def _speed(bowl: Bowl) -> float:
     try:
-        found = answer.answer(bowl).velocity
+        velocity = answer.answer(bowl).velocity
     except ConfigError:
         return 0.0
-    return max(float(found), 0.0) if np.isfinite(found) else 0.0
+    return max(float(velocity), 0.0) if np.isfinite(velocity) else 0.0

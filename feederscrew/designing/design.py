@@ -157,10 +157,11 @@ def design(
     kept_keys = frozenset(given) | {setting.key.name for setting in plain.settings if setting.is_own}
     kept_settings = built_bowl.settings_of(plain, kept_keys)
     if isinstance(part, (list, tuple)) and part:
-        parts = [arguments.a_part(one) for one in part]
+        parts = [arguments.a_part(given_part) for given_part in part]
         family = families.family(parts, plain, kept_keys, request, told=progress)
         members = (
-            built_bowl.with_machine(one, built_bowl.built(one, kept_settings)) for one in family.members
+            built_bowl.with_machine(member, built_bowl.built(member, kept_settings))
+            for member in family.members
         )
         return replace(family, members=tuple(members))
     shared = the_shares(known)

@@ -164,8 +164,8 @@ class Search:
         """
         lost = {cut.device.kind for cut in proposal.cuts if not cut.device.hangs}
         kinds = sorted(kind for kind in lost if proposals.lost_at(tried, kind))
-        known = self.avoided.get(place, ())
-        self.avoided[place] = tuple(dict.fromkeys((*known, *kinds)))
+        avoided = self.avoided.get(place, ())
+        self.avoided[place] = tuple(dict.fromkeys((*avoided, *kinds)))
 
     def note_lost(
         self, place: tuple[float, int], proposal: proposals.Proposal, tried: short_trials.Tried
@@ -186,7 +186,7 @@ class Search:
     @property
     def best_rate(self) -> float:
         """The most that a clean attempt would deliver [1/s]."""
-        return max((one.attempt.rate for one in self.passed), default=0.0)
+        return max((candidate.attempt.rate for candidate in self.passed), default=0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -267,7 +267,7 @@ class Clock:
         if stage in self.spent:
             seconds, number = self.spent[stage]
             return seconds / number
-        seconds = sum(one for one, _ in self.spent.values())
+        seconds = sum(duration for duration, _ in self.spent.values())
         usual = sum(number * USUAL_S[name] for name, (_, number) in self.spent.items())
         slower = (seconds + USUAL_SLOWNESS_S) / (
             usual + USUAL_SLOWNESS_S
@@ -433,9 +433,9 @@ def _bound(search, idea):
     rate = min(_promise(search, idea.track, idea.row, idea.way) / enough, 1.0)
     flat = idea.track.made.bowl.track.bank <= HANGS_BELOW
     rank = idea.track.rank if idea.way.outcome == "lying" else 1.0 if flat else BANK_RANK**2
-    ways = (TURNED if idea.way.turns else 1.0) * (HOLED if idea.way.holes else 1.0)
+    simplicity = (TURNED if idea.way.turns else 1.0) * (HOLED if idea.way.holes else 1.0)
     share = _share(search, idea.track, idea.row) ** OFTENER
-    return rate * rank * ways * share * _of_margin(idea.way.margin) * AGAIN**idea.again
+    return rate * rank * simplicity * share * _of_margin(idea.way.margin) * AGAIN**idea.again
 
 
 def _of_margin(margin):
@@ -447,8 +447,8 @@ def _score(search, idea):
     """How promising [1] a chain is: rate, purity, margin and number of devices, and what was lost before."""
     proposal = idea.proposal
     lost = set(search.avoided.get(_place(idea.track, idea.row), ()))
-    known = LOST_BEFORE if lost & {cut.device.kind for cut in proposal.cuts} else 1.0
-    return _bound(search, idea) * proposal.purity * EACH_DEVICE ** len(proposal.cuts) * known
+    loss = LOST_BEFORE if lost & {cut.device.kind for cut in proposal.cuts} else 1.0
+    return _bound(search, idea) * proposal.purity * EACH_DEVICE ** len(proposal.cuts) * loss
 
 
 def _place(track, row) -> tuple[Any, ...]:
@@ -471,7 +471,7 @@ def chain_key(track, proposal, lying) -> tuple[Any, ...]:
         The order of what a sensor lets pass makes no difference.
     """
     wanted = "hanging" if proposal.hangs else lying[proposal.row].name
-    return track, wanted, tuple((one.kind, one.canonical_text) for one in proposal.devices)
+    return track, wanted, tuple((device.kind, device.canonical_text) for device in proposal.devices)
 
 
 def _tried_before(search, track, proposal):
@@ -484,7 +484,7 @@ def _is_alike(key, other) -> bool:
     """Whether two chains for the same track and orientation differ by little in each of their numbers."""
     if key[:2] != other[:2] or len(key[2]) != len(other[2]):
         return False
-    texts, others = (" ".join(" ".join(device) for device in one[2]) for one in (key, other))
+    texts, others = (" ".join(" ".join(device) for device in chain[2]) for chain in (key, other))
     if NUMBER.sub("#", texts) != NUMBER.sub("#", others):
         return False
     pairs = zip(NUMBER.findall(texts), NUMBER.findall(others), strict=True)
@@ -515,18 +515,18 @@ def _promise(search, track, row, way):
 
 def _share(search, track, row) -> float:
     """Share [1] in which an orientation comes, with those that count as it."""
-    alike = proposals.alike(track.ways.lying, row, search.request.up)
-    return float(track.weights[[row, *alike]].sum())
+    equivalent = proposals.alike(track.ways.lying, row, search.request.up)
+    return float(track.weights[[row, *equivalent]].sum())
 
 
 def _proposed(search, track, row, way):
     """A chain for one orientation at the drive that its share asks for; None where there is none."""
     gain = _share(search, track, row)
-    found = _at(search, track, row, way, gain)
-    more = 0.0 if found is None else _gain(search, track, found)
+    proposal = _at(search, track, row, way, gain)
+    more = 0.0 if proposal is None else _gain(search, track, proposal)
     if more > SLOWER * gain:
-        return _at(search, track, row, way, more) or found
-    return found
+        return _at(search, track, row, way, more) or proposal
+    return proposal
 
 
 def _at(search, track, row, way, gain):
@@ -586,7 +586,9 @@ def at_its_drive(search, candidate) -> tuple[Any, ...]:
         return search.known, candidate
     known, bowl = arriving(search, candidate.bowl), candidate.bowl
     ways = arrivals.oriented(proposals.known_through(search.part, known.aspects, bowl), known.measured)
-    if [one.name for one in ways.lying] != [one.name for one in candidate.ways.lying]:
+    if [orientation.name for orientation in ways.lying] != [
+        orientation.name for orientation in candidate.ways.lying
+    ]:
         return search.known, candidate  # the same orientations, or its rows are others
     weights = np.nan_to_num(ways.rules[search.request.rule])
     return known, replace(candidate, ways=ways, weights=weights / weights.sum())
@@ -801,7 +803,7 @@ def attempted(search, made, proposal, weights, driven=None) -> Candidate:
 
 def _drawable(search, made, proposal):
     """The bowl, its track as steep as a spacing section that leads down needs it: else it has no solid."""
-    if "track.climb" in search.given or not any(one.leans for one in proposal.devices):
+    if "track.climb" in search.given or not any(device.leans for device in proposal.devices):
         return made
     bowl = replace(made.bowl, devices=proposal.devices)
     ways = proposals.known_through(search.part, search.known.aspects, bowl)
@@ -850,10 +852,12 @@ def _short(search, bowl, ways, weights, proposal):
     right = set(short_trials.wanted_rows(ways, proposal.states(ways)))
     first = [k for k in rows if k in right] or [proposal.row]
     tried = short_trials.single(search.part, bowl, ways, weights, proposal.rows, rows=first, each=EACH, **own)
-    others = [k for k in rows if k not in first]
-    if not tried.efficiency > 0.0 or not others:
+    rows_besides = [k for k in rows if k not in first]
+    if not tried.efficiency > 0.0 or not rows_besides:
         return tried
-    each = EACH if len(others) <= short_trials.FEW else 1
+    each = EACH if len(rows_besides) <= short_trials.FEW else 1
     return tried.joined(
-        short_trials.single(search.part, bowl, ways, weights, proposal.rows, rows=others, each=each, **own)
+        short_trials.single(
+            search.part, bowl, ways, weights, proposal.rows, rows=rows_besides, each=each, **own
+        )
     )

@@ -29,23 +29,25 @@ class FamilyStudy(ReadableRecord):
         """The worst word of its parts: holds where each does; not proved where the user stopped it."""
         if self.partial:
             return NOT_PROVED
-        words = {one.status for one in self.members}
+        words = {member.status for member in self.members}
         return next(word for word in (NONE, FALLS_SHORT, HOLDS) if word in words)
 
     @property
     def shared(self) -> bool:
         """Whether all run on one track through one chain: only drive and sensors are set anew."""
-        return all(one.bowl is not None and iron(one) == iron(self.members[0]) for one in self.members)
+        return all(
+            member.bowl is not None and iron(member) == iron(self.members[0]) for member in self.members
+        )
 
     @property
     def partial(self):
         """Whether the user stopped it."""
-        return self.stopped or any(one.partial for one in self.members)
+        return self.stopped or any(member.partial for member in self.members)
 
 
 def iron(study) -> tuple[Any, ...]:
     """Return what of a design is steel: its track, and its devices but what a sensor is shown."""
-    devices = tuple((one.kind, one.sees if one.senses else one.text) for one in study.devices)
+    devices = tuple((device.kind, device.sees if device.senses else device.text) for device in study.devices)
     track = study.bowl.track
     return (track.radius, track.width, track.bank, track.climb), devices
 
@@ -93,21 +95,21 @@ def family(parts, plain, given, request, *, told=None, before=None, progress=Non
     named_apart(parts)
     told = told or (lambda text: None)
     plain, given, first = _common(parts, plain, frozenset(given), request)
-    found: dict[int, DesignStudy] = {}
+    designs: dict[int, DesignStudy] = {}
     try:
         for k in (first, *(k for k in range(len(parts)) if k != first)):
             told(f"{parts[k].name}:")
-            lead = found.get(first)
+            lead = designs.get(first)
             own = {"told": told, "before": before, "progress": progress}
-            found[k] = _member(parts[k], lead, plain, given, request, own)
-            if found[k].partial:
-                return FamilyStudy(tuple(found[n] for n in sorted(found)))
-        members = tuple(found[k] for k in range(len(parts)))
+            designs[k] = _member(parts[k], lead, plain, given, request, own)
+            if designs[k].partial:
+                return FamilyStudy(tuple(designs[n] for n in sorted(designs)))
+        members = tuple(designs[k] for k in range(len(parts)))
         return FamilyStudy(_of_one_chain(members, request, given, told, before))
     except KeyboardInterrupt:
-        if not found:
+        if not designs:
             raise
-        return FamilyStudy(tuple(found[n] for n in sorted(found)), stopped=True)
+        return FamilyStudy(tuple(designs[n] for n in sorted(designs)), stopped=True)
 
 
 def _common(parts, plain, given, request) -> tuple[Any, ...]:
@@ -117,7 +119,7 @@ def _common(parts, plain, given, request) -> tuple[Any, ...]:
         for part in parts
     ]
     widths = [track.width for track in tracks]
-    track = replace(plain.track, radius=max(one.radius for one in tracks), width=max(widths))
+    track = replace(plain.track, radius=max(sized.radius for sized in tracks), width=max(widths))
     return replace(plain, track=track), given | {"track.radius", "track.width"}, widths.index(max(widths))
 
 
@@ -128,25 +130,25 @@ def _member(part, lead, plain, given, request, own):
     """
     if lead is None or lead.status != HOLDS:
         return loop.design(part, plain, given, request, **own)
-    used = {one.kind for one in lead.devices}
+    used = {device.kind for device in lead.devices}
     less = replace(request, without=(*request.without, *(name for name in PROPOSED if name not in used)))
     tracked = replace(plain, track=lead.bowl.track)
-    found = loop.design(part, tracked, given | set(TRACK), less, **own, with_nearest=False)
-    if found.status == HOLDS or found.partial:
-        return replace(found, request=request)
+    design = loop.design(part, tracked, given | set(TRACK), less, **own, with_nearest=False)
+    if design.status == HOLDS or design.partial:
+        return replace(design, request=request)
     other = loop.design(part, plain, given, request, **own)
-    return replace(max((found, other), key=merit), partial=other.partial)
+    return replace(max((design, other), key=merit), partial=other.partial)
 
 
 def _of_one_chain(members, request, given, told, before):
     """The members with values that suit all, where there are such and each holds with them."""
-    kinds = {tuple(one.kind for one in member.devices) for member in members}
+    kinds = {tuple(device.kind for device in member.devices) for member in members}
     if len(kinds) > 1 or any(member.status != HOLDS for member in members):
         return members
     limits = common_limits([member.cuts for member in members])
     if limits is None:
         return members
-    made = []
+    changed_members = []
     for member in members:
         cuts = tuple(_at(cut, limit, member) for cut, limit in zip(member.cuts, limits, strict=True))
         if [cut.device.text for cut in cuts] != [cut.device.text for cut in member.cuts]:
@@ -156,8 +158,8 @@ def _of_one_chain(members, request, given, told, before):
             raise KeyboardInterrupt
         if member is None or member.status != HOLDS:
             return members
-        made.append(member)
-    return tuple(made)
+        changed_members.append(member)
+    return tuple(changed_members)
 
 
 def common_limits(chains):
@@ -174,20 +176,22 @@ def common_limits(chains):
         A value each, None of what has no number; that of one of the chains where all admit it, else the
         middle of what they admit. None where some device has no such value.
     """
-    found: list[float | None] = []
+    limits: list[float | None] = []
     for cuts in zip(*chains, strict=True):
         own = [cut.device for cut in cuts]
         if own[0].senses or not own[0].bound:
-            if not own[0].senses and len({one.text for one in own}) > 1:
+            if not own[0].senses and len({device.text for device in own}) > 1:
                 return None
-            found.append(None)
+            limits.append(None)
             continue
         ends = [sorted((cut.smallest.limit, cut.largest.limit)) for cut in cuts]
         low, high = max(end[0] for end in ends), min(end[1] for end in ends)
         if low > high:
             return None
-        found.append(next((one.limit for one in own if low <= one.limit <= high), 0.5 * (low + high)))
-    return found
+        limits.append(
+            next((device.limit for device in own if low <= device.limit <= high), 0.5 * (low + high))
+        )
+    return limits
 
 
 def _at(cut, limit, member):

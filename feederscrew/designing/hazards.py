@@ -99,10 +99,10 @@ def _rise(one: Orientation, sign: float, lift: float) -> tuple[float, float]:
     whole, none = np.ones(count), np.zeros(count)
     rows = [np.append(whole, none), np.append(none, whole), np.append(y, -y), np.append(-z, z)]
     right = [1.0, 1.0, 0.0, sign * lift]  # shares of q, of p; beside each other; p_z - q_z
-    found = linprog(np.append(-x, x), A_eq=rows, b_eq=right, method="highs")
-    if found.status == CLEARS:
+    solution = linprog(np.append(-x, x), A_eq=rows, b_eq=right, method="highs")
+    if solution.status == CLEARS:
         return 0.0, 0.5 * float(np.ptp(x))
-    return math.atan2(1.0, sign * found.eqlin.marginals[3]), -float(found.fun)
+    return math.atan2(1.0, sign * solution.eqlin.marginals[3]), -float(solution.fun)
 
 
 def risks(
@@ -132,15 +132,15 @@ def risks(
     tuple of Risk
     """
     part = one.posture.solid
-    found = [*_shingling(one, bowl.friction.kinetic), *_climbing(queues)]
+    listed = [*_shingling(one, bowl.friction.kinetic), *_climbing(queues)]
     if part is not None:
-        found += [*_nesting(part, bowl), *_tangling(part, bowl, seed)]
-    return (*found, *_wedging(every or (one,), bowl))
+        listed += [*_nesting(part, bowl), *_tangling(part, bowl, seed)]
+    return (*listed, *_wedging(every or (one,), bowl))
 
 
 def _shingling(one: Orientation, friction: float) -> Iterator[Risk]:
     held = math.atan(friction)
-    angle, apart, sign = min((*_rise(one, sign, LIFT), sign) for sign in (1.0, -1.0))
+    angle, distance, sign = min((*_rise(one, sign, LIFT), sign) for sign in (1.0, -1.0))
     higher = f"where one lies {1e3 * LIFT:.3g} mm higher than the next it"
     if angle >= held:
         return
@@ -151,57 +151,57 @@ def _shingling(one: Orientation, friction: float) -> Iterator[Risk]:
             f"{one.name} may shingle: {higher} is pushed up a side of {math.degrees(angle):.3g} deg, and "
             f"friction holds it up to {math.degrees(held):.3g} deg"
         )
-    before = vectors.product(np.array([apart, 0.0, -sign * LIFT]), one.axes)
+    before = vectors.product(np.array([distance, 0.0, -sign * LIFT]), one.axes)
     yield Risk(SHINGLES, text, Pair(one.axes, np.eye(3), check.frozen(before)))
 
 
 def _climbing(queues: Sequence[QueueSeen]) -> Iterator[Risk]:
-    climbs = sum(seen.climbs for seen in queues)
+    climbs = sum(queue.climbs for queue in queues)
     if climbs:
-        seconds = sum(seen.seconds for seen in queues)
+        seconds = sum(queue.seconds for queue in queues)
         yield Risk(CLIMBS, f"parts climbed on others {counted(climbs, 'time')} in {seconds:.3g} s of queue")
 
 
 def _nesting(part: Part, bowl: Bowl) -> Iterator[Risk]:
-    found = stack(part, bowl.friction.static)
-    if found is not None:
-        held, side = math.degrees(math.atan(bowl.friction.static)), math.degrees(found.side)
+    nested = stack(part, bowl.friction.static)
+    if nested is not None:
+        held, side = math.degrees(math.atan(bowl.friction.static)), math.degrees(nested.side)
         text = (
-            f"parts may nest: one goes {in_mm(found.depth)} of {in_mm(found.height)} into the "
+            f"parts may nest: one goes {in_mm(nested.depth)} of {in_mm(nested.height)} into the "
             f"next; its sides are {side:.3g} deg off that way, and friction holds it up to {held:.3g} deg"
         )
-        yield Risk(NESTS, text, Pair(np.eye(3), np.eye(3), found.place))
+        yield Risk(NESTS, text, Pair(np.eye(3), np.eye(3), nested.place))
 
 
 def _tangling(part: Part, bowl: Bowl, seed: int) -> Iterator[Risk]:
-    found = tangle(part, (bowl.friction.static, bowl.friction.kinetic), seed)
-    if found is None:
+    tangled = tangle(part, (bowl.friction.static, bowl.friction.kinetic), seed)
+    if tangled is None:
         return
-    pulls = f"{found.held} of {found.pulls} pulls do not part two of them"
-    pair = Pair(np.eye(3), found.turn, found.place)
-    if np.isfinite(found.opening):
+    pulls = f"{tangled.held} of {tangled.pulls} pulls do not part two of them"
+    pair = Pair(np.eye(3), tangled.turn, tangled.place)
+    if np.isfinite(tangled.opening):
         text = (
-            f"parts may hook into each other: {pulls}; {in_mm(found.section)} of them come through a "
-            f"mouth of {in_mm(found.opening)}"
+            f"parts may hook into each other: {pulls}; {in_mm(tangled.section)} of them come through a "
+            f"mouth of {in_mm(tangled.opening)}"
         )
         yield Risk(HOOKS, text, pair)
     else:
         yield Risk(HOOKS, f"parts may catch in each other: {pulls}", pair)
 
 
-def _wedging(every: Sequence[Orientation], bowl: Bowl) -> Iterator[Risk]:
+def _wedging(orientations: Sequence[Orientation], bowl: Bowl) -> Iterator[Risk]:
     """Those that come between the wall and what stands at the free edge, such as the chute's other wall."""
     wall, width = bowl.friction.wall, bowl.track.width
-    for one in every:
-        between = walls_between(one, wall)
+    for orientation in orientations:
+        between = walls_between(orientation, wall)
         if between is None or not between[0] < width < between[1]:
             continue
         text = (
-            f"{one.name} may wedge across a chute as wide as the track, {in_mm(width)}: friction holds "
-            f"it between walls {in_mm(between[0])} to {in_mm(between[1])} apart"
+            f"{orientation.name} may wedge across a chute as wide as the track, {in_mm(width)}: friction "
+            f"holds it between walls {in_mm(between[0])} to {in_mm(between[1])} apart"
         )
-        c, s = math.cos(strut(one, width)), math.sin(strut(one, width))
-        x, y, z = one.axes
+        c, s = math.cos(strut(orientation, width)), math.sin(strut(orientation, width))
+        x, y, z = orientation.axes
         yield Risk(WEDGES, text, Pair(np.array([c * x - s * y, s * x + c * y, z]), walls=width))
         return
 
@@ -241,8 +241,8 @@ def walls_between(one: Orientation, friction: float) -> tuple[float, float] | No
 
 def _longest(corners: np.ndarray) -> float:
     """The greatest distance of two corners (J, 2)."""
-    apart = corners[:, None] - corners[None]
-    return float(np.sqrt((apart**2).sum(axis=-1)).max())
+    differences = corners[:, None] - corners[None]
+    return float(np.sqrt((differences**2).sum(axis=-1)).max())
 
 
 def strut(one: Orientation, width: float) -> float:
@@ -301,22 +301,24 @@ def stack(part: Part, friction: float) -> Stack | None:
         Of all directions the one in which it goes in deepest.
     """
     solid, length, principal = solid_of(part)
-    found = []
-    for way in WAYS[len(WAYS) // 2 :]:
-        axes = _upright(way)
+    stacks = []
+    for direction in WAYS[len(WAYS) // 2 :]:
+        axes = _upright(direction)
         corners = vectors.product(solid.vertices, axes.T)
         chord, low, high = chords(corners, solid.triangles, LINES)
         whole = float(np.ptp(corners[:, 2]))
         touching = chord > (1.0 - NEAR) * chord.max()
         sides = [vectors.product(solid.normals[own[touching]], axes.T) for own in (low, high)]
-        steep = [np.arctan2(np.abs(one[:, 2]), np.hypot(one[:, 0], one[:, 1])) for one in sides]
+        steep = [
+            np.arctan2(np.abs(normals[:, 2]), np.hypot(normals[:, 0], normals[:, 1])) for normals in sides
+        ]
         side = float(np.median(np.maximum(*steep)))
         lean = np.hypot(*sides[1][:, :2].mean(axis=0))  # 0 where they touch all round
         deep = 1.0 - float(chord.max()) / whole
         if deep > NESTED and side < np.arctan(friction) and lean < ROUND:
-            place = length * float(chord.max()) * vectors.product(principal, way)
-            found.append(Stack(check.frozen(place), length * whole, side))
-    return min(found, key=lambda one: vectors.norm(one.place) / one.height, default=None)
+            place = length * float(chord.max()) * vectors.product(principal, direction)
+            stacks.append(Stack(check.frozen(place), length * whole, side))
+    return min(stacks, key=lambda nested: vectors.norm(nested.place) / nested.height, default=None)
 
 
 def _upright(way: np.ndarray) -> np.ndarray:
@@ -381,11 +383,13 @@ def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle |
     most = LOOSE if closed else 1.0
     pulled = Pulled(solid, grid, length, friction)
     tried = [pulled.tried(turn, place, most) for turn, place in poses(grid, np.random.default_rng(seed))]
-    found = [one for one in tried if one is not None and HELD <= one[3] / one[2] <= most]
+    holding = [
+        outcome for outcome in tried if outcome is not None and HELD <= outcome[3] / outcome[2] <= most
+    ]
     mouth = mouth if mouth >= section else np.nan
-    if not found:
+    if not holding:
         return None
-    turn, place, pulls, held = max(found, key=lambda one: one[3] / one[2])
+    turn, place, pulls, held = max(holding, key=lambda outcome: outcome[3] / outcome[2])
     turn = vectors.product(vectors.product(principal, turn), principal.T)
     place = length * vectors.product(principal, place)
     return Tangle(check.frozen(turn), check.frozen(place), pulls, held, length * mouth, length * section)
@@ -409,18 +413,18 @@ def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[np.ndarray, np.nd
     hollow = grid.middles(grid.hull & ~grid.solid & (grid.away > grid.size))
     if not len(hollow):
         return []
-    made = []
+    overlaps = []
     for _ in range(TRIES):
         turn = _turn(rng.standard_normal(4))
         q, p = own[rng.integers(len(own))], hollow[rng.integers(len(hollow))]
         place = p - vectors.product(turn, q)
         if (grid.away[grid.at(place + vectors.product(rim, turn.T))] <= 0.0).any():
             continue
-        back = vectors.product(own - place, turn)
-        deep = min(_within(grid, place + vectors.product(own, turn.T)), _within(grid, back))
+        moved_back = vectors.product(own - place, turn)
+        deep = min(_within(grid, place + vectors.product(own, turn.T)), _within(grid, moved_back))
         if deep > DEEP:
-            made.append((deep, turn, place))
-    return _apart(sorted(made, key=lambda one: -one[0]), float(vectors.length(rim).max()))
+            overlaps.append((deep, turn, place))
+    return _apart(sorted(overlaps, key=lambda one: -one[0]), float(vectors.length(rim).max()))
 
 
 def _within(grid: Cells, points: np.ndarray) -> float:
@@ -429,20 +433,20 @@ def _within(grid: Cells, points: np.ndarray) -> float:
 
 
 def _apart(
-    made: list[tuple[float, np.ndarray, np.ndarray]], radius: float
+    overlaps: list[tuple[float, np.ndarray, np.ndarray]], radius: float
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """The first of the poses of which none is like one before it."""
-    found: list[tuple[np.ndarray, np.ndarray]] = []
-    for _, turn, place in made:
+    distinct: list[tuple[np.ndarray, np.ndarray]] = []
+    for _, turn, place in overlaps:
         differs = (
             vectors.length(place - other) + radius * np.abs(turn - spun).max() > BESIDE * radius
-            for spun, other in found
+            for spun, other in distinct
         )
         if all(differs):
-            found.append((turn, place))
-        if len(found) == POSES:
+            distinct.append((turn, place))
+        if len(distinct) == POSES:
             break
-    return found
+    return distinct
 
 
 def _turn(numbers: np.ndarray) -> np.ndarray:
@@ -454,8 +458,8 @@ def _turn(numbers: np.ndarray) -> np.ndarray:
 def _section(grid: Cells) -> float:
     """Diameter [L] of the ball that fits into a part wherever it is, but for its edges and corners."""
     own, inside = np.argwhere(grid.solid), grid.inside[grid.solid]
-    beside = np.max([np.roll(grid.inside, step, axis) for axis in range(3) for step in (-1, 1)], axis=0)
-    ridge = np.flatnonzero(inside >= beside[grid.solid] - 0.5 * grid.size)
+    neighbours = np.max([np.roll(grid.inside, step, axis) for axis in range(3) for step in (-1, 1)], axis=0)
+    ridge = np.flatnonzero(inside >= neighbours[grid.solid] - 0.5 * grid.size)
     least = np.zeros(len(own))
     for k in ridge[np.argsort(inside[ridge], kind="stable")]:
         least[((own - own[k]) ** 2).sum(axis=1) * grid.size**2 < inside[k] ** 2] = inside[k]
@@ -506,13 +510,13 @@ class Pulled:
         It ends as soon as too few can hold, or of what is to hold in a share ``most`` [1], as too many do.
         """
         away = vectors.unit(place) if vectors.norm(place) > 0.0 else place
-        ways = [way for way in WAYS if vectors.dot(way, away) > -1e-9]
+        directions = [direction for direction in WAYS if vectors.dot(direction, away) > -1e-9]
         held = pulls = 0
-        for left, way in zip(range(len(ways))[::-1], ways):
-            parted = self.parted(turn, place, way)
+        for left, direction in zip(range(len(directions))[::-1], directions):
+            parted = self.parted(turn, place, direction)
             held += parted is False
             pulls += parted is not None
-            few = held + left < HELD * len(ways)
+            few = held + left < HELD * len(directions)
             if few or (most < 1.0 and held == pulls == SURE):
                 return None
         return turn, place, pulls, held
@@ -563,9 +567,9 @@ class Pulled:
 
 def _nowhere(track: Track, length: float) -> crowd.CrowdedTrack:
     """A track that is too far away to be met."""
-    made = staging.built([], track, length, (-length, length))
+    plates = staging.built([], track, length, (-length, length))
     stage = staging.Stage(
-        stations.BARE, *made, begin=-length, exit=np.inf, air=air.STILL, size=length, width=track.width
+        stations.BARE, *plates, begin=-length, exit=np.inf, air=air.STILL, size=length, width=track.width
     )
     none = np.zeros((0, 2))
     return crowd.CrowdedTrack(stage, -length, none, np.zeros(1), length)

@@ -144,10 +144,10 @@ def _nearest(search: Search, proofs: Proofs) -> tuple[NearestDesign | None, Desi
     """
     if any(study.status == HOLDS or study.partial for study, _ in proofs):
         return None, None
-    slow = [one for one in proofs if nearest.only_slow(one[0]) and not nearest.whole(one[0])]
+    slow = [proof for proof in proofs if nearest.only_slow(proof[0]) and not nearest.whole(proof[0])]
     if slow:  # its queue ended as soon as it was too slow
         study, candidate = max(slow, key=lambda one: merit(one[0]))
-        proofs[:] = [one for one in proofs if one[1] is not candidate]
+        proofs[:] = [proof for proof in proofs if proof[1] is not candidate]
         proofs.append((proved(search, candidate, whole=True, drawn=study.robust), candidate))
         if proofs[-1][0].partial:
             return None, None
@@ -178,7 +178,7 @@ def _cheapest(study: DesignStudy) -> tuple[float, tuple[bool, bool, float, float
 
 def _likeliest(search: Search) -> Candidate | None:
     """The best of the attempts that deliver anything: clean, then of fewer faults, then faster."""
-    order = [one for one in (*search.passed, *search.failed) if one.attempt.rate > 0.0]
+    order = [candidate for candidate in (*search.passed, *search.failed) if candidate.attempt.rate > 0.0]
     return max(
         order,
         key=lambda one: (one.attempt.clean, -len(one.attempt.faults), one.attempt.rate),
@@ -306,7 +306,7 @@ def _make_whole(search: Search, proofs: Proofs) -> None:
         if likeliest is None:
             return
         candidate = likeliest
-    proofs[:] = [one for one in proofs if one[1] is not candidate]
+    proofs[:] = [proof for proof in proofs if proof[1] is not candidate]
     proofs.append((proved(search, candidate, whole=True, drawn=drawn), candidate))
 
 
@@ -336,9 +336,9 @@ def proved(
         study = _in_queues(search, study, candidate, known, ride.entering, whole=whole)
     except KeyboardInterrupt:
         return replace(study, partial=True)
-    every = [ways.lying[k] for k in short_trials.often(candidate.weights)]
-    found = hazards.risks(ways.lying[row], bowl, study.queues, every=every, seed=search.request.seed)
-    return replace(study, risks=found)
+    frequent = [ways.lying[k] for k in short_trials.often(candidate.weights)]
+    named_risks = hazards.risks(ways.lying[row], bowl, study.queues, every=frequent, seed=search.request.seed)
+    return replace(study, risks=named_risks)
 
 
 def _at_the_tooling(search: Search, candidate: Candidate) -> tuple[LongRide, Candidate]:
@@ -389,7 +389,7 @@ def _in_queues(
 
 
 def _queued(study: DesignStudy, found: tuple[FilledQueue, ...]) -> DesignStudy:
-    return replace(study, queues=found, partial=any(one.partial for one in found))
+    return replace(study, queues=found, partial=any(queue.partial for queue in found))
 
 
 def _unproved(search: Search, candidate: Candidate, known: Shares) -> DesignStudy:
@@ -445,7 +445,7 @@ def tooled(
     """
     if not proposal.cuts:
         return None
-    given = static.design_task(
+    task = static.design_task(
         ways.lying,
         weights,
         proposal.row,
@@ -455,8 +455,8 @@ def tooled(
         constraints=DesignConstraints(up=request.up),
     )
     same = np.isin(ways.leaves_as, proposal.states(ways))
-    found = static.propose(given, proposal.cuts, ways.through < 0.5, same)
-    designs = tuple(found if k == proposal.row else None for k in range(len(weights)))
+    static_design = static.propose(task, proposal.cuts, ways.through < 0.5, same)
+    designs = tuple(static_design if k == proposal.row else None for k in range(len(weights)))
     return ToolingStudy(
         part, bowl, aspects, request.rule, margin, ways.lying, weights, designs, proposal.row, request.up
     )
@@ -464,8 +464,8 @@ def tooled(
 
 def _counting(name: str, request: DesignRequest) -> str:
     """The name of what leaves, with the aspects that count as it."""
-    others = [one for one in request.up if one.casefold() != name.partition("@")[0].casefold()]
-    return " or ".join((name, *others))
+    names = [aspect for aspect in request.up if aspect.casefold() != name.partition("@")[0].casefold()]
+    return " or ".join((name, *names))
 
 
 def _static(search: Search, candidate: Candidate) -> float:
@@ -505,8 +505,10 @@ def alternatives(
     best_of: list[Alternative] = []
     holds = any(study.status == HOLDS for study in studies)
     for number in COST_CLASSES:
-        own = [one for one in studies if one.bowl is not None and cost_class_of(one.devices) == number]
-        tried = [one for one in attempts if one.cost_class == number]
+        own = [
+            study for study in studies if study.bowl is not None and cost_class_of(study.devices) == number
+        ]
+        tried = [attempt for attempt in attempts if attempt.cost_class == number]
         if own:
             best_of.append(of_study(max(own, key=merit)))
         elif tried:
@@ -526,16 +528,16 @@ def alternatives(
 def of_study(study: DesignStudy) -> Alternative:
     """Return a design as the alternative of its cost class."""
     purity, share = study.purity[0], study.efficiency
-    shown = bool(study.queues) and not study.partial  # what was stopped is no evidence
-    sensors: list[Any] = [one for one in study.devices if one.senses]
+    counts = bool(study.queues) and not study.partial  # what was stopped is no evidence
+    sensors: list[Any] = [device for device in study.devices if device.senses]
     return Alternative(
         cost_class=cost_class_of(study.devices),
         status=study.status,
-        delivered=study.delivered if shown else None,
-        purity=None if np.isnan(purity) or not shown else purity,
-        efficiency=None if np.isnan(share) or not shown else share,
-        chain=tuple(f"{one.kind}: {one.text}" for one in study.devices),
-        chain_words=tuple(f"{one.full_name}: {one.value_words}" for one in study.devices),
-        sees=tuple(one.sees for one in sensors),
+        delivered=study.delivered if counts else None,
+        purity=None if np.isnan(purity) or not counts else purity,
+        efficiency=None if np.isnan(share) or not counts else share,
+        chain=tuple(f"{device.kind}: {device.text}" for device in study.devices),
+        chain_words=tuple(f"{device.full_name}: {device.value_words}" for device in study.devices),
+        sees=tuple(device.sees for device in sensors),
         why="; ".join(study.shortfalls) if study.status != HOLDS else "",
     )

@@ -75,18 +75,22 @@ def ways_of(cost_class, request):
     own = [name for name in names(cost_class=cost_class, proposed=True) if name not in left_out]
     if not own:
         return []
-    outcomes = [one for one in ("hanging", "lying") if request.outcome in ("any", one)]
+    outcomes = [outcome for outcome in ("hanging", "lying") if request.outcome in ("any", outcome)]
     kinds = [(*left_out, *HOLES), *([(*left_out, *MET, *HOLES)] if cost_class == SENSED else [])]
-    found = [
+    proposal_ways = [
         ProposalWay(cost_class, margin, outcome, some)
         for margin in MARGINS for outcome in outcomes for some in kinds
     ]  # fmt: skip
     if "lying" in outcomes:
-        lying = [way for way in found if way.outcome == "lying" and way.without == kinds[0]]
-        found += [replace(way, turns=True) for way in lying]
+        lying = [
+            proposal_way
+            for proposal_way in proposal_ways
+            if proposal_way.outcome == "lying" and proposal_way.without == kinds[0]
+        ]
+        proposal_ways += [replace(proposal_way, turns=True) for proposal_way in lying]
     if "lying" in outcomes and cost_class == COST_CLASSES[0]:
-        found.append(ProposalWay(cost_class, MARGINS[-1], "lying", left_out))
-    return found
+        proposal_ways.append(ProposalWay(cost_class, MARGINS[-1], "lying", left_out))
+    return proposal_ways
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,18 +134,20 @@ class Proposal:
     @property
     def chain(self) -> tuple[Any, ...]:
         """The devices as a bowl file has them."""
-        return tuple(f"{one.kind}: {one.text}" for one in self.devices)
+        return tuple(f"{device.kind}: {device.text}" for device in self.devices)
 
     @property
     def told(self):
         """The devices in a sentence, headings in whole degrees."""
-        return ", ".join(f"{one.kind}: {one.short}" for one in self.devices) or "no device"
+        return ", ".join(f"{device.kind}: {device.short}" for device in self.devices) or "no device"
 
 
 def alike(lying, row, up) -> tuple[Any, ...]:
     """Return the rows beside a wanted one that count as it: those of aspects that may be up too."""
     names = _folded(up)
-    return tuple(k for k, one in enumerate(lying) if k != row and one.aspect.casefold() in names)
+    return tuple(
+        k for k, orientation in enumerate(lying) if k != row and orientation.aspect.casefold() in names
+    )
 
 
 def free_headings(lying, row, request):
@@ -160,8 +166,10 @@ def promising(known, shares, request):
     rows = [k for k in short_trials.often(shares) if not known.lying[k].returned]
     names = {request.aspect.strip()} if request.aspect is not None else set(request.up)
     if names:
-        asked = [k for k, one in enumerate(known.lying) if one.aspect.casefold() in _folded(names)]
-        rows = [k for k in rows if k in asked] or (asked if request.aspect is not None else [])
+        requested = [
+            k for k, orientation in enumerate(known.lying) if orientation.aspect.casefold() in _folded(names)
+        ]
+        rows = [k for k in rows if k in requested] or (requested if request.aspect is not None else [])
     if request.heading is None or request.aspect is None:
         return rows
     rows_of(known.aspects, request.aspect, known.lying[0].posture.solid.source)
@@ -176,9 +184,9 @@ def bare(known, shares, request, devices):
     leaving = (shares[:, None] * known.leaving).sum(axis=0)
     best = max(rows, key=lambda k: leaving[known.leaves_as[k]])
     same, free = alike(known.lying, best, request.up), free_headings(known.lying, best, request)
-    made = Proposal(best, (), tuple(devices), "no device", same, free)
-    pure = short_trials.gain(known, shares, made.states(known)) / max(leaving.sum(), 1e-300)
-    return made if pure >= ENOUGH else None
+    proposal = Proposal(best, (), tuple(devices), "no device", same, free)
+    pure = short_trials.gain(known, shares, proposal.states(known)) / max(leaving.sum(), 1e-300)
+    return proposal if pure >= ENOUGH else None
 
 
 def proposed(part, bowl, aspects, row, known, request, way):
@@ -200,26 +208,31 @@ def proposed(part, bowl, aspects, row, known, request, way):
     Proposal or None
         What would stand at a device is returned before it by a drop.
     """
-    one = known.lying[row]
+    orientation = known.lying[row]
     without = tuple(dict.fromkeys((*request.without, *way.without, *ON_THE_TRACK)))
-    found = tooling(
-        part, bowl, one.aspect, heading=one.heading, rule=request.rule, margin=way.margin, known=aspects,
+    static_design = tooling(
+        part, bowl, orientation.aspect, heading=orientation.heading, rule=request.rule, margin=way.margin,
+        known=aspects,
         seed=request.seed, verdicts=VERDICTS, outcome=way.outcome, without=without, turn=way.turns,
         air=way.cost_class > COST_CLASSES[0],
         purity=ENOUGH, up=request.up, play=0.0, tolerance=0.0, vary=False,  # draws and the loop have them
     ).design  # fmt: skip
-    if found is None or not found.efficiency > 0.0 or not (found.cuts or found.before):
+    if (
+        static_design is None
+        or not static_design.efficiency > 0.0
+        or not (static_design.cuts or static_design.before)
+    ):
         return None
-    cuts = tuple(quickened(rounded(cut, known.lying, row), known.lying) for cut in found.cuts)
+    cuts = tuple(quickened(rounded(cut, known.lying, row), known.lying) for cut in static_design.cuts)
     step = f"proposed with margins of {in_mm(way.margin)}"
     same, free = alike(known.lying, row, request.up), free_headings(known.lying, row, request)
-    hopeful = found.hopeful or 0.0
-    pure = 0.5 * (float(np.nan_to_num(found.purity)) + hopeful)
-    made = Proposal(row, cuts, tuple(found.before), step, same, free, pure, found.margin)
-    if found.isolated:
-        return made
-    through = known_through(part, aspects, replace(bowl, devices=made.devices))
-    return _guarded_stops(made, through, request.rule) if hopeful >= ENOUGH else None
+    hopeful = static_design.hopeful or 0.0
+    pure = 0.5 * (float(np.nan_to_num(static_design.purity)) + hopeful)
+    proposal = Proposal(row, cuts, tuple(static_design.before), step, same, free, pure, static_design.margin)
+    if static_design.isolated:
+        return proposal
+    through = known_through(part, aspects, replace(bowl, devices=proposal.devices))
+    return _guarded_stops(proposal, through, request.rule) if hopeful >= ENOUGH else None
 
 
 def _guarded_stops(proposal, through, rule):
@@ -242,7 +255,7 @@ def moved(cut, limit, every, row):
     """Return a cut of one number at another value, with its margins there."""
     limit = float(np.round(limit / VALUE_STEP_M) * VALUE_STEP_M)
     device = cut.device.valued(limit)
-    must = np.array([one.name in cut.returns for one in every])
+    must = np.array([orientation.name in cut.returns for orientation in every])
     return judge_cut(every, row, device, must, cut.smallest, cut.largest)
 
 
@@ -288,12 +301,14 @@ def swept(proposal, tried, every):
             continue
         used = proposal.sweeps or (round(np.degrees(device.sweep)),)
         grip = every[proposal.row].grip
-        ways = [replace(device, sweep=np.radians(one)).rewritten() for one in SWEEPS if one not in used]
-        other = next((one for one in ways if one.clear_of(grip)), None)
+        blades = [
+            replace(device, sweep=np.radians(angle)).rewritten() for angle in SWEEPS if angle not in used
+        ]
+        other = next((blade for blade in blades if blade.clear_of(grip)), None)
         if other is None:
             continue
-        must = np.array([one.name in cut.returns for one in every])
-        ends = [replace(one, sweep=other.sweep).rewritten() for one in (cut.smallest, cut.largest)]
+        must = np.array([orientation.name in cut.returns for orientation in every])
+        ends = [replace(end, sweep=other.sweep).rewritten() for end in (cut.smallest, cut.largest)]
         cuts = (
             *proposal.cuts[:place],
             judge_cut(every, proposal.row, other, must, *ends),
@@ -347,7 +362,7 @@ def cut_more(proposal, tried, drawn, every):
             cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
             return replace(proposal, cuts=cuts, step=f"{cut.device.kind} moved to {other.device.text}")
     wanted = short_trials.wanted_rows(tried.known, tried.states)
-    rows = [k for k, one in enumerate(every) if one.name == name and k not in wanted]
+    rows = [k for k, orientation in enumerate(every) if orientation.name == name and k not in wanted]
     return dropped_before(proposal, rows, wanted, every)
 
 
@@ -382,16 +397,16 @@ def relieved(candidate):
     Proposal or None
         None where it has one, or a wanted orientation does not reach over any.
     """
-    proposal, every = candidate.proposal, candidate.ways.lying
+    proposal, lying = candidate.proposal, candidate.ways.lying
     if any(device.relieves for device in proposal.devices):
         return None
-    wanted = [every[k] for k in short_trials.wanted_rows(candidate.ways, candidate.tried.states)]
+    wanted = [lying[k] for k in short_trials.wanted_rows(candidate.ways, candidate.tried.states)]
     makers = [KINDS[kind] for kind in names(relieves=True)]
-    found = [kind.relieving(wanted, MARGINS[-1], DESIGN_KEY) for kind in makers] if wanted else []
-    device = next((one for one in found if one is not None), None)
+    breaks = [kind.relieving(wanted, MARGINS[-1], DESIGN_KEY) for kind in makers] if wanted else []
+    device = next((device for device in breaks if device is not None), None)
     if device is None:
         return None
-    cut = judge_cut(every, proposal.row, device, np.zeros(len(every), bool), device, device)
+    cut = judge_cut(lying, proposal.row, device, np.zeros(len(lying), bool), device, device)
     step = f"{device.name} of {device.text} before it, for what backs up"
     return replace(proposal, cuts=(cut, *proposal.cuts), step=step)
 
@@ -438,7 +453,7 @@ def dropped_before(proposal, others, wanted, every):
     limit = float(np.round(middle / VALUE_STEP_M) * VALUE_STEP_M)
     device = kind.proposal(DESIGN_KEY, limit).rewritten()
     must = np.array([k in listed for k in range(len(every))])
-    ends = [device.valued(limit + way) for way in (-0.5 * room, 0.5 * room)]
+    ends = [device.valued(limit + half) for half in (-0.5 * room, 0.5 * room)]
     cut = judge_cut(every, proposal.row, device, must, *ends)
     return replace(proposal, cuts=(cut, *proposal.cuts), step=f"{kind.kind} of {device.text} before it")
 
@@ -476,11 +491,16 @@ def quickened(cut: Cut, every: Sequence[Orientation]) -> Cut:
     device: Any = cut.device  # a sorter, where it senses
     if not device.senses:
         return cut
-    gone = [DeviceEncounter(one, every) for one in every if one.name in cut.returns]
-    pushes = [device.jet.push(met.orientation, every) for met in gone]
+    encounters = [
+        DeviceEncounter(orientation, every) for orientation in every if orientation.name in cut.returns
+    ]
+    pushes = [device.jet.push(encounter.orientation, every) for encounter in encounters]
     for steps in range(SHORTEST_PULSE_STEPS, round(device.time / PULSE_STEP_S)):
         time = steps * PULSE_STEP_S
-        if all(met.blown(out, down, time / PULSE_RESERVE) > 0.0 for met, (out, down) in zip(gone, pushes)):
+        if all(
+            encounter.blown(out, down, time / PULSE_RESERVE) > 0.0
+            for encounter, (out, down) in zip(encounters, pushes)
+        ):
             return replace(cut, device=_timed(device, time))
     return cut
 
@@ -525,18 +545,18 @@ def widened(proposal: Any, every: Sequence[Orientation]) -> Any:
     slot grows towards the head, about its middle, as long as the head is held by the rails.
     """
     for place, cut in enumerate(proposal.cuts):
-        found = neck(every[proposal.row]) if cut.device.hangs else None
-        if found is None:
+        shank = neck(every[proposal.row]) if cut.device.hangs else None
+        if shank is None:
             continue
         first, last = cut.device.span
         more = float(
-            np.round(0.5 * SLOT_WIDENING * (found.head - (last - first)) / VALUE_STEP_M) * VALUE_STEP_M
+            np.round(0.5 * SLOT_WIDENING * (shank.head - (last - first)) / VALUE_STEP_M) * VALUE_STEP_M
         )
         span = max(first - more, RAIL), last + more
-        if more < VALUE_STEP_M or span == cut.device.span or last - first > WIDEST_SLOT * found.head:
+        if more < VALUE_STEP_M or span == cut.device.span or last - first > WIDEST_SLOT * shank.head:
             continue
         device = cut.device.with_span(span)
-        must = np.array([one.name in cut.returns for one in every])
+        must = np.array([orientation.name in cut.returns for orientation in every])
         other = judge_cut(every, proposal.row, device, must, cut.smallest, cut.largest)
         cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
         return replace(proposal, cuts=cuts, step=f"slot widened to {in_mm(span[1] - span[0])}")

@@ -115,15 +115,15 @@ class FollowedRow:
         """
         lying, names = self.known.states, list(self.aspects.names)
         free = () if isinstance(lying[self.states[0]], Hanging) else self.any_heading
-        counts, known = Counter[str](), Counter[str]()
-        for k, one in enumerate(lying):
-            hangs = isinstance(one, Hanging)
-            known["" if hangs else one.aspect] += int(seen.leaving[k])
-            if k not in self.states and (hangs or one.aspect not in free):
-                counts[one.name] += int(seen.leaving[k])
+        counts, counted_headings = Counter[str](), Counter[str]()
+        for k, orientation in enumerate(lying):
+            hangs = isinstance(orientation, Hanging)
+            counted_headings["" if hangs else orientation.aspect] += int(seen.leaving[k])
+            if k not in self.states and (hangs or orientation.aspect not in free):
+                counts[orientation.name] += int(seen.leaving[k])
         for k, name in enumerate(names):
             if name not in free:
-                counts[f"{name}{HEADING_OFF}"] += max(int(seen.aspects[k]) - known[name], 0)
+                counts[f"{name}{HEADING_OFF}"] += max(int(seen.aspects[k]) - counted_headings[name], 0)
         rest = int(seen.leaving.sum()) - self.wanted_parts(seen) - counts.total()
         counts["in no known pose"] += max(rest, 0)
         return tuple((name, number) for name, number in counts.most_common() if number)
@@ -208,8 +208,8 @@ class _FillsInTurn:
     def follow(self, name: str, gaps: float, until: float) -> FilledQueue:
         """Return what a fill did until a time [s]."""
         queue = self.queue(name, gaps)
-        others = sum(one.periods for one in self.running.values() if one is not queue)
-        queue.follow(until, self.row.progressed(others))
+        periods_elsewhere = sum(other.periods for other in self.running.values() if other is not queue)
+        queue.follow(until, self.row.progressed(periods_elsewhere))
         return self.row.count(name, gaps, queue.seen())
 
     def queue(self, name: str, gaps: float) -> PartsQueue:
@@ -241,7 +241,7 @@ class _FillsSideBySide(_FillsInTurn):
         outcome = self.counted[name].get()
         if outcome is None:
             self.tasks[name].result()  # raises what ended it
-        self.row.progressed(0)(sum(one.periods for one in list(self.running.values())), 0)
+        self.row.progressed(0)(sum(queue.periods for queue in list(self.running.values())), 0)
         return outcome
 
     def stop(self) -> None:
@@ -306,15 +306,15 @@ def longer(row: FollowedRow, study: DesignStudy) -> tuple[FilledQueue, ...]:
     tuple of FilledQueue
         Those of the study, that one with what was seen since.
     """
-    found, count = study.queues, minutes(study)
-    place = found.index(study.slowest) if count else 0
+    queues, count = study.queues, minutes(study)
+    place = queues.index(study.slowest) if count else 0
     for k in range(1, count + 1):
-        least = found[place]
+        least = queues[place]
         joined = _joined(least, row.followed(least.fill, least.gaps, row.seed + k))
-        found = (*found[:place], joined, *found[place + 1 :])
+        queues = (*queues[:place], joined, *queues[place + 1 :])
         if joined.partial:
             break
-    return found
+    return queues
 
 
 def minutes(study: DesignStudy) -> int:
@@ -323,16 +323,18 @@ def minutes(study: DesignStudy) -> int:
     The rate is undecided where it would hold with the same shares of more parts; purity, where what is
     asked for lies in its interval.
     """
-    found, need = study.queues, RATE_KEPT * study.request.target
-    if len(found) < len(FILLS) or study.jams or study.partial:
+    queues, need = study.queues, RATE_KEPT * study.request.target
+    if len(queues) < len(FILLS) or study.jams or study.partial:
         return 0
-    right, left, back = (sum(getattr(one, name) for one in found) for name in ("right", "left", "returned"))
+    right, left, returned = (
+        sum(getattr(queue, name) for queue in queues) for name in ("right", "left", "returned")
+    )
     own, rate = study.slowest, study.delivered[0]
     if not right or own is None:
         return 0
-    kept = [1.0 + k * own.seconds / study.queue_seconds for k in range(MORE + 1)]  # times as many parts
-    lows = [float(wilson([right * more], (left + back) * more)[0][0]) for more in kept]
-    share = right / (left + back)
+    growth = [1.0 + k * own.seconds / study.queue_seconds for k in range(MORE + 1)]  # times as many parts
+    lows = [float(wilson([right * more], (left + returned) * more)[0][0]) for more in growth]
+    share = right / (left + returned)
     enough = [k for k, low in enumerate(lows) if rate * low / share >= need]
     if not enough or float(wilson([right], left)[1][0]) < PURE:
         return 0
@@ -350,8 +352,8 @@ def is_complete(fills: Sequence[FilledQueue]) -> bool:
     """Return whether queues were followed to their end: SECONDS at each fill, or until they were sure."""
     if len(fills) < len(FILLS):
         return False
-    return all(one.seconds > 0.99 * SECONDS for one in fills) or (
-        all(one.seconds > 0.99 * FIRST for one in fills) and is_sure(fills, 0.0)
+    return all(queue.seconds > 0.99 * SECONDS for queue in fills) or (
+        all(queue.seconds > 0.99 * FIRST for queue in fills) and is_sure(fills, 0.0)
     )
 
 
@@ -388,17 +390,17 @@ def is_sure(fills: Sequence[FilledQueue], least: float) -> bool:
     K. K. G. Lan, R. Simon, M. Halperin, "Stochastically curtailed tests in long-term clinical trials",
     Sequential Analysis 1, 207-219, 1982.
     """
-    right, left, back, jams = (
-        sum(getattr(one, name) for one in fills) for name in ("right", "left", "returned", "jams")
+    right, left, returned, jams = (
+        sum(getattr(queue, name) for queue in fills) for name in ("right", "left", "returned", "jams")
     )
     target, planned = least / RATE_KEPT, len(FILLS) * SECONDS
     if len(fills) < len(FILLS) or jams or not right or right < target * planned:
         return False
-    pace = min(one.pace for one in fills)
-    low = float(wilson([right], left + back)[0][0])
-    if pace * low < target or any(one.ends[1] < least for one in fills):
+    pace = min(queue.pace for queue in fills)
+    low = float(wilson([right], left + returned)[0][0])
+    if pace * low < target or any(queue.ends[1] < least for queue in fills):
         return False
-    coming = math.ceil(left * max(planned / sum(one.seconds for one in fills) - 1.0, 0.0))
+    coming = math.ceil(left * max(planned / sum(queue.seconds for queue in fills) - 1.0, 0.0))
     allowed = math.floor((1.0 - PURE) * (left + coming) + 1e-9) - (left - right)
     return float(binom.sf(allowed, coming, 1.0 - PURE)) <= DOUBT
 
@@ -409,7 +411,9 @@ def is_denied(fills: Sequence[FilledQueue], last: FilledQueue, least: float) -> 
     One has jammed, more of another orientation have left than all of them may have at this pace, or the
     upper end of the last one's rate is below the least [1/s].
     """
-    left, right, seconds = (sum(getattr(one, name) for one in fills) for name in ("left", "right", "seconds"))
+    left, right, seconds = (
+        sum(getattr(queue, name) for queue in fills) for name in ("left", "right", "seconds")
+    )
     whole = left * max(len(FILLS) * SECONDS / seconds, 1.0)
     slow = last.seconds > 0.99 * FIRST and last.ends[1] < least
     return bool(last.jams or left - right > (1.0 - PURE) * whole or slow)

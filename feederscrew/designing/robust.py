@@ -51,7 +51,7 @@ def drawn_bowl(bowl, every, rng):
     values = {name: getattr(friction, name) for name in vars(friction)}
     friction = replace(friction, **{k: None if v is None else v * rubbed for k, v in values.items()})
     drive = replace(bowl.drive, amplitude=bowl.drive.amplitude * driven)
-    devices = tuple(_drawn_device(one, every, rng) for one in bowl.devices)
+    devices = tuple(_drawn_device(device, every, rng) for device in bowl.devices)
     (own,) = rng.spawn(1)
     bounce = scattered((bowl.restitution, bowl.restitution), RESTITUTION_DOUBT, own.standard_normal(1))
     return replace(
@@ -80,15 +80,15 @@ def _drawn_device(device, every, rng):
 
 def _named(devices, every, drawn) -> tuple[Any, ...]:
     """Devices with the orientation that they name as the drawn part has it: its aspects may change places."""
-    made = []
+    devices_named = []
     for device in devices:
         if device.like:
-            meant = [_meant(device, one, every) for one in (device.like[:2], *device.also)]
-            found = [drawn[matched(one, drawn)] for one in meant]
-            first, *others = ((one.aspect, one.heading) for one in found)
-            device = replace(device, like=(*first, *device.like[2:]), also=tuple(others))
-        made.append(device)
-    return tuple(made)
+            orientations = [_meant(device, named, every) for named in (device.like[:2], *device.also)]
+            matches = [drawn[matched(orientation, drawn)] for orientation in orientations]
+            first, *further = ((match.aspect, match.heading) for match in matches)
+            device = replace(device, like=(*first, *device.like[2:]), also=tuple(further))
+        devices_named.append(device)
+    return tuple(devices_named)
 
 
 def _meant(device, named, every):
@@ -139,8 +139,8 @@ def _scaled(part, axes, scales):
     vertices = part.centre_of_mass + np.stack([_along(moved, row) for row in stretch], axis=1)
     grown = float(np.prod(scales))
     moments = [float(vectors.dot(_along(part.inertia, axis), axis)) for axis in axes]
-    second = [0.5 * sum(moments) - one for one in moments]  # integral of the square along each axis
-    second = [s * s * one * grown for s, one in zip(scales, second)]
+    second = [0.5 * sum(moments) - moment for moment in moments]  # integral of the square along each axis
+    second = [s * s * moment * grown for s, moment in zip(scales, second)]
     inertia = sum((sum(second) - own) * np.outer(axis, axis) for own, axis in zip(second, axes))
     return replace(
         part,
@@ -248,26 +248,30 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, any_heading, spare
         driven = replace(driven, devices=_named(driven.devices, known.lying, bare.lying))
         lying = at_entry(bare.lying, driven.devices)
         rows = [matched(known.lying[k], lying) for k in chosen]
-        alike = [matched(known.lying[k], lying) for k in wanted] if len(wanted) > 1 else []
-        free = {lying[matched(one, lying)].aspect for one in known.lying if one.aspect in any_heading}
-        ways = stream.along(bare.lying, aspects, driven.devices, bowl=driven, rows={*rows, *alike})
+        equivalent = [matched(known.lying[k], lying) for k in wanted] if len(wanted) > 1 else []
+        free = {
+            lying[matched(orientation, lying)].aspect
+            for orientation in known.lying
+            if orientation.aspect in any_heading
+        }
+        ways = stream.along(bare.lying, aspects, driven.devices, bowl=driven, rows={*rows, *equivalent})
         even = np.full(len(ways.lying), 1.0 / len(ways.lying))
         own: dict[str, Any] = {"aspects": aspects, "any_heading": tuple(sorted(free))}
-        wanted_rows = [rows[0], *alike]
+        wanted_rows = [rows[0], *equivalent]
         tried = short_trials.single(
             other, driven, ways, even, wanted_rows, rows=list(dict.fromkeys(rows)), each=1,
             run=RunSettings(sum(seed)), **own,
         )  # fmt: skip
         counting = short_trials.wanted_rows(ways, tried.states[:1])
         if any(came_back(tried, row) for row in tried.rows if row in counting):
-            again = wanted_of(known, shares, wanted, spared)
-            places = [matched(known.lying[k], lying) for k in again]
+            returned = wanted_of(known, shares, wanted, spared)
+            places = [matched(known.lying[k], lying) for k in returned]
             more = short_trials.single(
                 other, driven, ways, even, wanted_rows, rows=list(dict.fromkeys(places)), each=AGAIN,
                 run=RunSettings(sum(seed) + 1), **own,
             )  # fmt: skip
-            weights = {place: float(shares[k]) for k, place in zip(again, places)}
-            spared = (*spared, *again) if comes_through(more, weights, enough) else spared
+            weights = {place: float(shares[k]) for k, place in zip(returned, places)}
+            spared = (*spared, *returned) if comes_through(more, weights, enough) else spared
     except FeederError as fault:  # the drawn bowl does not convey, or the part does not fit
         return [fault.what], 0.0
     return faults(tried, {matched(known.lying[k], lying) for k in spared}), tried.velocity
@@ -344,19 +348,19 @@ def faults(tried, spared=()):
     What counts as the wanted one and comes back is a loss of parts a minute only; so is that of orientations
     that are ``spared``, rows.
     """
-    found, right = [], set(short_trials.wanted_rows(tried.known, tried.states[:1])) - set(spared)
+    sentences, right = [], set(short_trials.wanted_rows(tried.known, tried.states[:1])) - set(spared)
     for place, k in enumerate(tried.rows):
         name = tried.known.lying[k].name
         if k in right:
             if tried.right[place] < tried.parts[place]:
                 turns = tried.turns[place] if tried.turns else {}
                 where = ", ".join((*tried.places[place], *turns)) or "turned"
-                found.append(f"{name} is lost ({where})")
+                sentences.append(f"{name} is lost ({where})")
         elif tried.wrong[place]:
-            found.append(f"{name}{CARRIED}")
+            sentences.append(f"{name}{CARRIED}")
         if tried.held[place] and k not in right:
-            found.append(f"{name} stays ({', '.join(tried.places[place])})")
-    return found
+            sentences.append(f"{name} stays ({', '.join(tried.places[place])})")
+    return sentences
 
 
 def denied(tried) -> Iterator[Any]:
@@ -364,11 +368,11 @@ def denied(tried) -> Iterator[Any]:
     if not tried.efficiency > 0.0:
         yield "nothing leaves as wanted"
     right, spared = set(short_trials.wanted_rows(tried.known, tried.states)), short_trials.spared_rows(tried)
-    for one in faults(tried, spared):
-        name = one.split(" ", 1)[0]
+    for fault in faults(tried, spared):
+        name = fault.split(" ", 1)[0]
         place = next(n for n, k in enumerate(tried.rows) if tried.known.lying[k].name == name)
-        if one.endswith(CARRIED) and tried.purity >= CLEAN:
+        if fault.endswith(CARRIED) and tried.purity >= CLEAN:
             continue
         mostly = tried.rows[place] in right and 2 * tried.right[place] > tried.parts[place]
         if not (mostly and not tried.held[place]):
-            yield one
+            yield fault

@@ -80,20 +80,20 @@ class Tried:
         counts: dict[str, Any] = {name: np.zeros(len(rows), int) for name in COUNTED}
         places: list[Counter[str]] = [Counter() for _ in rows]
         turns: list[Counter[str]] = [Counter() for _ in rows]
-        for one in (self, other):
-            own = [place[row] for row in one.rows.tolist()]
+        for trial in (self, other):
+            own = [place[row] for row in trial.rows.tolist()]
             for name in COUNTED:
-                np.add.at(counts[name], own, getattr(one, name))
+                np.add.at(counts[name], own, getattr(trial, name))
             for n, k in enumerate(own):
-                places[k].update(one.places[n])
-                turns[k].update(one.turns[n] if one.turns else {})
-        speeds = [one.velocity for one in (self, other) if one.velocity > 0.0]
+                places[k].update(trial.places[n])
+                turns[k].update(trial.turns[n] if trial.turns else {})
+        speeds = [trial.velocity for trial in (self, other) if trial.velocity > 0.0]
         return replace(
             self,
             **counts,
             rows=np.array(rows, int),
-            places=tuple(dict(one) for one in places),
-            turns=tuple(dict(one) for one in turns),
+            places=tuple(dict(counts_of_row) for counts_of_row in places),
+            turns=tuple(dict(counts_of_row) for counts_of_row in turns),
             velocity=float(np.mean(speeds)) if speeds else 0.0,
             deepest=max(self.deepest, other.deepest),
             seen=(*self.seen, *other.seen),
@@ -118,8 +118,8 @@ def wanted_states(known: stream.Orientations, rows: Sequence[int] | np.ndarray) 
     rows : sequence of int
         The wanted one first; others that count as it, of which those that are returned add no state.
     """
-    others = [k for k in rows[1:] if known.leaving[k].max() > 0.5]
-    return tuple(dict.fromkeys(int(known.leaves_as[k]) for k in (rows[0], *others)))
+    further = [k for k in rows[1:] if known.leaving[k].max() > 0.5]
+    return tuple(dict.fromkeys(int(known.leaves_as[k]) for k in (rows[0], *further)))
 
 
 def wanted_rows(known: stream.Orientations, states: Sequence[int]) -> list[int]:
@@ -147,11 +147,11 @@ def aspects_at_any_heading(
     tuple of str
         Those of ``up``, and the wanted row's own where it is round in plan and takes any heading.
     """
-    names, one = {name.strip().casefold() for name in up}, lying[row]
-    found = [other.aspect for other in lying if other.aspect.casefold() in names]
-    if not heading_given and rests(one.posture.outline, one.track.radius).rounded:
-        found.append(one.aspect)
-    return tuple(dict.fromkeys(found))
+    names, wanted = {name.strip().casefold() for name in up}, lying[row]
+    aspects = [other.aspect for other in lying if other.aspect.casefold() in names]
+    if not heading_given and rests(wanted.posture.outline, wanted.track.radius).rounded:
+        aspects.append(wanted.aspect)
+    return tuple(dict.fromkeys(aspects))
 
 
 def counted(
@@ -175,7 +175,7 @@ def counted(
     """
     names = {known.states[k].aspect for k in states[1:] if not isinstance(known.states[k], Hanging)}
     names |= set(any_heading)
-    return tuple(replace(one, any_heading=one.aspect in names) for one in known.states)
+    return tuple(replace(pose, any_heading=pose.aspect in names) for pose in known.states)
 
 
 def gain(known: stream.Orientations, shares: np.ndarray, states: Sequence[int]) -> float:
@@ -241,20 +241,23 @@ def single(
     )  # fmt: skip
     if seen.partial:  # fewer parts than were to be tried decide nothing
         raise KeyboardInterrupt
-    whole, asked = np.isin(seen.fates, (course.PASSED, course.TURNED)), np.isin(seen.orientations[-1], states)
+    whole, as_wanted = (
+        np.isin(seen.fates, (course.PASSED, course.TURNED)),
+        np.isin(seen.orientations[-1], states),
+    )
     if aspects is not None and any_heading and not isinstance(known.states[states[0]], Hanging):
-        asked |= _lies_on(part, aspects, seen, any_heading)
+        as_wanted |= _lies_on(part, aspects, seen, any_heading)
     own = [seen.entered == k for k in rows]
-    count = [[int((one & some).sum()) for one in own] for some in (
-        np.ones(len(whole), bool), whole & asked, whole & ~asked,
+    count = [[int((own_parts & some).sum()) for own_parts in own] for some in (
+        np.ones(len(whole), bool), whole & as_wanted, whole & ~as_wanted,
         np.isin(seen.fates, HELD),
     )]  # fmt: skip
     moving = seen.velocities[np.isfinite(seen.velocities) & (seen.velocities > 0.0)]
-    parts, right, wrong, held = (np.array(one) for one in count)
+    parts, right, wrong, held = (np.array(counts_of_rows) for counts_of_rows in count)
     return Tried(
         known, shares, rows, parts, right, wrong, held,
-        places=tuple(_places(seen, one) for one in own),
-        turns=tuple(_turns(seen, one & ~asked) for one in own),
+        places=tuple(_places(seen, own_parts) for own_parts in own),
+        turns=tuple(_turns(seen, own_parts & ~as_wanted) for own_parts in own),
         velocity=float(moving.mean()) if len(moving) else 0.0,
         state=states[0], states=states, deepest=float(seen.depths.max(initial=0.0)),
         apart=stream.needed_spacing(bowl.devices, known.lying, bowl), seen=(seen,),
@@ -263,34 +266,34 @@ def single(
 
 def _lies_on(part: Part, aspects: Aspects, seen: course.Course, names: Sequence[str]) -> np.ndarray:
     """(N,) bool, whether a part left lying on one of some aspects, or would come to, at any heading."""
-    found, ride, riders = np.zeros(len(seen.fates), bool), seen.rides[-1], seen.riders[-1]
+    lies_on, ride, riders = np.zeros(len(seen.fates), bool), seen.rides[-1], seen.riders[-1]
     if len(seen.rides) < len(seen.stations):  # none came to the last station
-        return found
+        return lies_on
     passed = ride.outcomes == runs.PASSED
     rows = [aspects.names.index(name) for name in names]
-    found[riders[passed]] = np.isin(AspectsBelow(part, aspects).of(ride.states[passed]), rows)
-    return found
+    lies_on[riders[passed]] = np.isin(AspectsBelow(part, aspects).of(ride.states[passed]), rows)
+    return lies_on
 
 
 def _places(seen: course.Course, own: np.ndarray) -> dict[str, int]:
     """Where parts ended that did not leave, and how: {'returned at gap': 2}."""
-    found: dict[str, int] = {}
+    counts: dict[str, int] = {}
     for n in np.flatnonzero(own & ~np.isin(seen.fates, (course.PASSED, course.TURNED))):
         where = at_station(seen.stations[seen.ended[n]].device)
         name = f"{course.FATES[seen.fates[n]].replace('_', ' ')} {where}"
-        found[name] = found.get(name, 0) + 1
-    return found
+        counts[name] = counts.get(name, 0) + 1
+    return counts
 
 
 def _turns(seen: course.Course, own: np.ndarray) -> dict[str, int]:
     """Where parts came into the orientation in which they left, and how many: {'turned on the track': 2}."""
-    found: dict[str, int] = {}
+    counts: dict[str, int] = {}
     for n in np.flatnonzero(own & np.isin(seen.fates, (course.PASSED, course.TURNED))):
-        others = np.flatnonzero(seen.orientations[:, n] != seen.orientations[-1, n])
-        station = int(others[-1]) if len(others) else 0
+        changed = np.flatnonzero(seen.orientations[:, n] != seen.orientations[-1, n])
+        station = int(changed[-1]) if len(changed) else 0
         name = f"turned {at_station(seen.stations[station].device)}"
-        found[name] = found.get(name, 0) + 1
-    return found
+        counts[name] = counts.get(name, 0) + 1
+    return counts
 
 
 def at_station(device: Device) -> str:
@@ -334,5 +337,5 @@ def lost_by_motion(tried: Tried) -> int:
     """
     right = set(wanted_rows(tried.known, tried.states))
     own = [n for n, k in enumerate(tried.rows) if k in right]
-    counts = [one[n] for one in (tried.places, tried.turns) if one for n in own]
+    counts = [counted_ends[n] for counted_ends in (tried.places, tried.turns) if counted_ends for n in own]
     return sum(number for count in counts for name, number in count.items() if name.endswith("on the track"))

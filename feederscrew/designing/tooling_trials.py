@@ -110,27 +110,31 @@ def own_trials(
         With its ``trials``: of a chain that the trial confirms where one is found, else of the first. Chains
         that isolate nothing are not tried.
     """
-    known = [one for one in study.designs if one is not None and one.devices and one.efficiency > 0.0]
-    best = sorted(known, key=lambda one: (-one.isolated, -one.efficiency, one.wanted))
+    candidates = [
+        design
+        for design in study.designs
+        if design is not None and design.devices and design.efficiency > 0.0
+    ]
+    best = sorted(candidates, key=lambda design: (-design.isolated, -design.efficiency, design.wanted))
     run = RunSettings(seed, jobs, before=before)
-    tried = tuple(_tried(study, one, run) for one in best[:BEST])
+    tried = tuple(_tried(study, design, run) for design in best[:BEST])
     first = replace(study, trials=tried)
     if study.design is None or again is None or not tried or not tried[0].faults:
         return first
-    others, ways, searched = [study], _ways_on((), study.design), 0
-    while ways and searched < SEARCHES and len(tried) < TRIES:
-        kinds, searched = ways.pop(0), searched + 1
+    studies, pending, searched = [study], _ways_on((), study.design), 0
+    while pending and searched < SEARCHES and len(tried) < TRIES:
+        kinds, searched = pending.pop(0), searched + 1
         other = again(kinds)
-        found = other.design
-        if found is None or not _isolates(found) or _devices(found) in [one.devices for one in tried]:
+        design = other.design
+        if design is None or not _isolates(design) or _devices(design) in [trial.devices for trial in tried]:
             continue
-        others, tried = [*others, other], (*tried, _tried(other, found, run))
-        if not tried[-1].faults and found.efficiency >= study.design.efficiency:
+        studies, tried = [*studies, other], (*tried, _tried(other, design, run))
+        if not tried[-1].faults and design.efficiency >= study.design.efficiency:
             break
-        ways += _ways_on(kinds, found) if tried[-1].faults else []
-    holds = [k for k, one in enumerate(tried) if not one.faults]
+        pending += _ways_on(kinds, design) if tried[-1].faults else []
+    holds = [k for k, trial in enumerate(tried) if not trial.faults]
     taken = max(holds, key=lambda k: tried[k].static_efficiency, default=0)
-    return replace(others[taken], trials=(tried[taken], *tried[:taken], *tried[taken + 1 :]))
+    return replace(studies[taken], trials=(tried[taken], *tried[:taken], *tried[taken + 1 :]))
 
 
 def _isolates(found: Design) -> bool:
@@ -141,8 +145,8 @@ def _ways_on(without: tuple[str, ...], found: Design) -> list[tuple[str, ...]]:
     """Kinds of devices to do without as well: each of a chain alone, the last one first, then all of them."""
     kinds = list(dict.fromkeys(cut.device.kind for cut in reversed(found.cuts)))
     kinds = [kind for kind in kinds if kind not in KEPT]
-    every = [(kind,) for kind in kinds] + ([tuple(kinds)] if len(kinds) > 1 else [])
-    return [(*without, *more) for more in every]
+    choices = [(kind,) for kind in kinds] + ([tuple(kinds)] if len(kinds) > 1 else [])
+    return [(*without, *more) for more in choices]
 
 
 def _devices(found: Design) -> tuple[str, ...]:
@@ -174,10 +178,10 @@ def _tried(study: ToolingStudy, one: Design, run: RunSettings) -> TriedDesign:
         tried = single(rows, EACH, run)
         further = further_parts(shares[rows])
         if not list(denied(tried)) and further.any():
-            again = replace(run, seed=run.seed + 1, before=None)
+            further_run = replace(run, seed=run.seed + 1, before=None)
             more = [row for row, count in zip(rows, further) if count]
             counts = further[further > 0]
-            tried = tried.joined(single(more, counts, again))
+            tried = tried.joined(single(more, counts, further_run))
     except FeederError as fault:  # the bowl does not convey
         return TriedDesign(name, one.wanted, _devices(one), one.efficiency, 0.0, np.nan, 0, (fault.what,))
     efficiency, purity = shares_leaving(tried)
@@ -281,19 +285,19 @@ def document(tried: Iterable[TriedDesign]) -> list[dict[str, Any]]:
     """Return TriedDesigns as a list of dicts."""
     return [
         {
-            "orientation": one.name,
-            "devices": list(one.devices),
-            "efficiency_static": one.static_efficiency,
-            "efficiency_tried": one.efficiency,
-            "efficiency_low": one.efficiency_ends[0],
-            "efficiency_high": one.efficiency_ends[1],
-            "purity_tried": None if np.isnan(one.purity) else one.purity,
-            "purity_low": one.purity_ends[0],
-            "purity_high": one.purity_ends[1],
-            "parts": one.parts,
-            "sorts": not one.faults,
-            "agrees": one.agrees,
-            "denied": list(one.faults),
+            "orientation": trial.name,
+            "devices": list(trial.devices),
+            "efficiency_static": trial.static_efficiency,
+            "efficiency_tried": trial.efficiency,
+            "efficiency_low": trial.efficiency_ends[0],
+            "efficiency_high": trial.efficiency_ends[1],
+            "purity_tried": None if np.isnan(trial.purity) else trial.purity,
+            "purity_low": trial.purity_ends[0],
+            "purity_high": trial.purity_ends[1],
+            "parts": trial.parts,
+            "sorts": not trial.faults,
+            "agrees": trial.agrees,
+            "denied": list(trial.faults),
         }
-        for one in tried
+        for trial in tried
     ]
