@@ -180,7 +180,7 @@ def design(part, others, asked, listed, rule, taken, bowl, pictures, out):
     inputs = solid.inputs | (known.inputs if known else {}) | bowls.identity(bowl["path"])
     with _folder(out, solid, inputs, settings) as folder:
         with _stoppable(out) as search:
-            found = loop.design(solid, record, given, request, known=known, **search)
+            found = loop.design(solid, record, given, request, shares=known, **search)
         found = _written(out, folder, found, settings, pictures)
         out.show(designs.summary(found), designs.document(found))
     _ended(found)
@@ -244,7 +244,7 @@ def _stoppable(out):
             out.say(text)
 
         try:
-            yield {"told": told, "before": lambda: waiting.trial(out), "progress": shown.reach}
+            yield {"tell": told, "before": lambda: waiting.trial(out), "progress": shown.reach}
         finally:
             shown.end()
 

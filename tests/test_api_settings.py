@@ -158,7 +158,7 @@ def test_a_design_keeps_what_its_bowl_was_read_from_and_the_settings(monkeypatch
     monkeypatch.setattr(built_bowl, "built", lambda study, settings: None)
     monkeypatch.setattr(built_bowl, "with_machine", lambda study, built: study)
     part = fs.load(ROOT / "parts/washer_m6.stl")
-    fs.design(part, "60/min", fs.read_bowl(bowl), given={"track.width"}, climb="2 deg")
+    fs.design(part, "60/min", fs.read_bowl(bowl), kept_keys={"track.width"}, climb="2 deg")
     fs.design(part, "60/min", frequency="60 Hz")
     (first, keys), (second, own) = calls
     assert keys >= {"drive.frequency", "drive.peak_to_peak", "friction.static", "track.climb", "track.width"}

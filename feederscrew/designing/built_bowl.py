@@ -111,14 +111,14 @@ def _ordered(settings: Sequence[Setting], study: DesignStudy, warned: Collection
             yield remark
 
 
-def settings_of(bowl: Bowl, given: Collection[str] = ()) -> tuple[Setting, ...]:
+def settings_of(bowl: Bowl, kept_keys: Collection[str] = ()) -> tuple[Setting, ...]:
     """Return a bowl as settings that the user gave, for the machine below a design of the library.
 
     Parameters
     ----------
     bowl : Bowl
         Its devices are left out: a design has its own.
-    given : collection of str
+    kept_keys : collection of str
         Names of keys that count as given although they have their default value.
 
     Returns
@@ -134,7 +134,7 @@ def settings_of(bowl: Bowl, given: Collection[str] = ()) -> tuple[Setting, ...]:
         value, default = pair
         if key.name == "machine.supply":  # follows the mains
             default = 2.0 * bowl.sizing.mains_frequency
-        if value is None or (value == default and key.name not in given):
+        if value is None or (value == default and key.name not in kept_keys):
             continue
         if key.choices:
             lines[key.field] = f"{key.name}={value}"

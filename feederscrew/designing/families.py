@@ -64,7 +64,7 @@ def named_apart(parts) -> None:
             )
 
 
-def family(parts, plain, given, request, *, told=None, before=None, progress=None) -> FamilyStudy:
+def family(parts, plain, kept_keys, request, *, tell=None, before=None, progress=None) -> FamilyStudy:
     """Design one bowl for several parts, each tried in it.
 
     The part that needs the widest track is designed first; its track and its kinds of devices are offered
@@ -76,10 +76,10 @@ def family(parts, plain, given, request, *, told=None, before=None, progress=Non
     parts : sequence of Part
         Two or more, from meshes, of different names.
     plain : Bowl
-    given : collection of str
+    kept_keys : collection of str
     request : DesignRequest
         The same for each; no aspect, no heading.
-    told, before, progress : callable, optional
+    tell, before, progress : callable, optional
         As for ``loop.design``.
 
     Returns
@@ -93,54 +93,54 @@ def family(parts, plain, given, request, *, told=None, before=None, progress=Non
         As ``loop.design``, and where two parts have one name.
     """
     named_apart(parts)
-    told = told or (lambda text: None)
-    plain, given, first = _common(parts, plain, frozenset(given), request)
+    tell = tell or (lambda text: None)
+    plain, kept_keys, first = _common(parts, plain, frozenset(kept_keys), request)
     designs: dict[int, DesignStudy] = {}
     try:
         for k in (first, *(k for k in range(len(parts)) if k != first)):
-            told(f"{parts[k].name}:")
+            tell(f"{parts[k].name}:")
             lead = designs.get(first)
-            own = {"told": told, "before": before, "progress": progress}
-            designs[k] = _member(parts[k], lead, plain, given, request, own)
+            own = {"tell": tell, "before": before, "progress": progress}
+            designs[k] = _member(parts[k], lead, plain, kept_keys, request, own)
             if designs[k].partial:
                 return FamilyStudy(tuple(designs[n] for n in sorted(designs)))
         members = tuple(designs[k] for k in range(len(parts)))
-        return FamilyStudy(_of_one_chain(members, request, given, told, before))
+        return FamilyStudy(_of_one_chain(members, request, kept_keys, tell, before))
     except KeyboardInterrupt:
         if not designs:
             raise
         return FamilyStudy(tuple(designs[n] for n in sorted(designs)), stopped=True)
 
 
-def _common(parts, plain, given, request) -> tuple[Any, ...]:
+def _common(parts, plain, kept_keys, request) -> tuple[Any, ...]:
     """A bowl with a track on which each part fits, which keys are given then, and who needs the widest."""
     tracks = [
-        calm_drive.section(part, answered(part), plain, given, diameter=request.diameter).bowl.track
+        calm_drive.section(part, answered(part), plain, kept_keys, diameter=request.diameter).bowl.track
         for part in parts
     ]
     widths = [track.width for track in tracks]
     track = replace(plain.track, radius=max(sized.radius for sized in tracks), width=max(widths))
-    return replace(plain, track=track), given | {"track.radius", "track.width"}, widths.index(max(widths))
+    return replace(plain, track=track), kept_keys | {"track.radius", "track.width"}, widths.index(max(widths))
 
 
-def _member(part, lead, plain, given, request, own):
+def _member(part, lead, plain, kept_keys, request, own):
     """The design of one part: with what the first one has where it holds so, else its own.
 
     ``own`` are the keywords of ``loop.design`` that say who is told.
     """
     if lead is None or lead.status != HOLDS:
-        return loop.design(part, plain, given, request, **own)
+        return loop.design(part, plain, kept_keys, request, **own)
     used = {device.kind for device in lead.devices}
     less = replace(request, without=(*request.without, *(name for name in PROPOSED if name not in used)))
     tracked = replace(plain, track=lead.bowl.track)
-    design = loop.design(part, tracked, given | set(TRACK), less, **own, with_nearest=False)
+    design = loop.design(part, tracked, kept_keys | set(TRACK), less, **own, with_nearest=False)
     if design.status == HOLDS or design.partial:
         return replace(design, request=request)
-    other = loop.design(part, plain, given, request, **own)
+    other = loop.design(part, plain, kept_keys, request, **own)
     return replace(max((design, other), key=merit), partial=other.partial)
 
 
-def _of_one_chain(members, request, given, told, before):
+def _of_one_chain(members, request, kept_keys, tell, before):
     """The members with values that suit all, where there are such and each holds with them."""
     kinds = {tuple(device.kind for device in member.devices) for member in members}
     if len(kinds) > 1 or any(member.status != HOLDS for member in members):
@@ -152,8 +152,8 @@ def _of_one_chain(members, request, given, told, before):
     for member in members:
         cuts = tuple(_at(cut, limit, member) for cut, limit in zip(member.cuts, limits, strict=True))
         if [cut.device.text for cut in cuts] != [cut.device.text for cut in member.cuts]:
-            told(f"{member.part.name}: with the values of all")
-            member = again(member, cuts, request, given | set(TRACK), told=told, before=before)
+            tell(f"{member.part.name}: with the values of all")
+            member = prove_with_cuts(member, cuts, request, kept_keys | set(TRACK), tell=tell, before=before)
         if member is not None and member.partial:
             raise KeyboardInterrupt
         if member is None or member.status != HOLDS:
@@ -201,7 +201,7 @@ def _at(cut, limit, member):
     return proposals.moved(cut, limit, member.tooling.orientations, member.turn)
 
 
-def again(study, cuts, request, given, *, told, before):
+def prove_with_cuts(study, cuts, request, kept_keys, *, tell, before):
     """Return a design with other values of its devices, proved as any; None where its trial denies it.
 
     Parameters
@@ -210,23 +210,23 @@ def again(study, cuts, request, given, *, told, before):
         With a bowl.
     cuts : sequence of Cut
     request : DesignRequest
-    given : collection of str
+    kept_keys : collection of str
         Keys of its bowl that are kept.
-    told, before : callable
+    tell, before : callable
 
     Returns
     -------
     DesignStudy or None
     """
     bare = replace(study.bowl, devices=())
-    search = Search(study.part, request, bare, frozenset(given), told, None, before=before)
-    search.known = exploring.arriving(search, bare)
-    ways, weights = exploring.offered(search, bare)
-    same = proposals.alike(ways.lying, study.turn, request.up)
-    free = proposals.free_headings(ways.lying, study.turn, request)
+    search = Search(study.part, request, bare, frozenset(kept_keys), tell, None, before=before)
+    search.shares = exploring.arriving(search, bare)
+    orientations, weights = exploring.offered(search, bare)
+    same = proposals.equivalent_rows(orientations.lying, study.turn, request.up)
+    free = proposals.free_headings(orientations.lying, study.turn, request)
     proposal = proposals.Proposal(study.turn, tuple(cuts), study.before, "the values of all", same, free)
-    made = calm_drive.PlainBowl(bare, frozenset(given), None, request.drive)
-    candidate = exploring.attempted(search, made, proposal, weights)
+    plain_bowl = calm_drive.PlainBowl(bare, frozenset(kept_keys), None, request.drive)
+    candidate = exploring.attempted(search, plain_bowl, proposal, weights)
     if not candidate.attempt.clean:
         return None
     return loop.proved(search, candidate, whole=True)

@@ -1,5 +1,6 @@
 """Risks that are said before steel is cut: parts that shingle, hook, nest, wedge, or climbed in the queue."""
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -23,10 +24,13 @@ from feederscrew.trial.kernel.crowd_records import Together
 from feederscrew.trial.shape import TrueSolid, solid_of
 from feederscrew.units import counted
 
-LIFT = (
-    0.25e-3  # [m] by which one part may lie higher than the next: play, burrs and dirt, as a design's margin
-)
+LIFT = 0.25e-3  # [m] that one part may lie higher than the next: play, burrs, dirt; as a design's margin
 CLEARS = 2  # status of a linear programme without a solution: so much higher nothing meets
+DIRECTIONS = check.frozen(  # (26, 3) to faces, edges and corners of a cube
+    vectors.unit(
+        np.array([corner for corner in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(corner)])
+    )
+)
 SHINGLES, CLIMBS, HOOKS, NESTS, WEDGES = "shingles", "climbs", "hooks", "nests", "wedges"
 
 
@@ -61,7 +65,7 @@ class QueueSeen(Protocol):
         """How long it was followed [s]."""
 
 
-def wedge(one: Orientation, lift: float = LIFT) -> float:
+def wedge(orientation: Orientation, lift: float = LIFT) -> float:
     """Return the angle [rad] at which a part is pushed up on another where it lies a little higher.
 
     Two parts of one orientation follow each other along the track, one of them higher by ``lift``. They come
@@ -72,7 +76,7 @@ def wedge(one: Orientation, lift: float = LIFT) -> float:
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
     lift : float [m]
 
     Returns
@@ -82,10 +86,10 @@ def wedge(one: Orientation, lift: float = LIFT) -> float:
         quarter of a turn where upright sides meet, more where the plane pushes the higher one down, 0 where
         one clears the other.
     """
-    return min(_rise(one, sign, lift)[0] for sign in (1.0, -1.0))
+    return min(_rise(orientation, sign, lift)[0] for sign in (1.0, -1.0))
 
 
-def _rise(one: Orientation, sign: float, lift: float) -> tuple[float, float]:
+def _rise(orientation: Orientation, sign: float, lift: float) -> tuple[float, float]:
     """The angle where the part behind is higher (+1) or the part before (-1), and how far apart they are.
 
     L is the largest q_x - p_x of points q of the part behind and p of the part before that meet: a linear
@@ -93,8 +97,8 @@ def _rise(one: Orientation, sign: float, lift: float) -> tuple[float, float]:
     """
     from scipy.optimize import linprog
 
-    points = one.posture.surface
-    x, y = turned(points[:, :2], one.heading).T
+    points = orientation.posture.surface
+    x, y = turned(points[:, :2], orientation.heading).T
     z, count = points[:, 2], len(points)
     whole, none = np.ones(count), np.zeros(count)
     rows = [np.append(whole, none), np.append(none, whole), np.append(y, -y), np.append(-z, z)]
@@ -106,24 +110,24 @@ def _rise(one: Orientation, sign: float, lift: float) -> tuple[float, float]:
 
 
 def risks(
-    one: Orientation,
+    orientation: Orientation,
     bowl: Bowl,
     queues: Sequence[QueueSeen],
     *,
-    every: Sequence[Orientation] = (),
+    orientations: Sequence[Orientation] = (),
     seed: int = 1,
 ) -> tuple[Risk, ...]:
     """Say what may go wrong between parts.
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
         That is wanted, of a part from a mesh.
     bowl : Bowl
         Its friction is also that of part on part.
     queues : sequence of FilledQueue
         What was seen.
-    every : sequence of Orientation
+    orientations : sequence of Orientation
         All that come often enough to matter.
     seed : int
 
@@ -131,28 +135,28 @@ def risks(
     -------
     tuple of Risk
     """
-    part = one.posture.solid
-    listed = [*_shingling(one, bowl.friction.kinetic), *_climbing(queues)]
+    part = orientation.posture.solid
+    listed = [*_shingling(orientation, bowl.friction.kinetic), *_climbing(queues)]
     if part is not None:
         listed += [*_nesting(part, bowl), *_tangling(part, bowl, seed)]
-    return (*listed, *_wedging(every or (one,), bowl))
+    return (*listed, *_wedging(orientations or (orientation,), bowl))
 
 
-def _shingling(one: Orientation, friction: float) -> Iterator[Risk]:
+def _shingling(orientation: Orientation, friction: float) -> Iterator[Risk]:
     held = math.atan(friction)
-    angle, distance, sign = min((*_rise(one, sign, LIFT), sign) for sign in (1.0, -1.0))
+    angle, distance, sign = min((*_rise(orientation, sign, LIFT), sign) for sign in (1.0, -1.0))
     higher = f"where one lies {1e3 * LIFT:.3g} mm higher than the next it"
     if angle >= held:
         return
     if angle <= 0.0:
-        text = f"{one.name} may shingle: {higher} slides onto it"
+        text = f"{orientation.name} may shingle: {higher} slides onto it"
     else:
         text = (
-            f"{one.name} may shingle: {higher} is pushed up a side of {math.degrees(angle):.3g} deg, and "
-            f"friction holds it up to {math.degrees(held):.3g} deg"
+            f"{orientation.name} may shingle: {higher} is pushed up a side of {math.degrees(angle):.3g} deg, "
+            f"and friction holds it up to {math.degrees(held):.3g} deg"
         )
-    before = vectors.product(np.array([distance, 0.0, -sign * LIFT]), one.axes)
-    yield Risk(SHINGLES, text, Pair(one.axes, np.eye(3), check.frozen(before)))
+    before = vectors.product(np.array([distance, 0.0, -sign * LIFT]), orientation.axes)
+    yield Risk(SHINGLES, text, Pair(orientation.axes, np.eye(3), check.frozen(before)))
 
 
 def _climbing(queues: Sequence[QueueSeen]) -> Iterator[Risk]:
@@ -209,7 +213,7 @@ def _wedging(orientations: Sequence[Orientation], bowl: Bowl) -> Iterator[Risk]:
 TURNS = 1.02  # times its breadth along the wall: what is no wider, turned as you like, is no strut
 
 
-def walls_between(one: Orientation, friction: float) -> tuple[float, float] | None:
+def walls_between(orientation: Orientation, friction: float) -> tuple[float, float] | None:
     """Return between which distances of two parallel walls a part may wedge; None where it cannot.
 
     A part between upright walls, turned until it touches both, is a strut: two forces along the line through
@@ -220,7 +224,7 @@ def walls_between(one: Orientation, friction: float) -> tuple[float, float] | No
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
         Lying as it travels along the first wall.
     friction : float [1]
         Of the part on the walls.
@@ -231,7 +235,7 @@ def walls_between(one: Orientation, friction: float) -> tuple[float, float] | No
         Least and greatest. Walls that are nearer than the part is broad let none in; walls that are further
         apart never touch it at once.
     """
-    corners = one.outline
+    corners = orientation.outline
     breadth = float(np.ptp(corners[:, 1]))
     longest = _longest(corners)
     if longest <= TURNS * breadth:
@@ -245,18 +249,18 @@ def _longest(corners: np.ndarray) -> float:
     return float(np.sqrt((differences**2).sum(axis=-1)).max())
 
 
-def strut(one: Orientation, width: float) -> float:
+def strut(orientation: Orientation, width: float) -> float:
     """Return the heading [rad] by which a part is turned further where it touches walls so far apart.
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
     width : float [m]
         Of the two walls.
     """
     angles = np.linspace(-math.pi / 2.0, math.pi / 2.0, 721)
     wide = [
-        float(np.ptp(math.sin(turn) * one.outline[:, 0] + math.cos(turn) * one.outline[:, 1]))
+        float(np.ptp(math.sin(turn) * orientation.outline[:, 0] + math.cos(turn) * orientation.outline[:, 1]))
         for turn in angles
     ]
     return float(angles[int(np.argmin(np.abs(np.array(wide) - width)))])
@@ -302,7 +306,7 @@ def stack(part: Part, friction: float) -> Stack | None:
     """
     solid, length, principal = solid_of(part)
     stacks = []
-    for direction in WAYS[len(WAYS) // 2 :]:
+    for direction in DIRECTIONS[len(DIRECTIONS) // 2 :]:
         axes = _upright(direction)
         corners = vectors.product(solid.vertices, axes.T)
         chord, low, high = chords(corners, solid.triangles, LINES)
@@ -321,11 +325,11 @@ def stack(part: Part, friction: float) -> Stack | None:
     return min(stacks, key=lambda nested: vectors.norm(nested.place) / nested.height, default=None)
 
 
-def _upright(way: np.ndarray) -> np.ndarray:
+def _upright(upwards: np.ndarray) -> np.ndarray:
     """Axes (3, 3) as rows, of which the third is a direction (3,)."""
-    aside = np.cross(way, np.eye(3)[int(np.argmin(np.abs(way)))])
+    aside = np.cross(upwards, np.eye(3)[int(np.argmin(np.abs(upwards)))])
     aside = vectors.unit(aside)
-    return np.array([aside, np.cross(way, aside), way])
+    return np.array([aside, np.cross(upwards, aside), upwards])
 
 
 CELLS = 36  # along the longest side of a part
@@ -424,7 +428,7 @@ def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[np.ndarray, np.nd
         deep = min(_within(grid, place + vectors.product(own, turn.T)), _within(grid, moved_back))
         if deep > DEEP:
             overlaps.append((deep, turn, place))
-    return _apart(sorted(overlaps, key=lambda one: -one[0]), float(vectors.length(rim).max()))
+    return _distinct_poses(sorted(overlaps, key=lambda pose: -pose[0]), float(vectors.length(rim).max()))
 
 
 def _within(grid: Cells, points: np.ndarray) -> float:
@@ -432,7 +436,7 @@ def _within(grid: Cells, points: np.ndarray) -> float:
     return float(grid.hull[grid.at(points)].mean())
 
 
-def _apart(
+def _distinct_poses(
     overlaps: list[tuple[float, np.ndarray, np.ndarray]], radius: float
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """The first of the poses of which none is like one before it."""
@@ -497,10 +501,10 @@ class Pulled:
         bowl = replace(bowl, drive=replace(bowl.drive, amplitude=0.0), track=track, devices=())
         rim = grid.middles(grid.rim)
         self.solid, self.grid, self.rim = solid, grid, rim[:: max(len(rim) // SEEN, 1)]
-        self.known = known = runs.setting(solid, length, bowl)
+        self.setting = setting = runs.setting(solid, length, bowl)
         static, kinetic = friction
-        known = replace(known, friction=np.array([static, kinetic, static, kinetic, static]))
-        self.pair = crowd.PartsOnTrack(known, _nowhere(track, length), 2)
+        setting = replace(setting, friction=np.array([static, kinetic, static, kinetic, static]))
+        self.pair = crowd.PartsOnTrack(setting, _nowhere(track, length), 2)
 
     def tried(
         self, turn: np.ndarray, place: np.ndarray, most: float
@@ -510,7 +514,7 @@ class Pulled:
         It ends as soon as too few can hold, or of what is to hold in a share ``most`` [1], as too many do.
         """
         away = vectors.unit(place) if vectors.norm(place) > 0.0 else place
-        directions = [direction for direction in WAYS if vectors.dot(direction, away) > -1e-9]
+        directions = [direction for direction in DIRECTIONS if vectors.dot(direction, away) > -1e-9]
         held = pulls = 0
         for left, direction in zip(range(len(directions))[::-1], directions):
             parted = self.parted(turn, place, direction)
@@ -521,7 +525,7 @@ class Pulled:
                 return None
         return turn, place, pulls, held
 
-    def parted(self, turn: np.ndarray, place: np.ndarray, way: np.ndarray) -> bool | None:
+    def parted(self, turn: np.ndarray, place: np.ndarray, direction: np.ndarray) -> bool | None:
         """Return whether a pull (3,) [1] parts the two, or shaking after it; None where they overlap then."""
         states = np.zeros((2, body.STATE))
         states[:, 1:3] = HIGH
@@ -532,11 +536,15 @@ class Pulled:
             self.pair.lay(n, states[n])
         rng = np.random.default_rng(SHAKEN)
         for k in range(PULLS + SHAKES):
-            own = way if k < PULLS else vectors.unit(self.apart) + vectors.unit(rng.standard_normal(3))
+            own = (
+                direction
+                if k < PULLS
+                else vectors.unit(self.separation) + vectors.unit(rng.standard_normal(3))
+            )
             depth = self.pull(PULL * own)
             if self.through or (k == 0 and depth > SUNK):
                 return None
-            if vectors.norm(self.apart) > 2.0 * self.solid.radius:
+            if vectors.norm(self.separation) > 2.0 * self.solid.radius:
                 return True
         return False
 
@@ -544,24 +552,24 @@ class Pulled:
     def through(self) -> bool:
         """Whether the two have come through each other."""
         first, second = self.pair.arrays.states
-        spots = self.apart + vectors.product(self.rim, whereabouts.matrix(second).T)
+        spots = self.separation + vectors.product(self.rim, whereabouts.matrix(second).T)
         spots = vectors.product(spots, whereabouts.matrix(first))
         return bool((self.grid.inside[self.grid.at(spots)] > LEAKS * self.grid.size).any())
 
     @property
-    def apart(self) -> np.ndarray:
+    def separation(self) -> np.ndarray:
         """From one centre of mass to the other, (3,) [L]."""
         return self.pair.arrays.states[1, :3] - self.pair.arrays.states[0, :3]
 
-    def pull(self, way: np.ndarray) -> float:
+    def pull(self, pull: np.ndarray) -> float:
         """Pull both by a velocity (3,) [sqrt(g L)] away from each other; how deep they were in each other."""
         pair, states, notes = self.pair, self.pair.arrays.states, np.zeros(travel.NOTES + 2)
         states[:, 3:6] -= states[:, 3:6].mean(axis=0)  # they fall freely: that is left out
         states[:, 2] += HIGH - states[:, 2].mean()
-        states[0, 3:6] -= way
-        states[1, 3:6] += way
-        steps = max(round(SECONDS / self.known.floor.step), 1)
-        arrays.move_on(self.known, pair.surface, pair.arrays, Together(pair.on, 0.0, steps, notes))
+        states[0, 3:6] -= pull
+        states[1, 3:6] += pull
+        steps = max(round(SECONDS / self.setting.floor.step), 1)
+        arrays.move_on(self.setting, pair.surface, pair.arrays, Together(pair.on, 0.0, steps, notes))
         return notes[travel.SUNK]
 
 
@@ -573,12 +581,3 @@ def _nowhere(track: Track, length: float) -> crowd.CrowdedTrack:
     )
     none = np.zeros((0, 2))
     return crowd.CrowdedTrack(stage, -length, none, np.zeros(1), length)
-
-
-def _ways() -> np.ndarray:
-    """Directions (26, 3) to faces, edges and corners of a cube."""
-    found = np.array([(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if x or y or z])
-    return vectors.unit(found.astype(float))
-
-
-WAYS = check.frozen(_ways())

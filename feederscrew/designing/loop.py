@@ -64,11 +64,11 @@ Proofs = list[tuple[DesignStudy, Candidate]]
 def design(
     part: Part,
     plain: Bowl,
-    given: Collection[str],
+    kept_keys: Collection[str],
     request: DesignRequest,
     *,
-    known: Shares | None = None,
-    told: Callable[[str], None] | None = None,
+    shares: Shares | None = None,
+    tell: Callable[[str], None] | None = None,
     before: Callable[[], None] | None = None,
     progress: Progress | None = None,
     with_nearest: bool = True,
@@ -81,12 +81,12 @@ def design(
         From a mesh.
     plain : Bowl
         What the user gave, completed by the defaults; its devices are kept.
-    given : collection of str
+    kept_keys : collection of str
         Names of the keys the user gave.
     request : DesignRequest
-    known : Shares, optional
+    shares : Shares, optional
         What arrives, where the user says so; else what lies on the moving floor of the designed bowl.
-    told : callable, optional
+    tell : callable, optional
         Called with what is being tried, a sentence.
     before : callable, optional
         Called before anything is compiled, and before the first trial is told.
@@ -105,12 +105,12 @@ def design(
     FeederError
         If the part has no surface or very many facets, fits no bowl, or has no such aspect.
     """
-    _check_named(part, plain, request, known)
+    _check_named(part, plain, request, shares)
     search = Search(
-        part, request, plain, frozenset(given), told or (lambda text: None), known, before=before,
+        part, request, plain, frozenset(kept_keys), tell or (lambda text: None), shares, before=before,
         progress=progress,
     )  # fmt: skip
-    search.shares_given = known is not None
+    search.shares_given = shares is not None
     proofs: Proofs = []
     searched: list[int] = []
     try:
@@ -166,9 +166,9 @@ def _best(search: Search, proofs: Proofs) -> DesignStudy:
     if proofs:
         return max((study for study, _ in proofs), key=_cheapest)
     candidate = _likeliest(search)
-    if candidate is None or search.known is None:
+    if candidate is None or search.shares is None:
         return _without(search)
-    return _unproved(search, candidate, search.known)
+    return _unproved(search, candidate, search.shares)
 
 
 def _cheapest(study: DesignStudy) -> tuple[float, tuple[bool, bool, float, float]]:
@@ -186,13 +186,13 @@ def _likeliest(search: Search) -> Candidate | None:
     )
 
 
-def _check_named(part: Part, plain: Bowl, request: DesignRequest, known: Shares | None) -> None:
+def _check_named(part: Part, plain: Bowl, request: DesignRequest, shares: Shares | None) -> None:
     """Raise FeederError for what is asked for and is not there: an aspect, its heading, a kind of device."""
     refuse_many_facets(part)
     may_be_left_out(request.without)
     if part.vertices is None:
         return
-    aspects = find(part) if known is None else known.aspects
+    aspects = find(part) if shares is None else shares.aspects
     may_be_up(part, aspects, request.up)
     if request.aspect is None:
         return
@@ -201,8 +201,8 @@ def _check_named(part: Part, plain: Bowl, request: DesignRequest, known: Shares 
         return
     wide = max(plain.track.radius, float(vectors.length(np.ptp(part.vertices, axis=0))))  # one that it fits
     track = replace(plain.track, radius=wide)
-    every = orientations(part, aspects, track)
-    place(every, request.aspect, request.heading, part.source)
+    all_orientations = orientations(part, aspects, track)
+    place(all_orientations, request.aspect, request.heading, part.source)
 
 
 def _search_class(search: Search, cost_class: int, proofs: Proofs) -> None:
@@ -242,29 +242,33 @@ def _changed(search: Search, study: DesignStudy, candidate: Candidate) -> Candid
 
     None where there is nothing to change.
     """
-    made = calm_drive.PlainBowl(replace(candidate.bowl, devices=()), search.given, None, search.request.drive)
+    plain_bowl = calm_drive.PlainBowl(
+        replace(candidate.bowl, devices=()), search.kept_keys, None, search.request.drive
+    )
     weights, worst = candidate.weights, (study.robust.worst,)
     if study.jams:
-        lively = exploring.livened(search, made, candidate, weights) if _is_calm(candidate.bowl) else None
+        lively = (
+            exploring.livened(search, plain_bowl, candidate, weights) if _is_calm(candidate.bowl) else None
+        )
         if lively is not None and lively.attempt.clean:
             return lively
-        return _with_change(search, made, candidate, proposals.relieved(candidate))
+        return _with_change(search, plain_bowl, candidate, proposals.relieved(candidate))
     if nearest.only_slow(study):
         search.reserve *= 1.1 * RATE_KEPT * search.request.target / study.delivered[1]
-        return _faster(search, made, candidate)
+        return _faster(search, plain_bowl, candidate)
     if study.robust.share < DRAWS_HELD:
         if nearest.only_lost(study):
             search.least = FASTER * calm_drive.speed(candidate.bowl)
-            other = _faster(search, made, candidate)
+            other = _faster(search, plain_bowl, candidate)
             search.least = 0.0
             if other is not None:
                 return other
         if exploring.stays_at_steel(candidate.proposal, worst):
-            return exploring.livened(search, made, candidate, weights)
-        tried, lying = candidate.tried, candidate.ways.lying
+            return exploring.livened(search, plain_bowl, candidate, weights)
+        tried, lying = candidate.tried, candidate.orientations.lying
         changed = proposals.better(candidate.proposal, tried, lying, study.robust)
-        return _with_change(search, made, candidate, changed)
-    return _with_change(search, made, candidate, proposals.purer(candidate, study.left_instead))
+        return _with_change(search, plain_bowl, candidate, changed)
+    return _with_change(search, plain_bowl, candidate, proposals.purer(candidate, study.left_instead))
 
 
 def _is_calm(bowl: Bowl) -> bool:
@@ -272,24 +276,24 @@ def _is_calm(bowl: Bowl) -> bool:
     return hop(bowl).height < LIVELY_HOP_M
 
 
-def _faster(search: Search, made: calm_drive.PlainBowl, candidate: Candidate) -> Candidate | None:
+def _faster(search: Search, plain_bowl: calm_drive.PlainBowl, candidate: Candidate) -> Candidate | None:
     """The same chain at the drive that is now asked for; None where that is the one it was proved at."""
-    bowl = exploring.driven_for(search, made, candidate.proposal, candidate.weights)
+    bowl = exploring.driven_for(search, plain_bowl, candidate.proposal, candidate.weights)
     if bowl.drive == candidate.bowl.drive:
         return None
-    return exploring.attempted(search, made, candidate.proposal, candidate.weights, bowl)
+    return exploring.attempted(search, plain_bowl, candidate.proposal, candidate.weights, bowl)
 
 
 def _with_change(
     search: Search,
-    made: calm_drive.PlainBowl,
+    plain_bowl: calm_drive.PlainBowl,
     candidate: Candidate,
     proposal: proposals.Proposal | None,
 ) -> Candidate | None:
     """A changed chain at the drive of the one it was made of; None without a change."""
     if proposal is None:
         return None
-    return exploring.attempted(search, made, proposal, candidate.weights, candidate.bowl)
+    return exploring.attempted(search, plain_bowl, proposal, candidate.weights, candidate.bowl)
 
 
 def _make_whole(search: Search, proofs: Proofs) -> None:
@@ -323,30 +327,32 @@ def proved(
     drawn : RobustRun, optional
         All draws of that candidate, where they were made: they would come out the same.
     """
-    known, candidate = exploring.at_its_drive(search, candidate)
+    shares, candidate = exploring.at_its_drive(search, candidate)
     ride, candidate = _at_the_tooling(search, candidate)
-    bowl, ways, row = candidate.bowl, candidate.ways, candidate.proposal.row
-    study = replace(_unproved(search, candidate, known), long_ride=ride)
+    bowl, oriented, row = candidate.bowl, candidate.orientations, candidate.proposal.row
+    study = replace(_unproved(search, candidate, shares), long_ride=ride)
     if drawn is None or drawn.draws < search.request.draws:
         drawn = _drawn(search, candidate, ride.either, whole=whole)
     study = replace(study, robust=drawn, partial=drawn.partial)
     if drawn.partial or not (whole or drawn.share >= DRAWS_HELD):
         return study
     try:
-        study = _in_queues(search, study, candidate, known, ride.entering, whole=whole)
+        study = _in_queues(search, study, candidate, shares, ride.entering, whole=whole)
     except KeyboardInterrupt:
         return replace(study, partial=True)
-    frequent = [ways.lying[k] for k in short_trials.often(candidate.weights)]
-    named_risks = hazards.risks(ways.lying[row], bowl, study.queues, every=frequent, seed=search.request.seed)
+    frequent = [oriented.lying[k] for k in short_trials.often(candidate.weights)]
+    named_risks = hazards.risks(
+        oriented.lying[row], bowl, study.queues, orientations=frequent, seed=search.request.seed
+    )
     return replace(study, risks=named_risks)
 
 
 def _at_the_tooling(search: Search, candidate: Candidate) -> tuple[LongRide, Candidate]:
     """A ride along the track to the tooling, and the candidate with the mix that arrives there."""
-    search.told(f"ride along the track: {candidate.attempt.wanted}")
-    ways, weights = candidate.ways, candidate.weights
-    wanted = short_trials.wanted_rows(ways, candidate.tried.states)
-    ride = long_ride(search.part, candidate.bowl, ways.lying, weights, wanted, search.request.run)
+    search.tell(f"ride along the track: {candidate.attempt.wanted}")
+    oriented, weights = candidate.orientations, candidate.weights
+    wanted = short_trials.wanted_rows(oriented, candidate.tried.states)
+    ride = long_ride(search.part, candidate.bowl, oriented.lying, weights, wanted, search.request.run)
     return ride, replace(candidate, weights=ride.arriving)
 
 
@@ -356,7 +362,7 @@ def _drawn(search: Search, candidate: Candidate, shares: np.ndarray, *, whole: b
     text = f"{request.draws} of part, friction, drive and cuts"
     search.begin_proof(f"draws: {candidate.attempt.wanted}, {text}")
     return robust_run(
-        search.part, candidate.bowl, candidate.ways, shares, candidate.proposal.rows,
+        search.part, candidate.bowl, candidate.orientations, shares, candidate.proposal.rows,
         draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
         any_heading=candidate.proposal.any_heading, spared=short_trials.spared_rows(candidate.tried),
         enough=search.enough(candidate.attempt),
@@ -368,7 +374,7 @@ def _in_queues(
     search: Search,
     study: DesignStudy,
     candidate: Candidate,
-    known: Shares,
+    shares: Shares,
     entering: np.ndarray,
     *,
     whole: bool,
@@ -378,23 +384,23 @@ def _in_queues(
     Parts that touch on their way come as they enter the track, in shares (M,) [1]: they ride otherwise than
     alone.
     """
-    search.told(f"queue: {candidate.attempt.wanted}, {candidate.proposal.told}")
+    search.tell(f"queue: {candidate.attempt.wanted}, {candidate.proposal.sentence}")
     line = queues.FollowedRow(
-        search.part, candidate.bowl, known.aspects, candidate.ways, candidate.weights,
-        candidate.tried.states, search.request.seed, search.told, RATE_KEPT * search.request.target,
+        search.part, candidate.bowl, shares.aspects, candidate.orientations, candidate.weights,
+        candidate.tried.states, search.request.seed, search.tell, RATE_KEPT * search.request.target,
         candidate.proposal.any_heading, search.run("queue").progress, entering, search.request.jobs,
     )  # fmt: skip
     study = _queued(study, queues.filled(line, whole=whole))
     return _queued(study, queues.longer(line, study))
 
 
-def _queued(study: DesignStudy, found: tuple[FilledQueue, ...]) -> DesignStudy:
-    return replace(study, queues=found, partial=any(queue.partial for queue in found))
+def _queued(study: DesignStudy, queues_seen: tuple[FilledQueue, ...]) -> DesignStudy:
+    return replace(study, queues=queues_seen, partial=any(queue.partial for queue in queues_seen))
 
 
-def _unproved(search: Search, candidate: Candidate, known: Shares) -> DesignStudy:
+def _unproved(search: Search, candidate: Candidate, shares: Shares) -> DesignStudy:
     """The design before anything of it is proved."""
-    bowl, ways, weights = candidate.bowl, candidate.ways, candidate.weights
+    bowl, oriented, weights = candidate.bowl, candidate.orientations, candidate.weights
     request, margin = search.request, proposals.MARGINS[-1]
     return DesignStudy(
         part=search.part,
@@ -405,11 +411,16 @@ def _unproved(search: Search, candidate: Candidate, known: Shares) -> DesignStud
         cuts=candidate.proposal.cuts,
         before=candidate.proposal.before,
         attempts=tuple(search.attempts),
-        source=known.aspects.source(request.rule),
+        source=shares.aspects.source(request.rule),
         static_rate=_static(search, candidate),
-        slowed=calm_drive.kept(bowl),
-        trials=tuple(TrialRun(bowl, throw_number(bowl), ways, weights, one) for one in candidate.tried.seen),
-        tooling=tooled(search.part, bowl, known.aspects, ways, weights, candidate.proposal, request, margin),
+        slowed=calm_drive.velocity_kept(bowl),
+        trials=tuple(
+            TrialRun(bowl, throw_number(bowl), oriented, weights, course)
+            for course in candidate.tried.courses
+        ),
+        tooling=tooled(
+            search.part, bowl, shares.aspects, oriented, weights, candidate.proposal, request, margin
+        ),
     )
 
 
@@ -417,7 +428,7 @@ def tooled(
     part: Part,
     bowl: Bowl,
     aspects: Aspects,
-    ways: Orientations,
+    oriented: Orientations,
     weights: np.ndarray,
     proposal: proposals.Proposal,
     request: DesignRequest,
@@ -431,7 +442,7 @@ def tooled(
     bowl : Bowl
         With its devices.
     aspects : Aspects
-    ways : Orientations
+    oriented : Orientations
         Through the devices; M of them.
     weights : (M,) float [1]
         In which they come.
@@ -446,7 +457,7 @@ def tooled(
     if not proposal.cuts:
         return None
     task = static.design_task(
-        ways.lying,
+        oriented.lying,
         weights,
         proposal.row,
         margin,
@@ -454,11 +465,11 @@ def tooled(
         proposal.before,
         constraints=DesignConstraints(up=request.up),
     )
-    same = np.isin(ways.leaves_as, proposal.states(ways))
-    static_design = static.propose(task, proposal.cuts, ways.through < 0.5, same)
+    same = np.isin(oriented.leaves_as, proposal.states(oriented))
+    static_design = static.propose(task, proposal.cuts, oriented.through < 0.5, same)
     designs = tuple(static_design if k == proposal.row else None for k in range(len(weights)))
     return ToolingStudy(
-        part, bowl, aspects, request.rule, margin, ways.lying, weights, designs, proposal.row, request.up
+        part, bowl, aspects, request.rule, margin, oriented.lying, weights, designs, proposal.row, request.up
     )
 
 
@@ -470,14 +481,14 @@ def _counting(name: str, request: DesignRequest) -> str:
 
 def _static(search: Search, candidate: Candidate) -> float:
     """Wanted parts [1/s] that the static rule promises."""
-    ways, weights = candidate.ways, candidate.weights
-    gain = short_trials.gain(ways, weights, candidate.tried.states)
-    return calm_drive.speed(candidate.bowl) * gain / float((weights * ways.lengths).sum())
+    oriented, weights = candidate.orientations, candidate.weights
+    gain = short_trials.gain(oriented, weights, candidate.tried.states)
+    return calm_drive.speed(candidate.bowl) * gain / float((weights * oriented.lengths).sum())
 
 
 def _without(search: Search) -> DesignStudy:
     """What is said where nothing was proved."""
-    source = "" if search.known is None else search.known.aspects.source(search.request.rule)
+    source = "" if search.shares is None else search.shares.aspects.source(search.request.rule)
     return DesignStudy(
         search.part, search.request, None, None, None, attempts=tuple(search.attempts), source=source
     )

@@ -39,7 +39,7 @@ class Variant:
     change: str  # what is changed for it
     candidate: Candidate
     search: Search  # what it was tried for: of another way up than the one asked for another one
-    asked: bool = True  # it leaves what was asked for
+    as_requested: bool = True  # it leaves what was asked for
 
 
 def only_slow(study: DesignStudy) -> bool:
@@ -123,14 +123,14 @@ def nearest(
         return _holding(search, rate, variant, study, denied, len(proofs)), study
     done, pending = 0, [variants(search, proofs)]
     for variant in _in_turn(pending):
-        search.told(f"nearest that holds: {variant.candidate.attempt.wanted}, {variant.change}")
+        search.tell(f"nearest that holds: {variant.candidate.attempt.wanted}, {variant.change}")
         study, done = prove(variant.search, variant.candidate), done + 1
         if study.partial:
             raise KeyboardInterrupt
         rate = rate_that_holds(study)
         if rate > 0.0:
             near = _holding(search, rate, variant, study, denied, len(proofs) + done)
-            return near, study if variant.asked else None
+            return near, study if variant.as_requested else None
         denied.append(f"{variant.change} ({variant.candidate.attempt.wanted}): {_lacks(study)}")
         if done >= PROOFS:
             break
@@ -267,11 +267,11 @@ def _calmer_variants(variant: Variant, study: DesignStudy) -> Iterator[Variant]:
 
 
 def _calmer(search: Search, candidate: Candidate) -> Candidate | None:
-    made = _made(search, candidate)
-    bowl = calm_drive.calmer(made, candidate.bowl)
+    plain_bowl = _plain_bowl(search, candidate)
+    bowl = calm_drive.calmer(plain_bowl, candidate.bowl)
     if bowl is None or _tried_at(search, candidate, bowl):
         return None
-    return exploring.calmer(search, made, candidate, candidate.weights)
+    return exploring.calmer(search, plain_bowl, candidate, candidate.weights)
 
 
 def _tried_at(search: Search, candidate: Candidate, bowl: Bowl) -> bool:
@@ -283,8 +283,10 @@ def _tried_at(search: Search, candidate: Candidate, bowl: Bowl) -> bool:
     )  # fmt: skip
 
 
-def _made(search: Search, candidate: Candidate) -> calm_drive.PlainBowl:
-    return calm_drive.PlainBowl(replace(candidate.bowl, devices=()), search.given, None, search.request.drive)
+def _plain_bowl(search: Search, candidate: Candidate) -> calm_drive.PlainBowl:
+    return calm_drive.PlainBowl(
+        replace(candidate.bowl, devices=()), search.kept_keys, None, search.request.drive
+    )
 
 
 def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
@@ -296,13 +298,13 @@ def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
         if aspect + HEADING_OFF not in dict(study.left_instead) or aspect in candidate.proposal.any_heading:
             continue
         request = replace(search.request, aspect=None, up=tuple(dict.fromkeys((*search.request.up, aspect))))
-        lying = candidate.ways.lying
+        lying = candidate.orientations.lying
         proposal = replace(
             candidate.proposal,
-            same=proposals.alike(lying, candidate.proposal.row, request.up),
+            same=proposals.equivalent_rows(lying, candidate.proposal.row, request.up),
             any_heading=proposals.free_headings(lying, candidate.proposal.row, request),
         )
-        states = short_trials.wanted_states(candidate.ways, proposal.rows)
+        states = short_trials.wanted_states(candidate.orientations, proposal.rows)
         other = replace(
             candidate, proposal=proposal, tried=replace(candidate.tried, state=states[0], states=states)
         )
@@ -313,13 +315,19 @@ def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
 def _one_device_more(search: Search, study: DesignStudy, candidate: Candidate) -> Candidate | None:
     """The chain with a drop before it for what left a queue instead of what is wanted; None without one."""
     names = {name.partition("@")[0].removesuffix(HEADING_OFF) for name, _ in study.left_instead}
-    ways, proposal = candidate.ways, candidate.proposal
-    wanted = short_trials.wanted_rows(ways, candidate.tried.states)
-    rows = [k for k, orientation in enumerate(ways.lying) if orientation.aspect in names and k not in wanted]
-    changed = proposals.dropped_before(proposal, rows, wanted, ways.lying)
+    orientations, proposal = candidate.orientations, candidate.proposal
+    wanted = short_trials.wanted_rows(orientations, candidate.tried.states)
+    rows = [
+        k
+        for k, orientation in enumerate(orientations.lying)
+        if orientation.aspect in names and k not in wanted
+    ]
+    changed = proposals.dropped_before(proposal, rows, wanted, orientations.lying)
     if changed is None:
         return None
-    return exploring.attempted(search, _made(search, candidate), changed, candidate.weights, candidate.bowl)
+    return exploring.attempted(
+        search, _plain_bowl(search, candidate), changed, candidate.weights, candidate.bowl
+    )
 
 
 def _other_search(search: Search, request: DesignRequest) -> Search:

@@ -42,7 +42,7 @@ LONGER_PULSE = 2.0  # times, where something is carried through all the same
 
 
 @dataclass(frozen=True)
-class ProposalWay:
+class Recipe:
     """A way of proposing a chain for an orientation."""
 
     cost_class: int
@@ -57,7 +57,7 @@ class ProposalWay:
         return not set(HOLES) <= set(self.without)
 
 
-def ways_of(cost_class, request):
+def recipes_of(cost_class, request):
     """Return the ways of proposing chains of a cost class, the most robust first.
 
     Parameters
@@ -67,7 +67,7 @@ def ways_of(cost_class, request):
 
     Returns
     -------
-    list of ProposalWay
+    list of Recipe
         Of a sensor alone, and of one with devices that parts meet; none of a class of which no kind of
         device may be used.
     """
@@ -77,20 +77,16 @@ def ways_of(cost_class, request):
         return []
     outcomes = [outcome for outcome in ("hanging", "lying") if request.outcome in ("any", outcome)]
     kinds = [(*left_out, *HOLES), *([(*left_out, *MET, *HOLES)] if cost_class == SENSED else [])]
-    proposal_ways = [
-        ProposalWay(cost_class, margin, outcome, some)
+    recipes = [
+        Recipe(cost_class, margin, outcome, some)
         for margin in MARGINS for outcome in outcomes for some in kinds
     ]  # fmt: skip
     if "lying" in outcomes:
-        lying = [
-            proposal_way
-            for proposal_way in proposal_ways
-            if proposal_way.outcome == "lying" and proposal_way.without == kinds[0]
-        ]
-        proposal_ways += [replace(proposal_way, turns=True) for proposal_way in lying]
+        lying = [recipe for recipe in recipes if recipe.outcome == "lying" and recipe.without == kinds[0]]
+        recipes += [replace(recipe, turns=True) for recipe in lying]
     if "lying" in outcomes and cost_class == COST_CLASSES[0]:
-        proposal_ways.append(ProposalWay(cost_class, MARGINS[-1], "lying", left_out))
-    return proposal_ways
+        recipes.append(Recipe(cost_class, MARGINS[-1], "lying", left_out))
+    return recipes
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,9 +113,9 @@ class Proposal:
         """Every device along the track."""
         return (*self.before, *(cut.device for cut in self.cuts))
 
-    def states(self, known):
+    def states(self, orientations):
         """Return the states in which what is wanted leaves, its own first."""
-        return short_trials.wanted_states(known, self.rows)
+        return short_trials.wanted_states(orientations, self.rows)
 
     @property
     def rows(self) -> tuple[Any, ...]:
@@ -137,12 +133,12 @@ class Proposal:
         return tuple(f"{device.kind}: {device.text}" for device in self.devices)
 
     @property
-    def told(self):
+    def sentence(self):
         """The devices in a sentence, headings in whole degrees."""
         return ", ".join(f"{device.kind}: {device.short}" for device in self.devices) or "no device"
 
 
-def alike(lying, row, up) -> tuple[Any, ...]:
+def equivalent_rows(lying, row, up) -> tuple[Any, ...]:
     """Return the rows beside a wanted one that count as it: those of aspects that may be up too."""
     names = _folded(up)
     return tuple(
@@ -161,35 +157,40 @@ def _folded(names) -> set[Any]:
     return {name.strip().casefold() for name in names}
 
 
-def promising(known, shares, request):
+def promising(orientations, shares, request):
     """Return rows (R,) of the orientations worth a try: those asked for, the most frequent first."""
-    rows = [k for k in short_trials.often(shares) if not known.lying[k].returned]
+    rows = [k for k in short_trials.often(shares) if not orientations.lying[k].returned]
     names = {request.aspect.strip()} if request.aspect is not None else set(request.up)
     if names:
         requested = [
-            k for k, orientation in enumerate(known.lying) if orientation.aspect.casefold() in _folded(names)
+            k
+            for k, orientation in enumerate(orientations.lying)
+            if orientation.aspect.casefold() in _folded(names)
         ]
         rows = [k for k in rows if k in requested] or (requested if request.aspect is not None else [])
     if request.heading is None or request.aspect is None:
         return rows
-    rows_of(known.aspects, request.aspect, known.lying[0].posture.solid.source)
-    return [nearest(known.aspects, known.headings, request.aspect, request.heading)]
+    rows_of(orientations.aspects, request.aspect, orientations.lying[0].posture.solid.source)
+    return [nearest(orientations.aspects, orientations.headings, request.aspect, request.heading)]
 
 
-def bare(known, shares, request, devices):
+def bare(orientations, shares, request, devices):
     """Return the proposal of no further device, where nearly all that comes is one way up; else None."""
-    rows = promising(known, shares, request)
+    rows = promising(orientations, shares, request)
     if not rows or request.outcome == "hanging":
         return None
-    leaving = (shares[:, None] * known.leaving).sum(axis=0)
-    best = max(rows, key=lambda k: leaving[known.leaves_as[k]])
-    same, free = alike(known.lying, best, request.up), free_headings(known.lying, best, request)
+    leaving = (shares[:, None] * orientations.leaving).sum(axis=0)
+    best = max(rows, key=lambda k: leaving[orientations.leaves_as[k]])
+    same, free = (
+        equivalent_rows(orientations.lying, best, request.up),
+        free_headings(orientations.lying, best, request),
+    )
     proposal = Proposal(best, (), tuple(devices), "no device", same, free)
-    pure = short_trials.gain(known, shares, proposal.states(known)) / max(leaving.sum(), 1e-300)
+    pure = short_trials.gain(orientations, shares, proposal.states(orientations)) / max(leaving.sum(), 1e-300)
     return proposal if pure >= ENOUGH else None
 
 
-def proposed(part, bowl, aspects, row, known, request, way):
+def proposed(part, bowl, aspects, row, orientations, request, recipe):
     """Return the static rule's chain for a row, or None where it isolates nothing or is not what was asked.
 
     Parameters
@@ -199,22 +200,21 @@ def proposed(part, bowl, aspects, row, known, request, way):
         With the devices of the user.
     aspects : Aspects
     row : int
-    known : Orientations
+    orientations : Orientations
     request : DesignRequest
-    way : ProposalWay
+    recipe : Recipe
 
     Returns
     -------
     Proposal or None
         What would stand at a device is returned before it by a drop.
     """
-    orientation = known.lying[row]
-    without = tuple(dict.fromkeys((*request.without, *way.without, *ON_THE_TRACK)))
+    orientation = orientations.lying[row]
+    without = tuple(dict.fromkeys((*request.without, *recipe.without, *ON_THE_TRACK)))
     static_design = tooling(
-        part, bowl, orientation.aspect, heading=orientation.heading, rule=request.rule, margin=way.margin,
-        known=aspects,
-        seed=request.seed, verdicts=VERDICTS, outcome=way.outcome, without=without, turn=way.turns,
-        air=way.cost_class > COST_CLASSES[0],
+        part, bowl, orientation.aspect, heading=orientation.heading, rule=request.rule, margin=recipe.margin,
+        known=aspects, seed=request.seed, verdicts=VERDICTS, outcome=recipe.outcome, without=without,
+        turn=recipe.turns, air=recipe.cost_class > COST_CLASSES[0],
         purity=ENOUGH, up=request.up, play=0.0, tolerance=0.0, vary=False,  # draws and the loop have them
     ).design  # fmt: skip
     if (
@@ -223,9 +223,14 @@ def proposed(part, bowl, aspects, row, known, request, way):
         or not (static_design.cuts or static_design.before)
     ):
         return None
-    cuts = tuple(quickened(rounded(cut, known.lying, row), known.lying) for cut in static_design.cuts)
-    step = f"proposed with margins of {in_mm(way.margin)}"
-    same, free = alike(known.lying, row, request.up), free_headings(known.lying, row, request)
+    cuts = tuple(
+        quickened(rounded(cut, orientations.lying, row), orientations.lying) for cut in static_design.cuts
+    )
+    step = f"proposed with margins of {in_mm(recipe.margin)}"
+    same, free = (
+        equivalent_rows(orientations.lying, row, request.up),
+        free_headings(orientations.lying, row, request),
+    )
     hopeful = static_design.hopeful or 0.0
     pure = 0.5 * (float(np.nan_to_num(static_design.purity)) + hopeful)
     proposal = Proposal(row, cuts, tuple(static_design.before), step, same, free, pure, static_design.margin)
@@ -244,22 +249,22 @@ def _guarded_stops(proposal, through, rule):
     return dropped_before(proposal, list(np.flatnonzero(stops)), wanted, through.lying)
 
 
-def rounded(cut, every, row):
+def rounded(cut, lying, row):
     """Return a cut whose value a shop can make, where that keeps what it returns."""
     if not np.isfinite(cut.device.limit):
         return cut
-    return moved(cut, float(np.round(cut.device.limit / VALUE_STEP_M) * VALUE_STEP_M), every, row)
+    return moved(cut, float(np.round(cut.device.limit / VALUE_STEP_M) * VALUE_STEP_M), lying, row)
 
 
-def moved(cut, limit, every, row):
+def moved(cut, limit, lying, row):
     """Return a cut of one number at another value, with its margins there."""
     limit = float(np.round(limit / VALUE_STEP_M) * VALUE_STEP_M)
     device = cut.device.valued(limit)
-    must = np.array([orientation.name in cut.returns for orientation in every])
-    return judge_cut(every, row, device, must, cut.smallest, cut.largest)
+    must = np.array([orientation.name in cut.returns for orientation in lying])
+    return judge_cut(lying, row, device, must, cut.smallest, cut.largest)
 
 
-def mended(proposal, tried, every):
+def mended(proposal, tried, lying):
     """Return the proposal with the value moved that its trial denies; None where none can be moved.
 
     What is lost though wanted moves its device towards the least cut; what leaves though rejected moves the
@@ -270,14 +275,14 @@ def mended(proposal, tried, every):
             continue
         kind = cut.device.kind
         lost = lost_at(tried, kind)
-        slipped = [k for n, k in enumerate(tried.rows) if tried.wrong[n] and every[k].name in cut.returns]
+        slipped = [k for n, k in enumerate(tried.rows) if tried.wrong[n] and lying[k].name in cut.returns]
         if lost == bool(slipped):
             continue
         end = cut.smallest.limit if lost else cut.largest.limit
         limit = 0.5 * (cut.device.limit + end)
         if not np.isfinite(limit) or abs(limit - cut.device.limit) < VALUE_STEP_M:
             continue
-        other = moved(cut, limit, every, proposal.row)
+        other = moved(cut, limit, lying, proposal.row)
         if other.device.limit == cut.device.limit or not other.margin_pass > 0.0:
             continue
         cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
@@ -285,14 +290,14 @@ def mended(proposal, tried, every):
     return None
 
 
-def swept(proposal, tried, every):
+def swept(proposal, tried, lying):
     """Return the proposal with another sweep of a blade at which parts stay; None where none is left.
 
     Parameters
     ----------
     proposal : Proposal
     tried : Tried
-    every : sequence of Orientation
+    lying : sequence of Orientation
     """
     stays = {end for n in range(len(tried.rows)) if tried.held[n] for end in tried.places[n]}
     for place, cut in enumerate(proposal.cuts):
@@ -300,18 +305,18 @@ def swept(proposal, tried, every):
         if not device.overhead or not device.face or not any(end.endswith(device.name) for end in stays):
             continue
         used = proposal.sweeps or (round(np.degrees(device.sweep)),)
-        grip = every[proposal.row].grip
+        grip = lying[proposal.row].grip
         blades = [
             replace(device, sweep=np.radians(angle)).rewritten() for angle in SWEEPS if angle not in used
         ]
         other = next((blade for blade in blades if blade.clear_of(grip)), None)
         if other is None:
             continue
-        must = np.array([orientation.name in cut.returns for orientation in every])
+        must = np.array([orientation.name in cut.returns for orientation in lying])
         ends = [replace(end, sweep=other.sweep).rewritten() for end in (cut.smallest, cut.largest)]
         cuts = (
             *proposal.cuts[:place],
-            judge_cut(every, proposal.row, other, must, *ends),
+            judge_cut(lying, proposal.row, other, must, *ends),
             *proposal.cuts[place + 1 :],
         )
         sweep = round(np.degrees(other.sweep))
@@ -319,28 +324,28 @@ def swept(proposal, tried, every):
     return None
 
 
-def better(proposal, tried, every, drawn=None):
+def better(proposal, tried, lying, drawn=None):
     """Return the proposal changed where its trial denies it; None where nothing is left to change.
 
     Parameters
     ----------
     proposal : Proposal
     tried : Tried
-    every : sequence of Orientation
+    lying : sequence of Orientation
     drawn : RobustRun, optional
         Draws that deny what the trial itself does not.
     """
-    right = set(short_trials.wanted_rows(tried.known, tried.states))
+    right = set(short_trials.wanted_rows(tried.orientations, tried.states))
     lost = any(k in right and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
     if drawn is not None:
-        return widened(proposal, every) if "lost" in drawn.worst else cut_more(proposal, tried, drawn, every)
-    wider = widened(proposal, every) if lost else None
-    moved_one = wider or swept(proposal, tried, every) or mended(proposal, tried, every)
-    moved_one = moved_one or longer(proposal, tried, every)
-    return moved_one or guarded(proposal, tried, every)
+        return widened(proposal, lying) if "lost" in drawn.worst else cut_more(proposal, tried, drawn, lying)
+    wider = widened(proposal, lying) if lost else None
+    moved_one = wider or swept(proposal, tried, lying) or mended(proposal, tried, lying)
+    moved_one = moved_one or longer(proposal, tried, lying)
+    return moved_one or guarded(proposal, tried, lying)
 
 
-def cut_more(proposal, tried, drawn, every):
+def cut_more(proposal, tried, drawn, lying):
     """Return the proposal that cuts more of what draws carry through; None where no value or drop does.
 
     Parameters
@@ -349,7 +354,7 @@ def cut_more(proposal, tried, drawn, every):
     tried : Tried
     drawn : RobustRun
         Its worst fault names what is carried through.
-    every : sequence of Orientation
+    lying : sequence of Orientation
     """
     name, carried, _ = drawn.worst.partition(CARRIED)
     if not carried:
@@ -357,13 +362,13 @@ def cut_more(proposal, tried, drawn, every):
     for place, cut in enumerate(proposal.cuts):
         if not cut.device.bound or name not in cut.returns or not np.isfinite(cut.largest.limit):
             continue
-        other = moved(cut, 0.5 * (cut.device.limit + cut.largest.limit), every, proposal.row)
+        other = moved(cut, 0.5 * (cut.device.limit + cut.largest.limit), lying, proposal.row)
         if abs(other.device.limit - cut.device.limit) >= VALUE_STEP_M and other.margin_pass > 0.0:
             cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
             return replace(proposal, cuts=cuts, step=f"{cut.device.kind} moved to {other.device.text}")
-    wanted = short_trials.wanted_rows(tried.known, tried.states)
-    rows = [k for k, orientation in enumerate(every) if orientation.name == name and k not in wanted]
-    return dropped_before(proposal, rows, wanted, every)
+    wanted = short_trials.wanted_rows(tried.orientations, tried.states)
+    rows = [k for k, orientation in enumerate(lying) if orientation.name == name and k not in wanted]
+    return dropped_before(proposal, rows, wanted, lying)
 
 
 def purer(candidate, left_instead):
@@ -378,7 +383,7 @@ def purer(candidate, left_instead):
     """
     for name, _ in left_instead:
         drawn = RobustRun(1, 0, f"{name}{CARRIED}")
-        changed = cut_more(candidate.proposal, candidate.tried, drawn, candidate.ways.lying)
+        changed = cut_more(candidate.proposal, candidate.tried, drawn, candidate.orientations.lying)
         if changed is not None:
             return changed
     return None
@@ -397,10 +402,10 @@ def relieved(candidate):
     Proposal or None
         None where it has one, or a wanted orientation does not reach over any.
     """
-    proposal, lying = candidate.proposal, candidate.ways.lying
+    proposal, lying = candidate.proposal, candidate.orientations.lying
     if any(device.relieves for device in proposal.devices):
         return None
-    wanted = [lying[k] for k in short_trials.wanted_rows(candidate.ways, candidate.tried.states)]
+    wanted = [lying[k] for k in short_trials.wanted_rows(candidate.orientations, candidate.tried.states)]
     makers = [KINDS[kind] for kind in names(relieves=True)]
     breaks = [kind.relieving(wanted, MARGINS[-1], DESIGN_KEY) for kind in makers] if wanted else []
     device = next((device for device in breaks if device is not None), None)
@@ -411,39 +416,39 @@ def relieved(candidate):
     return replace(proposal, cuts=(cut, *proposal.cuts), step=step)
 
 
-def guarded(proposal, tried, every):
+def guarded(proposal, tried, lying):
     """Return the proposal with a drop before it for what is carried through or stays; None without one.
 
     Only devices through which what they reject falls are taken: a queue hardly notices them.
     """
-    wanted = short_trials.wanted_rows(tried.known, tried.states)
+    wanted = short_trials.wanted_rows(tried.orientations, tried.states)
     wrong = [k for n, k in enumerate(tried.rows) if tried.wrong[n] or tried.held[n]]
-    return dropped_before(proposal, [k for k in wrong if k not in wanted], wanted, every)
+    return dropped_before(proposal, [k for k in wrong if k not in wanted], wanted, lying)
 
 
-def dropped_before(proposal, others, wanted, every):
+def dropped_before(proposal, rejected, wanted, lying):
     """Return the proposal with a drop before it, the one that tells most others from what is wanted.
 
     Parameters
     ----------
     proposal : Proposal
-    others, wanted : sequence of int
+    rejected, wanted : sequence of int
         Rows that are to be dropped, and those that are to stay.
-    every : sequence of Orientation
+    lying : sequence of Orientation
 
     Returns
     -------
     Proposal or None
         None where no drop tells any of them; what no drop tells is left to the trial.
     """
-    if not others or not wanted:
+    if not rejected or not wanted:
         return None
     best, chosen, own = (0, 0.0), None, {cut.device.kind for cut in proposal.cuts}
     for kind in GUARDS:
         sign = 1.0 if kind.bound == "lower" else -1.0
-        values = sign * limits(kind, every)
+        values = sign * limits(kind, lying)
         least = values[wanted].min()
-        listed = [k for k in others if least - values[k] > LEAST_WINDOW]
+        listed = [k for k in rejected if least - values[k] > LEAST_WINDOW]
         room = least - max((values[k] for k in listed), default=np.inf)
         if listed and np.isfinite(room) and (len(listed), room) > best and kind.kind not in own:
             best, chosen = (len(listed), room), (kind, sign * (least - 0.5 * room), listed)
@@ -452,15 +457,15 @@ def dropped_before(proposal, others, wanted, every):
     (kind, middle, listed), room = chosen, best[1]
     limit = float(np.round(middle / VALUE_STEP_M) * VALUE_STEP_M)
     device = kind.proposal(DESIGN_KEY, limit).rewritten()
-    must = np.array([k in listed for k in range(len(every))])
+    must = np.array([k in listed for k in range(len(lying))])
     ends = [device.valued(limit + half) for half in (-0.5 * room, 0.5 * room)]
-    cut = judge_cut(every, proposal.row, device, must, *ends)
+    cut = judge_cut(lying, proposal.row, device, must, *ends)
     return replace(proposal, cuts=(cut, *proposal.cuts), step=f"{kind.kind} of {device.text} before it")
 
 
 def lost_at(tried, kind) -> bool:
     """Return whether the wanted orientation ends at a device of a kind."""
-    right = set(short_trials.wanted_rows(tried.known, tried.states))
+    right = set(short_trials.wanted_rows(tried.orientations, tried.states))
     ends = [tried.places[n] for n, k in enumerate(tried.rows) if k in right]
     own = KINDS[kind]
     name = own.trade or own.kind.replace("_", " ")  # as a trial names the device
@@ -472,7 +477,7 @@ def known_through(part, aspects, bowl):
     return stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
 
 
-def quickened(cut: Cut, every: Sequence[Orientation]) -> Cut:
+def quickened(cut: Cut, lying: Sequence[Orientation]) -> Cut:
     """Return a cut whose pulse is the shortest that blows off what it returns, with a reserve.
 
     Source: own; docs/design.md, "The loop".
@@ -480,7 +485,7 @@ def quickened(cut: Cut, every: Sequence[Orientation]) -> Cut:
     Parameters
     ----------
     cut : Cut
-    every : sequence of Orientation
+    lying : sequence of Orientation
         Of the part.
 
     Returns
@@ -492,9 +497,9 @@ def quickened(cut: Cut, every: Sequence[Orientation]) -> Cut:
     if not device.senses:
         return cut
     encounters = [
-        DeviceEncounter(orientation, every) for orientation in every if orientation.name in cut.returns
+        DeviceEncounter(orientation, lying) for orientation in lying if orientation.name in cut.returns
     ]
-    pushes = [device.jet.push(encounter.orientation, every) for encounter in encounters]
+    pushes = [device.jet.push(encounter.orientation, lying) for encounter in encounters]
     for steps in range(SHORTEST_PULSE_STEPS, round(device.time / PULSE_STEP_S)):
         time = steps * PULSE_STEP_S
         if all(
@@ -505,14 +510,14 @@ def quickened(cut: Cut, every: Sequence[Orientation]) -> Cut:
     return cut
 
 
-def longer(proposal: Any, tried: Tried, every: Sequence[Orientation]) -> Any:
+def longer(proposal: Any, tried: Tried, lying: Sequence[Orientation]) -> Any:
     """Return a proposal with a longer pulse where something is carried through that it should blow off.
 
     Parameters
     ----------
     proposal : Proposal
     tried : Tried
-    every : sequence of Orientation
+    lying : sequence of Orientation
 
     Returns
     -------
@@ -521,7 +526,7 @@ def longer(proposal: Any, tried: Tried, every: Sequence[Orientation]) -> Any:
     """
     for place, cut in enumerate(proposal.cuts):
         device: Any = cut.device
-        slipped = any(tried.wrong[n] and every[k].name in cut.returns for n, k in enumerate(tried.rows))
+        slipped = any(tried.wrong[n] and lying[k].name in cut.returns for n, k in enumerate(tried.rows))
         if not device.senses or not slipped or device.time >= PULSE:
             continue
         other = _timed(device, min(LONGER_PULSE * device.time, PULSE))
@@ -538,14 +543,14 @@ def _milliseconds(time: float) -> str:
     return f"{1e3 * time:.0f} ms"
 
 
-def widened(proposal: Any, every: Sequence[Orientation]) -> Any:
+def widened(proposal: Any, lying: Sequence[Orientation]) -> Any:
     """Return the proposal with a wider slot between its rails; None without rails that can be wider.
 
     A part lies askew along the wall: it comes to rails narrowed to its shank beside them, and slides on. The
     slot grows towards the head, about its middle, as long as the head is held by the rails.
     """
     for place, cut in enumerate(proposal.cuts):
-        shank = neck(every[proposal.row]) if cut.device.hangs else None
+        shank = neck(lying[proposal.row]) if cut.device.hangs else None
         if shank is None:
             continue
         first, last = cut.device.span
@@ -556,8 +561,8 @@ def widened(proposal: Any, every: Sequence[Orientation]) -> Any:
         if more < VALUE_STEP_M or span == cut.device.span or last - first > WIDEST_SLOT * shank.head:
             continue
         device = cut.device.with_span(span)
-        must = np.array([orientation.name in cut.returns for orientation in every])
-        other = judge_cut(every, proposal.row, device, must, cut.smallest, cut.largest)
+        must = np.array([orientation.name in cut.returns for orientation in lying])
+        other = judge_cut(lying, proposal.row, device, must, cut.smallest, cut.largest)
         cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
         return replace(proposal, cuts=cuts, step=f"slot widened to {in_mm(span[1] - span[0])}")
     return None

@@ -390,7 +390,7 @@ def joined_counts(*counts: tuple[tuple[str, int], ...]) -> tuple[tuple[str, int]
 
 def _instead(study: DesignStudy) -> str:
     """What left instead of what is wanted, and the option that counts it where its heading alone is off."""
-    listed, left = study.left_instead, sum(one.left for one in study.queues)
+    listed, left = study.left_instead, sum(queue.left for queue in study.queues)
     if not listed:
         return ""
     text = ", ".join(f"{name}: {count} of {left}{_came_through(study, name)}" for name, count in listed[:3])

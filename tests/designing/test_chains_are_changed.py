@@ -64,8 +64,8 @@ def test_nothing_is_changed_where_nothing_tells_them_apart(block):
 def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one(block):
     part, ways, names = block
     along, across = names["A@0"], names["A@90"]
-    assert proposals.alike(ways.lying, along, ()) == ()
-    same = proposals.alike(ways.lying, along, ("a",))
+    assert proposals.equivalent_rows(ways.lying, along, ()) == ()
+    same = proposals.equivalent_rows(ways.lying, along, ("a",))
     assert (
         along not in same and across in same and len(same) == sum(one.aspect == "A" for one in ways.lying) - 1
     )
@@ -169,7 +169,7 @@ def test_a_chain_costs_what_its_dearest_device_does():
 def test_a_cost_class_is_proposed_without_dearer_devices_and_the_widest_margin_comes_first(
     cost_class, dearer
 ):
-    ways = proposals.ways_of(cost_class, DesignRequest(target=1.0))
+    ways = proposals.recipes_of(cost_class, DesignRequest(target=1.0))
     assert all(dearer <= set(way.without) for way in ways)
     assert any("sorter" not in way.without for way in ways) == (cost_class == 3)
     margins = [way.margin for way in ways if not way.turns and not way.holes]
@@ -178,8 +178,8 @@ def test_a_cost_class_is_proposed_without_dearer_devices_and_the_widest_margin_c
 
 
 def test_no_way_is_left_of_a_class_whose_devices_are_not_to_be_used():
-    assert proposals.ways_of(3, DesignRequest(target=1.0, without=("sorter",))) == []
-    hung = proposals.ways_of(1, DesignRequest(target=1.0, outcome="hanging"))
+    assert proposals.recipes_of(3, DesignRequest(target=1.0, without=("sorter",))) == []
+    hung = proposals.recipes_of(1, DesignRequest(target=1.0, outcome="hanging"))
     assert {way.outcome for way in hung} == {"hanging"} and not any(way.turns for way in hung)
 
 
@@ -243,9 +243,9 @@ def test_what_comes_back_of_several_wanted_ones_is_no_fault_while_another_leaves
 def test_what_is_tried_is_told_with_headings_in_whole_degrees():
     sorter = make_device("sorter", "test", text="{of: A@178.007, play: 3.65 mm, sees: outline}")
     gap = make_device("gap", "test", limit=9e-3, text="9 mm")
-    said = proposals.Proposal(0, (), (gap, sorter), "test").told
+    said = proposals.Proposal(0, (), (gap, sorter), "test").sentence
     assert said == "gap: 9 mm, sorter: {of: A@178, play: 3.65 mm, sees: outline}"
-    assert proposals.Proposal(0, (), (), "test").told == "no device"
+    assert proposals.Proposal(0, (), (), "test").sentence == "no device"
 
 
 def test_a_sensor_sees_something_of_every_drawn_part():
@@ -263,7 +263,7 @@ def test_a_sensor_sees_something_of_every_drawn_part():
 def test_a_row_with_gaps_for_a_sensor_delivers_less(block):
     _, ways, names = block
     seen = tried(ways, {names["A@0"]}, (), (), names["A@0"])
-    wide = replace(seen, apart=short_trials.GAP * float((seen.shares * ways.lengths).sum()))
+    wide = replace(seen, spacing=short_trials.GAP * float((seen.shares * ways.lengths).sum()))
     assert wide.rate == pytest.approx(0.5 * seen.rate)
 
 
@@ -309,7 +309,7 @@ def test_what_left_a_queue_instead_is_cut_by_more(block):
     across, along = names["A@90"], names["A@0"]
     seen = tried(ways, {along}, {across}, (), along)
     proposal = proposals.better(proposals.Proposal(along, (), (), "no device"), seen, ways.lying)
-    candidate = SimpleNamespace(proposal=proposal, tried=seen, ways=ways)
+    candidate = SimpleNamespace(proposal=proposal, tried=seen, orientations=ways)
     changed = proposals.purer(candidate, (("in no known pose", 3), ("A@90", 2)))
     (before,), (after,) = proposal.cuts, changed.cuts
     assert abs(after.device.limit - after.largest.limit) < abs(before.device.limit - before.largest.limit)
@@ -321,7 +321,7 @@ def test_a_pressure_break_carries_what_is_wanted_and_lets_it_reach_over_the_ledg
     _, ways, names = block
     seen = tried(ways, {names["A@0"]}, (), (), names["A@0"])
     candidate = SimpleNamespace(
-        proposal=proposals.Proposal(names["A@0"], (), (), "test"), tried=seen, ways=ways
+        proposal=proposals.Proposal(names["A@0"], (), (), "test"), tried=seen, orientations=ways
     )
     changed = proposals.relieved(candidate)
     (cut,) = changed.cuts

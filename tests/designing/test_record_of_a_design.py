@@ -242,7 +242,7 @@ def test_no_jam_is_at_most_three_in_the_time_it_was_looked_for():
 def proofs_of(monkeypatch, first, second, results):
     """Prove a candidate whose studies are known by their bowls; the studies, and what was tried meanwhile."""
     tried, proofs = [], []
-    search = SimpleNamespace(least=0.0, given=frozenset(), request=DesignRequest(1.0), spent=False)
+    search = SimpleNamespace(least=0.0, kept_keys=frozenset(), request=DesignRequest(1.0), spent=False)
 
     def attempted(search, made, proposal, weights, driven=None):
         tried.append((proposal, driven, search.least))
@@ -260,7 +260,7 @@ def candidates_of(bowl, other, proposal="rails"):
     """A candidate at a drive, and one that is clean at another drive."""
     clean, ways = SimpleNamespace(clean=True, faults=()), SimpleNamespace(lying=())
     chain = SimpleNamespace(cuts=(), devices=(), name=proposal)
-    first = SimpleNamespace(bowl=bowl, proposal=chain, weights=None, tried=None, ways=ways, attempt=clean)
+    first = SimpleNamespace(bowl=bowl, proposal=chain, weights=None, tried=None, orientations=ways, attempt=clean)
     return first, SimpleNamespace(**vars(first) | {"bowl": replace(bowl, drive=other)})
 
 

@@ -47,7 +47,7 @@ def stopping(word):
 )
 def test_it_hands_over_what_was_proved_so_far_and_no_verdict(word, why, bowl):
     said, told = stopping(word)
-    found = loop.design(CUBE, bowls.default(), frozenset(), REQUEST, told=told)
+    found = loop.design(CUBE, bowls.default(), frozenset(), REQUEST, tell=told)
     assert found.partial and found.status == "not proved" and why in found.why
     assert (found.bowl is not None) == bowl and len(found.attempts) == bowl
     assert word in said[-1] and said[0] == "trial 1 of at most 16: A@0, no device"
@@ -56,7 +56,7 @@ def test_it_hands_over_what_was_proved_so_far_and_no_verdict(word, why, bowl):
 def test_a_family_is_stopped_with_the_parts_that_were_reached():
     _, told = stopping("draws:")
     other = replace(CUBE, name="other")
-    found = families.family([CUBE, other], bowls.default(), frozenset(), REQUEST, told=told)
+    found = families.family([CUBE, other], bowls.default(), frozenset(), REQUEST, tell=told)
     assert found.partial and len(found.members) == 1 and found.status == "not proved"
 
 

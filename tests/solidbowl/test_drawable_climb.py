@@ -79,7 +79,7 @@ def test_a_design_tries_its_chain_on_the_track_that_can_be_drawn(spaced, monkeyp
 
     monkeypatch.setattr(exploring.short_trials, "single", single)
     search = Search(PART, DesignRequest(10.0 / units.MINUTE), made.bowl, frozenset(given), print)
-    search.known = shares(PART, made.bowl, rule="csa")
+    search.shares = shares(PART, made.bowl, rule="csa")
     _, ways = on_track(made, devices)
     weights = np.full(len(ways.lying), 1.0 / len(ways.lying))
     cuts = tuple(Cut(one, np.nan, np.nan, one, one, ()) for one in devices)
