@@ -109,7 +109,7 @@ class ToolingStudy(ReadableRecord):
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
     play: float = PLAY_M  # [m] of the part from the wall, within the margin
     tolerance: float = TOLERANCE_M  # [m] of its size, within the margin
-    trials: tuple[Any, ...] = ()  # designing.own_trial.TriedDesign of what was tried, that of `design` first
+    trials: tuple[Any, ...] = ()  # of TriedDesign: what was tried, that of `design` first
 
     def trial_of(self, place: int) -> Any:
         """Return what the trial of an orientation's design said: its TriedDesign; None without one."""
