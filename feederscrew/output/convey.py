@@ -312,14 +312,10 @@ def _map(study):
 PHASE_COLOURS = {"stick": "#5c6b78", "forward": "#009e73", "backward": "#d55e00", "flight": "#0072b2"}
 PLATE = "#aab4bd"
 PHASE_LINES = {"stick": "-", "forward": "-", "backward": "--", "flight": ":"}
-REGIMES = {  # colour and label; what a designer wants is the strongest
-    "stick": ("#eef2f5", "sticks"),
-    "forward": ("#79bfa4", "slips forward only"),
-    "backward": ("#e3a08a", "slips back only"),
-    "both": ("#f3dfae", "slips both ways"),
-    "hop": ("#c9dcea", "hops"),
-    "no steady state": ("#8c8c8c", "no steady state"),
-}
+REGIME_COLOURS = {  # what a designer wants is the strongest
+    "stick": "#eef2f5", "forward": "#79bfa4", "backward": "#e3a08a", "both": "#f3dfae", "hop": "#c9dcea",
+    "no steady state": "#8c8c8c",
+}  # fmt: skip
 FIRST_PEAK = 3.0  # [1] near here the velocity per stroke has its first peak, without rebound
 THROWS = {1.0: "hop", FIRST_PEAK: "first peak", round(throw_of_flight(1.0), 4): "one period"}
 HATCH = "////"
@@ -448,13 +444,15 @@ def _velocity(figure, axes, grid) -> None:
 
 def _regimes(axes, grid) -> None:
     style.tidy(axes, title="Regimes", x=_label(grid.first), grid="none")
-    colours = mpl_colors.ListedColormap([REGIMES[name][0] for name in grid.names])
+    colours = mpl_colors.ListedColormap([REGIME_COLOURS[name] for name in grid.names])
     axes.pcolormesh(
         *(grid.first.shown, grid.second.shown, grid.codes.T),
         **{"cmap": colours, "vmin": -0.5, "vmax": len(grid.names) - 0.5, "shading": "nearest"},
     )
     present = [name for code, name in enumerate(grid.names) if (grid.codes == code).any()]
-    handles = [mpl_patches.Patch(facecolor=REGIMES[name][0], label=REGIMES[name][1]) for name in present]
+    handles = [
+        mpl_patches.Patch(facecolor=REGIME_COLOURS[name], label=regime_words(name)) for name in present
+    ]
     if grid.values["several"].any():
         handles.append(
             mpl_patches.Patch(fill=False, linewidth=0, hatch=HATCH, label="several velocities (left)")
