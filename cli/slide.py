@@ -54,9 +54,9 @@ def slide(betas, as_published, bowl, pictures, out):
     from feederscrew.output import slide as slide_output
     from feederscrew.studies.slide import slide as study
 
-    given, path = out.settings(bowl), bowl["path"]
-    with out.folder(name(path), identity(path), texts(given)) as folder:
-        found = study(record(given), betas, as_published=as_published)
-        offers.write(folder, slide_output.offers(found), pictures=pictures)
-    out.say(*slide_output.remarks(found))
-    out.show(slide_output.printed(found, out.format), slide_output.document(found, texts(given)))
+    bowl_settings, path = out.settings(bowl), bowl["path"]
+    with out.folder(name(path), identity(path), texts(bowl_settings)) as folder:
+        result = study(record(bowl_settings), betas, as_published=as_published)
+        offers.write(folder, slide_output.offers(result), pictures=pictures)
+    out.say(*slide_output.remarks(result))
+    out.show(slide_output.printed(result, out.format), slide_output.document(result, texts(bowl_settings)))

@@ -9,6 +9,7 @@ from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.heavy import heavy
 from feederscrew.output.words import regime_words
+from feederscrew.studies.slide import SlideMap, SlideStudy
 
 matplotlib = heavy("matplotlib")
 mpl_colors = heavy("matplotlib.colors")
@@ -36,10 +37,10 @@ def printed(study, format):
 def cells(slides):
     """Return every cell of every SlideMap, as a frame."""
     parts = []
-    for one in slides:
-        columns = one.grid.columns()
+    for slide_map in slides:
+        columns = slide_map.grid.columns()
         count = len(columns["regime"])
-        parts.append({"beta_deg": np.full(count, np.degrees(one.beta)), **columns})
+        parts.append({"beta_deg": np.full(count, np.degrees(slide_map.beta)), **columns})
     return tables.frame({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
@@ -52,37 +53,26 @@ def summary(slides):
         "regime",
         *(f"share of the map: {regime_words(name)}" for name in first.grid.names),
     ]
-    columns = {f"beta = {np.degrees(one.beta):.6g} deg": _column(one) for one in slides}
+    columns = {f"beta = {np.degrees(slide_map.beta):.6g} deg": _column(slide_map) for slide_map in slides}
     return tables.frame({"at the bowl's own point": names, **columns})
 
 
-def document(study, settings) -> dict[Any, Any]:
-    """Return a SlideStudy as the JSON document.
-
-    Parameters
-    ----------
-    study : SlideStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-
-    Returns
-    -------
-    dict
-    """
-    maps = [_map(one) for one in study.maps]
+def document(study: SlideStudy, settings) -> dict[str, Any]:
+    """Return a SlideStudy as the JSON document."""
+    maps = [_map(slide_map) for slide_map in study.maps]
     return {"bowl": settings, "as_published": study.as_published, "maps": maps}
 
 
 def remarks(study):
     """Return what a reader of a SlideStudy should know, a sentence each."""
     lines = []
-    for one in study.maps:
-        shares, beta = one.grid.shares(), f"beta = {np.degrees(one.beta):.6g} deg"
-        empty, cells = one.grid.unanswered("mu_limit"), one.grid.codes.size
+    for slide_map in study.maps:
+        shares, beta = slide_map.grid.shares(), f"beta = {np.degrees(slide_map.beta):.6g} deg"
+        empty, cells = slide_map.grid.unanswered("mu_limit"), slide_map.grid.codes.size
         if shares["hop"] == 0.0:
             lines.append(f"{beta}: the drive does not lift the part, so no cell hops.")
         if shares["stick"] + shares["hop"] == 1.0:
-            lines.append(f"{beta}: nothing slips before it hops at static friction {one.friction:g}.")
+            lines.append(f"{beta}: nothing slips before it hops at static friction {slide_map.friction:g}.")
         if empty:
             lines.append(
                 f"{beta}: mu_limit is empty in {empty} of {cells} cells, "
@@ -91,40 +81,40 @@ def remarks(study):
     return lines
 
 
-def settings(found):
+def settings(bowl_settings):
     """Return the bowl settings and where each came from, as a frame."""
     columns = {
-        "key": [s.key.name for s in found],
-        "value": [s.text for s in found],
-        "from": [s.origin for s in found],
-        "lowest": [s.key.lowest for s in found],
-        "highest": [s.key.highest for s in found],
-        "meaning": [s.key.meaning for s in found],
+        "key": [s.key.name for s in bowl_settings],
+        "value": [s.text for s in bowl_settings],
+        "from": [s.origin for s in bowl_settings],
+        "lowest": [s.key.lowest for s in bowl_settings],
+        "highest": [s.key.highest for s in bowl_settings],
+        "meaning": [s.key.meaning for s in bowl_settings],
     }
     return tables.frame(columns)
 
 
-def _map(one) -> dict[Any, Any]:
+def _map(slide_map) -> dict[Any, Any]:
     return {
-        "beta_deg": np.degrees(one.beta),
+        "beta_deg": np.degrees(slide_map.beta),
         "operating_point": {
-            "acceleration_ratio": one.ratio,
-            "alpha_minus_theta_deg": np.degrees(one.alpha_minus_theta),
-            "static_friction": one.friction,
-            **one.at_bowl,
-            "regime": one.regime,
+            "acceleration_ratio": slide_map.ratio,
+            "alpha_minus_theta_deg": np.degrees(slide_map.alpha_minus_theta),
+            "static_friction": slide_map.friction,
+            **slide_map.at_bowl,
+            "regime": slide_map.regime,
         },
-        "onset_ratios": one.onsets,
-        "shares": one.grid.shares(),
-        "cells": one.grid.columns(),
+        "onset_ratios": slide_map.onsets,
+        "shares": slide_map.grid.shares(),
+        "cells": slide_map.grid.columns(),
     }
 
 
-def _column(one) -> list[Any]:
-    numbers = [one.ratio, np.degrees(one.alpha_minus_theta), one.friction]
-    numbers += [one.at_bowl[name] for name in LIMITS] + [one.onsets[name] for name in ONSETS]
-    shares = [_percent(share) for share in one.grid.shares().values()]
-    return [*(_number(number) for number in numbers), regime_words(one.regime), *shares]
+def _column(slide_map) -> list[Any]:
+    numbers = [slide_map.ratio, np.degrees(slide_map.alpha_minus_theta), slide_map.friction]
+    numbers += [slide_map.at_bowl[name] for name in LIMITS] + [slide_map.onsets[name] for name in ONSETS]
+    shares = [_percent(share) for share in slide_map.grid.shares().values()]
+    return [*(_number(number) for number in numbers), regime_words(slide_map.regime), *shares]
 
 
 def _number(value) -> str:
@@ -153,17 +143,8 @@ OWN = "this bowl"
 LABEL = {"fontsize": 8.5, "color": style.INK, "zorder": 4}
 
 
-def surface(slide):
-    """Draw limiting friction [4.27] over (alpha - theta, G), as Figures 5-2 to 5-4, up to friction 2.
-
-    Parameters
-    ----------
-    slide : SlideMap
-
-    Returns
-    -------
-    Figure
-    """
+def surface(slide: SlideMap):
+    """Draw limiting friction [4.27] over (alpha - theta, G), as Figures 5-2 to 5-4, up to friction 2."""
     figure = style.figure(6.4, 5.2)
     axes = figure.add_subplot(projection="3d", computed_zorder=False)
     angles, ratios, friction = slide.sheet(HIGHEST)
@@ -190,18 +171,8 @@ def surface(slide):
     return figure
 
 
-def contours(slide):
-    """Draw lines of equal limiting friction [4.27], as Figure 5-5, with the hop and the bowl's own point.
-
-    Parameters
-    ----------
-    slide : SlideMap
-        Of many cells.
-
-    Returns
-    -------
-    Figure
-    """
+def contours(slide: SlideMap):
+    """Draw lines of equal limiting friction [4.27], as Figure 5-5, with the hop and the bowl's own point."""
     figure, axes = _map_axes(slide, "Limiting friction")
     _levels(axes, slide)
     _hop_region(axes, slide, slide.level_hop)
@@ -209,18 +180,8 @@ def contours(slide):
     return figure
 
 
-def regimes(slide):
-    """Draw what the bowl's own friction allows in each cell, with the bowl's own point.
-
-    Parameters
-    ----------
-    slide : SlideMap
-        Of many cells.
-
-    Returns
-    -------
-    Figure
-    """
+def regimes(slide: SlideMap):
+    """Draw what the bowl's own friction allows in each cell, with the bowl's own point."""
     figure, axes = _map_axes(slide, f"Regimes at static friction {slide.friction:g}")
     widest, top = axes.get_xlim()[1], axes.get_ylim()[1]
     colours = (
@@ -240,17 +201,7 @@ def regimes(slide):
 
 
 def curves(slides):
-    """Draw limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28].
-
-    Parameters
-    ----------
-    slides : sequence of SlideMap
-        One a vibration angle.
-
-    Returns
-    -------
-    Figure
-    """
+    """Draw limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28]."""
     figure = style.figure(6.4, 4.2)
     axes = style.tidy(
         figure.add_subplot(), title="Limiting friction of an aligned part, α = θ", x=RATIO, y=FRICTION
@@ -427,8 +378,8 @@ def offers(study) -> list[Any]:
     """Offer the files of a SlideStudy, as a list of Offer."""
     fine = cache(partial(study.fine, PICTURE))  # once for all pictures
     pictures = [
-        offer.picture(f"slide_{kind}_beta{np.degrees(one.beta):.6g}.png", alt, _draw, kind, fine, place)
-        for place, one in enumerate(study.maps)
+        offer.picture(f"slide_{kind}_beta{np.degrees(slide_map.beta):.6g}.png", alt, _draw, kind, fine, place)
+        for place, slide_map in enumerate(study.maps)
         for kind, alt in ALTS.items()
     ]
     return [

@@ -68,10 +68,6 @@ def test_the_hop_begins_at_its_ratio():
         assert heights == pytest.approx([start / math.sin(math.radians(20))])
 
 
-def test_no_hop_is_drawn_where_none_is():
-    assert not any("hops" in text for text in texts(slide_output.regimes(slide(0))))
-
-
 def test_contour_lines_follow_4_27_and_carry_their_values():
     figure = slide_output.contours(sliding_map(bowl.default(), math.radians(20), shape=slide_output.PICTURE))
     axes = figure.axes[0]
@@ -112,8 +108,3 @@ def test_extreme_angles_draw_without_a_warning(beta):
     for draw in (slide_output.surface, slide_output.contours, slide_output.regimes):
         assert style.png(draw(one))[:4] == b"\x89PNG"
     assert style.png(slide_output.curves([one]))[:4] == b"\x89PNG"
-
-
-def test_the_same_map_gives_the_same_bytes():
-    for draw in (slide_output.contours, slide_output.regimes):
-        assert style.png(draw(slide())) == style.png(draw(slide()))

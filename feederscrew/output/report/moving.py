@@ -106,7 +106,7 @@ def rate(case) -> Chapter:
     found = case.rate
     tried = bowls.verified(case.path)
     own = case.part, case.bowl, found.rate.orientations.lying[found.rate.row].name
-    document = proof.beside(rate_output.document(found), tried, *own)
+    document = proof.with_trial(rate_output.document(found), tried, *own)
     lead = Text(
         "The chain from velocity to rate. The range in brackets is over all starts, friction a fifth off, "
         "restitution where the part hops, and the interval of the shares. The second table has what the "
