@@ -1,6 +1,8 @@
 """The page of ``feeder design``, of one part and of a family of parts."""
 
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
 from itertools import zip_longest
 from typing import Any
 
@@ -13,6 +15,8 @@ from feederscrew.output.page.blocks import (
     Chapter,
     CsvSheet,
     Heading,
+    MarkedCell,
+    Matrix,
     Notes,
     Page,
     Picture,
@@ -37,22 +41,45 @@ MEASURE = (
 )
 
 
-def page(study, built=None):
-    """Return the page of a DesignStudy and its Built bowl as HTML that needs no other file."""
-    return html(
-        Page(
-            study.part.name,
-            f"design of a bowl: {study.status}",
-            tuple(_sections(study, built)),
-            kind="design",
-        )
-    )
+SHOP = (  # what a shop reads of the machine, rows of its summary
+    "vibration angle [deg]", "leaves", "springs", "natural frequency [Hz]", "above the drive [%], gain",
+    "leaf stress [MPa]", "force of the magnet [N]",
+)  # fmt: skip
+FILES = {  # by ending: what they are
+    "pdf": "sheets of the bowl, its springs, its tooling and the sheet development of its track",
+    "dxf": "drawing with dimensions, to cut from",
+    "svg": "the same drawing, to look at",
+    "step": "solid with exact faces",
+    "3mf": "solid to print, in mm",
+    "stl": "solid as a mesh, in mm",
+    "yaml": "bowl file for the other commands of feeder",
+}
 
 
-def _sections(study, built) -> Iterator[Any]:
+def page(study, built=None, papers=()):
+    """Return the page of a design as HTML that needs no other file.
+
+    Parameters
+    ----------
+    study : DesignStudy
+    built : designing.beside.Built, optional
+    papers : sequence of Offer
+        The other files of the design: some are shown, and those to build from have a link.
+
+    Returns
+    -------
+    str
+    """
+    chapters = tuple(_sections(study, built, offer.by_name(papers)))
+    return html(Page(study.part.name, f"design of a bowl: {study.status}", chapters, kind="design"))
+
+
+def _sections(study, built, papers) -> Iterator[Any]:
     d = designs.document(study)
     answer = tuple(_answer(study, d))
     yield Chapter(answer, _tiles(d), study.warnings, anchor="answer", title="The answer")
+    if built is not None and study.delivers:
+        yield from _to_build(study, built, papers)
     history = designs.short_attempts(study)
     picture = Picture(
         "design_history.png", png(designs.history_figure(study)), "Each short trial of the loop"
@@ -67,10 +94,6 @@ def _sections(study, built) -> Iterator[Any]:
         yield Chapter(tuple(_played(study)), anchor="trial", title="The trial")
     if study.queues:
         yield Chapter(tuple(_proof(study, d)), anchor="proof", title="The proof")
-    if built is not None and study.delivers:
-        mark = marking.of_trial(designs.trial_of(study))
-        shown = tuple(solidbowl_views.blocks(built.drawn and built.drawn.solid, study.part, built.why, mark))
-        yield Chapter(shown, anchor="bowl", title="The bowl")
     if not study.delivers:  # nothing to build from, nothing to accept
         return
     sheet = designs.acceptance(study)
@@ -82,6 +105,38 @@ def _sections(study, built) -> Iterator[Any]:
         Notes(MEASURE),
     )
     yield Chapter(blocks, anchor="acceptance", title="Acceptance sheet")
+
+
+def _to_build(study, built, papers) -> Iterator[Chapter]:
+    """What a shop builds from: the bowl, its tooling, springs and drive, and the files of them."""
+    mark = marking.of_trial(designs.trial_of(study))
+    views = solidbowl_views.blocks(built.drawn and built.drawn.solid, study.part, built.why, mark)
+    yield Chapter(tuple(views), anchor="bowl", title="The bowl")
+    drawn = [
+        Picture(name, content if isinstance(content := papers[name].make(), bytes) else content.encode(), alt)
+        for name, alt in (
+            ("tooling_3d.png", "The part over the cut: what leaves, and what falls by least"),
+            ("tooling.png", "Each orientation at each device, and the section in which it leaves"),
+            ("tooling.svg", "The tooling unrolled, with its dimensions, and as it is bent"),
+        )
+        if name in papers
+    ]
+    if drawn:
+        lead = Text("The part over the cut, what each device does, and the drawing of the cuts.")
+        yield Chapter((lead, *drawn), anchor="tooling", title="The tooling")
+    if built.sheet is not None:
+        summary = machine.summary(built.sheet)
+        rows = [row for row in summary.rows() if row["quantity"] in SHOP]
+        springs = Table(frame({name: [row[name] for row in rows] for name in summary}))
+        shown = [Picture(one.name, one.make(), one.alt) for name, one in papers.items() if name == "bowl.png"]
+        yield Chapter((springs, *shown), anchor="springs", title="Springs and drive")
+    listed = [(name, FILES.get(name.rpartition(".")[2])) for name in papers]
+    cells = tuple((MarkedCell(name, link=name), MarkedCell(what)) for name, what in listed if what)
+    if cells:
+        lead = Text("These files lie beside this page.")
+        yield Chapter(
+            (lead, Matrix(("file", "what it is"), cells)), anchor="files", title="Files to build from"
+        )
 
 
 def _answer(study, d) -> Iterator[Any]:
@@ -147,8 +202,6 @@ def _proof(study, d) -> Iterator[Any]:
         "A queue of parts that push each other, at three fills, and draws of part, friction, drive and cuts, "
         "each tried with parts of its own."
     )
-    from feederscrew.output.tables import frame
-
     if d["long_ride"]:
         yield Text(
             "Parts of each orientation that comes often first ride along the bare track to the tooling. They "
@@ -201,7 +254,6 @@ def offers(study, settings, built=None):
     sheet, drawn = (None, None) if built is None else (built.sheet, built.drawn)
     found = [
         offer.document("design.json", designs.document, study),
-        offer.text("design.html", page, study, built),
         offer.table("design_trials.csv", designs.attempts, study),
         offer.table("alternatives.csv", designs.alternatives, study),
         offer.picture("design_history.png", "Each short trial of the loop", designs.history_figure, study),
@@ -212,10 +264,10 @@ def offers(study, settings, built=None):
                 offer.picture(f"risk_{one.kind}.png", one.text, designs.risk_picture, study.part, one)
             )
     if study.bowl is None:
-        return found
+        return [*found, offer.text("design.html", page, study, built)]
     found.append(offer.text("design.yaml", designs.bowl_file, study, settings, sheet))
     if not study.delivers:
-        return found
+        return [*found, offer.text("design.html", page, study, built)]
     tried = designs.trial_of(study)
     found.append(offer.table("acceptance.csv", designs.acceptance, study))
     if sheet is not None:
@@ -226,7 +278,8 @@ def offers(study, settings, built=None):
     if study.tooling is not None:
         own = tooling.offers(study.tooling, settings, mark=marking.of_trial(tried))
         found += [one for one in own if one.name != "tooling.yaml"]  # design.yaml has the devices
-    return found
+    found = [replace(one, make=cache(one.make)) for one in found]  # the page shows some of them
+    return [*found, offer.text("design.html", page, study, built, found)]
 
 
 def _unproved(study, settings) -> Iterator[Any]:

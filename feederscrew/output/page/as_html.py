@@ -4,6 +4,7 @@ import base64
 import csv
 import io
 import json
+import re
 import struct
 from collections.abc import Iterator
 from html import escape as html_escape
@@ -43,6 +44,7 @@ PLAYER = (
     "<output>0.00 s</output></span>"
 )
 LICENCE = "three.LICENSE.txt"
+SVG_SIZE = re.compile(rb'width="([\d.]+)pt" height="([\d.]+)pt"')
 
 
 def html(page) -> str:
@@ -188,13 +190,19 @@ def _picture(picture, scale=1.0) -> str:
     kind += " scrolls" if width > SCREEN else ""
     kind += " tall" if height > TALL * width else " broad" if width > BROAD and height > 0.7 * width else ""
     return (
-        f'<figure id="{picture.file}" class="{kind}"><img src="{_data("image/png", picture.content)}" '
+        f'<figure id="{picture.file}" class="{kind}"><img src="{_data(_kind(picture), picture.content)}" '
         f'width="{width}" height="{height}" style="--own: {width}px" alt="{escape(picture.alt)}"></figure>'
     )
 
 
+def _kind(picture) -> str:
+    return "image/svg+xml" if picture.file.endswith(".svg") else "image/png"
+
+
 def _size(picture) -> list[Any]:
     """Width and height of a picture at its own size [px of a page]."""
+    if picture.file.endswith(".svg"):
+        return [float(points) * CSS_DPI / 72 for points in SVG_SIZE.search(picture.content).groups()]
     return [pixels * CSS_DPI / DPI for pixels in struct.unpack(">2I", picture.content[16:24])]
 
 

@@ -50,7 +50,7 @@ class CsvSheet:
 
 @dataclass(frozen=True)
 class Picture:
-    """A PNG; ``printed`` for one that stands in for the 3-D views on paper."""
+    """A PNG, or an SVG sized in points; ``printed`` for one that stands in for the 3-D views on paper."""
 
     file: str
     content: bytes
