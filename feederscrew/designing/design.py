@@ -36,7 +36,7 @@ class DesignOptions(BowlSettings, total=False):
     draws: int
     seed: int
     jobs: int
-    shares: Shares | None
+    aspect_shares: Shares | None
     progress: Callable[[str], None] | None
     overrides: Overrides
 
@@ -74,7 +74,7 @@ def design(
     draws: int = DesignRequest.draws,
     seed: int = DesignRequest.seed,
     jobs: int = DesignRequest.jobs,
-    shares: Shares | None = None,
+    aspect_shares: Shares | None = None,
     progress: Callable[[str], None] | None = None,
     overrides: Overrides = (),
     **settings: Unpack[BowlSettings],
@@ -120,7 +120,7 @@ def design(
         Of everything that is drawn.
     jobs : int
         Cores to use; the answer does not depend on it.
-    shares : Shares, optional
+    aspect_shares : Shares, optional
         Of ``shares``; what lies on the moving floor of the designed bowl without it.
     progress : callable, optional
         Called with what is tried, a sentence.
@@ -164,6 +164,6 @@ def design(
             for member in family.members
         )
         return replace(family, members=tuple(members))
-    shared = the_shares(shares)
+    shared = the_shares(aspect_shares)
     study = loop.design(arguments.a_part(part), plain, kept_keys, request, shares=shared, tell=progress)
     return built_bowl.with_machine(study, built_bowl.built(study, kept_settings))
