@@ -367,7 +367,7 @@ class _UnderWay:
             if self.resume and self.store.holds(request.name, task.key):
                 self.kept += 1
                 self.finished.add(request.name)
-                self.tell(is_reused=True)
+                self.tell(True)
             else:
                 yield task
 
@@ -375,7 +375,7 @@ class _UnderWay:
         """Put what came of a part in place."""
         self.store.keep(outcome)
         self.finished.add(outcome.name)
-        self.tell(is_reused=False)
+        self.tell(False)
 
 
 def _contact_sheet(tiles):
