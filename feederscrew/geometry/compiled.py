@@ -3,13 +3,15 @@
 import functools
 import hashlib
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 # functions that compiled ones may call, not yet registered, and how each is compiled
 PENDING: list[tuple[Callable[..., Any], dict[str, Any]]] = []
-NOWHERE = "/dev/null"  # where no folder is: what is not kept is not found
+NO_FOLDER = "/dev/null"  # where no folder is: what is not kept is not found
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
 SOURCES = (
     "geometry/compiled.py",
@@ -23,6 +25,24 @@ SOURCES = (
 )
 
 
+def record_type(*names: str, whole: tuple[str, ...] = (), flags: tuple[str, ...] = ()) -> np.dtype:
+    """Return a record of numbers by name; some of them are whole, some are yes or no."""
+    kinds = dict.fromkeys(whole, np.int64) | dict.fromkeys(flags, np.bool_)
+    return np.dtype([(name, kinds.get(name, np.float64)) for name in names], align=True)
+
+
+def zero_rows(shape: int | tuple[int, ...], kind: np.dtype) -> np.recarray:
+    """Return an array of zeros, of that shape, of a kind of record."""
+    return np.zeros(shape, kind).view(np.recarray)
+
+
+def frozen_rows(values: Sequence[Sequence[float]], kind: np.dtype) -> np.recarray:
+    """Return records of a kind with some values, a sequence each, closed to writing."""
+    records = np.array([tuple(row) for row in values], kind).view(np.recarray)
+    records.setflags(write=False)
+    return records
+
+
 def compiled(function, arrays=False):
     """Mark a function that is compiled into those that call it; called from Python it runs as it stands.
 
@@ -33,7 +53,7 @@ def compiled(function, arrays=False):
     return _marked(function, arrays=arrays)
 
 
-def apart(function, arrays=False):
+def outlined(function, arrays=False):
     """Mark a large function of few arguments that is called in several places: compiled once for all."""
     return _marked(function, arrays=arrays, forceinline=False)
 
@@ -65,7 +85,7 @@ def fitting(function, half_edges, plain=None):
 def on_disk(function):
     """Whether a compiled function is in the cache already, or numba is set not to compile."""
     return not hasattr(function, "stats") or any(
-        Path(function.stats.cache_path or NOWHERE).glob(f"*{function.__name__}_{_fingerprint()}*.nbi")
+        Path(function.stats.cache_path or NO_FOLDER).glob(f"*{function.__name__}_{_fingerprint()}*.nbi")
     )
 
 
@@ -113,8 +133,8 @@ def _register() -> None:
 
     while PENDING:
         function, how = PENDING.pop()
-        kept = {"cache": _can_keep()} if how.get("cache") else {}
-        register_jitable(**{"forceinline": True} | _options(**how) | kept)(function)
+        caching = {"cache": _can_keep()} if how.get("cache") else {}
+        register_jitable(**{"forceinline": True} | _options(**how) | caching)(function)
 
 
 def _options(arrays=False, **others) -> dict[Any, Any]:

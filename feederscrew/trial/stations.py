@@ -6,10 +6,10 @@ from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.fates import leading
 from feederscrew.trial import staging
 
-BARE = Device("")
+BARE_TRACK = Device("")
 
 
-def station(device, track, every, start=0.0, slopes=(), slot=()):
+def station(device, track, orientations, start=0.0, slopes=(), slot=()):
     """Return one device with enough track before and behind it, a Stage.
 
     Parameters
@@ -17,7 +17,7 @@ def station(device, track, every, start=0.0, slopes=(), slot=()):
     device : Device
         A measured yield is bare track.
     track : Track
-    every : sequence of Orientation
+    orientations : sequence of Orientation
         Of the part, the longest of which sets how long a device is that goes on along the track.
     start : float [m]
         Where the cut begins.
@@ -26,14 +26,18 @@ def station(device, track, every, start=0.0, slopes=(), slot=()):
     slot : (float [m], float [m]) or ()
         Between the rails before it, in which parts hang from there on.
     """
-    return staging.stage(device, device.standing(track, every), track, every, start, slopes, slot)
+    return staging.stage(
+        device, device.standing(track, orientations), track, orientations, start, slopes, slot
+    )
 
 
-def at_entry(devices, track, every) -> tuple[Any, ...]:
+def at_entry(devices, track, orientations) -> tuple[Any, ...]:
     """Return the slopes of the devices that come first and lean the track: they begin at its entry."""
-    return tuple(slope for one in leading(devices) for slope in one.standing(track, every).slopes)
+    return tuple(
+        slope for device in leading(devices) for slope in device.standing(track, orientations).slopes
+    )
 
 
-def plain(track, every, length, slopes=()):
+def plain(track, orientations, length, slopes=()):
     """Return a stretch of the bare track, from 0 to ``length`` [m], a Stage; slopes as for ``station``."""
-    return staging.plain(BARE, track, every, length, slopes)
+    return staging.plain(BARE_TRACK, track, orientations, length, slopes)

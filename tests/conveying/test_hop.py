@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from feederscrew.bowl.reading import settings
 from feederscrew.bowl.settings import record
 from feederscrew.conveying.answer import answer
-from feederscrew.conveying.hop import MARGIN_M, Hop, hop, remark
+from feederscrew.conveying.hop import HOP_MARGIN_M, Hop, hop, remark
 
 BOWL = record(settings(overrides=["track.climb=3 deg", "friction.static=0.6", "restitution=0.3"]))
 
@@ -98,5 +98,5 @@ def test_a_flight_over_several_periods_is_one_flight():
 def test_a_hop_is_told_where_it_is_higher_than_a_margin():
     """0.38 mm at 50 Hz and throw number 2.3, a quarter of that at 100 Hz."""
     (said,) = remark(bowl_at(2.3))
-    assert hop(bowl_at(2.3)).height > MARGIN_M and "0.38 mm high and 3.5 mm far" in said
+    assert hop(bowl_at(2.3)).height > HOP_MARGIN_M and "0.38 mm high and 3.5 mm far" in said
     assert remark(bowl_at(2.3, 100.0)) == remark(bowl_at(0.9)) == ()

@@ -10,7 +10,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
 from feederscrew.geometry.lattice import Cells, cells, handles
 from feederscrew.part.record import Part
-from feederscrew.trial import whereabouts
+from feederscrew.trial import part_poses
 from feederscrew.trial.shape import solid_of
 
 CELLS = 36  # along the longest side of a part
@@ -135,7 +135,7 @@ def _apart(
 def _turn(numbers: np.ndarray) -> np.ndarray:
     state = np.zeros(body.STATE)
     state[body.Q : body.Q + 4] = numbers / vectors.norm(numbers)
-    return whereabouts.matrix(state)
+    return part_poses.matrix(state)
 
 
 def _section(grid: Cells) -> float:

@@ -2,36 +2,45 @@
 
 While the directions of the slips are known, so is the friction of each contact as a share of what presses
 it, and the latter solves linear equations. A step on the floor changes a slip by little beside itself: the
-directions settle at once. In a contact's row LAST holds its impulse (x, y, z) for a unit of what presses it,
-and CHANGE the rates that this gives.
+directions settle at once. In a contact ``last`` holds its impulse (x, y, z) for a unit of what presses
+it, and ``change`` the rates that this gives.
 """
 
 import math
 
-from feederscrew.dropping.kernel.floor_contacts import CHANGE, LAST, LEVER, RATE, WANTED, push, speed
+from feederscrew.dropping.kernel.floor_contacts import (
+    ahead_lever,
+    aside_lever,
+    point_speed,
+    push,
+    speeds,
+    up_lever,
+    up_speed,
+)
 from feederscrew.geometry.compiled import compiled
 
-TURNS = 6  # changes of the directions after which the sweeps take over
+MAX_DIRECTION_CHANGES = 6  # after which the sweeps take over
 
 
 @compiled
 def slide(state, contacts, count, friction, converged):
-    """Give impulses [sqrt(g L)] to one or two contacts (N, WIDTH) that press and slip; say if found."""
+    """Give impulses [sqrt(g L)] to one or two contacts (N,) that press and slip; say if they settle."""
     first, last = contacts[0], contacts[count - 1]
     for n in range(count):
-        aim(contacts[n], friction, speed(state, contacts[n], 0), speed(state, contacts[n], 1))
-    for _ in range(TURNS):
-        one, other = pressed(state, first, last, count)
-        if not (one >= 0.0 and other >= 0.0):
+        ahead, aside, _ = speeds(state, contacts[n])
+        aim(contacts[n], friction, ahead, aside)
+    for _ in range(MAX_DIRECTION_CHANGES):
+        press, other_press = presses(state, first, last, count)
+        if not (press >= 0.0 and other_press >= 0.0):
             return False
         change = 0.0
         for n in range(count):
-            by = one if n == 0 else other
-            change += by * turned(state, contacts[n], first, last, one, other, friction)
-        if change <= converged * (one + other):
+            by = press if n == 0 else other_press
+            change += by * aim_again(state, contacts[n], first, last, press, other_press, friction)
+        if change <= converged * (press + other_press):
             for n in range(count):
-                for e in range(3):
-                    push(state, contacts[n], e, (one if n == 0 else other) * contacts[n, LAST + e])
+                row, by = contacts[n], press if n == 0 else other_press
+                push(state, row, by * row.ahead_last, by * row.aside_last, by * row.up_last)
             return True
     return False
 
@@ -43,41 +52,49 @@ def aim(row, friction, ahead, aside):
     if size == 0.0:
         return math.inf
     x, y = -friction * ahead / size, -friction * aside / size
-    change = abs(x - row[LAST]) + abs(y - row[LAST + 1])
-    row[LAST], row[LAST + 1], row[LAST + 2] = x, y, 1.0
-    for k in range(3):
-        row[CHANGE + k] = x * row[RATE + k] + y * row[RATE + 3 + k] + row[RATE + 6 + k]
+    change = abs(x - row.ahead_last) + abs(y - row.aside_last)
+    row.ahead_last, row.aside_last, row.up_last = x, y, 1.0
+    row.ahead_change = x * row.ahead_rate_x + y * row.aside_rate_x + row.up_rate_x
+    row.aside_change = x * row.ahead_rate_y + y * row.aside_rate_y + row.up_rate_y
+    row.up_change = x * row.ahead_rate_z + y * row.aside_rate_z + row.up_rate_z
     return change
 
 
 @compiled
-def given(row, e, by):
-    """Return the velocity [1] of a contact along floor axis e for a unit of what presses another.
-
-    Source: own; docs/resting.md, "The drop test".
-    """
-    k = LEVER + 3 * e
-    return by[LAST + e] + row[k] * by[CHANGE] + row[k + 1] * by[CHANGE + 1] + row[k + 2] * by[CHANGE + 2]
+def unit_rates(row):
+    """Return the rates (3,) [1/L] that a unit of what presses a contact gives, with its friction."""
+    return row.ahead_change, row.aside_change, row.up_change
 
 
 @compiled
-def pressed(state, first, last, count):
+def presses(state, first, last, count):
     """Return the impulse [sqrt(g L)] that makes each contact leave as wanted; 0 where there is no second.
 
     Source: own; docs/resting.md, "The drop test".
     """
-    a, here = given(first, 2, first), first[WANTED] - speed(state, first, 2)
+    a = point_speed(first.up_last, up_lever(first), unit_rates(first))
+    here = first.wanted - up_speed(state, first)
     if count == 1:
         return here / a, 0.0
-    b, c, d = given(first, 2, last), given(last, 2, first), given(last, 2, last)
-    there = last[WANTED] - speed(state, last, 2)
+    b = point_speed(last.up_last, up_lever(first), unit_rates(last))
+    c = point_speed(first.up_last, up_lever(last), unit_rates(first))
+    d = point_speed(last.up_last, up_lever(last), unit_rates(last))
+    there = last.wanted - up_speed(state, last)
     whole = a * d - b * c
     return (d * here - b * there) / whole, (a * there - c * here) / whole
 
 
 @compiled
-def turned(state, row, first, last, one, other, friction):
-    """Aim a contact, a row (WIDTH,), along the slip that impulses leave; return how far it turned [1]."""
-    ahead = speed(state, row, 0) + one * given(row, 0, first) + other * given(row, 0, last)
-    aside = speed(state, row, 1) + one * given(row, 1, first) + other * given(row, 1, last)
+def aim_again(state, row, first, last, press, other_press, friction):
+    """Aim a contact along the slip that the impulses of both leave; return how far it turned [1].
+
+    Source: own; docs/resting.md, "The drop test".
+    """
+    ahead, aside, _ = speeds(state, row)
+    x, y, rates = ahead_lever(row), aside_lever(row), unit_rates(first)
+    ahead += press * point_speed(first.ahead_last, x, rates)
+    aside += press * point_speed(first.aside_last, y, rates)
+    rates = unit_rates(last)
+    ahead += other_press * point_speed(last.ahead_last, x, rates)
+    aside += other_press * point_speed(last.aside_last, y, rates)
     return aim(row, friction, ahead, aside)

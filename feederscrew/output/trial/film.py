@@ -21,7 +21,6 @@ from feederscrew.output.trial.shown import ShownRide, shown
 from feederscrew.part.record import Part
 from feederscrew.studies.trial import TrialStudy
 from feederscrew.tooling import solid
-from feederscrew.trial.kernel import crowd_records
 from feederscrew.trial.queue import QueuedParts
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.staging import Stage
@@ -250,7 +249,7 @@ def _bowl_around(
     middle = shapely.Point(0.0, radius)
     full, inner = middle.buffer(radius, quad_segs=64), middle.buffer(radius - width, quad_segs=64)
     outer = middle.buffer(radius + WALL, quad_segs=64)
-    deep = -stage.plates[0, crowd_records.DEPTH]
+    deep = -stage.plates.depth[0]
     bodies = [solid.prism(outer, -below - WALL, -below), solid.prism(outer.difference(full), -below, deep)]
     if last - first < 2.0 * math.pi - 0.05:
         turns = np.linspace(last, first + 2.0 * math.pi, 181)

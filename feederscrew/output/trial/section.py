@@ -9,7 +9,6 @@ import shapely
 from feederscrew.output.trial.figures import solids, unrolled
 from feederscrew.tooling import solid
 from feederscrew.tooling.track_sections import bend_ring
-from feederscrew.trial.kernel import crowd_records
 
 WALL = 3e-3  # [m] thickness of the wall that is drawn
 
@@ -44,9 +43,9 @@ def _plate(station, k, track) -> tuple[Any, ...]:
         area = area.symmetric_difference(shapely.make_valid(shapely.Polygon(ring)))
     if k == 0:
         area = area.intersection(shapely.Point(0.0, track.radius).buffer(track.radius, quad_segs=256))
-    vertices, faces = solid.prism(area, -row[crowd_records.DEPTH], 0.0)
-    axes = row[crowd_records.ACROSS : crowd_records.ACROSS + 9].reshape(3, 3)
-    return row[:3] + np.einsum("vi,ij->vj", vertices, axes), faces
+    vertices, faces = solid.prism(area, -row.depth, 0.0)
+    origin, *axes = ([row[f"{name}_{e}"] for e in "xyz"] for name in ("origin", "first", "second", "front"))
+    return np.array(origin) + np.einsum("vi,ij->vj", vertices, np.array(axes)), faces
 
 
 def _wall(station, track, height) -> list[Any]:
@@ -68,4 +67,4 @@ def _stretch(station, track, height, low, high, lean):
     if lean:
         return solid.leaning_wall(track.radius, low, high, lean, height)
     ring = bend_ring(np.array([[low, -WALL], [high, -WALL], [high, 0.0], [low, 0.0]]), track.radius)
-    return solid.prism(shapely.Polygon(ring), -station.plates[0, crowd_records.DEPTH], height)
+    return solid.prism(shapely.Polygon(ring), -station.plates.depth[0], height)

@@ -74,4 +74,4 @@ def _of(run, place, n) -> ShownRide:
     passed = ride.outcomes[n] == runs.PASSED
     fate = course.FATES[course.PASSED if passed else found.fates[one]]
     path = ride.paths[n][np.isfinite(ride.paths[n][:, 0])]
-    return ShownRide(place, run.known.lying[found.entered[one]].name, fate, path)
+    return ShownRide(place, run.orientations.lying[found.entered[one]].name, fate, path)
