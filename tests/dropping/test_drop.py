@@ -205,11 +205,6 @@ def test_a_body_set_down_rests_where_it_tumbles_to():
     assert placed == pytest.approx(basins, abs=0.06)
 
 
-def test_a_drop_that_takes_too_long_is_unsettled():
-    faces = run(BOX, 20, Steps(longest=0.1))
-    assert (faces == one_drop.UNSETTLED).all()
-
-
 def test_a_drop_of_too_many_steps_is_unsettled_whatever_the_time():
     faces = run(BOX, 20, Steps(most=3))
     assert (faces == one_drop.UNSETTLED).all()

@@ -61,18 +61,6 @@ def test_a_block_that_comes_down_out_of_level_rocks_as_far_as_two_impacts_let_it
     assert highest_rise(degrees) == pytest.approx(rise, rel=0.15)
 
 
-def test_parts_begin_a_little_out_of_level_on_their_lowest_corner():
-    solid, length, principal = solid_of(TALL)
-    entered = np.full(200, UPRIGHT)
-    states, _ = starts.laid_down(BOWL, EVERY, entered, solid, principal, length, 3)
-    again, _ = starts.laid_down(BOWL, EVERY, entered, solid, principal, length, 3)
-    np.testing.assert_array_equal(states, again)
-    up = vectors.product(principal.T, EVERY[UPRIGHT].posture.axes[2])
-    tilts = np.arccos([min(vectors.dot(part_poses.matrix(state)[2], up), 1.0) for state in states])
-    assert np.degrees(np.sqrt(np.mean(tilts**2))) == pytest.approx(0.2, rel=0.2)
-    assert max(abs(starts.lowest(solid.corners, state)) for state in states) < 1e-12
-
-
 @pytest.mark.parametrize(
     ("degrees", "heading", "up", "right"),
     [(0.0, 0.0, 0.0, True), (20.0, 0.0, 0.0, True), (-20.0, 8.0, 0.5, True), (12.0, 30.0, 0.1, False)],

@@ -121,24 +121,6 @@ def left(part, bowl, one, place, aside=0.0):
     return ride.states[0][2] * length
 
 
-def test_a_batch_of_parts_is_followed_once(monkeypatch):
-    part, bowl, followed = shapes.part(shapes.box(20, 12, 5)), bowls.read(None, []), []
-    solid, length, principal = shape.solid_of(part)
-    known, every = runs.setting(solid, length, bowl), orientations(part, find(part), bowl.track)
-    states = [part_poses.pose_on_track(every[0], principal, length, bowl.track, place=0.0)] * (
-        runs.PARTS_PER_TASK + 2
-    )
-    plain, own = stations.plain(bowl.track, every, 0.02), runs._followed
-    monkeypatch.setattr(runs, "_followed", lambda *how: followed.append(len(how[-1])) or own(*how))
-    limits = (0.01, 0.01, 0.0, 1.0)
-    ride = runs.ride(
-        runs.past(known, plain, limits=limits, interval=0.01, places=1),
-        np.array(states),
-        np.zeros(len(states)),
-    )
-    assert followed == [0, runs.PARTS_PER_TASK, 2] and len(ride.outcomes) == runs.PARTS_PER_TASK + 2
-
-
 @pytest.mark.parametrize("over", [-1e-4, 1e-4])
 @pytest.mark.parametrize(
     ("device", "place", "aside", "inwards"),
@@ -251,15 +233,6 @@ def test_a_washer_lies_on_a_few_points_of_its_rim():
     assert seen.velocities[0] == pytest.approx(answer.answer(bowl).velocity, rel=0.05)
 
 
-def test_a_bridge_stands_on_its_legs():
-    arch = shapes.prism([(-10, 0), (-7, 0), (-7, 4), (7, 4), (7, 0), (10, 0), (10, 8), (-10, 8)], 12)
-    solid, length, _ = shape.solid_of(shapes.part(arch))
-    bottom = 1e3 * length * solid.vertices
-    assert len(solid.edges) == 22  # 24 edges; both under the arch turn inwards
-    assert len(solid.corners) == 16
-    assert np.ptp(bottom, axis=0).max() == pytest.approx(20.0)
-
-
 def test_the_sides_of_an_edge_lie_in_its_faces():
     solid, _, _ = shape.solid_of(PART)
     ends = solid.vertices[solid.edges]
@@ -343,15 +316,6 @@ def test_a_hop_over_the_tooling_is_said(bowl):
     assert len(spread) == 1 and spread[0].startswith("amplitude 0.4 mm")
     calm, thrown = (run["point_restitution_doubt"] for run in tables.document(found)["drives"])
     assert calm is None and thrown["velocity_less_mm_s"] > 1.05 * thrown["velocity_more_mm_s"] > 0.0
-
-
-def test_a_station_is_drawn_with_its_hole():
-    bowl = bowls.read(None, OWN)
-    every = orientations(PART, find(PART), bowl.track)
-    made = stations.plain(bowl.track, every, 0.05)
-    assert made.plates.shape == (1,) and made.exit == 0.05
-    real = made.borders[~made.borders.drawn_end]
-    np.testing.assert_allclose(real.start_y, 0.06, atol=1e-4)  # the free edge alone is a border
 
 
 def test_a_corner_that_slides_along_the_wall_does_not_slip_past_a_gate(bowl):
