@@ -147,7 +147,7 @@ def _options(arrays=False, **others) -> dict[Any, Any]:
 
 @functools.cache
 def _fingerprint(module):
-    """Digest of the sources that are compiled into a module's entries, and of the names of their rooms' modules.
+    """Digest of the sources compiled into a module's entries, and of the names of their rooms' modules.
 
     A changed source must not find what an older one left on disk, and what lies there names the modules of
     the records that it is handed: one that has moved since could not be loaded.
