@@ -11,7 +11,7 @@ from feederscrew.conveying import answer
 from feederscrew.dropping.pool import gather
 from feederscrew.geometry import vectors
 from feederscrew.running import USUAL_RUN
-from feederscrew.trial import part_poses, runs, sensed_rides, starts, stations
+from feederscrew.trial import part_poses, runs, sensed_rides, staging, starts
 from feederscrew.trial.looks import Looks
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
@@ -188,14 +188,14 @@ def rightly(leaving):
 def _chain(bowl, orientations, devices) -> list[Any]:
     """The bare track, then each device that is no measured yield."""
     size = max(orientation.length for orientation in orientations)
-    placed, slopes, slot = [], stations.at_entry(devices, bowl.track, orientations), ()
+    placed, slopes, slot = [], staging.at_entry(devices, bowl.track, orientations), ()
     first = slopes
     for device in devices:
         if device.placed:
             standing = device.standing(bowl.track, orientations)
-            placed.append(stations.station(device, bowl.track, orientations, slopes=slopes, slot=slot))
+            placed.append(staging.stage(device, bowl.track, orientations, slopes=slopes, slot=slot))
             slopes, slot = (*slopes, *standing.slopes), standing.slot or slot
-    return [stations.plain(bowl.track, orientations, RUN_UP * size, first), *placed]
+    return [staging.plain(bowl.track, orientations, RUN_UP * size, first), *placed]
 
 
 def _limits(bowl, station, orientations) -> dict[Any, Any]:

@@ -8,7 +8,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry.compiled import zero_rows
-from feederscrew.trial import air, part_poses, runs, sensed_rides, staging, stations
+from feederscrew.trial import air, part_poses, runs, sensed_rides, staging
 from feederscrew.trial.arrays import forget, move_on, workspace_of
 from feederscrew.trial.kernel import travel, workspace
 
@@ -58,11 +58,11 @@ def crowded(bowl, orientations, devices, room):
         placed[-1] = (*placed[-1][:2], place + TAIL * size)
     ends = -room - size, place + TAIL * size
     blown = air.along(blows, track, orientations)
-    first = [replace(slope, climb=None) for slope in stations.at_entry(devices, track, orientations)]
+    first = [replace(slope, climb=None) for slope in staging.at_entry(devices, track, orientations)]
     blown = replace(blown, slopes=(*staging.before(first), *blown.slopes))  # they come apart on a steeper way
     geometry = staging.built(placed, track, size, ends)
     stage = staging.Stage(
-        stations.BARE_TRACK,
+        staging.BARE_TRACK,
         *geometry,
         begin=-room,
         exit=np.inf,

@@ -9,7 +9,7 @@ from feederscrew import check
 from feederscrew.dropping.launch_conditions import named
 from feederscrew.dropping.plate_test import EXACT_PACE
 from feederscrew.running import USUAL_RUN
-from feederscrew.trial import course, part_poses, runs, starts, stations
+from feederscrew.trial import course, part_poses, runs, staging, starts
 from feederscrew.trial.looks import OTHER, AspectsBelow
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
@@ -109,8 +109,8 @@ def _fallen(part, bowl, orientations, shape, launch, parts, run) -> tuple[Any, .
     flight, fastest = np.sqrt(2.0 * launch.fall[1]), launch.speed[1]
     room = fastest * flight + fastest**2 / (2.0 * max(bowl.friction.kinetic, 0.05)) + solid.radius
     room = min(length * room, MAX_THROW_SHARE * 2.0 * np.pi * bowl.track.radius)
-    first = stations.at_entry(bowl.devices, bowl.track, orientations)
-    stage = replace(stations.plain(bowl.track, orientations, 2.0 * room, first), exit=np.inf)
+    first = staging.at_entry(bowl.devices, bowl.track, orientations)
+    stage = replace(staging.plain(bowl.track, orientations, 2.0 * room, first), exit=np.inf)
     seconds = part_in_bowl.unit * (flight + EXACT_PACE.settling)
     limits = (seconds, 2.0 * seconds, 0.0, np.inf)
     follow = runs.past(part_in_bowl, stage, limits=limits, interval=seconds, places=1)

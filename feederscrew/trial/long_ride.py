@@ -12,7 +12,7 @@ from feederscrew.conveying import answer
 from feederscrew.part.record import Part
 from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.tooling.orientations import Orientation
-from feederscrew.trial import course, part_poses, runs, starts, stations
+from feederscrew.trial import course, part_poses, runs, staging, starts
 from feederscrew.trial.looks import OTHER, Looks
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
@@ -169,8 +169,8 @@ def _segment(
     part_in_bowl: runs.BowlOfPart, bowl: Bowl, orientations: Sequence[Orientation], distance: float
 ) -> Callable[[NDArray[np.float64], NDArray[np.float64]], runs.Runs]:
     """What follows parts along a segment of bare track."""
-    station = stations.plain(
-        bowl.track, orientations, distance, stations.at_entry(bowl.devices, bowl.track, orientations)
+    station = staging.plain(
+        bowl.track, orientations, distance, staging.at_entry(bowl.devices, bowl.track, orientations)
     )
     velocity = answer.answer(bowl).velocity
     speed = max(velocity if np.isfinite(velocity) else 0.0, course.LEAST_SPEED_M_S)

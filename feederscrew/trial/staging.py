@@ -1,4 +1,4 @@
-"""What stands along the track as solid plates with borders in the bowl's own frame."""
+"""Each device along the track as the trial takes it: plates with borders in the bowl's own frame."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -8,7 +8,9 @@ import numpy as np
 import shapely
 
 from feederscrew.geometry.compiled import frozen_rows
+from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.openings import beyond_borders
+from feederscrew.tooling.fates import leading
 from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
 from feederscrew.tooling.track_sections import bend_ring
 from feederscrew.trial import air
@@ -27,6 +29,8 @@ DRAWN_BEFORE, DRAWN_AFTER = (
 BEYOND_OPENINGS_M = 10.0  # [m] beyond any opening
 TRACK_DEPTH_M = 4e-3  # [m] of the track: deeper down its sides hold nothing
 TRACK_FRICTION = np.nan  # friction of a plate that has that of the track
+
+BARE_TRACK = Device("")
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,17 +59,16 @@ def size_of(orientations):
     )
 
 
-def stage(device, standing, track, orientations, start=0.0, slopes=(), slot=()) -> Stage:
+def stage(device, track, orientations, start=0.0, slopes=(), slot=()) -> Stage:
     """Return one device with enough track before and behind it.
 
     Parameters
     ----------
     device : Device
-    standing : Standing
-        What it has along the track.
+        A measured yield is bare track.
     track : Track
     orientations : sequence of Orientation
-        Of the part.
+        Of the part, the longest of which sets how long a device is that goes on along the track.
     start : float [m]
         Where the device begins.
     slopes : sequence of Slope
@@ -77,7 +80,7 @@ def stage(device, standing, track, orientations, start=0.0, slopes=(), slot=()) 
     -------
     Stage
     """
-    size = size_of(orientations)
+    standing, size = device.standing(track, orientations), size_of(orientations)
     blows = air.along([(standing, start, 0.0)], track, orientations)
     blows = replace(blows, slopes=(*before(slopes), *blows.slopes))
     begin, beyond = start - (0.5 + SPARE_WAY) * size, passed(standing, start, size)
@@ -90,12 +93,19 @@ def stage(device, standing, track, orientations, start=0.0, slopes=(), slot=()) 
     )  # fmt: skip
 
 
-def plain(device, track, orientations, length, slopes=()) -> Stage:
-    """Return a stretch of the bare track, from 0 to ``length`` [m]."""
+def plain(track, orientations, length, slopes=()) -> Stage:
+    """Return a stretch of the bare track, from 0 to ``length`` [m]; slopes as for ``stage``."""
     size = size_of(orientations)
     bare = built((), track, size, (-DRAWN_BEFORE * size, length + DRAWN_AFTER * size))
     blows = replace(air.STILL_AIR, slopes=before(slopes))
-    return Stage(device, *bare, begin=0.0, exit=length, size=size, width=track.extent, air=blows)
+    return Stage(BARE_TRACK, *bare, begin=0.0, exit=length, size=size, width=track.extent, air=blows)
+
+
+def at_entry(devices, track, orientations) -> tuple[Any, ...]:
+    """Return the slopes of the devices that come first and lean the track: they begin at its entry."""
+    return tuple(
+        slope for device in leading(devices) for slope in device.standing(track, orientations).slopes
+    )
 
 
 def before(slopes) -> tuple[Any, ...]:

@@ -13,7 +13,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import course, crowd, part_poses, runs, shape, stations
+from feederscrew.trial import course, crowd, part_poses, runs, shape, staging
 from feederscrew.trial.looks import Looks
 
 OWN = [
@@ -53,7 +53,7 @@ def headed(laid):
     still = replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0), track=replace(BOWL.track, climb=0.0))
     every = orientations(part, find(part), still.track)
     solid, length, principal = shape.solid_of(part)
-    known, stage = runs.setting(solid, length, still), stations.station(RAILS, still.track, every)
+    known, stage = runs.setting(solid, length, still), staging.stage(RAILS, still.track, every)
     lying = next(k for k in every if k.height < 6e-3 and k.length > 0.016)
     along = replace(lying, heading=np.pi, distance=6e-3)
     state = part_poses.pose_on_track(along, principal, length, still.track, place=0.02, aside=laid)

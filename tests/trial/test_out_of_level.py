@@ -14,7 +14,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import course, part_poses, runs, starts, stations
+from feederscrew.trial import course, part_poses, runs, staging, starts
 from feederscrew.trial.looks import OTHER, Looks
 from feederscrew.trial.shape import solid_of
 
@@ -44,7 +44,7 @@ def highest_rise(degrees):
     state = tilted(state, np.radians(degrees))
     state[body.Z] -= starts.lowest(solid.corners, state) - 1e-9
     state[body.VZ] = -FALL / np.sqrt(STILL.gravity * length)
-    stage = stations.plain(STILL.track, EVERY, 0.1)
+    stage = staging.plain(STILL.track, EVERY, 0.1)
     follow = runs.past(known, stage, limits=(0.08, 1.0, 0.0, 1.0), interval=1e-3, places=90)
     path = runs.ride(follow, state[None], np.zeros(1)).paths[0]
     return np.nanmax(path[:, 3]) - HIGH

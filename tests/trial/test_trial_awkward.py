@@ -14,7 +14,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.base import Sensor
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import course, part_poses, queue, runs, sensed_rides, shape, starts, stations
+from feederscrew.trial import course, part_poses, queue, runs, sensed_rides, shape, staging, starts
 
 BOWL = awkward.bowl()
 PART, ASPECTS = awkward.part()
@@ -47,7 +47,7 @@ def test_a_skew_body_slides_round_the_bowl_until_floor_and_wall_have_stopped_it(
     track = replace(BOWL.track, climb=0.0)
     still = replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0), track=track)
     one = next(one for one in EVERY if one.aspect == aspect)
-    known, stage = runs.setting(SOLID, LENGTH, still), stations.plain(track, EVERY, 0.5)
+    known, stage = runs.setting(SOLID, LENGTH, still), staging.plain(track, EVERY, 0.5)
     state = part_poses.pose_on_track(one, PRINCIPAL, LENGTH, track, place=0.2)
     state[body.Z] -= starts.lowest(SOLID.corners, state)
     state = starts.clear(state, SOLID, track, LENGTH, 0.0)

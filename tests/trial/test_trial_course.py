@@ -18,17 +18,7 @@ from feederscrew.running import RunSettings
 from feederscrew.studies import rate
 from feederscrew.studies import trial as studies
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import (
-    course,
-    landing,
-    looks,
-    part_poses,
-    rounding,
-    runs,
-    shape,
-    starts,
-    stations,
-)
+from feederscrew.trial import course, landing, looks, part_poses, rounding, runs, shape, staging, starts
 from feederscrew.trial.kernel import plate_views, workspace
 
 OWN = [
@@ -113,7 +103,7 @@ def left(part, bowl, one, place, aside=0.0):
     still = replace(bowl, drive=replace(bowl.drive, amplitude=0.0), track=replace(bowl.track, climb=0.0))
     solid, length, principal = shape.solid_of(part)
     known = runs.setting(solid, length, still)
-    cut = stations.station(bowl.devices[0], still.track, orientations(part, find(part), still.track))
+    cut = staging.stage(bowl.devices[0], still.track, orientations(part, find(part), still.track))
     state = part_poses.pose_on_track(one, principal, length, still.track, place=place, aside=aside)
     ride = runs.ride(
         runs.past(known, cut, limits=(0.6, 1.0, 0.0, 1.0), interval=0.01, places=9), state[None], np.zeros(1)
@@ -164,7 +154,7 @@ def test_a_headed_part_laid_over_rails_hangs_between_shank_and_head(bowl, width,
 def test_blades_are_alike_and_a_pressure_break_is_a_ledge(bowl):
     def drawn(line):
         made = bowl(line)
-        return stations.station(made.devices[0], made.track, orientations(PART, find(PART), made.track))
+        return staging.stage(made.devices[0], made.track, orientations(PART, find(PART), made.track))
 
     alike = [
         ("wiper: 6 mm", "height_bar: 6 mm", "hold_down: 6 mm"),

@@ -13,7 +13,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.orientations import orientations, travelling
-from feederscrew.trial import air, course, crowd, part_poses, rounding, runs, shape, starts, stations
+from feederscrew.trial import air, course, crowd, part_poses, rounding, runs, shape, staging, starts
 
 DOWEL = load(Path(__file__).resolve().parents[2] / "parts" / "dowel_6x20.stl")
 BOWL = bowls.read(None, ["friction.wall=0.9", "track.width=30 mm", "track.climb=0 deg"])
@@ -31,7 +31,7 @@ def in_groove(bowl, angle, radius=50.0):
     state = part_poses.pose_on_track(one, principal, length, one.track, place=0.0)
     state[body.Z] -= starts.lowest(solid.corners, state)
     state = starts.clear(state, solid, one.track, length, 0.0, one.wall_leans)
-    way = stations.plain(bowl.track, every, min(1.0, radius), stations.at_entry(chain, bowl.track, every))
+    way = staging.plain(bowl.track, every, min(1.0, radius), staging.at_entry(chain, bowl.track, every))
     return bowl, every, runs.setting(solid, length, bowl), way, state
 
 

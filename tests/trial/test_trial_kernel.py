@@ -15,7 +15,7 @@ from feederscrew.geometry import vectors
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import looks, part_poses, rounding, runs, shape, stations
+from feederscrew.trial import looks, part_poses, rounding, runs, shape, staging
 
 BOWL = bowls.read(
     None,
@@ -44,7 +44,7 @@ def rode(block, one, bowl, state, seconds, every=None):
     part, all_of_it = block
     solid, length, _ = shape.solid_of(part)
     known = runs.setting(solid, length, bowl)
-    way = stations.plain(bowl.track, all_of_it, 1.0)
+    way = staging.plain(bowl.track, all_of_it, 1.0)
     period = 1.0 / bowl.drive.frequency
     limits = (seconds, 2.0 * seconds, 0.0, 10.0)
     return known, runs.ride(
@@ -167,7 +167,7 @@ def lies_on_the_track(part, bowl, launched, settled):
     ride = runs.ride(
         runs.past(
             known,
-            stations.plain(bowl.track, every, 1.0),
+            staging.plain(bowl.track, every, 1.0),
             limits=(seconds, 2.0 * seconds, 0.0, np.inf),
             interval=seconds,
             places=1,
@@ -205,7 +205,7 @@ def test_nothing_passes_the_edges_below_the_surface(block, axes, place, speed, l
     bowl = replace(BOWL, track=track, drive=replace(BOWL.drive, amplitude=0.0))
     solid, length, principal = shape.solid_of(block[0])
     known = runs.setting(solid, length, bowl)
-    stage = stations.station(make_device("gap", "9 mm", limit=9e-3), track, block[1])
+    stage = staging.stage(make_device("gap", "9 mm", limit=9e-3), track, block[1])
     u, v = (vectors.unit(np.array(axis)) for axis in axes)
     state = np.zeros(body.STATE)
     state[body.Q : body.Q + 4] = part_poses.quaternion(np.column_stack([u, v, np.cross(u, v)]) @ principal)
@@ -232,7 +232,7 @@ def test_a_round_part_is_held_where_the_free_edge_cuts_off_the_lowest_of_its_cir
     pin = shapes.part(shapes.cylinder(1.62, 6.0, 24))
     solid, length, principal = shape.solid_of(pin)
     known = runs.setting(rounding.rounded(solid, [np.eye(3)[0]]), length, bowl)
-    stage = stations.plain(track, orientations(pin, find(pin), track), 1.0)
+    stage = staging.plain(track, orientations(pin, find(pin), track), 1.0)
     turn, lowest = np.radians(50.0), []
     for beyond in np.linspace(-0.03, 0.03, 13):  # [mm] that the lowest of its end lies beyond the edge
         along, aside = [np.cos(turn), np.sin(turn), 0.0], np.array([-np.sin(turn), np.cos(turn), 0.0])

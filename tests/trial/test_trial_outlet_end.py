@@ -14,7 +14,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import part_poses, runs, shape, stations
+from feederscrew.trial import part_poses, runs, shape, staging
 from feederscrew.trial.queue import QueuePlan, queue_of
 
 CORNERS = [(-5, -5, 5), (5, 5, 5), (5, -5, -5), (-5, 5, 5), (-5, -5, -5), (5, 5, -5), (5, -5, 5), (-5, 5, -5)]
@@ -39,7 +39,7 @@ def test_a_cube_stands_over_an_edge_whatever_order_its_corners_have(order, speed
     bowl = replace(bowl, drive=replace(bowl.drive, amplitude=0.0))
     every = orientations(part, find(part), bowl.track)
     solid, length, principal = shape.solid_of(part)
-    edge = stations.station(make_device("gap", "here", limit=0.03), bowl.track, every)
+    edge = staging.stage(make_device("gap", "here", limit=0.03), bowl.track, every)
     state = part_poses.pose_on_track(every[0], principal, length, bowl.track, place=-8e-3, aside=5e-3)
     state[body.VX] = speed
     known = runs.setting(solid, length, bowl)

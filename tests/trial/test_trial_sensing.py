@@ -14,7 +14,7 @@ from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.devices.pneumatics import Nozzles, thrust
 from feederscrew.tooling.orientations import orientations, travel_speed, travelling
 from feederscrew.tooling.verdicts import verdict
-from feederscrew.trial import air, course, crowd, part_poses, runs, stations
+from feederscrew.trial import air, course, crowd, part_poses, runs, staging
 from feederscrew.trial.kernel import jets
 from feederscrew.trial.queue import QueuePlan, queue_of
 from feederscrew.trial.shape import solid_of
@@ -53,7 +53,7 @@ def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
     jet = make_device("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
     solid, length, principal = solid_of(PART)
     known = runs.setting(solid, length, replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0)))
-    station = stations.station(jet, BOWL.track, EVERY)
+    station = staging.stage(jet, BOWL.track, EVERY)
     state = part_poses.pose_on_track(ALONG, principal, length, BOWL.track, place=station.begin, aside=3e-3)
     state[body.Z] += 20e-3 / length
     state[body.VX], state[body.W : body.W + 3] = 2.0, (20.0, 33.0, 27.0)

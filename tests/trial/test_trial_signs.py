@@ -11,7 +11,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.geometry.compiled import zero_rows
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import part_poses, runs, shape, starts, stations
+from feederscrew.trial import part_poses, runs, shape, staging, starts
 from feederscrew.trial.arrays import workspace_of
 from feederscrew.trial.kernel import steps, track_contacts, travel, workspace
 
@@ -33,7 +33,7 @@ def still(**track):
 def gone(bowl, state, seconds):
     """What becomes of one part from a state on the bare track."""
     every = orientations(PART, find(PART), bowl.track)
-    known, stage = runs.setting(SOLID, LENGTH, bowl), stations.plain(bowl.track, every, 0.5)
+    known, stage = runs.setting(SOLID, LENGTH, bowl), staging.plain(bowl.track, every, 0.5)
     limits = (seconds, 2.0 * seconds, 0.0, 10.0)
     return known, runs.ride(
         runs.past(known, stage, limits=limits, interval=1.0, places=1), state[None], np.zeros(1)
@@ -104,7 +104,7 @@ def test_a_part_comes_to_a_stand_as_soon_as_friction_has_taken_its_speed(ahead, 
     bowl = still(climb=0.0, bank=0.0, radius=50.0)
     known = runs.setting(SOLID, LENGTH, bowl)
     every = orientations(PART, find(PART), bowl.track)
-    surface, step = runs.surface_of(known, stations.plain(bowl.track, every, 0.5)), known.floor.step
+    surface, step = runs.surface_of(known, staging.plain(bowl.track, every, 0.5)), known.floor.step
     work = workspace_of(SOLID, surface, 1)
     work.states[0] = lying(bowl, aside=5e-3)
     work.states[0, body.VX] = ahead * share * friction * step  # what friction takes in that share of a step
@@ -120,7 +120,7 @@ def test_energy_is_reckoned_along_the_way_that_a_part_goes(monkeypatch):
     bowl = still(climb=0.0, bank=0.0, radius=50.0)
     known = runs.setting(SOLID, LENGTH, bowl)
     every = orientations(PART, find(PART), bowl.track)
-    surface, step = runs.surface_of(known, stations.plain(bowl.track, every, 0.5)), known.floor.step
+    surface, step = runs.surface_of(known, staging.plain(bowl.track, every, 0.5)), known.floor.step
     work, calls = workspace_of(SOLID, surface, 1), []
     work.states[0] = lying(bowl, aside=5e-3)
     work.states[0, body.Z] += 2e-3  # it strikes, then slides

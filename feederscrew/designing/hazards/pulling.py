@@ -11,7 +11,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import zero_rows
 from feederscrew.geometry.lattice import Cells
-from feederscrew.trial import air, arrays, crowd, part_poses, runs, staging, stations
+from feederscrew.trial import air, arrays, crowd, part_poses, runs, staging
 from feederscrew.trial.kernel.workspace import JOURNAL, Together
 from feederscrew.trial.shape import TrueSolid
 
@@ -104,7 +104,7 @@ def _nowhere(track: Track, length: float) -> crowd.CrowdedTrack:
     """A track that is too far away to be met."""
     made = staging.built([], track, length, (-length, length))
     stage = staging.Stage(
-        stations.BARE_TRACK,
+        staging.BARE_TRACK,
         *made,
         begin=-length,
         exit=np.inf,
