@@ -87,7 +87,7 @@ def _ride(part: Part, run: TrialRun, place: int, rider: int) -> DeviceRide:
     fate = course.FATES[course.PASSED if passed else sent.fates[number]]
     path = ride.paths[rider][np.isfinite(ride.paths[rider][:, 0])]
     looked, blows = air_at(part, run, sent.stations[place], path)
-    return DeviceRide(place, run.known.lying[sent.entered[number]].name, fate, path, looked, blows)
+    return DeviceRide(place, run.orientations.lying[sent.entered[number]].name, fate, path, looked, blows)
 
 
 def air_at(
