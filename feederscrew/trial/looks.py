@@ -9,7 +9,7 @@ from feederscrew.dropping.kernel.one_drop import UNSETTLED, face_below
 from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.geometry import vectors
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.exact_tumbling import ground
+from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.resting.half_edges import half_edges
 from feederscrew.resting.walks import LOST_WALK, roll_from_corner, roll_from_facet
 from feederscrew.tooling.orientations import Hanging
@@ -139,7 +139,7 @@ class AspectsBelow:
     """Tells on which aspect a part lies, or would come to lie if let go as it is, whatever its heading."""
 
     def __init__(self, part, aspects) -> None:
-        found = ground(part, aspects)
+        found = require_ground(part, aspects)
         self.shape, _ = shape_of_part(part, found)
         self.rows = found.rows
 
