@@ -14,7 +14,7 @@ from feederscrew.dropping.rounded_hull import principal_axes, shape_of_part
 from feederscrew.dropping.traces import DropTrace, follow
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.exact_tumbling import Ground, ground
+from feederscrew.resting.exact_tumbling import Ground, require_ground
 from feederscrew.running import USUAL_RUN
 
 DEFAULT_DROPS = 10_000  # drops, where the user names neither a number nor a width
@@ -26,7 +26,7 @@ class Result(ReadableRecord):
 
     launch: dict  # name and ranges sampled, in the units of the shop
     seed: int
-    ground: Ground
+    require_ground: Ground
     drops: Drops
     tally: Tally
     heights: np.ndarray  # (A,) [m] of the centre of mass on each class; over the true circle of a round side
@@ -75,7 +75,7 @@ def test(
         If the user stops it before there is anything to count; later, the result is partial.
     """
     width = None if until is None else launch_conditions.share(until, "until")
-    faces = ground(part, aspects)
+    faces = require_ground(part, aspects)
     shape, length = shape_of_part(part, faces)
     launch, single = (
         launch_conditions.launch_of(preset, length, own),

@@ -27,7 +27,7 @@ from feederscrew.dropping.rounded_hull import Shape, shape_of_part
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.exact_tumbling import ground
+from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.running import USUAL_RUN, RunSettings
 
 STEPS_A_PERIOD = (
@@ -268,7 +268,7 @@ def test(part, aspects, bowls, preset, own, *, drops=None, pace=EXACT_PACE, run=
     KeyboardInterrupt
         If nothing was finished.
     """
-    faces = ground(part, aspects)
+    faces = require_ground(part, aspects)
     shape, length = shape_of_part(part, faces)
     count, results = DEFAULT_PLATE_PARTS if drops is None else drops, []
     setup = _PlateSetup(faces.rows, len(aspects.names), shape, length, pace, run)
@@ -312,7 +312,7 @@ def shaken_of(part, aspects, bowl, preset, pace, counted, looks) -> PlateResult:
     -------
     PlateResult
     """
-    _, length = shape_of_part(part, ground(part, aspects))
+    _, length = shape_of_part(part, require_ground(part, aspects))
     launch = _surfaced(launch_conditions.launch_of(preset, length, {}, bowl.gravity), bowl, {}, pace)
     parts, lost, seconds = counted
     return PlateResult(

@@ -9,7 +9,7 @@ from feederscrew.dropping.kernel.one_drop import UNSETTLED, face_below
 from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.geometry import vectors
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.exact_tumbling import ground
+from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.resting.half_edges import half_edges
 from feederscrew.resting.walks import LOST_WALK, roll_from_corner, roll_from_facet
 from feederscrew.tooling.orientations import Hanging
@@ -153,7 +153,7 @@ class AspectsBelow:
     """Tells on which aspect a part lies, or would come to lie if let go as it is, whatever its heading."""
 
     def __init__(self, part, aspects) -> None:
-        faces = ground(part, aspects)
+        faces = require_ground(part, aspects)
         self.shape, _ = shape_of_part(part, faces)
         self.rows = faces.rows
 

@@ -121,6 +121,6 @@ def air_at(
     state[0, :3], state[0, body.Q : body.Q + 4] = path[first, 1:4] / length, path[first, 4:]
     if not sensed_rides.blows_off(watch.sensor, runs.setting(solid, length, run.bowl), state):
         return looked, None
-    speed = max((ways[first] - ways[0]) / max(looked - path[0, 0], 1e-9), sensed_rides.SLOW)
+    speed = max((ways[first] - ways[0]) / max(looked - path[0, 0], 1e-9), sensed_rides.STANDING_SPEED_M_S)
     begin = looked + max(watch.nozzles - ways[first], 0.0) / speed
     return looked, (begin, begin + watch.seconds)
