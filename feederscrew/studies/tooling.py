@@ -342,7 +342,7 @@ def _best(
         alike = [one.name for one in cache[width].orientations] == [one.name for one in own.orientations]
         other = _designed(cache[width], wanted, asked) if alike else None
         if other is not None and tracks.gains(other, best):
-            best = replace(other, width=width, reasons=(*other.reasons, WIDER.format(1e3 * width)))
+            best = replace(other, width=width, remarks=(*other.remarks, WIDER.format(1e3 * width)))
     return best
 
 
