@@ -97,4 +97,4 @@ def halo():
 
 def rim():
     """Return the path effects of white letters over light colours."""
-    return canvas.RIM
+    return canvas.LETTER_RIM
