@@ -54,11 +54,11 @@ def compare(sources, reading, counts, launch, as_published, bowl, pictures, out)
     The acceptance.csv of `feeder design`, filled in at the machine, is read back: it says line by line
     what agrees with what was computed.
     """
-    from feederscrew.designing import accepting
+    from feederscrew.designing import acceptance_sheet
 
     if bowl is not None:
         _fitted(sources, bowl, out)
-    elif counts is None and len(sources) == 1 and accepting.is_sheet(sources[0]):
+    elif counts is None and len(sources) == 1 and acceptance_sheet.is_sheet(sources[0]):
         _accepted(sources[0], out)
     elif counts is None:
         _over_files(sources, launch, as_published, pictures, out)
@@ -91,10 +91,10 @@ def _fitted(sources, bowl, out):
 
 def _accepted(source, out):
     """A filled-in acceptance sheet."""
-    from feederscrew.designing import accepting
+    from feederscrew.designing import acceptance_sheet
     from feederscrew.output import designs
 
-    lines = accepting.sheet(source)
+    lines = acceptance_sheet.sheet(source)
     out.show(designs.accepted_summary(lines), designs.accepted_document(lines))
 
 

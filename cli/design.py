@@ -158,7 +158,7 @@ def design(part, more_parts, request_options, listed, rule, taken, bowl, picture
     inputs = solid.inputs | (aspect_shares.inputs if aspect_shares else {}) | bowls.identity(bowl["path"])
     with _folder(out, solid, inputs, settings) as folder:
         with _stoppable(out) as search:
-            study = loop.design(solid, record, user_keys, request, known=aspect_shares, **search)
+            study = loop.design(solid, record, user_keys, request, shares=aspect_shares, **search)
         study = _written(out, folder, study, settings, pictures)
         out.show(designs.summary(study), designs.document(study))
     _ended(study)
@@ -222,7 +222,7 @@ def _stoppable(out):
             out.say(text)
 
         try:
-            yield {"told": tell, "before": lambda: waiting.trial(out), "progress": bar.reach}
+            yield {"tell": tell, "before": lambda: waiting.trial(out), "progress": bar.reach}
         finally:
             bar.end()
 
@@ -253,11 +253,11 @@ def _folder(out, solid, inputs, settings):
 
 def _written(out, folder, study, settings, pictures):
     """What one design leaves in its folder; returns the design with what its machine is out of limits in."""
-    from feederscrew.designing import beside
+    from feederscrew.designing import built_bowl
     from feederscrew.output import design_pages, designs, offers
 
-    built = beside.Built() if study.partial else beside.built(study, settings)
-    study = beside.with_machine(study, built)
+    built = built_bowl.Built() if study.partial else built_bowl.built(study, settings)
+    study = built_bowl.with_machine(study, built)
     if study.bowl is not None:  # read back and compared, whether or not it is kept
         designs.bowl_file(study, settings, built.sheet)
     out.warn(*study.warnings, *([f"no solid of the bowl is made: {built.why}"] if built.why else []))

@@ -41,7 +41,7 @@ def slide(betas, as_published, bowl, pictures, out):
 
     Map the limiting friction over alpha - theta (from the part's heading to the vibration) and the
     acceleration ratio G = A w2/g. A second map shows what a part does there at the bowl's own friction:
-    it sticks, slips forward, backward or both ways within a cycle, or hops.
+    it sticks, slips forward, back or both ways within a cycle, or hops.
 
     mu_limit is the thesis's [4.27] for a level floor. mu_forward and mu_backward are the friction that
     stops either slip on the bowl's track, whose smooth wall takes the force across it. Beyond 90 deg

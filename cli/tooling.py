@@ -109,16 +109,17 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request):
     from functools import partial
 
     from feederscrew import bowl as bowls
-    from feederscrew.designing import own_trial
-    from feederscrew.output import columns, marking, offers, solid_files
+    from feederscrew.designing import tooling_trials
+    from feederscrew.output import columns, marking, offers
     from feederscrew.output import tooling as files
     from feederscrew.output import tooling_tables as tables
+    from feederscrew.solidbowl.exact import exact_body
     from feederscrew.studies.tooling import tooling as study
     from feederscrew.studies.tooling import tooling_without
 
     orientation.of_an_aspect(request)
     if cad:
-        solid_files.check_opencascade()
+        exact_body.check()
     solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
@@ -129,8 +130,8 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request):
             result = study(solid, record, progress=heeding(bar.reach), **values)
         if not static:
             without_kinds = partial(tooling_without, part=solid, bowl=record, **values)
-            result = own_trial.own_trials(result, without_kinds, before=lambda: waiting.trial(out))
-        document = tables.document(result) | {"trial": own_trial.document(result.trials)}
+            result = tooling_trials.own_trials(result, without_kinds, before=lambda: waiting.trial(out))
+        document = tables.document(result) | {"trial": tooling_trials.document(result.trials)}
         denied, agreed = tables.trials(result)
         out.warn(*result.warnings, *denied)
         out.say(*agreed, *tables.remarks(result, request["efficiency"]))

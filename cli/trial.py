@@ -104,7 +104,7 @@ def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent):
     With -o: trial.csv, trial_stations.csv, trial.json, trial.png (orientations in and out),
     trial_paths.png (paths from above), trial_stills.png and run.json; trial_landing.csv, and
     trial_outlet.csv of a queue. --film shows a part that passes and one that does not at the device that
-    decides, then the queue, with the bowl around them.
+    decides, then the queue, with the bowl around them, its sensors and their air.
     """
     for option, value in (("--poured", sent["poured"]), ("--with", sent["measured"])):
         if value and not sent["queue"]:

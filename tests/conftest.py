@@ -10,6 +10,7 @@ import signal
 from collections import OrderedDict
 
 import compile_first
+import entered
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -36,6 +37,11 @@ PIXEL = base64.b64decode(  # a picture as small as it can be
 )
 COARSE = 40  # pixels of a picture to the inch of its figure
 COMPILING = pytest.StashKey()
+
+
+def pytest_configure(config):
+    """Let ``entered``, which watches what is imported after it, print its figure."""
+    config.pluginmanager.register(entered)
 
 
 def pytest_sessionstart(session):

@@ -129,7 +129,7 @@ def settings(bowl) -> NDArray[np.float64]:
 
     Returns
     -------
-    (..., 11) float [1 and rad, as OperatingPoint]
+    (..., 12) float [1 and rad, as OperatingPoint]
         An ``OperatingPoint`` along the last axis; the acceleration ratio of a bowl at rest is ``STILL``.
     """
     here = limits.level(bowl)
@@ -139,7 +139,7 @@ def settings(bowl) -> NDArray[np.float64]:
     )
     surface = (friction.static, friction.kinetic, *friction.backward)
     fields = (ratio, drive.vibration_angle, here.track.climb, *surface, bowl.restitution)
-    second = (drive.second_harmonic, drive.second_harmonic_phase)
+    second = (drive.second_harmonic, drive.second_harmonic_phase, drive.second_harmonic_turn)
     rows = np.broadcast_arrays(*fields, -np.asarray(drive.phase), *second)
     return np.stack(rows, axis=-1).astype(float)
 

@@ -575,12 +575,13 @@ def _piece(rules, state, end, way, count) -> NDArray[np.float64]:
 
 
 def _around_plate(setting, time, phase, slip, height) -> CycleTrace:
-    along = np.cos(setting.angle) * _displacement(setting, PERIOD_RAD * time + setting.lead)
-    normal = np.sin(setting.angle) * _displacement(setting, PERIOD_RAD * time)
+    first, second = setting.angle, setting.angle + setting.second_turn
+    along = _displacement(setting, np.cos(first), np.cos(second), PERIOD_RAD * time + setting.lead)
+    normal = _displacement(setting, np.sin(first), np.sin(second), PERIOD_RAD * time)
     ways = (time, phase, along, along + slip, normal, normal + height)
     return CycleTrace(*(check.frozen(array) for array in ways))
 
 
-def _displacement(setting, angle) -> NDArray[np.float64]:
-    """Of the plate along its direction of vibration [A]."""
-    return np.sin(angle) + setting.second * np.sin(2.0 * angle + setting.second_phase)
+def _displacement(setting, first, second, angle) -> NDArray[np.float64]:
+    """Of the plate along an axis [A], to which the two harmonics have these cosines."""
+    return first * np.sin(angle) + second * setting.second * np.sin(2.0 * angle + setting.second_phase)

@@ -57,7 +57,7 @@ def sweep(settings, workers=None) -> NDArray[np.float64]:
 
     Parameters
     ----------
-    settings : (N, 11) float [1 and rad, as OperatingPoint]
+    settings : (N, 12) float [1 and rad, as OperatingPoint]
         One ``OperatingPoint`` a row.
     workers : int, optional
         Threads; by default one a core.
@@ -120,5 +120,5 @@ def _compiled():
 def _loop(settings, out) -> None:
     for row in range(len(settings)):
         s = settings[row]
-        drive = s[8], s[9], s[10]
+        drive = s[8], s[9], s[10], s[11]
         survey(OperatingPoint(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], *drive), out[row])

@@ -56,12 +56,15 @@ def floor_of(bowl, length, coarse=1.0) -> Floor:
     """
     drive, time = bowl.drive, math.sqrt(length / bowl.gravity)
     rate = 2.0 * math.pi * drive.frequency * time
+    second_angle = drive.vibration_angle + drive.second_harmonic_turn
+    second = drive.amplitude * drive.second_harmonic / length
     return Floor(
         rate=rate,
         along=drive.amplitude * math.cos(drive.vibration_angle) / length,
         up=drive.amplitude * math.sin(drive.vibration_angle) / length,
         lead=-drive.phase,
-        second=drive.second_harmonic,
+        second_along=second * math.cos(second_angle),
+        second_up=second * math.sin(second_angle),
         second_phase=drive.second_harmonic_phase,
         step=coarse * 2.0 * math.pi / rate / STEPS_A_PERIOD,
     )
@@ -75,7 +78,9 @@ def steps_of(floor, coarse=1.0) -> Any:
         contact=coarse * usual.contact / PLATE_STEP_REFINEMENT**2,
         swing=once * usual.swing / PLATE_STEP_REFINEMENT,
         tolerance=once * usual.tolerance / PLATE_STEP_REFINEMENT,
-        threshold=min(usual.threshold, max(SLOW_CONTACT_SHARE * floor.up * floor.rate, 1e-4)),
+        threshold=min(
+            usual.threshold, max(SLOW_CONTACT_SHARE * (floor.up + 2.0 * floor.second_up) * floor.rate, 1e-4)
+        ),
     )
 
 
@@ -94,7 +99,8 @@ def kick_of(floor, times) -> float:
 
     Source: docs/resting.md, "On the vibrating plate".
     """
-    quickest = floor.rate * math.hypot(floor.along, floor.up) * (1.0 + 2.0 * abs(floor.second))
+    first, second = math.hypot(floor.along, floor.up), math.hypot(floor.second_along, floor.second_up)
+    quickest = floor.rate * (first + 2.0 * second)
     return times * 0.5 * quickest**2
 
 

@@ -10,8 +10,7 @@ from feederscrew.bowl.record import Sizing
 from feederscrew.conveying import hop
 from feederscrew.errors import FeederError
 from feederscrew.machine.stroke import greatest_amplitude
-
-MM_S = 1e-3  # [m/s]
+from feederscrew.units import MM, MM_S
 
 
 def speed_remark(velocity: float, rules: Sizing | None) -> list[str]:
@@ -40,7 +39,7 @@ def speed_remark(velocity: float, rules: Sizing | None) -> list[str]:
     ]
 
 
-MM, MPA = 1e-3, 1e6
+MPA = 1e6
 VISIBLE_STROKE_SPREAD = 0.05  # of the stroke round a bowl, that parts show
 
 

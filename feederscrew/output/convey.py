@@ -312,14 +312,10 @@ def _map(study):
 PHASE_COLOURS = {"stick": "#5c6b78", "forward": "#009e73", "backward": "#d55e00", "flight": "#0072b2"}
 PLATE = "#aab4bd"
 PHASE_LINES = {"stick": "-", "forward": "-", "backward": "--", "flight": ":"}
-CONVEY_REGIMES = {  # colour and label; what a designer wants is the strongest
-    "stick": ("#eef2f5", "sticks"),
-    "forward": ("#79bfa4", "slips forward only"),
-    "backward": ("#e3a08a", "slips back only"),
-    "both": ("#f3dfae", "slips both ways"),
-    "hop": ("#c9dcea", "hops"),
-    "no steady state": ("#8c8c8c", "no steady state"),
-}
+CONVEY_COLOURS = {  # what a designer wants is the strongest
+    "stick": "#eef2f5", "forward": "#79bfa4", "backward": "#e3a08a", "both": "#f3dfae", "hop": "#c9dcea",
+    "no steady state": "#8c8c8c",
+}  # fmt: skip
 FIRST_PEAK = 3.0  # [1] near here the velocity per stroke has its first peak, without rebound
 THROW_NAMES = {1.0: "hop", FIRST_PEAK: "first peak", round(throw_of_flight(1.0), 4): "one period"}
 SEVERAL_HATCH = "////"
@@ -448,15 +444,14 @@ def _velocity(figure, axes, grid) -> None:
 
 def _regimes(axes, grid) -> None:
     style.tidy(axes, title="Regimes", x=_label(grid.first), grid="none")
-    colours = mpl_colors.ListedColormap([CONVEY_REGIMES[name][0] for name in grid.names])
+    colours = mpl_colors.ListedColormap([CONVEY_COLOURS[name] for name in grid.names])
     axes.pcolormesh(
         *(grid.first.shown, grid.second.shown, grid.codes.T),
         **{"cmap": colours, "vmin": -0.5, "vmax": len(grid.names) - 0.5, "shading": "nearest"},
     )
     present = [name for code, name in enumerate(grid.names) if (grid.codes == code).any()]
     handles = [
-        mpl_patches.Patch(facecolor=CONVEY_REGIMES[name][0], label=CONVEY_REGIMES[name][1])
-        for name in present
+        mpl_patches.Patch(facecolor=CONVEY_COLOURS[name], label=regime_words(name)) for name in present
     ]
     if grid.values["several"].any():
         handles.append(

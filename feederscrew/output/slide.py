@@ -18,11 +18,15 @@ ndimage = heavy("scipy.ndimage")
 
 LIMIT_LABELS = {  # what a summary says of each map, in this order
     "mu_limit": "limiting friction, level floor [4.27]",
-    "mu_forward": "friction that stops forward slip",
-    "mu_backward": "friction that stops backward slip",
+    "mu_forward": "friction that stops slipping forward",
+    "mu_backward": "friction that stops slipping back",
     "throw_number": "throw number (hops above 1)",
 }
-ONSETS = {"forward": "G of forward slip", "backward": "G of backward slip", "hop": "G of the hop"}
+ONSETS = {
+    "forward": "G at which it slips forward",
+    "backward": "G at which it slips back",
+    "hop": "G at which it hops",
+}
 
 
 def printed(study, format):
@@ -136,13 +140,9 @@ FRICTION = "limiting friction μ [1]"
 HIGHEST = 2.0  # [1] friction at which pictures are cut: hardly any pair has more
 LEVELS = (0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 4.0)  # [1] of the contour lines
 NEAR_LEVEL = 0.1  # [1] of a level: the bowl's own friction, nearer than that, takes its place
-SLIDE_REGIMES = {  # colour and label; what a designer wants is the strongest
-    "stick": ("#eef2f5", "sticks"),
-    "forward": ("#79bfa4", "slips forward only"),
-    "backward": ("#e3a08a", "slips back only"),
-    "both": ("#f3dfae", "slips both ways"),
-    "hop": ("#e1e5e8", "hops"),
-}
+SLIDE_COLOURS = {  # what a designer wants is the strongest; a hop is hatched as well
+    "stick": "#eef2f5", "forward": "#79bfa4", "backward": "#e3a08a", "both": "#f3dfae", "hop": "#e1e5e8",
+}  # fmt: skip
 HOP_HATCH_COLOUR = "#b4bcc3"
 LETTER = (0.0125, 0.055)  # width of a letter and height of a line, over the picture's
 LEVEL_COLOURS = "cividis"
@@ -192,7 +192,7 @@ def regimes(slide: SlideMap):
     figure, axes = _map_axes(slide, f"Regimes at static friction {slide.friction:g}")
     widest, top = axes.get_xlim()[1], axes.get_ylim()[1]
     colours = (
-        (255.0 * mpl_colors.to_rgba_array([SLIDE_REGIMES[name][0] for name in slide.grid.names]))
+        (255.0 * mpl_colors.to_rgba_array([SLIDE_COLOURS[name] for name in slide.grid.names]))
         .round()
         .astype(np.uint8)
     )
@@ -217,7 +217,7 @@ def curves(slides):
         _curve(axes, slide, shade)
     first = slides[0]
     axes.axhline(first.friction, color=style.ACCENT, linewidth=1.0, alpha=0.7)
-    axes.plot([], [], color=style.INK, linestyle="--", linewidth=1.0, label="backward slip, this track")
+    axes.plot([], [], color=style.INK, linestyle="--", linewidth=1.0, label="slips back, this track")
     axes.set(xlim=(0, _right_edge(slides)), ylim=(0, HIGHEST))
     _own_point(
         axes, first.ratio, first.friction, f"this bowl, G = {first.ratio:.3g}, μ = {first.friction:g}", drop=9
@@ -249,7 +249,7 @@ def _hop_region(axes, slide, start) -> None:
     if start >= top:
         return
     with matplotlib.rc_context({"hatch.color": HOP_HATCH_COLOUR, "hatch.linewidth": 0.5}):
-        axes.axhspan(start, top, facecolor=SLIDE_REGIMES["hop"][0], hatch="////", linewidth=0, zorder=1.5)
+        axes.axhspan(start, top, facecolor=SLIDE_COLOURS["hop"], hatch="////", linewidth=0, zorder=1.5)
     axes.axhline(start, color=style.INK, linewidth=1.0, zorder=1.6)
     x = -0.5 * axes.get_xlim()[1] if slide.ratio > start else 0.0  # beside the bowl's own point
     axes.text(
@@ -277,7 +277,7 @@ def _own_point(axes, x, y, text, drop=0) -> None:
 def _label_region(axes, slide, name) -> bool:
     """Write the regime's name into its region, on two lines if need be; False if it has no room."""
     inside = (slide.grid.codes == slide.grid.names.index(name)) & ~_taken(slide)
-    for text in (SLIDE_REGIMES[name][1], SLIDE_REGIMES[name][1].replace(" ", "\n", 1)):
+    for text in (regime_words(name), regime_words(name).replace(" ", "\n", 1)):
         lines = text.split("\n")
         box = (
             int(LETTER[0] * max(map(len, lines)) * inside.shape[0]),
@@ -314,9 +314,7 @@ def _legend(figure, slide, names) -> None:
     """Colours of the regimes that are on the map but too thin to be named there."""
     shares = slide.grid.shares()
     patches = [
-        mpl_patches.Patch(color=SLIDE_REGIMES[n][0], label=SLIDE_REGIMES[n][1])
-        for n in names
-        if shares[n] > 0
+        mpl_patches.Patch(color=SLIDE_COLOURS[n], label=regime_words(n)) for n in names if shares[n] > 0
     ]
     if patches:
         figure.legend(

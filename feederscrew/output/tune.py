@@ -7,7 +7,6 @@ from feederscrew import units
 from feederscrew.conveying.hop import hop
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.words import regime_words
 from feederscrew.rates.drive_settings import ACCEPTED_RATE_ERROR
 from feederscrew.units import MM, MM_S, PER_MINUTE
 
@@ -48,7 +47,10 @@ def summary(study):
             "mu +-20 %": [_between(row) for row in rows],
             "velocity_mm_s": frame["velocity_mm_s"],
             "impact_mm_s": frame["hardest_impact_mm_s"],
-            "regime": [regime_words(row["regime"]) + (SEVERAL if row["several"] else "") for row in rows],
+            "regime": [
+                row["regime"].replace("backward", "slips back") + (SEVERAL if row["several"] else "")
+                for row in rows
+            ],
             **{
                 f"to {short}": [_margin(value, len(short)) for value in frame[f"margin_{name}"]]
                 for short, name in (("fwd", "forward"), ("back", "backward"), ("hop", "hop"))

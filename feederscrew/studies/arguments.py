@@ -42,6 +42,7 @@ class DriveSettings(TypedDict, total=False):
     phase: Setting
     second_harmonic: Setting
     second_harmonic_phase: Setting
+    second_harmonic_angle: Setting
     static: Setting
     kinetic: Setting
     static_backward: Setting

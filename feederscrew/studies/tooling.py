@@ -27,7 +27,7 @@ from feederscrew.tooling.devices.kinds import KINDS, leaning, names
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import tracks
 from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, DesignConstraints
-from feederscrew.tooling.isolating.design import MARGIN_M, PLAY_M, TOLERANCE_M, place
+from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M, PLAY_M, TOLERANCE_M, place
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Design, Goal
 from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations, travel_speed
@@ -109,7 +109,7 @@ class ToolingStudy(ReadableRecord):
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
     play: float = PLAY_M  # [m] of the part from the wall, within the margin
     tolerance: float = TOLERANCE_M  # [m] of its size, within the margin
-    trials: tuple[Any, ...] = ()  # designing.own_trial.TriedDesign of what was tried, that of `design` first
+    trials: tuple[Any, ...] = ()  # of TriedDesign: what was tried, that of `design` first
 
     def trial_of(self, place: int) -> Any:
         """Return what the trial of an orientation's design said: its TriedDesign; None without one."""
@@ -168,7 +168,7 @@ def tooling(
     *,
     heading: Quantity | None = None,
     rule: str = RECOMMENDED_RULE,
-    margin: Quantity = MARGIN_M,
+    margin: Quantity = DESIGN_MARGIN_M,
     purity: float = Goal.purity,
     efficiency: float = Goal.efficiency,
     outcome: str = DesignConstraints.outcome,

@@ -10,6 +10,7 @@ from feederscrew import bowl
 from feederscrew.mechanics.limits import published_ratio
 from feederscrew.output import slide as slide_output
 from feederscrew.output import style
+from feederscrew.output.words import regime_words
 from feederscrew.studies.slide import sliding_map
 
 SMALL = (61, 51)  # cells, for speed
@@ -53,15 +54,11 @@ def test_the_regime_map_shows_its_codes_and_names_them():
     one = slide(20)
     figure = slide_output.regimes(one)
     (image,) = figure.axes[0].images
-    colours = 255.0 * to_rgba_array([slide_output.SLIDE_REGIMES[name][0] for name in one.grid.names])
+    colours = 255.0 * to_rgba_array([slide_output.SLIDE_COLOURS[name] for name in one.grid.names])
     assert (np.asarray(image.get_array()) == np.round(colours)[one.grid.codes.T]).all()
     named = texts(figure)
     for name, share in one.grid.shares().items():
-        label = (
-            "no friction prevents forward slip (part hops)"
-            if name == "hop"
-            else slide_output.SLIDE_REGIMES[name][1]
-        )
+        label = "no friction prevents forward slip (part hops)" if name == "hop" else regime_words(name)
         assert (label in [text.replace("\n", " ") for text in named]) == (share > 0), name
 
 
@@ -100,7 +97,7 @@ def test_curves_are_4_28_for_each_angle():
     one, two = slide(10), slide(40)
     figure = slide_output.curves([one, two])
     axes, labels = figure.axes[0], [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == ["β = 10°", "β = 40°", "backward slip, this track", slide_output.OWN_LABEL]
+    assert labels == ["β = 10°", "β = 40°", "slips back, this track", slide_output.OWN]
     line = next(line for line in axes.lines if line.get_label() == "β = 40°")
     ratio, friction = line.get_xydata()[np.isfinite(line.get_ydata())].T
     b = math.radians(40)

@@ -9,8 +9,8 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew import units
 from feederscrew.designing import calm_drive, exploring, proposals
+from feederscrew.designing.exploring import Search
 from feederscrew.designing.record import DesignRequest
-from feederscrew.designing.searching import Search
 from feederscrew.resting.aspects import find
 from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME, TrackTooLow
 from feederscrew.studies import bowl as machines
@@ -77,9 +77,9 @@ def test_a_design_tries_its_chain_on_the_track_that_can_be_drawn(spaced, monkeyp
         bowls_tried.append(bowl)
         raise Stop
 
-    monkeypatch.setattr(exploring.trying, "single", single)
+    monkeypatch.setattr(exploring.short_trials, "single", single)
     search = Search(PART, DesignRequest(10.0 / units.MINUTE), made.bowl, frozenset(given), print)
-    search.known = shares(PART, made.bowl, rule="csa")
+    search.shares = shares(PART, made.bowl, rule="csa")
     _, ways = on_track(made, devices)
     weights = np.full(len(ways.lying), 1.0 / len(ways.lying))
     cuts = tuple(Cut(one, np.nan, np.nan, one, one, ()) for one in devices)

@@ -77,7 +77,7 @@ def held_fast(shape, state, turn, corner, kick):
 @compiled
 def calm_enough(shape, floor, face, calm):
     """Tell whether a part that lay on a face for so many periods stays, on a floor that throws nothing up."""
-    if face == UNSETTLED or floor.up * floor.rate * floor.rate >= 1.0:
+    if face == UNSETTLED or (floor.up + 4.0 * floor.second_up) * floor.rate * floor.rate >= 1.0:
         return False
     return calm >= (ROLLING if shape.rolls[face] else CALM)
 

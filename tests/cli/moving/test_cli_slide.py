@@ -35,7 +35,7 @@ def test_the_table_sums_up_the_bowls_own_point(run):
     head, _, *lines = result.stdout.splitlines()
     assert head.split("  ")[0] == "at the bowl's own point"
     assert (head.count("beta = 20 deg"), head.count("beta = 40 deg")) == (1, 1)
-    assert any(line.split() == ["regime", "both", "hop"] for line in lines)
+    assert any(line.split() == ["regime", "slips", "both", "ways", "hops"] for line in lines)
     assert "mu_limit is empty in" in result.stderr
 
 
