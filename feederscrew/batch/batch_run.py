@@ -31,7 +31,7 @@ from feederscrew.batch.task import (
 from feederscrew.batch.workers import Cluster, Processes, processors
 from feederscrew.errors import FeederError
 from feederscrew.output import tables
-from feederscrew.output.batch import SHEET
+from feederscrew.output.batch import SHEET_NAME
 from feederscrew.output.folder import RECORD
 from feederscrew.part import loading
 
@@ -408,12 +408,12 @@ def _finished(store, requests, complete, workers) -> Batch:
     rows = summary.rows(store, requests)
     sheets = workers.each(_contact_sheet, summary.sheets(store, rows))
     files = {
-        SHEET.format(f"_{number}" if number > 1 else ""): sheet for number, sheet in enumerate(sheets, 1)
+        SHEET_NAME.format(f"_{number}" if number > 1 else ""): sheet for number, sheet in enumerate(sheets, 1)
     }
     pages = summary.index_pages(store, rows)
     files |= {file: html(page) for file, page in pages.items()}
     files[summary.SUMMARY_FILE] = tables.text(summary.frame(rows), "csv")  # last: it says that all is there
-    old = [SHEET.format("*"), summary.LATER_INDEX_FILE.format("*"), summary.PARTIAL]
+    old = [SHEET_NAME.format("*"), summary.LATER_INDEX_FILE.format("*"), summary.PARTIAL]
     store.write(files, without=old)
     return Batch(
         rows=rows,
