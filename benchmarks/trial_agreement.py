@@ -67,7 +67,9 @@ def chain(part, folder, drive):
     first = tooling_study.tooling(part, bowl, rule=RULE, verdicts=1, seconds=1e-3)
     for k in np.argsort(-first.shares, kind="stable"):
         one = first.orientations[k]
-        study = tooling_study.tooling(part, bowl, one.aspect, heading=one.heading, known=first.aspects, **own)
+        study = tooling_study.tooling(
+            part, bowl, one.aspect, heading=one.heading, aspect_shares=first.aspects, **own
+        )
         found = study.design
         nearest = nearest or (found.cuts and (study, f"{one.name}, not isolated"))
         if found.isolated and found.cuts and tracks.TRACK_REMARK not in found.reasons:
@@ -173,7 +175,7 @@ def tried(part, bowl, count):
     """So many trials of every orientation of a part in a bowl."""
     known = trial.arriving(part, bowl, rule=RULE)
     every = len(trial.stream.orientations(part, known.aspects, bowl.track).lying)
-    return trial.trial(part, [bowl], rule=RULE, parts=count * every, jobs=1, known=known).runs[0]
+    return trial.trial(part, [bowl], rule=RULE, parts=count * every, jobs=1, aspect_shares=known).runs[0]
 
 
 def main():

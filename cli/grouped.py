@@ -41,14 +41,14 @@ class Grouped(click.Command):
 
     def format_options(self, ctx, formatter):
         """Write the command's own options, then those that it shares; the rare ones with --help-all."""
-        shown = [option for option in self.get_params(ctx) if isinstance(option, click.Option)]
+        listed = [option for option in self.get_params(ctx) if isinstance(option, click.Option)]
         if _is_whole(ctx):
-            self._write(ctx, formatter, {heading: _of(shown, heading) for heading in (OWN, *GROUPS)})
+            self._write(ctx, formatter, {heading: _of(listed, heading) for heading in (OWN, *GROUPS)})
             return
-        often = [option for option in shown if option.name not in self.rare]
+        often = [option for option in listed if option.name not in self.rare]
         shared = [option for option in often if option.name in HEADINGS]
         self._write(ctx, formatter, {OWN: _of(often, OWN), COMMON: shared})
-        rare = [max(option.opts, key=len) for option in shown if option.name in self.rare]
+        rare = [max(option.opts, key=len) for option in listed if option.name in self.rare]
         if rare:
             formatter.write_paragraph()
             text = f"Rare, see --help-all: {', '.join(rare)}"

@@ -10,6 +10,7 @@ import click
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew_cli import grouped, options
 from feederscrew_cli.interrupt import ended_within, held_back
+from feederscrew_cli.values import Whole
 
 PROGRAM = (sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()")
 MISSING = "pip install 'feederscrew[serve]'"
@@ -20,7 +21,7 @@ IDLE_S = 60.0  # after which a connection that sends nothing is closed
 @grouped.command(short_help="The main job in a browser, on this machine alone.")
 @click.option(
     "--port",
-    type=options.Whole(0, 65535),
+    type=Whole(0, 65535),
     default=0,
     metavar="N",
     help="Port on 127.0.0.1.  [default: any that is free]",

@@ -91,9 +91,9 @@ class Output:
         """Read the bowl file of ``options.bowl`` and tell what a machine makes of its drive; the settings."""
         from feederscrew import bowl as bowls
 
-        found = bowls.settings(**bowl)
-        self.warn(*bowls.remarks(found))
-        return found
+        settings = bowls.settings(**bowl)
+        self.warn(*bowls.remarks(settings))
+        return settings
 
     @contextlib.contextmanager
     def step(self, name):
@@ -111,14 +111,14 @@ class Output:
         """
         from feederscrew.output import tables
 
-        shown = frame.without(hidden) if self.format == "table" else frame
+        printed = frame.without(hidden) if self.format == "table" else frame
         if self.format == "table" and spare is not None:
-            shown, left_out = tables.to_page(shown, spare)
+            printed, left_out = tables.to_page(printed, spare)
             if left_out:
                 those = "it" if len(left_out) == 1 else "them"
                 self.say(f"Left out of the table: {', '.join(left_out)}; --format csv prints {those} too")
         width = _window() or (None if spare is None else tables.PAGE)
-        text = tables.text(shown, self.format, width)
+        text = tables.text(printed, self.format, width)
         click.echo(text, nl=False)
         if self.format == "table":
             self.explain(text)
@@ -205,12 +205,12 @@ def _window():
 
 def placeless(arguments):
     """Return arguments as typed without the folder of ``-o``: the same wherever the results are put."""
-    kept, skip = [], False
+    words, skip = [], False
     for argument in arguments:
         if not (skip or argument in FOLDER or argument.startswith(("--output=", "-o="))):
-            kept.append(argument)
+            words.append(argument)
         skip = argument in FOLDER
-    return kept
+    return words
 
 
 def _inputs(context):

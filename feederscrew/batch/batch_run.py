@@ -367,7 +367,7 @@ class _UnderWay:
             if self.resume and self.store.holds(request.name, task.key):
                 self.kept += 1
                 self.finished.add(request.name)
-                self.tell(kept=True)
+                self.tell(is_reused=True)
             else:
                 yield task
 
@@ -375,7 +375,7 @@ class _UnderWay:
         """Put what came of a part in place."""
         self.store.keep(outcome)
         self.finished.add(outcome.name)
-        self.tell(kept=False)
+        self.tell(is_reused=False)
 
 
 def _contact_sheet(tiles):

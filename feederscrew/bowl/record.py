@@ -78,7 +78,7 @@ class Unbalance:
     turns: float = 1.0  # [1] 1 where it turns counter-clockwise as it rises, -1 of a left hand
 
 
-BALANCED = Unbalance()  # nothing of it is known
+UNBALANCE_UNKNOWN = Unbalance()  # nothing of it is known
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class Machine:
     leaves: float  # of all banks together
     damping: float  # [1] of the critical one
     supply: float  # [Hz] at which the supply drives the bowl
-    unbalance: Unbalance = BALANCED  # known of a bowl that is a solid
+    unbalance: Unbalance = UNBALANCE_UNKNOWN  # known of a bowl that is a solid
 
 
 @dataclass(frozen=True)

@@ -127,14 +127,17 @@ def _options(arrays=False, **others) -> dict[Any, Any]:
 
 @functools.cache
 def _fingerprint():
-    """Digest of the compiled sources and of the names of all modules.
+    """Digest of the compiled sources and of the names of the modules beside them.
 
     A changed source must not find what an older one left on disk, and what lies there names the modules of
     the records that it is handed: one that has moved since could not be loaded.
     """
     library = Path(__file__).parents[1]
     files = sorted(path for pattern in SOURCES for path in library.glob(pattern))
-    names = sorted(path.relative_to(library).as_posix() for path in library.rglob("*.py"))
+    rooms = {pattern.partition("/")[0] for pattern in SOURCES}
+    names = sorted(
+        path.relative_to(library).as_posix() for room in rooms for path in library.glob(f"{room}/*.py")
+    )
     digest = hashlib.sha256("\n".join(names).encode())
     for path in files:
         digest.update(path.read_bytes())

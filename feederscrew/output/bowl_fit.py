@@ -44,7 +44,8 @@ def velocities(study: BowlFit) -> Frame:
 def remark(study: BowlFit) -> str:
     """Return whether the fit explains the velocities."""
     before, after = (
-        float(np.sqrt(np.mean((one - study.measured) ** 2))) / MM_S for one in (study.file, study.fitted)
+        float(np.sqrt(np.mean((velocities_of - study.measured) ** 2))) / MM_S
+        for velocities_of in (study.file, study.fitted)
     )
     text = (
         f"remains {after:.3g} mm/s in the root of the mean square, {before:.3g} by the bowl file as it stands"

@@ -86,10 +86,10 @@ def frame(columns):
     ValueError
         If the columns are not equally long.
     """
-    found = Frame({name: _as_column(values) for name, values in columns.items()})
-    if len(lengths := {len(column) for column in found.values()}) > 1:
+    table = Frame({name: _as_column(values) for name, values in columns.items()})
+    if len(lengths := {len(column) for column in table.values()}) > 1:
         raise ValueError(f"columns of one table are not of the same length: {sorted(lengths)}")
-    return found
+    return table
 
 
 def data_frame(frame):
@@ -136,7 +136,11 @@ def text(frame, format, width=None):
         Lines that end in a newline; the same frame always gives the same bytes.
     """
     if format == "csv":
-        return _csv(frame)
+        lines = io.StringIO()
+        writer = csv.writer(lines, lineterminator="\n")
+        writer.writerow(frame)
+        writer.writerows(zip(*([_cell(value) for value in column] for column in frame.values())))
+        return lines.getvalue()
     if format == "table":
         return _aligned(frame, width)
     raise ValueError(f"format is {format!r}, not 'table' or 'csv'")
@@ -150,15 +154,6 @@ def to_page(frame, spare, width=PAGE) -> tuple[Any, ...]:
     """
     gone = window.spared({name: len(_column(name, cells)[0]) for name, cells in frame.items()}, spare, width)
     return frame.without(gone), [heading(name)[0] for name in gone]
-
-
-def _csv(frame):
-    """Comma-separated lines, the names first; cells that would look like nothing at all are quoted."""
-    lines = io.StringIO()
-    writer = csv.writer(lines, lineterminator="\n")
-    writer.writerow(frame)
-    writer.writerows(zip(*([_cell(value) for value in column] for column in frame.values())))
-    return lines.getvalue()
 
 
 def _cell(value):
@@ -249,8 +244,8 @@ def _aligned(frame, width) -> str:
         pieces = [list(columns.values())]
     else:
         texts = [name for name, column in frame.items() if not is_numeric(column)]
-        beside = window.narrowed(columns, texts, width)
-        pieces = window.folded(columns, width) if beside is None else [beside]
+        side_by_side = window.narrowed(columns, texts, width)
+        pieces = window.folded(columns, width) if side_by_side is None else [side_by_side]
     return "\n".join("".join(f"{line}\n" for line in _lines(piece) if line) for piece in pieces)
 
 
@@ -275,7 +270,9 @@ def _numbers(name, values) -> list[Any]:
     values = values * (100.0 if is_share(name) else 1.0)
     largest = max(np.abs(values[np.isfinite(values)]), default=0.0)
     nothing = 0.0 if name == MIXED else NOISE * largest
-    return _pointed([_number(0.0 if abs(value) <= nothing else value) for value in values])
+    cells = [_number(0.0 if abs(value) <= nothing else value) for value in values]
+    tails = [len(cell) - cell.find(".") if "." in cell else 0 for cell in cells]
+    return [cell + " " * (max(tails, default=0) - tail) for cell, tail in zip(cells, tails)]
 
 
 def _number(value) -> str:
@@ -293,9 +290,3 @@ def _word(value):
     if isinstance(value, (bool, np.bool_)):
         return "yes" if value else "no"
     return "-" if value is None or value != value else units.printable(str(value))
-
-
-def _pointed(cells) -> list[Any]:
-    """Cells padded on the right until their decimal points stand under each other."""
-    tails = [len(cell) - cell.find(".") if "." in cell else 0 for cell in cells]
-    return [cell + " " * (max(tails, default=0) - tail) for cell, tail in zip(cells, tails)]

@@ -44,7 +44,7 @@ class BowlFit:
     @property
     def open_ended(self) -> NDArray[np.bool_]:
         """(3,) whether an interval reaches an end of what was tried: the velocities do not decide it."""
-        ends = np.array([(one[0], one[-1]) for one in COARSE])
+        ends = np.array([(values[0], values[-1]) for values in COARSE])
         return (self.low <= ends[:, 0]) | (self.high >= ends[:, 1])
 
 
@@ -114,8 +114,8 @@ def _ends(axis: int, grids: tuple, limit: float) -> tuple[float, float]:
     """Least and greatest value of a quantity whose best sum over the two others stays below a limit."""
     inside = []
     for tried, sums in grids:
-        others = tuple(k for k in range(len(QUANTITIES)) if k != axis)
-        best = np.nanmin(np.where(np.isfinite(sums), sums, np.inf), axis=others)
+        other_axes = tuple(k for k in range(len(QUANTITIES)) if k != axis)
+        best = np.nanmin(np.where(np.isfinite(sums), sums, np.inf), axis=other_axes)
         inside += list(tried[axis][best <= limit])
     return min(inside), max(inside)
 
@@ -140,9 +140,9 @@ def _with(bowl: Bowl, friction: Any, restitution: Any, stroke: Any) -> Bowl:
     factor = friction / bowl.friction.static
 
     names = ("static", "kinetic", "static_backward", "kinetic_backward", "wall")
-    given = {name: getattr(bowl.friction, name) for name in names}
+    coefficients = {name: getattr(bowl.friction, name) for name in names}
     scaled: dict[str, Any] = {
-        name: None if value is None else value * factor for name, value in given.items()
+        name: None if value is None else value * factor for name, value in coefficients.items()
     }
     return replace(
         bowl,

@@ -114,13 +114,13 @@ def drop(
     part, drops = arguments.a_part(part), arguments.count("drops", drops)
     launch_named(launch)
     check_run(drops, seed, jobs)
-    found = find(part) if aspects is None else aspects
+    resting = find(part) if aspects is None else aspects
     result = drop_test.test(
-        part, found, launch, ranges,
+        part, resting, launch, ranges,
         drops=drops, until=until, traced=traced, dropped=dropped,
         run=RunSettings(seed, jobs, progress, before),
     )  # fmt: skip
-    return DropStudy(part, found, result)
+    return DropStudy(part, resting, result)
 
 
 def check_run(drops: int | None, seed: int | None, jobs: int | None) -> None:

@@ -102,10 +102,10 @@ def shake(
     pace = plate_test.EXACT_PACE
     if seconds is not None:
         pace = replace(pace, seconds=arguments.amount("seconds", seconds, "time", LEAST))
-    found = find(part)
+    aspects = find(part)
     plates = plate_test.test(
-        part, found, driven, launch, ranges,
+        part, aspects, driven, launch, ranges,
         drops=drops, pace=pace, run=RunSettings(seed, jobs, progress, before),
     )  # fmt: skip
-    given = names or ["bowl"] * len(driven)
-    return PlateStudy(part, found, seed, tuple(plates), tuple(given[: len(plates)]))
+    bowl_names = names or ["bowl"] * len(driven)
+    return PlateStudy(part, aspects, seed, tuple(plates), tuple(bowl_names[: len(plates)]))

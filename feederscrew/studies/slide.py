@@ -88,7 +88,7 @@ class SlideStudy(ReadableRecord):
         tuple of SlideMap
             Without the negative branch of [4.27].
         """
-        return tuple(sliding_map(self.bowl, one.beta, shape=shape) for one in self.maps)
+        return tuple(sliding_map(self.bowl, slide_map.beta, shape=shape) for slide_map in self.maps)
 
 
 @with_settings
@@ -188,14 +188,14 @@ def _cells(
     pole = np.abs(ratio * np.sin(beta) - 1.0) <= limits.HOP_ROUNDING
     reversed_ = np.cos(alpha_minus_theta) < -limits.HOP_ROUNDING
     hidden = pole if as_published else limits.hops(ratio, beta) | reversed_
-    found = {
+    cells = {
         "mu_limit": np.where(hidden, np.nan, published),
         "mu_forward": limits.of_floor(limits.forward_limit(ratio, beta, alpha_minus_theta, climb), *wall),
         "mu_backward": limits.of_floor(limits.backward_limit(ratio, beta, alpha_minus_theta, climb), *wall),
     }
     held = limits.effective(bowl.friction.static, *wall)
     regimes = limits.regimes(ratio, beta, held, alpha_minus_theta, climb)
-    return {name: np.round(array, NOISE) + 0.0 for name, array in found.items()} | {"regime": regimes}
+    return {name: np.round(array, NOISE) + 0.0 for name, array in cells.items()} | {"regime": regimes}
 
 
 def _onsets(bowl: Bowl, beta: float) -> dict[str, float]:

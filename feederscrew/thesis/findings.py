@@ -450,9 +450,9 @@ def _equation_4_24() -> str:
     return "docs/equations.md has each printed equation with its function."
 
 
-def _gap(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+def _gap(profile: NDArray[np.float64], other: NDArray[np.float64]) -> float:
     """Total variation of two profiles [1]."""
-    return 0.5 * float(np.abs(one - other).sum())
+    return 0.5 * float(np.abs(profile - other).sum())
 
 
 @_evidence("conclusion-1")
@@ -493,10 +493,10 @@ def _conclusion_5() -> str:
 @_evidence("conclusion-8")
 def _conclusion_8() -> str:
     ratio, beta, turn = 0.5, np.radians(20.0), np.radians(60.0)
-    beside, free = (float(limits.published_limit(ratio, beta, angle)) for angle in (turn, 0.0))
+    at_wall, free = (float(limits.published_limit(ratio, beta, angle)) for angle in (turn, 0.0))
     return (
-        f"At G = {ratio:.1f}, beta 20 deg and alpha - theta 60 deg it says {beside:.3f}; the open floor needs"
-        f" {free:.3f}."
+        f"At G = {ratio:.1f}, beta 20 deg and alpha - theta 60 deg it says {at_wall:.3f}; the open floor"
+        f" needs {free:.3f}."
     )
 
 

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import check
+from feederscrew.tooling.devices.base import Sensor
 from feederscrew.trial.kernel import jets
 
 BLEND, OPENS = 0.25, 1.0  # of the part's size: way over which a lean of track, or of wall, becomes the next
@@ -17,7 +18,7 @@ class Watch:
 
     place: float  # [m] along the wall
     nozzles: float  # [m] where those jets are
-    sensor: object  # tooling.devices.base.Sensor
+    sensor: Sensor
     jets: slice  # rows of the stage's jets
     seconds: float  # [s] for which those blow
 
@@ -27,10 +28,12 @@ class Pulses:
 
     def __init__(self):
         self.spans = []  # (begin, end) of each, those that are over left out
+        self.log = []  # of all
 
     def set_off(self, begin, seconds) -> None:
         """Let the jets blow from a time on, for so long."""
         self.spans.append((begin, begin + seconds))
+        self.log.append((begin, begin + seconds))
 
     def next(self, now) -> tuple[Any, ...]:
         """Return when the jets next blow, from and to; what overlaps is one pulse, and (inf, inf) none."""

@@ -56,6 +56,7 @@ class QueuedParts:
     poses: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 7)))
     moments: tuple[tuple[float, int, int], ...] = ()  # time [s], parts left and returned by then, of each
     stage: Stage | None = None  # the track with all its devices, on which they lie
+    pulses: tuple[tuple[tuple[float, float], ...], ...] = ()  # [s] begin and end of each, by sensor
 
     @property
     def rate(self):
@@ -377,4 +378,8 @@ class PartsQueue:
             poses=check.frozen(np.reshape(self.poses, (len(self.poses), self.parts, 7))),
             moments=tuple(self.moments),
             stage=self.track.stage,
+            pulses=tuple(
+                tuple((begin * self.known.unit, end * self.known.unit) for begin, end in pulses.log)
+                for pulses in self.crowd.pulses
+            ),
         )

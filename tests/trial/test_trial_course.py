@@ -316,7 +316,7 @@ def test_orientations_arrive_as_the_launch_gives_them(bowl):
     found = {}
     for launch in ("place", "feed"):
         known = rate.shares(PART, one, launch=launch)
-        found[launch] = studies.trial(PART, [one], known=known, parts=12).runs[0]
+        found[launch] = studies.trial(PART, [one], aspect_shares=known, parts=12).runs[0]
         given = found[launch].known.rules["recommended"]
         np.testing.assert_allclose(found[launch].shares, given / given.sum())
         leaving = found[launch].shares * found[launch].counts[:, course.PASSED] / found[launch].tried

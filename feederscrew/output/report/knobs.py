@@ -1,8 +1,9 @@
 """The drive of a bowl as knobs: what the script of the page needs to compute velocity, regime and rate."""
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.output.convey import REGIMES
+from feederscrew.output.convey import REGIME_COLOURS
 from feederscrew.output.page.blocks import Knob, Knobs, Text
+from feederscrew.output.words import regime_words
 from feederscrew.rates.well_oriented import Rate, fed
 from feederscrew.studies.report import ROOM, ReportStudy
 from feederscrew.units import DEG, MM
@@ -45,7 +46,7 @@ def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
     values = {
         "bowl": bowl_values(case.bowl),
         "rate": None if rate is None else rate_values(rate),
-        "regimes": [[name, colour, words] for name, (colour, words) in REGIMES.items()],
+        "regimes": [[name, colour, regime_words(name)] for name, colour in REGIME_COLOURS.items()],
         "top": top,
     }
     return [Text(LEAD, quiet=True, printed=False), Knobs(sliders, values)]
