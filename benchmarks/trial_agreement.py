@@ -86,7 +86,7 @@ def single(part, seed, folder, drive, kinds):
     """One bowl for each kind of device that drops parts or sweeps them off, and what it is."""
     bowl = bowls.read(None, drive)
     aspects = trial.arriving(part, bowl, rule=RULE).aspects
-    every = trial.stream.orientations(part, aspects, bowl.track, bowl=bowl).lying
+    every = trial.stream.follow_orientations(part, aspects, bowl.track, bowl=bowl).lying
     every = [one for one in every if not one.returned]
     rng, path = np.random.default_rng((24, 1, seed)), Path(folder) / f"{part.name}.yaml"
     for kind in SINGLE if kinds >= len(SINGLE) else rng.choice(SINGLE, kinds, replace=False):
@@ -174,7 +174,7 @@ def names_of(words):
 def tried(part, bowl, count):
     """So many trials of every orientation of a part in a bowl."""
     known = trial.arriving(part, bowl, rule=RULE)
-    every = len(trial.stream.orientations(part, known.aspects, bowl.track).lying)
+    every = len(trial.stream.follow_orientations(part, known.aspects, bowl.track).lying)
     return trial.trial(part, [bowl], rule=RULE, parts=count * every, jobs=1, aspect_shares=known).runs[0]
 
 

@@ -279,7 +279,7 @@ OF: dict[str, tuple[Any, ...]] = {
     "PlateStudy": ("plate", "offers"),
     "RateStudy": ("rate", "offers"),
     "SlideStudy": ("slide", "offers"),
-    "ToolingStudy": ("tooling.files", "offers", ()),
+    "ToolingStudy": ("tooling", "offers", ()),
     "TrackStudy": ("track", "at_one_point"),
     "TrialStudy": ("trial.files", "offers"),
     "TuneStudy": ("tune", "offers"),
