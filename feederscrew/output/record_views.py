@@ -281,7 +281,7 @@ OF: dict[str, tuple[Any, ...]] = {
     "SlideStudy": ("slide", "offers"),
     "ToolingStudy": ("tooling", "offers", ()),
     "TrackStudy": ("track", "at_one_point"),
-    "TrialStudy": ("trial.files", "offers"),
+    "TrialStudy": ("trial.tables", "offers"),
     "TuneStudy": ("tune", "offers"),
 }
 

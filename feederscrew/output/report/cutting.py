@@ -4,17 +4,21 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from feederscrew.output import shading, tooling_tables, tooling_views
 from feederscrew.output import tables as tables_of
 from feederscrew.output import tooling as tooling_files
-from feederscrew.output import tooling_tables, tooling_views
 from feederscrew.output.page.blocks import Chapter, Notes, Picture, Table, Text, Views
-from feederscrew.output.report.scene import over_cuts
-from feederscrew.output.trial import files as trial_files
+from feederscrew.output.shading import short
 from feederscrew.output.trial import playback
 from feederscrew.output.trial import tables as trial_tables
 from feederscrew.rates.tipping import remark
 from feederscrew.trial.course import FATES
+from feederscrew.units import MM
 
+REACH = 1.25  # of the part's radius: how much of the track around it is seen
 CAME = ("aspect", "heading_deg", "share", "tried")  # columns of the trial's table that a page has room for
 WENT = ("leaves_as", "ended_at", "predicted", "margin_mm", "disagrees")
 
@@ -47,7 +51,7 @@ def trial(case) -> Chapter | None:
     result = Notes(tuple(trial_tables.summary(study)))
     scene, captions = playback.scene(study.part, run)
     views = Views(scene, tuple((*one, ()) for one in captions), "trial-views", "Orientation", plays=True)
-    matrix, paths, stills = (Picture(one.name, one.make(), one.alt) for one in trial_files.pictures(study))
+    matrix, paths, stills = (Picture(one.name, one.make(), one.alt) for one in trial_tables.pictures(study))
     frame = trial_tables.frame(study, people=True)
     table = Table(tables_of.frame({name: frame[name] for name in columns(run.counts)}))
     blocks = (lead, result, views, replace(stills, printed=True), table, matrix, paths)
@@ -86,3 +90,46 @@ def _views(study) -> Iterator[Any]:
     )
     offered = tooling_files.solid_picture(*given)
     yield Picture(offered.name, offered.make(), offered.alt, printed=True)
+
+
+def over_cuts(part, met, every):
+    """Return what the viewer draws of a part over the cuts of a track.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    met : sequence of Passage
+        Each becomes a pose, its device's section of track with it.
+    every : sequence of Orientation
+        Of the part.
+
+    Returns
+    -------
+    dict
+        As ``scene``, with ``tracks``: the sections in mm, ahead, inwards and up from the foot of the centre
+        of mass; and ``reach``, how far the view goes, in radii of the part.
+    """
+    tracks = [shading.track(*tooling_views.track_below(one, every)) for one in met]
+    return shading.viewed(part, tooling_views.VIEW) | {
+        "reach": REACH,
+        "tracks": tracks,
+        "poses": [_over_cut(one, place) for place, one in enumerate(met)],
+    }
+
+
+def _over_cut(met, place) -> dict[Any, Any]:
+    """Name, rotation from the file's axes to the track's, height, hull of the support, and the track."""
+    one = met.orientation
+    hull = np.zeros((0, 3))
+    if met.picture == "above" and one.kind != "hanging" and len(met.supported) > 3:
+        flat = met.supported[:-1] - [0.0, one.distance]
+        hull = np.column_stack([flat, np.full(len(flat), -one.posture.height)])
+        hull = np.einsum("ni,ij->nj", hull, one.axes) / MM
+    return {
+        "name": one.name,
+        "quaternion": [short(q) for q in Rotation.from_matrix(np.array(one.axes)).as_quat(canonical=True)],
+        "height": short(one.posture.height / MM),
+        "contact": [short(x) for x in hull.ravel()],
+        "track": place,
+    }

@@ -4,10 +4,11 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from feederscrew import units
 from feederscrew.output import aspects as aspects_output
-from feederscrew.output import inertia, style, tables, tipping_graph
+from feederscrew.output import inertia, shading, style, tables, tipping_graph
 from feederscrew.output.offers import by_name
 from feederscrew.output.page.blocks import (
     Chapter,
@@ -21,7 +22,7 @@ from feederscrew.output.page.blocks import (
     Views,
 )
 from feederscrew.output.page.numbers import percent
-from feederscrew.output.report.scene import scene
+from feederscrew.output.shading import outermost, short, stance
 from feederscrew.part.record import Part
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.units import MM
@@ -156,3 +157,41 @@ def _how_likely(case) -> str:
         return "no rule says how often"
     low, high = percent(min(known.values())), percent(max(known.values()))
     return f"{low} to {high} % of drops, by {len(known)} rules"
+
+
+def scene(part, found, rows):
+    """What the viewer draws.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    found : Aspects
+    rows : sequence of int
+        Which aspects.
+
+    Returns
+    -------
+    dict
+        As ``meshes.viewed``, for JSON, and ``poses``.
+    """
+    points = (part.vertices - part.centre_of_mass) / MM
+    radius = float(np.sqrt((points**2).sum(axis=1).max()))
+    near = outermost(points / radius)
+    stances = [stance(near, found.normals[row], found.heights[row] / MM / radius) for row in rows]
+    back = stances[0].floor_axes @ stances[0].camera.back
+    return shading.viewed(part, back) | {
+        "poses": [_pose(found, row, standing) for row, standing in zip(rows, stances)],
+    }
+
+
+def _pose(found, row, standing) -> dict[Any, Any]:
+    """Name, rotation (x, y, z, w) from the file's axes to the floor's, height and contact polygon."""
+    return {
+        "name": found.names[row],
+        "quaternion": [
+            short(q) for q in Rotation.from_matrix(np.array(standing.floor_axes)).as_quat(canonical=True)
+        ],
+        "height": short(found.heights[row] / MM),
+        "contact": [short(x) for x in found.polygons[row].ravel() / MM],
+    }

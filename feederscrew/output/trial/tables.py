@@ -1,4 +1,4 @@
-"""Trials as tables and documents, in the units of the shop."""
+"""Files of ``feeder trial``: tables and documents in the units of the shop, pictures."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -7,14 +7,47 @@ import numpy as np
 
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import columns, tables
+from feederscrew.output import offers as offer
 from feederscrew.output.convey import rebound
+from feederscrew.output.heavy import heavy
 from feederscrew.studies.trial import ENGINE
 from feederscrew.trial import course
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
+figures = heavy("feederscrew.output.trial.figures")
+film = heavy("feederscrew.output.trial.film")
+
 UM = 1e-3 * MM
 ENGINE_FIGURES = ("penetration_mm", "energy_won_um")  # how closely the engine keeps to the laws: for -v
 HIDDEN = ("fell_mm", "seconds", *ENGINE_FIGURES)
+
+
+def offers(study) -> list[Any]:
+    """Offer the files of a TrialStudy, as a list of Offer."""
+    run = study.runs[0]
+    return [
+        offer.table("trial.csv", frame, study),
+        offer.table("trial_stations.csv", stations, run),
+        *([] if run.landing is None else [offer.table("trial_landing.csv", landed, study, run)]),
+        *([] if run.queue is None else [offer.table("trial_outlet.csv", outlet, study, run)]),
+        offer.document("trial.json", document, study),
+        *pictures(study),
+    ]
+
+
+def pictures(study) -> list[Any]:
+    """Offer the pictures of its first run: orientations in and out, paths, stills."""
+    return [
+        offer.picture("trial.png", "Orientations in and out", lambda: figures.matrix(study.runs[0])),
+        offer.picture(
+            "trial_paths.png", "Paths over each device, from above", lambda: figures.paths(study.runs[0])
+        ),
+        offer.picture(
+            "trial_stills.png",
+            "A part that passes and one that does not",
+            lambda: film.stills(study.part, study.runs[0]),
+        ),
+    ]
 
 
 def document(study):
