@@ -59,11 +59,11 @@ def html(page) -> str:
     -------
     str
     """
-    every = [block for section in page.sections for block in section.blocks]
-    views = any(isinstance(block, kinds.Views) for block in every)
-    sortable = any(isinstance(block, kinds.Matrix) and block.sortable for block in every)
-    knobs = any(isinstance(block, kinds.Knobs) for block in every)
-    rows = (row for block in every if isinstance(block, kinds.Matrix) for row in block.rows)
+    all_blocks = [block for section in page.sections for block in section.blocks]
+    views = any(isinstance(block, kinds.Views) for block in all_blocks)
+    sortable = any(isinstance(block, kinds.Matrix) and block.sortable for block in all_blocks)
+    knobs = any(isinstance(block, kinds.Knobs) for block in all_blocks)
+    rows = (row for block in all_blocks if isinstance(block, kinds.Matrix) for row in block.rows)
     linked = any(entry.picture and entry.picture.link for row in rows for entry in row)
     policy = POLICY + LINKED_PICTURES * linked
     return "\n".join(
@@ -118,13 +118,13 @@ def _head(page) -> str:
 
 
 def _section(section) -> str:
-    body = "\n".join(_run(*run) for run in groupby(section.blocks, _beside))
+    body = "\n".join(_run(*run) for run in groupby(section.blocks, _may_share_row))
     anchor = f' id="{section.anchor}"' if section.anchor else ""
     title = f"<h2>{escape(section.title)}</h2>\n" if section.title else ""
     return f"<section{anchor}>\n{title}{body}\n</section>"
 
 
-def _beside(block):
+def _may_share_row(block):
     """Whether a block may stand beside another in a wide window: a picture or a small table."""
     if isinstance(block, kinds.Table):
         return len(block.frame) <= NARROW
@@ -134,15 +134,15 @@ def _beside(block):
     return width <= HALF and height <= TALL * width
 
 
-def _run(beside, blocks) -> str:
+def _run(in_columns, blocks) -> str:
     """Blocks that follow each other, in two columns of about the same height if they may be."""
     blocks = list(blocks)
-    if not beside or len(blocks) == 1:
+    if not in_columns or len(blocks) == 1:
         return "\n".join(map(_block, blocks))
     heights = [_height(block) for block in blocks]
     first = min(range(1, len(blocks)), key=lambda k: max(sum(heights[:k]), sum(heights[k:])))
     if _pairs(blocks[0]) and len(blocks) > 2 and sum(heights[first:]) > UNEVEN * sum(heights[:first]):
-        return f"{_block(blocks[0])}\n{_run(beside, blocks[1:])}"
+        return f"{_block(blocks[0])}\n{_run(in_columns, blocks[1:])}"
     halves = ("\n".join(map(_in_column, half)) for half in (blocks[:first], blocks[first:]))
     return '<div class="beside">\n' + "\n".join(f"<div>\n{half}\n</div>" for half in halves) + "\n</div>"
 
@@ -206,7 +206,10 @@ def _kind(picture) -> str:
 def _size(picture) -> list[Any]:
     """Width and height of a picture at its own size [px of a page]."""
     if picture.file.endswith(".svg"):
-        return [float(points) * CSS_DPI / 72 for points in SVG_SIZE.search(picture.content).groups()]
+        size = SVG_SIZE.search(picture.content)
+        if size is None:
+            raise ValueError(f"{picture.file} says no size in points")
+        return [float(points) * CSS_DPI / 72 for points in size.groups()]
     return [pixels * CSS_DPI / DPI for pixels in struct.unpack(">2I", picture.content[16:24])]
 
 
@@ -322,10 +325,10 @@ FOLLOWING = (  # what the script shows: its name, what a reader calls it
 
 def _knobs(block) -> str:
     sliders = "\n".join(
-        f'<label><span>{escape(one.label)}</span><input type="range" name="{one.name}" min="{one.low:g}" '
-        f'max="{one.high:g}" step="any" value="{one.own:.10g}" data-own="{one.own:.10g}" '
-        f'data-unit="{escape(one.unit)}"><output></output></label>'
-        for one in block.knobs
+        f'<label><span>{escape(knob.label)}</span><input type="range" name="{knob.name}" min="{knob.low:g}" '
+        f'max="{knob.high:g}" step="any" value="{knob.own:.10g}" data-own="{knob.own:.10g}" '
+        f'data-unit="{escape(knob.unit)}"><output></output></label>'
+        for knob in block.knobs
     )
     tiles = "\n".join(
         f'<div class="tile"><span>{label}</span><strong data-shows="{name}"></strong></div>'

@@ -45,7 +45,7 @@ class CsvSheet:
 
     file: str
     csv: str
-    shown: bool = True
+    on_page: bool = True
 
 
 @dataclass(frozen=True)

@@ -133,12 +133,12 @@ def _chapter(case, anchor, title, compute, step):
     """The chapter, or the reason there is none; None where it was not asked for."""
     try:
         with step(title):
-            found = compute(case)
+            chapter = compute(case)
     except FeederError as fault:
         listed = tuple(f"{title}: {line}" for line in fault.lines)
-        found = Chapter((Notes(fault.lines, loud=True),), warnings=listed)
+        chapter = Chapter((Notes(fault.lines, loud=True),), warnings=listed)
     gc.collect()  # figures hold themselves: they would pile up
-    return None if found is None else replace(found, anchor=anchor, title=title)
+    return None if chapter is None else replace(chapter, anchor=anchor, title=title)
 
 
 def write(folder, page, format) -> None:

@@ -64,16 +64,16 @@ def convey(case) -> Chapter:
 
 def floor(case) -> Chapter:
     """Forces and regimes on the bowl's floor."""
-    found, settings = case.floor, bowls.texts(case.settings)
-    document = floor_output.document(found, settings)
-    result = floor_output.map_remarks(found)
-    offered = floor_output.offers(found, settings)
+    study, settings = case.floor, bowls.texts(case.settings)
+    document = floor_output.document(study, settings)
+    result = floor_output.map_remarks(study)
+    offered = floor_output.offers(study, settings)
     pictures = _taken(offered, "floor_plan", "floor_frequency_amplitude", "floor_beta_friction")
     lead = Text(
-        f"Aspect {found.posture.name}, heading {np.degrees(found.heading):.4g} deg, at the upper reversal of "
+        f"Aspect {study.posture.name}, heading {np.degrees(study.heading):.4g} deg, at the upper reversal of "
         "the drive; the maps show the same instant for other drives and other friction."
     )
-    lines = _notes(result + floor_output.remarks(found))
+    lines = _notes(result + floor_output.remarks(study))
     return Chapter((lead, *lines, Table(floor_output.summary(document)), *pictures))
 
 
@@ -81,7 +81,7 @@ def headings(case) -> Chapter:
     """How the part lies along the wall."""
     study = case.headings
     result = headings_output.frame(study)
-    frame = tables.frame({shown: result[name] for name, shown in HEADINGS.items()})
+    frame = tables.frame({title: result[name] for name, title in HEADINGS.items()})
     lead = Text(
         "The directions in which the part is stable when pushed against the wall, the share of all "
         "directions of laying down that ends in each, and the room it takes."
@@ -93,42 +93,42 @@ def headings(case) -> Chapter:
 
 def track(case) -> Chapter:
     """Reactions on the track, against the wall."""
-    found = case.track
-    settings, grid = bowls.texts(case.settings), found.over(case.settings)
-    document = track_output.document(found, settings)
-    offered = track_output.offers(found, settings, grid)
+    study = case.track
+    settings, grid = bowls.texts(case.settings), study.over(case.settings)
+    document = track_output.document(study, settings)
+    offered = track_output.offers(study, settings, grid)
     pictures = _taken(offered, "track_part", "track_map", "track_cycle")
-    lines = _notes(track_output.remarks(found) + track_output.map_remarks(grid))
+    lines = _notes(track_output.remarks(study) + track_output.map_remarks(grid))
     return Chapter(
         (Text(on_track(case, WORDS)), *lines, Table(track_output.summary(document)), *pictures),
-        tiles=_heading_tiles(found),
+        tiles=_heading_tiles(study),
     )
 
 
 def rate(case) -> Chapter:
     """Well-oriented parts a minute."""
-    found = case.rate
+    study = case.rate
     tried = bowls.verified(case.path)
-    own = case.part, case.bowl, found.rate.orientations.lying[found.rate.row].name
-    document = proof.with_trial(rate_output.document(found), tried, *own)
+    own = case.part, case.bowl, study.rate.orientations.lying[study.rate.row].name
+    document = proof.with_trial(rate_output.document(study), tried, *own)
     lead = Text(
         "The chain from velocity to rate. The range in brackets is over all starts, friction a fifth off, "
         "restitution where the part hops, and the interval of the shares. The second table has what the "
         "track and each device do with each orientation."
     )
     return Chapter(
-        (lead, Table(rate_output.summary(document)), Table(_passing(found, document["orientations"]))),
+        (lead, Table(rate_output.summary(document)), Table(_passing(study, document["orientations"]))),
         tiles=(_rate_tile(document),),
-        warnings=(*rate_output.remarks(found), *found.warnings, *proof.warnings(tried, *own)),
+        warnings=(*rate_output.remarks(study), *study.warnings, *proof.warnings(tried, *own)),
     )
 
 
-def _passing(found, frame):
+def _passing(study, frame):
     """The orientations with what each station lets pass as a share, which people read in percent.
 
     Their sizes stand in the chapter before.
     """
-    stations = found.rate.orientations.names
+    stations = study.rate.orientations.names
     empty = () if np.isfinite(frame["margin_mm"]).any() else ("margin_mm",)
     frame = frame.without(("length_mm", "width_mm", *empty))
     return tables.frame({f"p_{name}" if name in stations else name: column for name, column in frame.items()})
@@ -162,12 +162,12 @@ def _velocity_tile(document) -> Tile:
     return Tile("travels", f"{number(document['velocity_mm_s'], SHORT)} mm/s", note)
 
 
-def _heading_tiles(found) -> tuple[Any, ...]:
-    if found.headings is None:
+def _heading_tiles(study) -> tuple[Any, ...]:
+    if study.headings is None:
         return ()
-    length, width = found.headings.lengths[found.row] / MM, found.headings.widths[found.row] / MM
-    note = f"{length:.3g} mm long, covers {width:.3g} of the track's {found.bowl.track.width / MM:.3g} mm"
-    return (Tile("lies along the wall at", f"{np.degrees(found.seat.heading):.3g} deg", note),)
+    length, width = study.headings.lengths[study.row] / MM, study.headings.widths[study.row] / MM
+    note = f"{length:.3g} mm long, covers {width:.3g} of the track's {study.bowl.track.width / MM:.3g} mm"
+    return (Tile("lies along the wall at", f"{np.degrees(study.seat.heading):.3g} deg", note),)
 
 
 def _rate_tile(document) -> Tile:
@@ -188,10 +188,10 @@ def _rate_tile(document) -> Tile:
 def _taken(offered, *starts) -> list[Any]:
     """Make the pictures whose files begin so, in that order."""
     return [
-        Picture(one.name, one.make(), one.alt)
+        Picture(picture.name, picture.make(), picture.alt)
         for start in starts
-        for one in offered
-        if one.is_picture and one.name.startswith(start)
+        for picture in offered
+        if picture.is_picture and picture.name.startswith(start)
     ]
 
 
@@ -222,16 +222,20 @@ def on_track(case, words):
     words : dict of str to str
         Of each regime.
     """
-    found, stands = case.convey.answer, case.track.stands
-    if found.status == "no steady state":
+    answer, stands = case.convey.answer, case.track.stands
+    if answer.status == "no steady state":
         return SLIDES_DOWN
-    speed = number(found.velocity / MM_S, SHORT)
-    regime = words.get(found.regime, found.regime)
-    said = [f"On this track the part travels at {speed} mm/s and {regime}: the rate is computed with that."]
+    speed = number(answer.velocity / MM_S, SHORT)
+    regime = words.get(answer.regime, answer.regime)
+    sentences = [
+        f"On this track the part travels at {speed} mm/s and {regime}: the rate is computed with that."
+    ]
     if HOP in case.track.cycle.state and stands and stands.verdict != tipping.THROWN:
-        said.append(THROWN)
-    said += [VERDICT_WORDS[stands.verdict].format(*np.degrees((stands.tilt, stands.lean)))] if stands else []
-    return " ".join(said)
+        sentences.append(THROWN)
+    sentences += (
+        [VERDICT_WORDS[stands.verdict].format(*np.degrees((stands.tilt, stands.lean)))] if stands else []
+    )
+    return " ".join(sentences)
 
 
 LEAST_TOP_MM = 1.0  # to which the slider of the amplitude goes at least
