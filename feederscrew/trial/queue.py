@@ -25,6 +25,7 @@ PART_OF_TURN = 0.5  # of the bowl's circumference, less two lengths: more parts 
 CARRIED = 0.1  # of its weight that other parts carry, and ...
 LIFTED = 0.02  # ... as high over the track: a part has climbed on others
 WHOLE = 1e-6  # of a period: a time that is so little longer than whole periods is that of them
+BLOCK = 40  # parts that come in exact shares
 POURED = 1.05  # of the part's radius: apart along the track, and over it, where parts are poured
 
 
@@ -41,6 +42,8 @@ class QueuedParts:
     # (S + 1, A + 1) int, in which orientation whole ones left, the last is none of the known; on which aspect
     # those lay, whatever their heading, the last hung
     whole: np.ndarray
+    left_by_entry: np.ndarray  # (M, S + 1, A + 1) int, the same by the orientation in which they came
+    returned_by_entry: np.ndarray  # (M,) int
     returned: int  # fell back into the bowl
     jams: int  # stood at a device and were taken out
     climbs: int  # times that a part came to lie on others
@@ -83,6 +86,7 @@ class QueuePlan:
     # need; 0 where they come touching. None: they fall onto the track in any attitude, not in a row
     gaps: float | None = GAPS
     frames: int = 0  # poses of all parts that are noted for a film
+    balanced: bool = False  # orientations in exact shares, in random order; else each is drawn by itself
 
 
 def queue_of(part, bowl, aspects, every, poses, shares, plan, run):
@@ -155,7 +159,9 @@ class PartsQueue:
         self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
         self.mark, self.since, self.on_others = np.zeros(parts), np.zeros(parts), np.zeros(parts, bool)
         self.below, self.hanging = AspectsBelow(part, aspects), [isinstance(one, Hanging) for one in poses]
-        self.left = np.zeros((len(poses) + 1, len(aspects.names) + 1), int)
+        self.left = np.zeros((len(every), len(poses) + 1, len(aspects.names) + 1), int)
+        self.returned_by_entry, self.entered = np.zeros(len(every), int), np.zeros(parts, int)
+        self.balanced, self.drawn = plan.balanced, []  # orientations of the parts to come
         self.returned = self.jams = self.climbs = self.relieved = 0
         self.way, self.free, self.touch, self.depth = [], [], [], 0.0
         self.pressure, self.whole, self.first, self.most = np.zeros(len(self.windows)), 0, None, 0
@@ -207,7 +213,7 @@ class PartsQueue:
         end = min((rear for rear, _, _ in reach.values()), default=0.0)
         while self.waiting:
             self.coming = self.coming or self.fresh()
-            state, gap = self.coming
+            row, state, gap = self.coming
             rear, front, _ = whereabouts.extents(state, self.known.solid.corners, self.known.radius)
             place = min(end, 0.0) - gap - front
             if place + rear < self.track.start / self.known.length:
@@ -216,12 +222,13 @@ class PartsQueue:
             n = self.waiting.pop(0)
             self.crowd.lay(n, whereabouts.moved(state[None], place, self.known.radius)[0])
             self.mark[n], self.since[n], self.on_others[n] = place, self.time, False
+            self.entered[n] = row
             end = place + rear
         self.most = max(self.most, int(self.crowd.on.sum()))
 
     def fresh(self):
-        """A part that is about to enter: its state at the place 0, and the free way before it."""
-        k = min(int(np.searchsorted(self.chances, self.rng.random() * self.chances[-1])), len(self.every) - 1)
+        """A part about to enter: its orientation, its state at the place 0, and the free way before it."""
+        k = self.next_row()
         one = self.every[k]
         track = one.track
         if self.gaps is not None:
@@ -230,12 +237,27 @@ class PartsQueue:
             state = starts.tilted(state, self.known.solid.corners, self.tilts)
             state = starts.clear(state, self.known.solid, track, self.known.length, play, one.wall_leans)
             gap = self.apart + 2.0 * self.gaps * self.rng.random() * one.length / self.known.length
-            return state, gap
+            return k, state, gap
         radius, state = self.known.solid.radius, np.zeros(body.STATE)
         turn = self.rng.standard_normal(4)
         state[:3] = 0.0, radius * POURED, radius * POURED * (1.0 + self.rng.random())
         state[body.Q : body.Q + 4] = turn / np.sqrt((turn**2).sum())
-        return state, 0.0
+        return k, state, 0.0
+
+    def next_row(self):
+        """The orientation in which the next part comes.
+
+        Balanced, BLOCK parts come in their shares as nearly as whole parts can, in random order: a systematic
+        sample (W. G. Cochran, "Sampling techniques", 3rd ed., 1977, ch. 8).
+        """
+        last = len(self.every) - 1
+        if not self.balanced:
+            return min(int(np.searchsorted(self.chances, self.rng.random() * self.chances[-1])), last)
+        if not self.drawn:
+            points = (np.arange(BLOCK) + self.rng.random()) / BLOCK * self.chances[-1]
+            rows = np.minimum(np.searchsorted(self.chances, points), last)
+            self.drawn = self.rng.permutation(rows).tolist()
+        return self.drawn.pop()
 
     def ride(self, turn) -> None:
         """Move all for one period of the drive, and look what became of them."""
@@ -283,14 +305,12 @@ class PartsQueue:
             self.leave(n)
             self.again(n)
         elif fell or front < self.track.start / self.known.length:
-            self.returned += 1
-            self.again(n)
+            self.come_back(n)
         elif way - self.mark[n] > MOVED:
             self.mark[n], self.since[n] = way, self.time
         elif self.time - self.since[n] >= BACKED_UP and self.pushed_off(n, rear, front):
-            self.returned += 1
             self.relieved += 1
-            self.again(n)
+            self.come_back(n)
         else:
             self.stand(n, front, reach, order)
 
@@ -316,7 +336,13 @@ class PartsQueue:
         orientation = self.looks.of([state])[0]
         hangs = orientation != OTHER and self.hanging[orientation]
         self.whole += 1
-        self.left[orientation, OTHER if hangs else self.below.of([state])[0]] += 1
+        self.left[self.entered[n], orientation, OTHER if hangs else self.below.of([state])[0]] += 1
+
+    def come_back(self, n) -> None:
+        """Count a part that fell back into the bowl."""
+        self.returned += 1
+        self.returned_by_entry[self.entered[n]] += 1
+        self.again(n)
 
     def stand(self, n, front, reach, order) -> None:
         """A part that stands: what pushes it, and whether it is what holds the others up."""
@@ -363,7 +389,9 @@ class PartsQueue:
             seconds=seconds,
             counted=counted,
             delivered=self.whole + part - self.start if counted else 0.0,
-            whole=check.frozen(np.array(self.left)),
+            whole=check.frozen(self.left.sum(axis=0)),
+            left_by_entry=check.frozen(np.array(self.left)),
+            returned_by_entry=check.frozen(np.array(self.returned_by_entry)),
             returned=self.returned,
             jams=self.jams,
             climbs=self.climbs,

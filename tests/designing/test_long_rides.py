@@ -89,8 +89,8 @@ def test_those_that_turn_ride_again(monkeypatch):
 
 def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypatch):
     """Apart parts come as the ride has made them, touching as they entered; draws are half of each."""
-    monkeypatch.setattr(queues, "PARTS", 3)
-    monkeypatch.setattr(queues, "SECONDS", 1.0)
+    monkeypatch.setattr(queues, "TOUCHING_PARTS", 3)
+    monkeypatch.setattr(queues, "FILL_SECONDS", 1.0)
     cube, seen = shapes.part(shapes.box(10, 10, 10)), []
     first = long_rides.long_ride
 
@@ -120,4 +120,4 @@ def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypat
     )
     assert all(shares == pytest.approx(0.5 * (ride.arriving + ride.entering)) for shares in drawn)
     (row,) = designs.document(found)["long_ride"][:1]
-    assert row["parts"] >= long_rides.EACH and row["stays"] + row["left"] <= row["parts"]
+    assert row["parts"] >= long_rides.RIDING_PARTS and row["stays"] + row["left"] <= row["parts"]

@@ -20,8 +20,8 @@ REQUEST = DesignRequest(40.0 / 60.0, draws=2)
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch):
-    monkeypatch.setattr(queues, "PARTS", 3)
-    monkeypatch.setattr(queues, "SECONDS", 1.0)
+    monkeypatch.setattr(queues, "TOUCHING_PARTS", 3)
+    monkeypatch.setattr(queues, "FILL_SECONDS", 1.0)
 
 
 def stopping(word):
