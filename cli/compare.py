@@ -5,11 +5,12 @@ from pathlib import Path
 import click
 
 from feederscrew_cli import grouped, options, orientation, waiting
+from feederscrew_cli.values import Place
 
 
 @grouped.command(short_help="Measured aspects against every rule, of one part or over many files.")
 @options.parts
-@click.option("--with", "counts", metavar="CSV", type=options.Place(), help="Counts or fractions of PART.")
+@click.option("--with", "counts", metavar="CSV", type=Place(), help="Counts or fractions of PART.")
 @click.option(
     "--launch", type=options.LAUNCHES, help="What was done to PART.  [default: as the file says, else feed]"
 )
@@ -128,5 +129,5 @@ def _over_files(sources, launch, as_published, pictures, out):
     out.warn(*study.warnings)
     with out.folder("measured", study.inputs) as folder:
         offers.write(folder, compare_output.sets_offers(study), pictures=pictures)
-    for shown in compare_output.sets_printed(study, out.format):
-        out.show(shown, compare_output.sets_document(study), spare=compare_output.SPARE_RULES)
+    for frame in compare_output.sets_printed(study, out.format):
+        out.show(frame, compare_output.sets_document(study), spare=compare_output.SPARE_RULES)

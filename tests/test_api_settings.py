@@ -23,7 +23,7 @@ devices:
 OTHER = {  # neither the default nor the file's
     "track.hand": "left", "sizing.shape": "conical", "drive.peak_to_peak": 1e-3, "machine.leaves": 12.0,
     "sizing.leaves": 12.0, "friction.kinetic": 0.2, "friction.kinetic_backward": 0.2,
-    "machine.mains": "60 Hz", "machine.controller": "frequency",
+    "drive.second_harmonic_angle": 0.7, "machine.mains": "60 Hz", "machine.controller": "frequency",
 }  # fmt: skip
 SHARED = sorted(word for word, count in Counter(key.word for key in BOWL_KEYS).items() if count > 1)
 

@@ -23,7 +23,7 @@ from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import solidbowl
 from feederscrew.studies.bowl import MachineSheet
-from feederscrew.studies.rate import LEAST
+from feederscrew.studies.rate import MIN_POSITIVE
 
 DRIVE_TEXTS = (
     ("frequency", 1.0, "Hz"),
@@ -220,7 +220,7 @@ def _sized(
     Where the static rule lets nothing or too little through, it is the bowl at the stroke that was tried,
     whose settings are ``tried``; where that makes no solid, that of a track without devices.
     """
-    wanted = solidbowl.asked(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
+    wanted = solidbowl.solid_options(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
     target = study.request.target
     for own, as_tried in ((settings, False), (tried, True)):
         try:
@@ -231,7 +231,7 @@ def _sized(
         return machines.bowl(settings, study.part, study.request.target), why
     except FeederError:
         plain = [s for s in settings if not s.key.name.startswith("devices.")]
-        return machines.bowl(plain, study.part, LEAST), why
+        return machines.bowl(plain, study.part, MIN_POSITIVE), why
 
 
 def _texts(section: str, record: object, rows: Iterable[tuple[str, float, str]]) -> list[str]:

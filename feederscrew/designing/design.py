@@ -13,7 +13,7 @@ from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
-from feederscrew.studies.rate import LEAST, Shares, the_shares
+from feederscrew.studies.rate import MIN_POSITIVE, Shares, the_shares
 from feederscrew.studies.tooling import listed as names_of
 from feederscrew.units import listed
 
@@ -36,7 +36,7 @@ class DesignOptions(BowlSettings, total=False):
     draws: int
     seed: int
     jobs: int
-    shares: Shares | None
+    aspect_shares: Shares | None
     progress: Callable[[str], None] | None
     overrides: Overrides
 
@@ -74,7 +74,7 @@ def design(
     draws: int = DesignRequest.draws,
     seed: int = DesignRequest.seed,
     jobs: int = DesignRequest.jobs,
-    shares: Shares | None = None,
+    aspect_shares: Shares | None = None,
     progress: Callable[[str], None] | None = None,
     overrides: Overrides = (),
     **settings: Unpack[BowlSettings],
@@ -120,7 +120,7 @@ def design(
         Of everything that is drawn.
     jobs : int
         Cores to use; the answer does not depend on it.
-    shares : Shares, optional
+    aspect_shares : Shares, optional
         Of ``shares``; what lies on the moving floor of the designed bowl without it.
     progress : callable, optional
         Called with what is tried, a sentence.
@@ -135,7 +135,7 @@ def design(
         ``status``.
     """
     request = DesignRequest(
-        target=arguments.amount("target", target, "rate", LEAST),
+        target=arguments.amount("target", target, "rate", MIN_POSITIVE),
         aspect=arguments.an_aspect(aspect),
         heading=arguments.angle("heading", heading),
         up=names_of(up),
@@ -164,6 +164,6 @@ def design(
             for member in family.members
         )
         return replace(family, members=tuple(members))
-    shared = the_shares(shares)
+    shared = the_shares(aspect_shares)
     study = loop.design(arguments.a_part(part), plain, kept_keys, request, shares=shared, tell=progress)
     return built_bowl.with_machine(study, built_bowl.built(study, kept_settings))

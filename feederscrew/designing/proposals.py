@@ -213,7 +213,7 @@ def proposed(part, bowl, aspects, row, orientations, request, recipe):
     without = tuple(dict.fromkeys((*request.without, *recipe.without, *ON_THE_TRACK)))
     static_design = tooling(
         part, bowl, orientation.aspect, heading=orientation.heading, rule=request.rule, margin=recipe.margin,
-        known=aspects, seed=request.seed, verdicts=VERDICTS, outcome=recipe.outcome, without=without,
+        aspect_shares=aspects, seed=request.seed, verdicts=VERDICTS, outcome=recipe.outcome, without=without,
         turn=recipe.turns, air=recipe.cost_class > COST_CLASSES[0],
         purity=ENOUGH_PURITY, up=request.up,
         play=0.0, tolerance=0.0, vary=False,  # draws and the loop have them

@@ -28,10 +28,10 @@ from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.tooling.orientations import Hanging
-from feederscrew.trial.queue import GAPS, PartsQueue, QueuedParts, QueuePlan
+from feederscrew.trial.queue import MEAN_GAP_SHARE, PartsQueue, QueuedParts, QueuePlan
 
 # mean free way between parts over their length
-FILLS = (("low", short_trials.LOW), ("normal", GAPS), ("high", 0.0))
+FILLS = (("low", short_trials.LOW), ("normal", MEAN_GAP_SHARE), ("high", 0.0))
 TOUCHING_PARTS, FILL_SECONDS = 12, 60.0  # that touch in a queue; [s] of each fill at the most
 PLANNED_PARTS = 150  # that left all fills: where so many are pure, its time need not be over
 FIRST_LOOK_S = 20.0  # [s] of each fill before anything is said to hold, and in which the track has filled
@@ -78,8 +78,8 @@ class FollowedRow:
         except KeyboardInterrupt:
             if not queue.periods:
                 raise
-            return self.count(fill, gaps, queue.seen(partial=True))
-        return self.count(fill, gaps, queue.seen())
+            return self.count(fill, gaps, queue.result(partial=True))
+        return self.count(fill, gaps, queue.result())
 
     def say(self, fill: str, seconds: float) -> None:
         """Tell which fill is followed, and until when [s]."""
@@ -239,7 +239,7 @@ class _FillsInTurn:
         queue = self.queue(name, gaps)
         periods_elsewhere = sum(other.periods for other in self.running.values() if other is not queue)
         queue.follow(until, self.row.progressed(periods_elsewhere))
-        return self.row.count(name, gaps, queue.seen())
+        return self.row.count(name, gaps, queue.result())
 
     def queue(self, name: str, gaps: float) -> PartsQueue:
         """Return the queue of a fill."""
@@ -289,7 +289,7 @@ class _FillsSideBySide(_FillsInTurn):
             queue = self.queue(name, gaps)
             for until in self.times[name]:
                 queue.follow(until, end_where_stopped)
-                self.counted[name].put(self.row.count(name, gaps, queue.seen()))
+                self.counted[name].put(self.row.count(name, gaps, queue.result()))
         finally:
             self.counted[name].put(None)  # nothing more comes: who waits learns what ended it
 
@@ -315,7 +315,7 @@ def _stopped(
 ) -> tuple[FilledQueue, ...]:
     """What was seen until the user stopped it at a fill; raises KeyboardInterrupt where that is nothing."""
     if name in running and running[name].periods:
-        queue_of_fill[name] = row.count(name, gaps, running[name].seen(partial=True))
+        queue_of_fill[name] = row.count(name, gaps, running[name].result(partial=True))
     if not queue_of_fill:
         raise KeyboardInterrupt
     last = name if name in queue_of_fill else next(reversed(queue_of_fill))

@@ -22,7 +22,7 @@ from feederscrew.resting.rules.registry import require_rule
 from feederscrew.running import RunSettings
 from feederscrew.studies.tooling import ToolingStudy, listed
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.isolating.design import MARGIN_M
+from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
 from feederscrew.trial.result import TrialRun
 from feederscrew.units import counted
 
@@ -287,7 +287,7 @@ class DesignStudy(ReadableRecord):
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
-        allowances = {"margin": MARGIN_M, "tolerance": self.request.tolerance}
+        allowances = {"margin": DESIGN_MARGIN_M, "tolerance": self.request.tolerance}
         width = None if self.bowl is None else self.bowl.track.width
         remarks = small_part_remarks(self.part, allowances, width)
         turning = () if self.long_ride is None or not self.long_ride.warning else (self.long_ride.warning,)
