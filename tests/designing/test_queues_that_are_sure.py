@@ -314,7 +314,7 @@ def test_parts_of_a_row_come_in_exact_shares_in_random_order_and_are_counted_by_
     assert np.bincount(rows, minlength=3)[:3] / BLOCK == pytest.approx(shares[:3], abs=1.0 / BLOCK)
     assert rows != sorted(rows)
     one.follow(2.5)
-    seen = one.seen()
+    seen = one.result()
     assert seen.left_by_entry.sum(axis=0).tolist() == seen.whole.tolist()
     assert seen.returned_by_entry.sum() == seen.returned
     counted = made.count("low", 0.5, seen)
