@@ -14,10 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew.geometry.polygons import cross, sides
+from feederscrew.heavy import heavy
 from feederscrew.mechanics import track_balance
 from feederscrew.mechanics.floor_balance import HOP
 from feederscrew.mechanics.track_balance import frame, loads
 from feederscrew.screw.screws import Point, Wrench, reactions, tipping_twists
+
+optimize = heavy("scipy.optimize")
 
 REVERSALS = {"upper": 0.5 * np.pi, "lower": 1.5 * np.pi}
 WALLS = ("wall_1", "wall_2")
@@ -184,13 +187,11 @@ def exists(seat, bowl, phase=0.5 * np.pi) -> bool:
     """
     if len(seat.contact) == 0:
         return False
-    from scipy.optimize import linprog  # a fifth of a second to load: only where a balance is in doubt
-
     axes = frame(bowl, seat.walls)
     load = loads(seat, bowl, axes, phase) / (seat.mass * bowl.gravity)
     rays = _rays(seat, bowl, axes)
     right = np.concatenate([-load, np.zeros(3)])
-    return linprog(np.zeros(len(rays)), A_eq=rays.T, b_eq=right, method="highs").status == 0
+    return optimize.linprog(np.zeros(len(rays)), A_eq=rays.T, b_eq=right, method="highs").status == 0
 
 
 def _rays(seat, bowl, axes) -> NDArray[np.float64]:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from feederscrew import check, documents
 from feederscrew.errors import ArgumentError, MeshError, SeveralBodiesError, printable
 from feederscrew.geometry import graphs
+from feederscrew.heavy import heavy
 from feederscrew.part import aspect_names, card, gate, mass
 from feederscrew.part.density import find_density
 from feederscrew.part.gate import FARTHEST_CORNER
@@ -32,6 +33,8 @@ from feederscrew.part.reading.soup import (
 from feederscrew.part.record import Part
 from feederscrew.part.repair import topology
 from feederscrew.units import QuantityError, factor, quantity, quantity_text
+
+spatial = heavy("scipy.spatial")
 
 EXPORT_AGAIN = "export the part again"
 EXPORT_FEWER = "export it with fewer facets"
@@ -376,12 +379,10 @@ def _file_surfaces(points, faces, objects) -> tuple[int, NDArray[np.int64], NDAr
     corners, of_shell = faces.ravel()[sides], shell[sides // 3]
     if len(corners) > MAX_RIM_CORNERS:
         return number, shell, is_open
-    from scipy.spatial import cKDTree
-
     used = np.unique(faces)
     reach = CRACK_SHARE * float(np.ptp(points[used], axis=0).max())
     ends = np.concatenate([corners, np.roll(faces, -1, axis=1).ravel()[sides]])
-    tree = cKDTree(points[ends])
+    tree = spatial.cKDTree(points[ends])
     if tree.count_neighbors(tree, reach) > topology.MAX_NEAR_PAIRS:
         return number, shell, is_open
     i, j = tree.query_pairs(reach, output_type="ndarray").T

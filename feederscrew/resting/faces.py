@@ -15,7 +15,10 @@ from feederscrew.geometry.graphs import (
     join_groups,
     split_groups,
 )
+from feederscrew.heavy import heavy
 from feederscrew.resting.landscape import GENTLE_COSINE, RIPPLE_OF_RADIUS, SMOOTH_ANGLE, angle, edges, gentle
+
+spatial = heavy("scipy.spatial")
 
 ONE_PLANE = np.radians(0.2)  # between triangles of one facet
 LARGER = 1.5  # times the bend round most of a side: a facet between sharper bends was not cut by chance
@@ -478,12 +481,10 @@ def contact_outlines(vertices, corners, owners, normals) -> list[NDArray[np.floa
 
 def _of_extreme_points(points, normal) -> NDArray[np.float64]:
     """The same where some of the points lie within the outline or straight between others."""
-    from scipy.spatial import ConvexHull, QhullError
-
     plane = vectors.product(points, np.column_stack(_plane_axes(normal)))
     try:
-        corners = points[ConvexHull(plane).vertices]
-    except QhullError:  # a contact line: a sliver of the hull
+        corners = points[spatial.ConvexHull(plane).vertices]
+    except spatial.QhullError:  # a contact line: a sliver of the hull
         return points
     return _without_straight_corners(corners)
 

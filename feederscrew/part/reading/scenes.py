@@ -17,9 +17,12 @@ from numpy.typing import NDArray
 
 from feederscrew import units
 from feederscrew.errors import DAMAGE, MeshError
+from feederscrew.heavy import heavy
 from feederscrew.part.reading import formats
 from feederscrew.part.reading.formats import FORMATS
 from feederscrew.part.reading.soup import DamageError, Soup, refuse_size
+
+trimesh = heavy("trimesh")
 
 TESSELLATION_MM, TESSELLATION_RAD = (
     0.01,
@@ -155,8 +158,6 @@ def read_scene(data, kind, where) -> Soup:
 
 def _scene_meshes(data) -> list[tuple[str, NDArray[np.float64], NDArray[np.int64]]]:
     """Name, corners and facets of every mesh of the scene where its instances stand, all by trimesh."""
-    import trimesh
-
     scene = trimesh.load_scene(io.BytesIO(data), file_type="glb", process=False, skip_materials=True)
     pieces = []
     for node in scene.graph.nodes_geometry:

@@ -9,8 +9,11 @@ from numpy.typing import NDArray
 
 from feederscrew.errors import MeshError
 from feederscrew.geometry import graphs, vectors
+from feederscrew.heavy import heavy
 from feederscrew.part.repair import topology
 from feederscrew.part.repair.topology import MeshEdges, edge_table
+
+spatial = heavy("scipy.spatial")
 
 EXPORT_SOLID = "export it as a closed solid"
 MAX_SEAM_EDGES = 5000  # open edges: with more than that the surface has worse than T-junctions
@@ -213,12 +216,12 @@ def close_seams(vertices, faces, edges, tolerance) -> tuple[Any, ...]:
 
 def _fans(vertices, rim, tails, heads, tolerance) -> tuple[Any, ...]:
     """Facets (N, 3) between each edge and the rim corners on it, where there are any; the furthest off it."""
-    from scipy.spatial import cKDTree
-
     along = vertices[heads] - vertices[tails]
     length = vectors.norm(along)
     middles = vertices[tails] + 0.5 * along
-    near = cKDTree(vertices[rim]).query_ball_point(middles, 0.5 * length + tolerance, return_sorted=True)
+    near = spatial.cKDTree(vertices[rim]).query_ball_point(
+        middles, 0.5 * length + tolerance, return_sorted=True
+    )
     edge = np.repeat(np.arange(len(tails)), [len(corners) for corners in near])
     corner = rim[np.concatenate([np.asarray(corners, dtype=int) for corners in near])]
     offset = vertices[corner] - vertices[tails[edge]]

@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 
 from feederscrew.geometry import graphs, vectors
 from feederscrew.geometry.graphs import components
+from feederscrew.heavy import heavy
+
+spatial = heavy("scipy.spatial")
 
 HASH_MIX = tuple(
     np.uint64(odd) for odd in (0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB, 0xD6E8FEB86659FD93)
@@ -84,10 +87,8 @@ def near_pairs(vertices, candidates, tolerance) -> NDArray[np.int64]:
     -------
     (V,) int
     """
-    from scipy.spatial import cKDTree
-
     target = np.arange(len(vertices))
-    tree = cKDTree(vertices[candidates])
+    tree = spatial.cKDTree(vertices[candidates])
     if tree.count_neighbors(tree, tolerance) > MAX_NEAR_PAIRS:
         return target
     i, j = tree.query_pairs(tolerance, output_type="ndarray").T
