@@ -21,7 +21,7 @@ from feederscrew.output.marking import SheetFields, of_trial
 from feederscrew.output.tooling_drawing import EDGES, View
 from feederscrew.solidbowl import facets, segments, track
 from feederscrew.solidbowl.measuring import Measures, measures
-from feederscrew.solidbowl.plan import BowlPlan, TrackPath
+from feederscrew.solidbowl.plan import DOME, BowlPlan, TrackPath
 from feederscrew.units import DEG, MM, PER_MINUTE, factor
 
 LITRE, GRAM = factor("l", "volume"), factor("g", "mass")
@@ -156,7 +156,7 @@ def _section(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> Non
     drawing.length((right, at[1]), (right, at[1] + sizes.outlet_height / MM * scale), (6.0, 0.0), scale)
     _head(drawing, 190.0, 281.0, "A-A", scale)
     plate, far = solid.plan.material.plate / MM, sizes.outlet_height / MM
-    text = f"wall {sizes.wall / MM:.3g}, floor {sizes.floor / MM:.3g}, track {plate:.3g}"
+    text = f"wall {sizes.wall / MM:.3g}, floor {sizes.floor / MM:.3g} at {DOME / DEG:.3g}°, track {plate:.3g}"
     text += f"; outlet {far:.4g} over the floor's edge"
     yoke = _yoke(solid.plan)
     if yoke is not None:
@@ -304,7 +304,7 @@ def _bank(drawing: Drawing, study: Any, banks: SpringBanks) -> None:
     _head(drawing, 140.0, 127.0, "one bank from the axis", scale)
     words = (
         f"{len(banks.counts)} banks: {', '.join(map(str, banks.counts))} leaves {_leaf_words(under)}",
-        f"{banks.spacers} spacers {under.leaf_width / MM:.3g} x {thick:.3g}, as thick as a leaf",
+        f"{banks.spacers} spacers {under.leaf_width / MM:.3g} x {thick:.3g}; {long:.4g} free between clamps",
     )
     for k, line in enumerate(words):
         drawing.text(140.0, 19.0 - 4.0 * k, line, 2.2)
@@ -320,7 +320,10 @@ def _list_parts(drawing: Drawing, study: Any, at: tuple[float, float]) -> None:
     plan, under, banks = study.solid.plan, study.bowl.machine, spring_banks(study.bowl)
     weight, angle = study.solid.balance
     rows = [("1", f"bowl, {plan.material.name}, {study.solid.mass:.4g} kg")]
-    rows.append(("1", f"weight to balance it, {weight / GRAM:.3g} g on the wall at {angle / DEG:.0f}°"))
+    turn = (angle - plan.turned) / DEG % 360.0
+    rows.append(
+        ("1", f"weight of {weight / GRAM:.3g} g on the wall, {turn:.0f}° counter-clockwise from the outlet")
+    )
     rows += [("1", f"{name.replace('_', ' ')}, in its notch of the wall") for name, _, _ in study.solid.gates]
     cut = study.solid.segments
     if cut is not None and cut.dowels:
@@ -617,7 +620,7 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
         radii = [f"{radius / MM:.5g}" for radius in one.radii]
         rows.append([str(k), *ends, f"{one.climb / DEG:.3g}°", heights, f"{pitch:.4g}", *radii,
                      f"{one.angle / DEG:.4g}°", f"{plan.width / MM:.4g}"])  # fmt: skip
-    low = drawing.table(25.0, 215.0, [12.0, 22, 22, 18, 36, 24, 24, 24, 24, 22], rows)
+    low = drawing.table(25.0, 212.0, [12.0, 22, 22, 18, 36, 24, 24, 24, 24, 22], rows)
     drawing.text(25.0, low - 5.0, "* before the outlet; radii, angle and width: of the flat sheet", 2.2)
     _flat_pieces(drawing, pieces, low - 14.0)
 
@@ -628,7 +631,7 @@ def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
     stops = sorted({0.0, *(at for at, _ in way.bends), *(at for at, _ in way.drops), way.end})
     places = np.unique(np.concatenate([stops, np.nextafter(np.array(stops[1:-1]), 0.0), [plan.first]]))
     heights = way.height(places)
-    at = np.array([40.0, 275.0 - float(heights.max()) / MM * scale])
+    at = np.array([40.0, 266.0 - float(heights.max()) / MM * scale])
     line = np.column_stack([places, heights]) / MM * scale + at
     drawing.outline(line, "OUTLINE", closed=False)
     drawing.lines([[at, at + [way.end / MM * scale, 0.0]]], "CENTRE")
@@ -667,10 +670,14 @@ def _flat_pieces(drawing: Drawing, pieces: Sequence[TrackPiece], top: float) -> 
         c, s = np.cos(turn), np.sin(turn)
         bodies.append(ring @ np.array([[c, s], [-s, c]]) / MM)
     room = top - FRAME[1] - 26.0
-    columns = min(len(bodies), 3)
-    lines = -(-len(bodies) // columns)
     widest, tallest = np.max([np.ptp(ring, axis=0) for ring in bodies], axis=0)
-    scale = min(_scale(widest, 350.0 / columns - 14.0), _scale(tallest, room / lines - 12.0))
+    layouts = []  # scale, columns and lines: the largest scale, and of these the fewest lines
+    for columns in range(min(len(bodies), 6), 0, -1):
+        lines = -(-len(bodies) // columns)
+        size = min(_scale(widest, 375.0 / columns - 14.0), _scale(tallest, room / lines - 14.0))
+        layouts.append((size, -lines, columns))
+    scale, lines, columns = max(layouts)
+    lines = -lines
     for k, ring in enumerate(bodies):
         column, line = k % columns, k // columns
         at = np.array([25.0 + (column + 0.5) * 375.0 / columns, top - 6.0 - line * room / lines])

@@ -1,17 +1,12 @@
-"""Solids as files: binary STL, 3MF, and the section of track as STEP (OpenCASCADE, the extra ``cad``)."""
+"""Solids as files: binary STL and 3MF."""
 
 import io
-import re
-import tempfile
 import zipfile
-from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.output import marking
-from feederscrew.tooling import solid
 from feederscrew.tooling.solid import triangles
 from feederscrew.units import MM
 
@@ -38,10 +33,6 @@ MODEL = (
     'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">\n'
 )
 SECTION_HEADER = "feeder tooling: track section in mm"
-STEP_DATE = re.compile(rb"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'")  # in the file's head: the same bytes twice
-COUNT = re.compile(rb"track section \d+")  # of the files this process wrote
-NAME = "write.step.product.name", "track section"
-MISSING = "pip install 'feederscrew[cad]'"
 
 
 def bowl_stl(solid, mark=""):
@@ -98,16 +89,18 @@ def bowl_3mf(solid, title, mark=""):
 
 def segments_3mf(pieces, title, mark=""):
     """Return segments of a bowl as the bytes of a 3MF file, one object each, beside each other."""
-    across = np.cumsum([0.0, *(one.size[0] + BETWEEN for one in pieces)])
+    across = np.cumsum([0.0, *(segment.size[0] + BETWEEN for segment in pieces)])
     moved = zip(across, pieces)
-    return pack_3mf([(one.name, one.vertices + [x, 0.0, 0.0], one.faces) for x, one in moved], title, mark)
+    return pack_3mf(
+        [(segment.name, segment.vertices + [x, 0.0, 0.0], segment.faces) for x, segment in moved], title, mark
+    )
 
 
 def pack_3mf(objects, title, mark=""):
     """Return objects (name, vertices (V, 3) [m], faces (F, 3)) as the bytes of a 3MF file."""
     objects = [(marking.marked_title(name, mark), *surface) for name, *surface in objects]
     model = MODEL + f'<metadata name="Title">{quoteattr(title)[1:-1]}</metadata>\n<resources>\n'
-    model += "".join(_object(k + 1, *one) for k, one in enumerate(objects))
+    model += "".join(_object(k + 1, *member) for k, member in enumerate(objects))
     items = "".join(f'<item objectid="{k + 1}"/>' for k in range(len(objects)))
     model += f"</resources>\n<build>{items}</build>\n</model>\n"
     contents = {"[Content_Types].xml": TYPES, "_rels/.rels": RELATIONS, "3D/3dmodel.model": model}
@@ -142,88 +135,3 @@ def section_stl(strip, mark=""):
         Closed; the wall is tangent to X at the origin, the track's surface lies in the plane Z = 0.
     """
     return _binary_stl(triangles(strip), SECTION_HEADER, mark)
-
-
-def check_opencascade() -> None:
-    """Raise the line that says what to install where OpenCASCADE is not here.
-
-    Raises
-    ------
-    MissingPackage
-    """
-    try:
-        import OCP.STEPControl  # noqa: F401
-    except ImportError:
-        raise MissingPackage("step", "needs OpenCASCADE, which is not installed", MISSING) from None
-
-
-def section_step(section):
-    """Return the section of track with its cuts as the bytes of a STEP file in millimetres.
-
-    Parameters
-    ----------
-    section : TrackSection
-
-    Returns
-    -------
-    bytes
-        One solid of flat faces, as the STL has it, in the same axes.
-
-    Raises
-    ------
-    MissingPackage
-        If OpenCASCADE is not installed or refuses the body.
-    """
-    check_opencascade()
-    from OCP.IFSelect import IFSelect_RetDone
-    from OCP.Interface import Interface_Static
-    from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
-
-    _quiet()
-    writer = STEPControl_Writer()
-    (getattr(Interface_Static, "SetCVal_s", None) or Interface_Static.SetCVal)(*NAME)
-    if writer.Transfer(_body(section), STEPControl_AsIs) != IFSelect_RetDone:
-        raise FeederError("tooling.step", "the section of track cannot be written", "take tooling.stl")
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "tooling.step"
-        writer.Write(str(path))
-        return COUNT.sub(b"track section", STEP_DATE.sub(b"'1970-01-01T00:00:00'", path.read_bytes()))
-
-
-def _quiet() -> None:
-    """Keep what OpenCASCADE tells of each file off the terminal."""
-    from OCP.Message import Message
-
-    messenger = (getattr(Message, "DefaultMessenger_s", None) or Message.DefaultMessenger)()
-    messenger.ChangePrinters().Clear()
-
-
-def _body(section):
-    """The solid whose triangles in one plane are one face."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid, BRepBuilderAPI_Sewing
-    from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain
-    from OCP.TopAbs import TopAbs_SHELL
-    from OCP.TopExp import TopExp_Explorer
-    from OCP.TopoDS import TopoDS
-
-    vertices, faces = solid.solid(section)
-    sewing = BRepBuilderAPI_Sewing(1e-6)
-    for corners in vertices[faces] / MM:
-        if np.linalg.norm(np.cross(corners[1] - corners[0], corners[2] - corners[0])) > 1e-9:
-            sewing.Add(_face(corners))
-    sewing.Perform()
-    shells = TopExp_Explorer(sewing.SewedShape(), TopAbs_SHELL)
-    cast = TopoDS.Shell_s if hasattr(TopoDS, "Shell_s") else TopoDS.Shell
-    whole = BRepBuilderAPI_MakeSolid(cast(shells.Current())).Solid()
-    merged = ShapeUpgrade_UnifySameDomain(whole, True, True, False)
-    merged.Build()
-    return merged.Shape()
-
-
-def _face(corners):
-    """One triangle [mm]."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
-    from OCP.gp import gp_Pnt
-
-    wire = BRepBuilderAPI_MakePolygon(*(gp_Pnt(*(float(x) for x in one)) for one in corners), True).Wire()
-    return BRepBuilderAPI_MakeFace(wire, True).Face()

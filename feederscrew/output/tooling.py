@@ -136,9 +136,9 @@ def _printed(study, mark):
 
 
 def _quoted(study, mark):
-    from feederscrew.output import solid_files
+    from feederscrew.solidbowl.exact import exact_section
 
-    return marking.mark_step(solid_files.section_step(_strip(study)), mark)
+    return marking.mark_step(exact_section.section_file(_strip(study)), mark)
 
 
 def _strip(study):

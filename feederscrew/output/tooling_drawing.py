@@ -21,7 +21,7 @@ APART = 20.0  # [mm] between the views
 NARROW = 1e-9  # [m] the line of the wall needs no width
 WALL = 2e-3  # [m] thickness the wall is drawn with
 EDGES = f"edges broken at most {CUT_BORDER_RADIUS_M / MM:.3g} mm"  # as they are tried
-SHOP = f"values +-0.1 mm; {EDGES}; lands 1 mm and the sheet's thickness at least"
+SHOP = f"values ±0.1 mm; {EDGES}; lands 1 mm and the sheet's thickness at least"
 PENS = {  # of the layers of devices
     "TRACK": Pen(7, "#22303c", 0.25, face="#eef1f4"),
     "WALL": Pen(8, "#22303c", 0.25, face="#9aa5b1"),
@@ -269,7 +269,7 @@ def draw_wall_bores(drawing: Drawing, stations: Sequence[Station], view: View, l
         column = [(z, r) for place, z, r in bores if place == s]
         middle = float(along.placed([s, 0.0])[0])
         drawing.lines([[(middle, low - 2.0), (middle, top)]], "CENTRE")
-        drawing.lines([[(middle - 25.0, low), (middle + 25.0, low)]], "OUTLINE")
+        drawing.lines([[(middle - 25.0, low), (middle + 9.0, low)]], "OUTLINE")
         for z, r in column:
             drawing.circle(along.placed([s, z]), r / MM * view.scale, "BORE")
         ends = spread([low + z / MM * view.scale for z, _ in column], TEXT_GAP)

@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from matplotlib.patches import Polygon
 
 from feederscrew.geometry.polygons import turned
 from feederscrew.output import shading, style
@@ -21,6 +22,11 @@ TURNS = np.radians(
     [0.0, -69.0, -35.0, 25.0, -95.0]
 )  # [rad] of the view about the upright; the first that shows enough
 ENOUGH = 0.9  # [1] of the part that a view shows
+AIR, SENSOR_LINE = (
+    "#009e73",
+    1.15,
+)  # colour of sensor and nozzles; heights of the part that a sensor is over it
+CIRCLE = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)  # [rad]
 ROOM = 0.80  # of the part's largest extent, to each side of it
 
 
@@ -49,6 +55,7 @@ def figure(devices, every, shares, wanted):
         image, frame, camera, centre = _image(met, every)
         box.imshow(image, extent=frame.extent, interpolation="none")
         _marks(box, met, every, camera, centre, colour)
+        _draw_air(box, met, every, camera, centre)
         box.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
         box.axis("off")
         for line, text in enumerate(words):
@@ -231,3 +238,40 @@ def _marks(axes, met, every, camera, centre, colour) -> None:
         hull = seen(np.vstack([met.supported, met.supported[:1]]))
         axes.plot(*hull.T, color=colour, lw=1.6)
     axes.plot(*seen(np.array([met.weight])).T, "o", ms=6.0, color=colour, mec="white", mew=0.8)
+
+
+def _draw_air(axes, met, every, camera, centre) -> None:
+    """The line along which a sensor sees the part, its nozzles in the wall, and their air where it blows."""
+    camera, size = camera
+    section = station_of(met, every)
+    station, radius = section.stations[0], section.track.radius
+    standing, reach = station.standing, section.width + np.ptp(met.outline[:, 1])
+
+    def seen(s, off, up):
+        points = on_section(np.array([[0.0, off, up]]), (station.start + s) / radius, radius)
+        return (camera.project(points - centre) / size)[0]
+
+    if standing.sensor is not None:
+        middle, s = met.orientation.distance, standing.sensor.at
+        line = [(middle, 0.0), (middle, SENSOR_LINE * met.orientation.height)]
+        if standing.sensor.sees == "side":
+            line = [(0.0, 0.5 * met.orientation.height), (reach, 0.5 * met.orientation.height)]
+        ends = np.array([seen(s, *end) for end in line])
+        axes.plot(*ends.T, color=AIR, lw=1.4, ls=(0, (4, 2)))
+        axes.annotate(
+            "sensor", ends[1], xytext=(5, -4), textcoords="offset points", color=AIR, fontsize=7.5,
+            annotation_clip=True,
+        )  # fmt: skip
+    blows = met.verdict.passes <= 0.0 or standing.sensor is None
+    for jet in standing.jets:
+        s, off, up = jet.at
+        long = min(jet.reach, reach)
+        mouth, end = seen(s, off, up), seen(s, off + long, up)
+        ring = [seen(s + jet.radius * np.cos(a), off, up + jet.radius * np.sin(a)) for a in CIRCLE]
+        axes.add_patch(Polygon(ring, fc=AIR, ec="white", lw=0.6, zorder=4))
+        if blows:
+            aside = np.array([mouth[1] - end[1], end[0] - mouth[0]])
+            aside /= np.hypot(*aside) * size
+            wide, wider = jet.radius * aside, (jet.radius + jet.spread * long) * aside
+            cone = [mouth - wide, end - wider, end + wider, mouth + wide]
+            axes.add_patch(Polygon(cone, fc=AIR, ec="none", alpha=0.16, zorder=3))

@@ -36,7 +36,7 @@ ENTRY_SUFFIX = ".simulated"  # nothing else in the folder is touched
 PARTIAL_PREFIX = "tmp"  # of an entry that is being written
 PARTIAL_AGE_S = 3600.0  # older ones were left by a run that was killed
 MADE_WITH = ("numpy", "scipy", "numba")
-KINDS = {"float": "<f8", "int": "<i8", "bool": "|b1"}  # of arrays, by the name that an entry gives
+ARRAY_KINDS = {"float": "<f8", "int": "<i8", "bool": "|b1"}  # of arrays, by the name that an entry gives
 OPEN_FLAGS = (
     os.O_RDONLY
     | getattr(os, "O_NOFOLLOW", 0)
@@ -83,7 +83,8 @@ def write(key: Mapping[str, str], arrays: Arrays) -> None:
     if folder is None:
         return
     full = _full(key)
-    data = _encoded(arrays, full)
+    held = {name: _packed(np.asarray(array)) for name, array in arrays.items()}
+    data = _line({"key": full, "arrays": held, "sha256": hashlib.sha256(_line([full, held])).hexdigest()})
     if len(data) > MAX_ENTRY_BYTES:
         return
     with contextlib.suppress(OSError):
@@ -191,14 +192,9 @@ def _line(value: Any) -> bytes:
     return json.dumps(value, sort_keys=True).encode()
 
 
-def _encoded(arrays: Arrays, full: Mapping[str, str]) -> bytes:
-    held = {name: _packed(np.asarray(array)) for name, array in arrays.items()}
-    return _line({"key": full, "arrays": held, "sha256": hashlib.sha256(_line([full, held])).hexdigest()})
-
-
 def _packed(array: np.ndarray) -> dict[str, Any]:
     kind = {"f": "float", "i": "int", "b": "bool"}[array.dtype.kind]
-    data = np.ascontiguousarray(array).astype(KINDS[kind]).tobytes()
+    data = np.ascontiguousarray(array).astype(ARRAY_KINDS[kind]).tobytes()
     return {"kind": kind, "shape": list(array.shape), "data": base64.b64encode(data).decode()}
 
 
@@ -211,14 +207,14 @@ def _decoded(data: bytes, full: Mapping[str, str]) -> dict[str, np.ndarray] | No
         held = entry["arrays"]
         if hashlib.sha256(_line([full, held])).hexdigest() != entry["sha256"]:
             return None
-        return {str(name): _unpacked(**one) for name, one in held.items()}
+        return {str(name): _unpacked(**array) for name, array in held.items()}
     except (ValueError, TypeError, LookupError, AttributeError, RecursionError, binascii.Error):
         return None
 
 
 def _unpacked(kind: str, shape: list[int], data: str) -> np.ndarray:
     """An array of plain numbers; raises ValueError where its data are not of its shape."""
-    flat = np.frombuffer(base64.b64decode(data, validate=True), KINDS[kind])
+    flat = np.frombuffer(base64.b64decode(data, validate=True), ARRAY_KINDS[kind])
     if not all(type(size) is int and 0 <= size <= MAX_ENTRY_BYTES for size in shape):
         raise ValueError("no shape of an array")
     return flat.reshape(shape)  # of bytes: closed to writing

@@ -46,7 +46,7 @@ def triangles(section):
     holes = [
         _bent(_clear(station.hole, width), radius) for station in section.stations if station.hole is not None
     ]
-    levels = _levels(section)
+    levels = stretch_levels(section)
     body = _walls(section, -WALL_OVERLAP_M + levels[-1][2], section.tallest + WALL_MARGIN_M)
     holes = shapely.union_all(holes)
     for start, end, level in levels:
@@ -57,7 +57,7 @@ def triangles(section):
         body += _extruded(riser, lower - PLATE, upper - 0.5 * PLATE)
     for station in section.stations:
         if station.blade is not None:
-            body += _gate(station, section).translate((0.0, 0.0, _level(levels, station) / MM))
+            body += _gate(station, section).translate((0.0, 0.0, level_at(levels, station) / MM))
     points, faces = whole_surface.mesh(body)
     return _in_order(points[faces])
 
@@ -66,13 +66,18 @@ def _walls(section, low, high):
     """The wall, upright, or leaning back where it is the other face of a groove."""
     walls = []
     for begin, end, lean in section.walls:
-        start, stop = max(begin, WALL_OVERLAP_M), min(end + WALL_OVERLAP_M, section.length - WALL_OVERLAP_M)
+        start, stop = wall_ends(section, begin, end)
         if lean:
             walls.append(_leaning(section.track.radius, start, stop, lean, high))
         else:
             ring = [[start, WALL_OVERLAP_M - WALL], [stop, WALL_OVERLAP_M - WALL], [stop, 0.0], [start, 0.0]]
             walls.append(_extruded(_bent(ring, section.track.radius), low, high))
     return sum(walls[1:], walls[0])
+
+
+def wall_ends(section, begin, end) -> tuple[float, float]:
+    """Return from where to where [m] the wall of a stretch is drawn: into the next one, not to the ends."""
+    return max(begin, WALL_OVERLAP_M), min(end + WALL_OVERLAP_M, section.length - WALL_OVERLAP_M)
 
 
 def leaning_wall(radius, start, stop, lean, high) -> tuple[Any, ...]:
@@ -84,13 +89,18 @@ def leaning_wall(radius, start, stop, lean, high) -> tuple[Any, ...]:
     return np.asarray(mesh.vert_properties)[:, :3] * MM, np.asarray(mesh.tri_verts).astype(int)
 
 
+def leaning_profile(radius, lean, high) -> np.ndarray:
+    """Return the section (4, 2) [m] of a wall that leans back [rad]: distance from the axis, height."""
+    up, out = np.array([np.sin(lean), np.cos(lean)]), np.array([np.cos(lean), -np.sin(lean)])
+    low, top = -WALL_OVERLAP_M * up, high * up
+    return np.array([low, low + WALL * out, top + WALL * out, top]) + [radius, 0.0]
+
+
 def _leaning(radius, start, stop, lean, high):
     """A body [mm]: a wall from the track's outer edge on, as wide as ``high`` [m] up its slope."""
     from manifold3d import CrossSection, Manifold
 
-    up, out = np.array([np.sin(lean), np.cos(lean)]), np.array([np.cos(lean), -np.sin(lean)])
-    low, top = -WALL_OVERLAP_M * up, high * up
-    across = np.array([low, low + WALL * out, top + WALL * out, top]) + [radius, 0.0]
+    across = leaning_profile(radius, lean, high)
     round_once = int(np.ceil(np.pi / np.sqrt(2.0 * DRAWN_CHORD_M / radius)))
     turned, first = np.degrees((stop - start) / radius), np.degrees(start / radius) - 90.0
     body = Manifold.revolve(CrossSection([across / MM]), round_once, turned)
@@ -116,8 +126,8 @@ def prism(area, low, high) -> tuple[Any, ...]:
     return np.asarray(mesh.vert_properties)[:, :3] * MM, np.asarray(mesh.tri_verts).astype(int)
 
 
-def _levels(section) -> list[Any]:
-    """Stretches of the track between steps: from, to (a little into the next one), height [m]."""
+def stretch_levels(section) -> list[Any]:
+    """Return the stretches of the track between steps: from, to (a little into the next one), height [m]."""
     levels, start, level = [], 0.0, 0.0
     for station in section.stations:
         if station.drop > 0.0:
@@ -127,8 +137,8 @@ def _levels(section) -> list[Any]:
     return [*levels, (start, section.length, level)]
 
 
-def _level(levels, station):
-    """Height [m] of the track where a gate stands."""
+def level_at(levels, station):
+    """Return the height [m] of the track where a gate stands."""
     place = station.blade[0, 0]
     return next(level for start, end, level in levels if place <= end)
 
@@ -153,16 +163,21 @@ def _extruded(area, low, high):
     return Manifold.extrude(flat, (high - low) / MM).translate((0.0, 0.0, low / MM))
 
 
-def _gate(station, section):
-    """The blade of a gate: a plate across the track without its opening."""
+def gate_area(section, station) -> tuple[Any, float, float]:
+    """Return the blade of a gate without its opening: from the wall and up [m], thickness [m], lean [1]."""
     free = shapely.union_all([shapely.Polygon(ring) for ring in station.openings])
     free = shapely.union_all(
         [affinity.translate(free, *by) for by in ((0, 0), (-2 * WALL_OVERLAP_M, 0), (0, -2 * WALL_OVERLAP_M))]
     )
     frame = shapely.box(-WALL_OVERLAP_M, -WALL_OVERLAP_M, section.width - WALL_OVERLAP_M, station.top)
-    thick = station.blade[1, 0] - station.blade[0, 0]
     lean = (station.blade[3, 0] - station.blade[0, 0]) / section.width
-    blade = _extruded(frame.difference(free), 0.0, thick)
+    return frame.difference(free), station.blade[1, 0] - station.blade[0, 0], lean
+
+
+def _gate(station, section):
+    """The blade of a gate: a plate across the track without its opening."""
+    area, thick, lean = gate_area(section, station)
+    blade = _extruded(area, 0.0, thick)
     angle = station.blade[0, 0] / section.track.radius
     return blade.transform(_across(angle, section.track.radius / MM, lean))
 

@@ -17,7 +17,6 @@ import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
-from feederscrew.errors import FeederError
 from feederscrew.output import (
     designs,
     shading,
@@ -295,20 +294,6 @@ def test_a_table_of_polygons_fits_a_page():
     assert tooling_tables._few("A@90, all of C", 34) == "A@90, all of C"
 
 
-@pytest.mark.needs("OCP")
-def test_step_where_opencascade_is(lying):
-    short = build_section(lying[0].track, lying[0].devices[1:3], lying[1])
-    made = solid_files.section_step(short)
-    assert made == solid_files.section_step(short)
-    assert made.startswith(b"ISO-10303-21;") and b"track section" in made
-
-
-def test_step_says_what_to_install(monkeypatch):
-    monkeypatch.setitem(sys.modules, "OCP.STEPControl", None)
-    with pytest.raises(FeederError, match=r"^step: needs OpenCASCADE, which is not installed - pip"):
-        solid_files.check_opencascade()
-
-
 def test_a_margin_that_is_none_is_not_printed_as_a_number():
     assert tooling_figures.margin_words(Verdict(1.0, 1.234e-3)) == "margin +1.23 mm"
     assert tooling_figures.margin_words(Verdict(0.0, -2e-3)) == "margin -2.00 mm"
@@ -328,3 +313,17 @@ def test_a_verdict_that_is_not_sure_has_no_margin_on_the_page():
     )
     assert table["wiper 1_mm"][0] == pytest.approx(-2.0) and not table["wiper 1_mm"][1] < np.inf
     assert list(table["outcome"]) == ["stopped by the wiper", "stopped by the wiper, not sure"]
+
+
+def test_the_view_of_a_vision_reject_has_its_sensor_its_nozzles_and_their_air(lying):
+    """A mouth a nozzle; air at what is rejected alone."""
+    wanted = lying[1][0]
+    name, heading = wanted.aspect, wanted.heading
+    sorter = make_device("sorter", "here", like=(name, heading, 0.5e-3), sees="outline").rewritten()
+    figure = tooling_views.figure([sorter], lying[1], np.full(len(lying[1]), 0.2), 0)
+    passes, rejected = figure.axes
+    jets = track_sections.build_section(lying[0].track, [sorter], lying[1]).stations[0].standing.jets
+    assert len(passes.patches) == len(jets) > 0  # mouths; nothing blows at what is kept
+    assert len(rejected.patches) == 2 * len(jets)
+    for axes in (passes, rejected):
+        assert [text.get_text() for text in axes.texts] == ["sensor"]

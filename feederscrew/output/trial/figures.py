@@ -1,24 +1,29 @@
 """Charts of trials: orientations in and out, and the paths over a device from above."""
 
+import textwrap
 from typing import Any
 
 import numpy as np
 from matplotlib.patches import Polygon
 
 from feederscrew.output import style
-from feederscrew.trial import course
+from feederscrew.trial import course, runs
 from feederscrew.units import MM
 
 LOOKS = {  # of each fate: colour, told apart by colour-blind eyes, line, and mark where the path ends
     "passed": ("#0072b2", "-", ""),
     "turned": ("#009e73", "--", "D"),
     "returned": ("#d55e00", "-", "x"),
+    "blown off": ("#882255", "-", "^"),
     "hanging": ("#cc79a7", "-", "v"),
     "stopped": ("#e69f00", "-", "s"),
     "rolled_back": ("#7a5c3e", ":", "<"),
     "stuck": ("#000000", "-", "*"),
 }
-TRACK = "#e3e8ec"
+TRACK, AIR_COLOUR = "#e3e8ec", "#009e73"
+PATHS_WIDTH_IN = 7.2  # [in] of a panel of paths
+SIDE_MARGIN_MM, WALL_MARGIN_MM = 2.0, 2.0  # of a panel, before and behind, and outside the wall
+PATHS_TITLE_LETTERS = 88  # of a line of a panel's title
 MOST = 24  # orientations that come most often have a row
 STAYS = {course.HANGING: "stays\nhanging"}  # of the matrix, beside what leaves hanging
 
@@ -36,7 +41,7 @@ def matrix(run):
     """
     rows = [k for k in np.argsort(-run.shares, kind="stable") if run.tried[k]][:MOST]
     out = [m for m in range(run.matrix.shape[1]) if run.matrix[rows, m].any()]
-    names = [one.name for one in run.known.states] + ["other"]
+    names = [one.name for one in run.orientations.states] + ["other"]
     lost = [fate for fate in range(course.RETURNED, len(course.FATES)) if run.counts[rows, fate].any()]
     counts = np.column_stack([run.matrix[rows][:, out], run.counts[rows][:, lost]])
     shown = counts / run.tried[rows][:, None]
@@ -74,35 +79,53 @@ def paths(run):
     Figure
     """
     found, radius = run.course, run.bowl.track.radius
-    figure = style.figure(7.2, 0.6 + 2.6 * len(found.rides))
+    flat_paths = [[unrolled(path, radius) for path in ride.paths] for ride in found.rides]
+    widest = 1e3 * max(off.max(initial=0.0) for rides in flat_paths for _, off in rides)
+    longest = 1e3 * max(station.exit - station.begin for station in found.stations[: len(found.rides)])
+    span, high = longest + 2.0 * SIDE_MARGIN_MM, 1.1 * widest + 2.0 * WALL_MARGIN_MM
+    panel = PATHS_WIDTH_IN * high / span
+    figure = style.figure(PATHS_WIDTH_IN + 0.9, 0.7 + (panel + 0.75) * len(found.rides))
     panels = figure.subplots(len(found.rides), 1, squeeze=False)[:, 0]
-    met: dict[str, None] = {}  # fates in the picture
-    for axes, station, ride, riders in zip(panels, found.stations, found.rides, found.riders):
+    shown: dict[str, None] = {}  # fates in the picture
+    stations = zip(panels, found.stations, found.rides, found.riders, flat_paths)
+    for axes, station, ride, riders, flat in stations:
         _track(axes, station, radius)
-        widest = 0.0
-        for one, path in zip(riders, ride.paths):
-            way, off = unrolled(path, radius)
-            ended = ride.outcomes[list(riders).index(one)] != 1
-            fate = course.FATES[found.fates[one]]
-            fate = fate if ended or fate == "turned" else "passed"  # turned: it leaves so, here or further on
+        _air(axes, station)
+        for rider, (way, off), outcome in zip(riders, flat, ride.outcomes):
+            fate = course.FATES[found.fates[rider]]
+            fate = fate if outcome != runs.PASSED or fate == "turned" else "passed"  # turned: leaves so
+            if fate == "returned" and any(
+                way.max(initial=-1.0) >= watch.place for watch in station.air.watches
+            ):
+                fate = "blown off"
             colour, line, mark = LOOKS[fate]
             axes.plot(way / MM, off / MM, line, color=colour, linewidth=0.7, alpha=0.7)
             if len(way):
                 axes.plot(way[-1] / MM, off[-1] / MM, mark, color=colour, markersize=4)
-            met.setdefault(fate, None)
-            widest = max(widest, off.max(initial=0.0))
+            shown.setdefault(fate, None)
         title = f"{station.device.name}: {station.device.value_words}".removesuffix(": ")
+        title = "\n".join(textwrap.wrap(title, PATHS_TITLE_LETTERS))
         style.tidy(axes, title=title, x="along the wall [mm]", y="from the wall [mm]", grid="none")
         axes.axhline(0.0, color=style.INK, linewidth=3.0)  # the wall
-        axes.set(
-            xlim=(station.begin / MM - 2.0, station.exit / MM + 2.0),
-            ylim=(-1.0, 1.25 * widest / MM + 4.0),  # the wall below, as in the pictures of tooling
-        )
-    for fate in (fate for fate in LOOKS if fate in met):
+        left = station.begin / MM - SIDE_MARGIN_MM
+        axes.set(xlim=(left, left + span), ylim=(-WALL_MARGIN_MM, high - WALL_MARGIN_MM), aspect="equal")
+    for fate in (fate for fate in LOOKS if fate in shown):
         colour, line, mark = LOOKS[fate]
         panels[0].plot([], [], line, color=colour, marker=mark, markersize=4, label=fate.replace("_", " "))
     figure.legend(fontsize=7, frameon=False, ncols=len(LOOKS), loc="outside lower center")
     return figure
+
+
+def _air(axes, station) -> None:
+    """Where a sensor looks and where its nozzles are, in the wall."""
+    for watch in station.air.watches:
+        axes.axvline(watch.place / MM, color=AIR_COLOUR, linewidth=0.9, linestyle="--")
+        axes.plot(watch.nozzles / MM, 0.0, "^", color=AIR_COLOUR, markersize=7, zorder=5)
+        for place, word, side in ((watch.place, "sensor ", "right"), (watch.nozzles, " air", "left")):
+            axes.annotate(
+                word, (place / MM, 1.0), xycoords=("data", "axes fraction"), xytext=(0, -8),
+                textcoords="offset points", ha=side, fontsize=7, color=AIR_COLOUR,
+            )  # fmt: skip
 
 
 def unrolled(path, radius) -> tuple[Any, ...]:
@@ -114,15 +137,11 @@ def unrolled(path, radius) -> tuple[Any, ...]:
 
 def solids(station, plate=0):
     """Return the rings (K, 2) [m] of what is solid of a plate, in its frame: for the track the bowl's."""
-    first, last = station.plates[plate, 14:16].astype(int)
-    borders, rings, ring = station.borders[first:last], [], []
-    for k, border in enumerate(borders):
-        ring.append(border[:2])
-        after = borders[k + 1, :2] if k + 1 < len(borders) else None
-        if after is None or np.hypot(*(after - border[2:4])) > 1e-12:
-            rings.append(np.array(ring))
-            ring = []
-    return rings
+    row = station.plates[plate]
+    borders = station.borders[row.begin : row.end]
+    starts, ends = (np.column_stack([borders[f"{end}_x"], borders[f"{end}_y"]]) for end in ("start", "end"))
+    breaks = np.flatnonzero(np.hypot(*(starts[1:] - ends[:-1]).T) > 1e-12) + 1
+    return np.split(starts, breaks)
 
 
 def _track(axes, station, radius) -> None:
@@ -134,7 +153,7 @@ def _track(axes, station, radius) -> None:
         colour = "white" if hole else TRACK
         axes.add_patch(Polygon(flat, facecolor=colour, edgecolor=style.INK, linewidth=0.6, zorder=0.5))
     for plate in station.plates[1:]:
-        place = radius * np.arctan2(plate[0], radius - plate[1])
+        place = radius * np.arctan2(plate.origin_x, radius - plate.origin_y)
         axes.axvline(place / MM, color=style.INK, linewidth=2.0)
 
 

@@ -277,6 +277,15 @@ def swept(legs):
     return closed(faces)
 
 
+def turned_part(profile, start, angle):
+    """Return a body of revolution about Z of a profile (K, 2) [m], from an angle on, over an angle [rad]."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol
+
+    r, z = np.asarray(profile, float).T / MM
+    face = flat_face(np.column_stack([r * np.cos(start), r * np.sin(start), z]))
+    return outwards(BRepPrimAPI_MakeRevol(face, axis(), float(angle)).Shape())
+
+
 def turned(profile, segments):
     """Return a body of revolution about Z, of a profile (K, 2) [m]: radius and height."""
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol
@@ -389,6 +398,16 @@ def placed_as(body, *, mirrored, turned):
     if mirrored:
         flip.SetMirror(gp_Ax2(point([0, 0, 0]), gp_Dir(0, 1, 0)))
     return BRepBuilderAPI_Transform(body, turn.Multiplied(flip), True).Shape()
+
+
+def moved(body, by):
+    """Return a body moved by a vector (3,) [mm]."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+    from OCP.gp import gp_Trsf, gp_Vec
+
+    shift = gp_Trsf()
+    shift.SetTranslation(gp_Vec(*(float(x) for x in by)))
+    return BRepBuilderAPI_Transform(body, shift, True).Shape()
 
 
 def one_piece(body, where):

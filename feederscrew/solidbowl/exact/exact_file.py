@@ -59,7 +59,8 @@ def _tried(solid) -> StepFile:
     plan = solid.plan
     whole, gates = pieces(plan, exact_body)
     bodies = [whole, *(gate for _, gate in gates)]
-    data = _written([exact_body.placed_as(body, mirrored=plan.left, turned=plan.turned) for body in bodies])
+    placed = [exact_body.placed_as(body, mirrored=plan.left, turned=plan.turned) for body in bodies]
+    data = step_bytes(placed, "bowl")
     opened = _opened(data)
     sizes = [exact_body.volume(item) * MM**3 for item in opened]
     if len(opened) != len(bodies) or not all(exact_body.valid(item) for item in opened):
@@ -73,21 +74,30 @@ def _refused(what) -> FeederError:
     return FeederError("bowl.step", f"OpenCASCADE {what}", "take bowl.stl or bowl.3mf")
 
 
-def _written(bodies):
+def step_bytes(bodies, name) -> bytes:
+    """Return bodies of OpenCASCADE [mm] as the bytes of a STEP file without a date, of products of a name.
+
+    Raises
+    ------
+    FeederError
+        If OpenCASCADE does not take one of them.
+    """
     from OCP.IFSelect import IFSelect_RetDone
     from OCP.Interface import Interface_Static
+    from OCP.Message import Message
     from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
 
-    _quiet()
+    messenger = (getattr(Message, "DefaultMessenger_s", None) or Message.DefaultMessenger)()
+    messenger.ChangePrinters().Clear()  # what it tells of each file stays off the terminal
     writer = STEPControl_Writer()
-    (getattr(Interface_Static, "SetCVal_s", None) or Interface_Static.SetCVal)(STEP_NAME_SETTING, "bowl")
+    (getattr(Interface_Static, "SetCVal_s", None) or Interface_Static.SetCVal)(STEP_NAME_SETTING, name)
     if any(writer.Transfer(body, STEPControl_AsIs) != IFSelect_RetDone for body in bodies):
         raise _refused("cannot write it")
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "bowl.step"
+        path = Path(folder) / "body.step"
         writer.Write(str(path))
         text = STEP_TIMESTAMP.sub(b"'1970-01-01T00:00:00'", path.read_bytes())
-    return re.sub(rb"'bowl \d+'", b"'bowl'", text)  # it counts the files that it wrote
+    return re.sub(rf"'{name} \d+'".encode(), f"'{name}'".encode(), text)  # it counts the files it wrote
 
 
 def _opened(data):
@@ -115,11 +125,3 @@ def _off(plan, body) -> float:
         below = exact_body.below(body, (place + [0.0, 0.0, 0.5 * plan.headroom]) / MM)
         off.append(np.inf if below is None else abs(below * MM - place[2]))
     return float(max(off))
-
-
-def _quiet() -> None:
-    """Keep what OpenCASCADE tells of each file off the terminal."""
-    from OCP.Message import Message
-
-    messenger = (getattr(Message, "DefaultMessenger_s", None) or Message.DefaultMessenger)()
-    messenger.ChangePrinters().Clear()
