@@ -21,7 +21,7 @@ from feederscrew.part.density import find_density
 from feederscrew.part.gate import FARTHEST_CORNER
 from feederscrew.part.hull import CentreOutsideError, convex_hull
 from feederscrew.part.reading import formats, mesh_formats, scenes, threemf
-from feederscrew.part.reading.formats import CARD_FORMAT, FORMATS
+from feederscrew.part.reading.formats import CARD_FORMAT, MESH_FORMATS
 from feederscrew.part.reading.soup import (
     MAX_MESH_BYTES,
     MAX_TEXT_BYTES,
@@ -138,7 +138,7 @@ def read_soup(file) -> Soup:
 
 def _read(file, kind) -> Soup:
     """The triangles of a file of a known format; what its reader raises on damaged bytes is a line."""
-    title, data = FORMATS[kind].title, file.data
+    title, data = MESH_FORMATS[kind].title, file.data
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):  # what is not finite, the gate names
             warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
@@ -173,7 +173,7 @@ def _reason(error) -> Any:
 
 def is_card(file) -> bool:
     """Return whether the file is a part card: by its name, or by its content on standard input."""
-    if file.suffix in FORMATS[CARD_FORMAT].suffixes:
+    if file.suffix in MESH_FORMATS[CARD_FORMAT].suffixes:
         return True
     return formats.detect_format(file.data, file.suffix)[0] == CARD_FORMAT
 
@@ -188,10 +188,10 @@ def _bytes(source, where, stdin) -> Any:
 
 
 def _misnamed(file, kind) -> tuple[Any, ...]:
-    suffixes = {suffix for format in FORMATS.values() for suffix in format.suffixes}
-    if file.suffix not in suffixes or file.suffix in FORMATS[kind].suffixes:
+    suffixes = {suffix for format in MESH_FORMATS.values() for suffix in format.suffixes}
+    if file.suffix not in suffixes or file.suffix in MESH_FORMATS[kind].suffixes:
         return ()
-    return (f"named .{file.suffix} but its content is {FORMATS[kind].title}: read as that",)
+    return (f"named .{file.suffix} but its content is {MESH_FORMATS[kind].title}: read as that",)
 
 
 CRACK_SHARE = 1e-4  # [1] of the size: open surfaces whose rims are closer are of one body
@@ -574,7 +574,7 @@ def _refuse_beside_card(**options) -> None:
 
 def _choose_unit(soup, wanted) -> tuple[Any, ...]:
     """The unit of the file's numbers; what to say where it is not the wanted one."""
-    stated, title = soup.unit, FORMATS[soup.format].title
+    stated, title = soup.unit, MESH_FORMATS[soup.format].title
     if stated is None or wanted in (None, stated):
         return wanted or stated or "mm", ()
     if soup.format == "glb":

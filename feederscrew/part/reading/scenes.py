@@ -19,7 +19,7 @@ from feederscrew import units
 from feederscrew.errors import DAMAGE, MeshError
 from feederscrew.heavy import heavy
 from feederscrew.part.reading import formats
-from feederscrew.part.reading.formats import FORMATS
+from feederscrew.part.reading.formats import MESH_FORMATS
 from feederscrew.part.reading.soup import DamageError, Soup, refuse_size
 
 trimesh = heavy("trimesh")
@@ -134,7 +134,7 @@ def read_scene(data, kind, where) -> Soup:
     MeshError
         If the file is damaged, claims more than it holds, or an extra is not installed.
     """
-    format = FORMATS[kind]
+    format = MESH_FORMATS[kind]
     if not all(importlib.util.find_spec(module) for module in format.needs):
         what = f"{format.title} needs {' and '.join(format.needs)}, not installed"
         raise MeshError(where, what, f'pip install "feederscrew[{format.extra}]"')

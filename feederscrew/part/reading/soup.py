@@ -24,7 +24,7 @@ class Soup:
 
     vertices: np.ndarray  # (V, 3) [unit of the file] maybe not finite
     faces: np.ndarray  # (F, 3) int
-    format: str  # a key of read_format.FORMATS
+    format: str  # a key of formats.MESH_FORMATS
     unit: str | None = None  # that the file or its format states
     warnings: tuple[str, ...] = ()
     names: tuple[str, ...] = ()  # of the objects, groups or solids that the file distinguishes; '' for none
