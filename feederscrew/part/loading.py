@@ -248,7 +248,11 @@ def list_bodies(soup: Soup) -> tuple[FileBody, ...]:
         points, faces, None if soup.objects is None else soup.objects[facets]
     )
     volume = np.bincount(shell, mass.tetrahedron_volumes(points[faces]), minlength=number)
-    low, high = _surface_boxes(points, faces, shell, number)
+    # lowest and highest corner of each surface
+    low, high = np.full((number, 3), np.inf), np.full((number, 3), -np.inf)
+    for corner in range(3):
+        np.minimum.at(low, shell, points[faces[:, corner]])
+        np.maximum.at(high, shell, points[faces[:, corner]])
     of_body = _assign_cavities(points, faces, shell, np.where(is_open, 0.0, volume), low, high)
     bodies: list[FileBody] = []
     for number_of_body in dict.fromkeys(of_body[shell].tolist()):
@@ -391,15 +395,6 @@ def _file_surfaces(points, faces, objects) -> tuple[int, NDArray[np.int64], NDAr
     merged = np.zeros(count, dtype=bool)
     merged[group[is_open]] = True
     return count, group[shell], merged
-
-
-def _surface_boxes(points, faces, shell, number) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(N, 3) lowest and highest corner of each surface."""
-    low, high = np.full((number, 3), np.inf), np.full((number, 3), -np.inf)
-    for corner in range(3):
-        np.minimum.at(low, shell, points[faces[:, corner]])
-        np.maximum.at(high, shell, points[faces[:, corner]])
-    return low, high
 
 
 def _assign_cavities(points, faces, shell, volume, low, high) -> NDArray[np.int64]:

@@ -486,7 +486,18 @@ def _of_extreme_points(points, normal) -> NDArray[np.float64]:
         corners = points[spatial.ConvexHull(plane).vertices]
     except spatial.QhullError:  # a contact line: a sliver of the hull
         return points
-    return _without_straight_corners(corners)
+    # A finer triangulation brings corners on a line between their neighbours; rules that average over the
+    # edges of a contact would count its edges twice.
+    size = vectors.length(np.ptp(corners, axis=0))
+    while len(corners) > 3:
+        before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
+        twice = vectors.length(vectors.cross(corners - before, after - corners))
+        off = twice / np.maximum(vectors.length(after - before), SMALLEST_NORMAL)
+        straight = int(np.argmin(off))
+        if off[straight] > ON_A_LINE * size:
+            break
+        corners = np.delete(corners, straight, axis=0)
+    return corners
 
 
 def _plane_axes(normals) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -506,24 +517,6 @@ def _turn_at_every_corner(x, y, owners, count) -> NDArray[np.bool_]:
     off = (p * v - q * u) / np.maximum(np.hypot(p + u, q + v), SMALLEST_NORMAL)
     width, depth = (np.maximum.reduceat(at, first) - np.minimum.reduceat(at, first) for at in (x, y))
     return np.logical_and.reduceat(off > ON_A_LINE * np.hypot(width, depth)[owners], first)
-
-
-def _without_straight_corners(corners) -> NDArray[np.float64]:
-    """Corners (K, 3) of a polygon without those on a line between their neighbours.
-
-    A finer triangulation of the same face brings such corners, and rules that average over the edges of a
-    contact would count its edges twice.
-    """
-    size = vectors.length(np.ptp(corners, axis=0))
-    while len(corners) > 3:
-        before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
-        twice = vectors.length(vectors.cross(corners - before, after - corners))
-        off = twice / np.maximum(vectors.length(after - before), SMALLEST_NORMAL)
-        straight = int(np.argmin(off))
-        if off[straight] > ON_A_LINE * size:
-            break
-        corners = np.delete(corners, straight, axis=0)
-    return corners
 
 
 def rolling_height(polygon, axis, flat) -> float:
