@@ -153,8 +153,8 @@ def border(area) -> Border:
 def border_distance(first, second) -> float:
     """Return the greatest distance [m] from a place of either Border to the other one."""
     return max(
-        border_distance.farthest(first.places, second.sides),
-        border_distance.farthest(second.places, first.sides),
+        border_kernel.farthest(first.places, second.sides),
+        border_kernel.farthest(second.places, first.sides),
     )
 
 
