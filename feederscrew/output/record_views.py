@@ -3,7 +3,7 @@
 import base64
 import math
 from collections.abc import Callable
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from html import escape
 from importlib import import_module
 from typing import Any
@@ -21,10 +21,8 @@ MOST_SHARES = 8  # aspects in a line
 
 def answer(record: Any) -> str | None:
     """Return what a record answers, without its class: 'bracket: A 42 %, B 17 %'; None of another class."""
-    for kind in type(record).__mro__:
-        if kind.__name__ in LINES:
-            return LINES[kind.__name__](record)
-    return None
+    line = view_of(record).line
+    return None if line is None else line(record)
 
 
 def number(value: Any, unit_in_si: float = 1.0, digits: int = 3) -> str:
@@ -227,63 +225,56 @@ def _inertia(study: Any) -> str:
     return f"{study.part.name}: {mass} g, centre of mass {centre} mm, principal moments {moments} g mm2"
 
 
-LINES: dict[str, Callable[[Any], str]] = {
-    "Part": _part,
-    "Bowl": _bowl_line,
-    "Aspects": _aspects,
-    "AspectsStudy": lambda study: f"{study.part.name} {_aspects(study.aspects)}",
-    "Shares": lambda shares: _aspects(shares.aspects),
-    "Answer": _convey,
-    "ConveyStudy": lambda study: _convey(study.answer),
-    "SlideStudy": _slide,
-    "HeadingsStudy": _headings,
-    "FloorStudy": _floor,
-    "TrackStudy": _track,
-    "Rate": _rate,
-    "RateStudy": lambda study: f"{study.part.name} {_rate(study.rate)}",
-    "TuneStudy": _tune,
-    "MachineSheet": _machine,
-    "ToolingStudy": _tooling,
-    "TrialStudy": _trial,
-    "DesignStudy": _design,
-    "FamilyStudy": _family,
-    "CompareStudy": _compare,
-    "CalibrateStudy": _calibrate,
-    "DropStudy": _drop,
-    "PlateStudy": _plate,
-    "InertiaStudy": _inertia,
-    "ReportStudy": lambda study: f"{study.part.name} {_aspects(study.shares.aspects)}",
+@dataclass(frozen=True)
+class View:
+    """How a record is shown: its answer in a line, and what offers the files of its command."""
+
+    line: Callable[[Any], str] | None = None
+    offers: str = ""  # module of ``output`` and its function, '' of a record that is no study
+    arguments: tuple[Any, ...] = ()  # that it is handed as well
+
+
+VIEWS = {  # by the name of the record's class
+    "Part": View(_part),
+    "Bowl": View(_bowl_line),
+    "Aspects": View(_aspects),
+    "AspectsStudy": View(lambda study: f"{study.part.name} {_aspects(study.aspects)}", "aspects.offers"),
+    "Shares": View(lambda shares: _aspects(shares.aspects)),
+    "Answer": View(_convey),
+    "ConveyStudy": View(lambda study: _convey(study.answer), "convey.offers"),
+    "ConveyCurve": View(None, "convey.curve_offers"),
+    "ConveyPhase": View(None, "convey.phase_offers"),
+    "ConveyMap": View(None, "convey.map_offers"),
+    "SlideStudy": View(_slide, "slide.offers"),
+    "HeadingsStudy": View(_headings, "headings.offers"),
+    "FloorStudy": View(_floor, "floor.offers"),
+    "TrackStudy": View(_track, "track.offers"),
+    "Rate": View(_rate),
+    "RateStudy": View(lambda study: f"{study.part.name} {_rate(study.rate)}", "rate.offers"),
+    "TuneStudy": View(_tune, "tune.offers"),
+    "MachineSheet": View(_machine, "machine.offers"),
+    "ToolingStudy": View(_tooling, "tooling.offers", ((),)),
+    "TrialStudy": View(_trial, "trial.files.offers"),
+    "DesignStudy": View(_design, "design_pages.offers", ((),)),
+    "FamilyStudy": View(_family, "design_pages.family_offers"),
+    "CompareStudy": View(_compare, "compare.offers"),
+    "SetsStudy": View(None, "compare.sets_offers"),
+    "FeedingStudy": View(None, "compare.feeding_offers"),
+    "CalibrateStudy": View(_calibrate, "calibrate.offers"),
+    "DropStudy": View(_drop, "drop.offers"),
+    "PlateStudy": View(_plate, "plate.offers"),
+    "InertiaStudy": View(_inertia, "inertia.offers"),
+    "ReportStudy": View(lambda study: f"{study.part.name} {_aspects(study.shares.aspects)}"),
 }
+
+
+def view_of(record: Any) -> View:
+    """Return the View of a record's class or of one that it is made from; an empty one without any."""
+    return next((VIEWS[kind.__name__] for kind in type(record).__mro__ if kind.__name__ in VIEWS), View())
 
 
 MOST_ROWS = 60  # of a table in a notebook
 VIEW_PX = 360, 280  # [px] of a part
-# record: module and function that offer the files of its command, and what else that is handed
-OF: dict[str, tuple[Any, ...]] = {
-    "AspectsStudy": ("aspects", "offers"),
-    "CalibrateStudy": ("calibrate", "offers"),
-    "CompareStudy": ("compare", "offers"),
-    "SetsStudy": ("compare", "sets_offers"),
-    "ConveyStudy": ("convey", "offers", {}),
-    "ConveyCurve": ("convey", "curve_offers"),
-    "ConveyPhase": ("convey", "phase_offers", {}),
-    "ConveyMap": ("convey", "map_offers"),
-    "DesignStudy": ("design_pages", "offers", ()),
-    "DropStudy": ("drop", "offers"),
-    "FamilyStudy": ("design_pages", "family_offers"),
-    "FeedingStudy": ("compare", "feeding_offers"),
-    "FloorStudy": ("floor", "offers", {}),
-    "HeadingsStudy": ("headings", "offers", {}),
-    "InertiaStudy": ("inertia", "offers"),
-    "MachineSheet": ("machine", "offers"),
-    "PlateStudy": ("plate", "offers"),
-    "RateStudy": ("rate", "offers"),
-    "SlideStudy": ("slide", "offers"),
-    "ToolingStudy": ("tooling.files", "offers", ()),
-    "TrackStudy": ("track", "at_one_point"),
-    "TrialStudy": ("trial.files", "offers"),
-    "TuneStudy": ("tune", "offers"),
-}
 
 
 def frame(record, name=None):
@@ -365,10 +356,10 @@ def _named(record, end) -> dict[Any, Any]:
 
 
 def _offered(record):
-    for kind in type(record).__mro__:
-        if kind.__name__ in OF:
-            module, function, *more = OF[kind.__name__]
-            return getattr(import_module(f"feederscrew.output.{module}"), function)(record, *more)
+    view = view_of(record)
+    if view.offers:
+        module, _, function = view.offers.rpartition(".")
+        return getattr(import_module(f"feederscrew.output.{module}"), function)(record, *view.arguments)
     resting = getattr(record, "resting", None)  # a report begins with it
     return [] if resting is None else _offered(resting)
 

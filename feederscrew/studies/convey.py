@@ -85,6 +85,7 @@ class ConveyCurve(ReadableRecord):
 class ConveyPhase(ReadableRecord):
     """What the phase of an elliptical drive does for a bowl."""
 
+    bowl: Bowl
     best: answer.BestPhase
 
     @property
@@ -192,7 +193,7 @@ def best_phase(bowl: Bowl) -> ConveyPhase:
     ConfigError
         If the bowl cannot convey, or has no steady velocity at any phase.
     """
-    return ConveyPhase(answer.best_phase(bowl))
+    return ConveyPhase(bowl, answer.best_phase(bowl))
 
 
 def velocity_map(
