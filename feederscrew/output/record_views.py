@@ -226,7 +226,7 @@ def _inertia(study: Any) -> str:
 
 
 @dataclass(frozen=True)
-class View:
+class RecordView:
     """How a record is shown: its answer in a line, and what offers the files of its command."""
 
     line: Callable[[Any], str] | None = None
@@ -235,42 +235,46 @@ class View:
 
 
 VIEWS = {  # by the name of the record's class
-    "Part": View(_part),
-    "Bowl": View(_bowl_line),
-    "Aspects": View(_aspects),
-    "AspectsStudy": View(lambda study: f"{study.part.name} {_aspects(study.aspects)}", "aspects.offers"),
-    "Shares": View(lambda shares: _aspects(shares.aspects)),
-    "Answer": View(_convey),
-    "ConveyStudy": View(lambda study: _convey(study.answer), "convey.offers"),
-    "ConveyCurve": View(None, "convey.curve_offers"),
-    "ConveyPhase": View(None, "convey.phase_offers"),
-    "ConveyMap": View(None, "convey.map_offers"),
-    "SlideStudy": View(_slide, "slide.offers"),
-    "HeadingsStudy": View(_headings, "headings.offers"),
-    "FloorStudy": View(_floor, "floor.offers"),
-    "TrackStudy": View(_track, "track.offers"),
-    "Rate": View(_rate),
-    "RateStudy": View(lambda study: f"{study.part.name} {_rate(study.rate)}", "rate.offers"),
-    "TuneStudy": View(_tune, "tune.offers"),
-    "MachineSheet": View(_machine, "machine.offers"),
-    "ToolingStudy": View(_tooling, "tooling.offers", ((),)),
-    "TrialStudy": View(_trial, "trial.files.offers"),
-    "DesignStudy": View(_design, "design_pages.offers", ((),)),
-    "FamilyStudy": View(_family, "design_pages.family_offers"),
-    "CompareStudy": View(_compare, "compare.offers"),
-    "SetsStudy": View(None, "compare.sets_offers"),
-    "FeedingStudy": View(None, "compare.feeding_offers"),
-    "CalibrateStudy": View(_calibrate, "calibrate.offers"),
-    "DropStudy": View(_drop, "drop.offers"),
-    "PlateStudy": View(_plate, "plate.offers"),
-    "InertiaStudy": View(_inertia, "inertia.offers"),
-    "ReportStudy": View(lambda study: f"{study.part.name} {_aspects(study.shares.aspects)}"),
+    "Part": RecordView(_part),
+    "Bowl": RecordView(_bowl_line),
+    "Aspects": RecordView(_aspects),
+    "AspectsStudy": RecordView(
+        lambda study: f"{study.part.name} {_aspects(study.aspects)}", "aspects.offers"
+    ),
+    "Shares": RecordView(lambda shares: _aspects(shares.aspects)),
+    "Answer": RecordView(_convey),
+    "ConveyStudy": RecordView(lambda study: _convey(study.answer), "convey.offers"),
+    "ConveyCurve": RecordView(None, "convey.curve_offers"),
+    "ConveyPhase": RecordView(None, "convey.phase_offers"),
+    "ConveyMap": RecordView(None, "convey.map_offers"),
+    "SlideStudy": RecordView(_slide, "slide.offers"),
+    "HeadingsStudy": RecordView(_headings, "headings.offers"),
+    "FloorStudy": RecordView(_floor, "floor.offers"),
+    "TrackStudy": RecordView(_track, "track.offers"),
+    "Rate": RecordView(_rate),
+    "RateStudy": RecordView(lambda study: f"{study.part.name} {_rate(study.rate)}", "rate.offers"),
+    "TuneStudy": RecordView(_tune, "tune.offers"),
+    "MachineSheet": RecordView(_machine, "machine.offers"),
+    "ToolingStudy": RecordView(_tooling, "tooling.offers", ((),)),
+    "TrialStudy": RecordView(_trial, "trial.files.offers"),
+    "DesignStudy": RecordView(_design, "design_pages.offers", ((),)),
+    "FamilyStudy": RecordView(_family, "design_pages.family_offers"),
+    "CompareStudy": RecordView(_compare, "compare.offers"),
+    "SetsStudy": RecordView(None, "compare.sets_offers"),
+    "FeedingStudy": RecordView(None, "compare.feeding_offers"),
+    "CalibrateStudy": RecordView(_calibrate, "calibrate.offers"),
+    "DropStudy": RecordView(_drop, "drop.offers"),
+    "PlateStudy": RecordView(_plate, "plate.offers"),
+    "InertiaStudy": RecordView(_inertia, "inertia.offers"),
+    "ReportStudy": RecordView(lambda study: f"{study.part.name} {_aspects(study.shares.aspects)}"),
 }
 
 
-def view_of(record: Any) -> View:
-    """Return the View of a record's class or of one that it is made from; an empty one without any."""
-    return next((VIEWS[kind.__name__] for kind in type(record).__mro__ if kind.__name__ in VIEWS), View())
+def view_of(record: Any) -> RecordView:
+    """Return the RecordView of a record's class or of one that it is made from; an empty one without any."""
+    return next(
+        (VIEWS[kind.__name__] for kind in type(record).__mro__ if kind.__name__ in VIEWS), RecordView()
+    )
 
 
 MOST_ROWS = 60  # of a table in a notebook
