@@ -38,7 +38,7 @@ def _section(command, context, shared, level="##"):
     usage = " ".join([context.command_path, *command.collect_usage_pieces(context)])
     example, _, prose = command.help.partition("\n")
     text = f"\n{level} `{context.command_path}`: {_within(command.short_help)}\n\n"
-    text += f"```sh\n{example.removeprefix('Example:').strip()}\n```\n\n"
+    text += f"Example: `{example.removeprefix('Example:').strip()}`\n\n"
     text += _prose(prose) + _options(usage, _rows(command, context), shared)
     for name, below in getattr(command, "commands", {}).items():
         text += _section(below, click.Context(below, info_name=name, parent=context), shared, f"{level}#")

@@ -148,6 +148,10 @@ class Store:
         path = self.parts / name / file
         return path.read_bytes() if path.exists() else None
 
+    def has(self, name, file) -> bool:
+        """Return whether one result of a part is there."""
+        return (self.parts / name / file).exists()
+
     def text(self, name):
         """Read a text of the whole batch; None where it is not there."""
         path = self.path / name
@@ -367,7 +371,7 @@ class _UnderWay:
             if self.resume and self.store.holds(request.name, task.key):
                 self.kept += 1
                 self.finished.add(request.name)
-                self.tell(is_reused=True)
+                self.tell(True)
             else:
                 yield task
 
@@ -375,7 +379,7 @@ class _UnderWay:
         """Put what came of a part in place."""
         self.store.keep(outcome)
         self.finished.add(outcome.name)
-        self.tell(is_reused=False)
+        self.tell(False)
 
 
 def _contact_sheet(tiles):
@@ -406,9 +410,11 @@ def _finished(store, requests, complete, workers) -> Batch:
     files = {
         SHEET_NAME.format(f"_{number}" if number > 1 else ""): sheet for number, sheet in enumerate(sheets, 1)
     }
-    files[summary.INDEX_FILE] = html(summary.index_page(store, rows))
+    pages = summary.index_pages(store, rows)
+    files |= {file: html(page) for file, page in pages.items()}
     files[summary.SUMMARY_FILE] = tables.text(summary.frame(rows), "csv")  # last: it says that all is there
-    store.write(files, without=[SHEET_NAME.format("*"), summary.PARTIAL])
+    old = [SHEET_NAME.format("*"), summary.LATER_INDEX_FILE.format("*"), summary.PARTIAL]
+    store.write(files, without=old)
     return Batch(
         rows=rows,
         reused=complete,

@@ -123,7 +123,7 @@ def points(study):
     columns = _in_mm_s(study.cells)
     return tables.frame(
         {
-            **{axis.column: axis.shown for axis in study.axes},
+            **{axis.column: axis.in_unit for axis in study.axes},
             **{column: columns[column] for column in VELOCITIES.values()},
             "regime": np.asarray(answer.SWEEP_REGIMES)[columns["regime"]],
             "throw_number": columns["throw_number"],
@@ -427,7 +427,7 @@ def _velocity(figure, axes, grid) -> None:
     largest = max(highest, -lowest)
     shades = matplotlib.colormaps["PuOr_r"].with_extremes(bad="#8c8c8c")
     norm = mpl_colors.TwoSlopeNorm(0.0, -largest, largest)
-    x, y = grid.first.shown, grid.second.shown
+    x, y = grid.first.in_unit, grid.second.in_unit
     mesh = axes.pcolormesh(x, y, velocity, cmap=shades, norm=norm, shading="nearest", rasterized=True)
     if not finite.size:
         axes.text(0.97, 0.93, NO_VELOCITY, transform=axes.transAxes, ha="right", color="white")
@@ -449,7 +449,7 @@ def _regimes(axes, grid) -> None:
     style.tidy(axes, title="Regimes", x=_label(grid.first), grid="none")
     colours = mpl_colors.ListedColormap([CONVEY_COLOURS[name] for name in grid.names])
     axes.pcolormesh(
-        *(grid.first.shown, grid.second.shown, grid.codes.T),
+        *(grid.first.in_unit, grid.second.in_unit, grid.codes.T),
         **{"cmap": colours, "vmin": -0.5, "vmax": len(grid.names) - 0.5, "shading": "nearest"},
     )
     present = [name for code, name in enumerate(grid.names) if (grid.codes == code).any()]
@@ -475,7 +475,7 @@ def _throws(axes, grid) -> None:
     throw = grid.values["throw_number"].T
     levels = [level for level in sorted(THROW_NAMES) if throw.min() < level < throw.max()]
     if levels:
-        x, y = grid.first.shown, grid.second.shown
+        x, y = grid.first.in_unit, grid.second.in_unit
         lines = axes.contour(x, y, throw, levels, colors=style.INK, linewidths=0.8, linestyles="--")
         texts = axes.clabel(lines, fmt=lambda level: f"k = {level:.2g} ({_throw_name(level)})", fontsize=7)
         for text in texts:
@@ -491,4 +491,4 @@ def _label(axis) -> str:
 
 
 def _ends(axis) -> tuple[Any, ...]:
-    return axis.shown[0], axis.shown[-1]
+    return axis.in_unit[0], axis.in_unit[-1]

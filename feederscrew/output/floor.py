@@ -470,7 +470,7 @@ def regime_map(grid, column: str, *, title: str, labels, value: str, own=None, n
     """
     figure = style.figure(6.8, 4.8)
     axes = style.tidy(figure.add_subplot(), title=title, x=labels[0], y=labels[1], grid="none")
-    x, y, values = grid.first.shown, grid.second.shown, np.asarray(grid.values[column]).T
+    x, y, values = grid.first.in_unit, grid.second.in_unit, np.asarray(grid.values[column]).T
     if np.isfinite(values).any():
         _values(figure, axes, (x, y, values), value, np.isin(grid.codes.T, _places(grid, COVERED_REGIMES)))
     regions = [name for name in HATCHES if _region(axes, grid, name)]
@@ -554,13 +554,13 @@ def _region(axes, grid, name) -> bool:
     with matplotlib.rc_context({"hatch.color": REGION_HATCH_COLOUR, "hatch.linewidth": 0.6}):
         cover = np.where(inside, 1.0, 0.0)
         axes.contourf(
-            grid.first.shown, grid.second.shown, cover, [CODE_HALF_STEP, 1.5], colors=[colour],
+            grid.first.in_unit, grid.second.in_unit, cover, [CODE_HALF_STEP, 1.5], colors=[colour],
             alpha=1.0 if name in COVERED_REGIMES else 0.55, hatches=[hatch or None], zorder=3,
         )  # fmt: skip
     if not inside.all():
         axes.contour(
-            grid.first.shown,
-            grid.second.shown,
+            grid.first.in_unit,
+            grid.second.in_unit,
             cover,
             [CODE_HALF_STEP],
             colors=style.INK,
@@ -582,7 +582,7 @@ def _throws(axes, grid) -> None:
     if len(levels) < 2:
         levels = mpl_ticker.MaxNLocator(5).tick_values(finite.min(), finite.max())
     if len(levels):
-        x, y, masked = grid.first.shown, grid.second.shown, np.ma.masked_invalid(throw)
+        x, y, masked = grid.first.in_unit, grid.second.in_unit, np.ma.masked_invalid(throw)
         lines = axes.contour(
             x, y, masked, levels, colors=style.INK, linewidths=0.8, linestyles="--", zorder=5
         )

@@ -238,7 +238,7 @@ def _map_axes(slide, title) -> tuple[Any, ...]:
     figure = style.figure(6.4, 4.6)
     title = f"{title}, β = {np.degrees(slide.beta):.6g}°"
     axes = style.tidy(figure.add_subplot(), title=title, x=ANGLE, y=RATIO, grid="none")
-    widest = slide.grid.first.shown[-1]
+    widest = slide.grid.first.in_unit[-1]
     axes.set(xlim=(-widest, widest), ylim=(0, slide.grid.second.values[-1]))
     axes.set_xticks(np.linspace(-widest, widest, 7))
     return figure, axes
@@ -287,7 +287,7 @@ def _label_region(axes, slide, name) -> bool:
         room = ndimage.minimum_filter(inside, size=box, mode="constant", cval=False)
         if room.any():
             i, j = _most_central(room)
-            x, y = slide.grid.first.shown[i], slide.grid.second.values[j]
+            x, y = slide.grid.first.in_unit[i], slide.grid.second.values[j]
             axes.text(x, y, text, ha="center", va="center", path_effects=style.halo(), **LABEL)
             return True
     return False
@@ -295,7 +295,7 @@ def _label_region(axes, slide, name) -> bool:
 
 def _taken(slide):
     """Cells that the bowl's own point and its name lie over."""
-    angles, ratios = slide.grid.first.shown, slide.grid.second.values
+    angles, ratios = slide.grid.first.in_unit, slide.grid.second.values
     across = (np.asarray(angles) - np.degrees(slide.alpha_minus_theta)) / np.ptp(angles)
     across = np.abs(across) if slide.alpha_minus_theta > 0.0 else across  # the name is on either side
     up = np.abs(np.asarray(ratios) - slide.ratio) / np.ptp(ratios)
@@ -326,7 +326,7 @@ def _legend(figure, slide, names) -> None:
 def _levels(axes, slide) -> None:
     """Contour lines, each with its value written at an angle: those that the map reaches."""
     friction = slide.grid.values["mu_limit"]
-    x, y = slide.grid.first.shown, slide.grid.second.values
+    x, y = slide.grid.first.in_unit, slide.grid.second.values
     lines = {
         level: (shade, 1.1, (-22, -40)[place % 2], f"μ = {level:g}")
         for place, (level, shade) in enumerate(zip(LEVELS, _shades(len(LEVELS))))

@@ -9,7 +9,7 @@ import numpy as np
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.exact_tumbling import Transition, ground, transitions
+from feederscrew.resting.exact_tumbling import Transition, require_ground, transitions
 from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.formulas import EXPONENTS
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
@@ -52,7 +52,7 @@ class AspectsStudy(ReadableRecord):
         MeshError
             If the part is a card without a shape.
         """
-        return transitions(ground(self.part, self.aspects))
+        return transitions(require_ground(self.part, self.aspects))
 
 
 def aspects(

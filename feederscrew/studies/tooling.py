@@ -348,7 +348,7 @@ def _best(
         ]
         other = _designed(cache[width], wanted, request) if has_same_orientations else None
         if other is not None and tracks.gains(other, best):
-            best = replace(other, width=width, reasons=(*other.reasons, WIDER.format(1e3 * width)))
+            best = replace(other, width=width, remarks=(*other.remarks, WIDER.format(1e3 * width)))
     return best
 
 

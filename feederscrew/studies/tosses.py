@@ -12,7 +12,7 @@ from feederscrew.dropping.toss_runs import FACE_NAMES, LaunchFile
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.exact_tumbling import ground
+from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.studies.drop import check_run
 
 SURE_SHARE = 0.95  # [1] from here on an answer is called sure
@@ -131,7 +131,7 @@ def follow(
     check_run(runs, seed, jobs)
     read = toss_runs.read_launches(launches)
     aspects = find(part)
-    grounded = ground(part, aspects)
+    grounded = require_ground(part, aspects)
     _, length = shape_of_part(part, grounded)
     ranges = {key: (own or {}).get(key) for key in ("restitution", "friction")}
     launch = launch_conditions.launch_of("feed", length, ranges)

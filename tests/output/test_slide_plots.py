@@ -97,7 +97,7 @@ def test_curves_are_4_28_for_each_angle():
     one, two = slide(10), slide(40)
     figure = slide_output.curves([one, two])
     axes, labels = figure.axes[0], [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == ["β = 10°", "β = 40°", "slips back, this track", slide_output.OWN]
+    assert labels == ["β = 10°", "β = 40°", "slips back, this track", slide_output.OWN_LABEL]
     line = next(line for line in axes.lines if line.get_label() == "β = 40°")
     ratio, friction = line.get_xydata()[np.isfinite(line.get_ydata())].T
     b = math.radians(40)
