@@ -8,6 +8,7 @@ compiles, because it reads their code. What another process enters is not seen: 
 import functools
 import importlib.machinery
 import inspect
+import re
 from pathlib import Path
 from types import CodeType, FunctionType
 
@@ -52,10 +53,13 @@ def watch():
 def _watched():
     """Sources of the program whose functions numba does not compile."""
     text = (ROOT / "feederscrew/geometry/compiled.py").read_text()
-    patterns = (
-        text.partition("SOURCES = (\n")[2].partition("\n)")[0].replace('"', "").replace(",", "").split()
-    )
-    left_out = {path for pattern in patterns for path in (ROOT / "feederscrew").glob(pattern)}
+    patterns = re.findall(r'"([\w/*]+\.py)"', text.partition("SOURCES = {\n")[2].partition("\n}")[0])
+    assert len(patterns) > 5, "geometry/compiled.py lists its sources otherwise"
+    left_out = {
+        path
+        for pattern in ("geometry/compiled.py", *patterns)
+        for path in (ROOT / "feederscrew").glob(pattern)
+    }
     return {path for room in ROOMS for path in (ROOT / room).rglob("*.py")} - left_out
 
 
