@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from feederscrew_cli import completion, grouped, options, waiting
+from feederscrew_cli import completion, grouped, options, progress
 
 COMMAND_BY_RANGES = {1: "convey curve", 2: "convey map"}  # by how many keys are varied
 
@@ -50,7 +50,7 @@ def convey(bowl, spans, curve, best_phase, pictures, out):
     study: Any
     with out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings)) as folder:
         if ranges or curve or best_phase:
-            waiting.conveying(out)
+            progress.conveying(out)
         if len(ranges) == 2:
             with out.step("map"):
                 study = studies.velocity_map(settings, ranges, drawn="radius" if curve else None)
