@@ -12,9 +12,11 @@ import numpy as np
 
 from feederscrew.errors import ArgumentError
 from feederscrew.mechanics.floor_balance import MOTION_STATES
-from feederscrew.output import offers, tables
+from feederscrew.output import offers, style, tables
+from feederscrew.output.heavy import heavy
 from feederscrew.units import DEGREE, MINUTE, MM, counted, listed, printable
 
+shading = heavy("feederscrew.output.shading")
 UM, GRAM, PERCENT = 1e-6, 1e-3, 0.01  # [SI]
 MOST_SHARES = 8  # aspects in a line
 
@@ -340,8 +342,6 @@ def html(record):
 
 def _view_uri(part) -> str:
     """A part on the lowest side of its file, shaded, as the address of an image."""
-    from feederscrew.output import shading, style
-
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     image = style.pixels(np.round(255.0 * shading.on_its_lowest(solid, VIEW_PX)[..., :3]).astype(np.uint8))
     return f"data:image/png;base64,{base64.b64encode(style.png(image)).decode()}"
