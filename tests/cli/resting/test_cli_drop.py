@@ -57,6 +57,7 @@ def test_the_files(run, stl, tmp_path):
     assert {path.name for path in folder.iterdir()} == {"drop.csv", "drop.json", "drop.png", "run.json"}
     rows = list(csv.DictReader((folder / "drop.csv").read_text().splitlines()))
     assert list(rows[0]) == COLUMNS and [row["aspect"] for row in rows] == ["A", "B", "C"]
+    assert [float(row["height_mm"]) for row in rows] == [5.0, 6.5, 8.5]  # half the sides of the box
     before = (folder / "drop.png").read_bytes()
     run("drop", stl, "--drops", "300", "-o", "results")
     assert (folder / "drop.png").read_bytes() == before
