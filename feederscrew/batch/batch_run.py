@@ -268,7 +268,7 @@ def crew(jobs=None, scheduler=None):
     return Cluster(scheduler) if scheduler else Processes(jobs or processors())
 
 
-def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda kept: None) -> Batch:
+def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda is_reused: None) -> Batch:
     """Compute every part and write the folder of the batch.
 
     Parameters
@@ -283,7 +283,7 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
     resume : bool
         Leave alone what is there already, whole and of the same input.
     tell : function
-        Called for each part that is finished; ``kept`` says whether its results were there already.
+        Called for each part that is finished; ``is_reused`` says whether its results were there already.
 
     Returns
     -------

@@ -98,7 +98,7 @@ def _results(task) -> Outcome:
 def travel(conditions):
     """Return the document of ``convey.json``: the same for every part, a point mass."""
     well_oriented.velocity(conditions.bowl)  # raises where there is no steady state
-    return convey_output.document(convey(conditions.bowl)) | {"bowl": dict(conditions.texts)}
+    return convey_output.document(convey(conditions.bowl))
 
 
 def _rate(part, aspects, task, files) -> tuple[Any, ...]:

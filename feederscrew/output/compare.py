@@ -300,8 +300,6 @@ def _set_document(set_study) -> dict[Any, Any]:
 
 def sets_figure(study: SetsStudy):
     """Draw the total variation of every set from every answer as a table of shades."""
-    from feederscrew.output import style
-
     answers = study.answers
     values = np.array(
         [[set_study.distances.get(name, np.nan) for name in answers] for set_study in study.sets]

@@ -47,7 +47,7 @@ def convey(case) -> Chapter:
     document = convey_output.document(study)
     blocks = [Table(convey_output.summary(document))]
     if study.answer.status != "no steady state":
-        (cycle,) = _taken(convey_output.offers(study, bowls.texts(case.settings)), "convey")
+        (cycle,) = _taken(convey_output.offers(study), "convey")
         title = convey_output.cycle_title(study.trace(), study.answer)
         blocks.append(replace(cycle, alt=f"Plate and part: {title}"))
     blocks += [*_knobs(case), _velocity_map(case)]
@@ -60,10 +60,10 @@ def convey(case) -> Chapter:
 
 def floor(case) -> Chapter:
     """Forces and regimes on the bowl's floor."""
-    found, settings = case.floor, bowls.texts(case.settings)
-    document = floor_output.document(found, settings)
+    found = case.floor
+    document = floor_output.document(found)
     result = floor_output.map_remarks(found)
-    offered = floor_output.offers(found, settings)
+    offered = floor_output.offers(found)
     pictures = _taken(offered, "floor_plan", "floor_frequency_amplitude", "floor_beta_friction")
     lead = Text(
         f"Aspect {found.posture.name}, heading {np.degrees(found.heading):.4g} deg, at the upper reversal of "
@@ -82,7 +82,7 @@ def headings(case) -> Chapter:
         "The directions in which the part is stable when pushed against the wall, the share of all "
         "directions of laying down that ends in each, and the room it takes."
     )
-    own = headings_output.offers(study.only(case.aspect), bowls.texts(case.settings))
+    own = headings_output.offers(study.only(case.aspect))
     pictures = _taken(own, "headings")
     return Chapter((lead, Table(frame), *pictures), warnings=tuple(headings_output.remarks(study)))
 
@@ -90,9 +90,9 @@ def headings(case) -> Chapter:
 def track(case) -> Chapter:
     """Reactions on the track, against the wall."""
     found = case.track
-    settings, grid = bowls.texts(case.settings), found.over(case.settings)
-    document = track_output.document(found, settings)
-    offered = track_output.offers(found, settings, grid)
+    grid = found.over(case.settings)
+    document = track_output.document(found)
+    offered = track_output.offers(found, grid)
     pictures = _taken(offered, "track_part", "track_map", "track_cycle")
     lines = _notes(track_output.remarks(found) + track_output.map_remarks(grid))
     return Chapter(
