@@ -75,10 +75,10 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     out.show(printed, aspects_output.document(study))
 
 
-ONCE = (
+CLASS_COUNTS_ONCE = (
     "PMI counts an aspect once, as Tables 3-8 and 3-9: without --as-published each of its equal faces counts."
 )
-EACH = (
+EACH_FACE_COUNTS = (
     "PMI counts each of the equal faces of an aspect: --as-published counts it once, as Tables 3-8 and 3-9."
 )
 
@@ -101,5 +101,5 @@ def _study(solid, chosen, out):
     if out.format == "table" and study.recommended is not None:
         out.say("PMI, CSA and stability are published rules, to compare with: go by recommended.")
     if out.format == "table" and (study.aspects.faces > 1).any():
-        out.say(ONCE if chosen["as_published"] else EACH)
+        out.say(CLASS_COUNTS_ONCE if chosen["as_published"] else EACH_FACE_COUNTS)
     return study

@@ -5,9 +5,9 @@ import click
 from feederscrew_cli import grouped, options, orientation
 from feederscrew_cli.interrupt import INTERRUPTED, ended_within
 from feederscrew_cli.progress import Progress
-from feederscrew_cli.values import WHOLE, Whole
+from feederscrew_cli.values import WHOLE_NUMBER, Whole
 
-PATIENCE = 6.0  # [s] from Ctrl-C to the end, whatever is loading
+END_AFTER_S = 6.0  # [s] from Ctrl-C to the end, whatever is loading
 
 
 class Jobs(click.ParamType):
@@ -19,7 +19,7 @@ class Jobs(click.ParamType):
         """The number; None for 'auto'."""
         if value == "auto":
             return None
-        if not WHOLE.fullmatch(value) or not int(value) > 0:
+        if not WHOLE_NUMBER.fullmatch(value) or not int(value) > 0:
             self.fail(f"{value!r} is not a number of processes - give 1, 2, ... or auto", param, ctx)
         return int(value)
 
@@ -70,7 +70,7 @@ def batch(ctx, rule, launch, drops, pictures, jobs, scheduler, resume, out, **in
     or some. -o DIR gets summary.csv with a row a part, index.html, contact_sheet.png, and a folder a
     part in DIR/parts.
     """
-    ctx.with_resource(ended_within(PATIENCE))
+    ctx.with_resource(ended_within(END_AFTER_S))
     from feederscrew import batch as batches
 
     if out.directory is None:

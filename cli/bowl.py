@@ -12,7 +12,7 @@ ASPECT = click.option(
     help="Aspect that must leave the bowl.  [default: every one that passes the track and the devices]",
 )
 
-SOLID = (
+SOLID_OPTIONS = (
     click.option("--solid", is_flag=True, help="Make the bowl as one closed body: STL, 3MF and a drawing."),
     click.option(
         "--print",
@@ -50,8 +50,8 @@ SOLID = (
 )
 @options.optional_part
 @TARGET
-@options.group("wanted", ASPECT, *orientation.CHAIN[1:])
-@options.group("solid_request", *SOLID)
+@options.group("wanted", ASPECT, *orientation.CHAIN_OPTIONS[1:])
+@options.group("solid_request", *SOLID_OPTIONS)
 @click.option(
     "--measured",
     metavar="VALUES",
@@ -149,7 +149,7 @@ def _fitting(part, target, solid_request, measured):
         for option in _typed_options("material", "bed", "step", "chord"):
             raise click.UsageError(f"{option} is given without --solid - add --solid")
     if not part["source"]:
-        for option in _typed_options(*options.names(*options.READING, *orientation.CHAIN)):
+        for option in _typed_options(*options.names(*options.READING, *orientation.CHAIN_OPTIONS)):
             raise click.UsageError(f"{option} is given without PART - name the part's file")
     if solid_request["join"] and not solid_request["bed"]:
         raise click.UsageError("--join is given without --bed - give the printer's bed: --bed 220x220x250mm")

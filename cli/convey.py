@@ -6,7 +6,7 @@ import click
 
 from feederscrew_cli import completion, grouped, options, waiting
 
-WAYS = {1: "convey curve", 2: "convey map"}  # by how many keys are varied
+COMMAND_BY_RANGES = {1: "convey curve", 2: "convey map"}  # by how many keys are varied
 
 
 @grouped.command(short_help="How fast a part travels on the track, and how.")
@@ -41,7 +41,7 @@ def convey(bowl, spans, curve, best_phase, pictures, out):
     _fitting(spans, curve, best_phase)
     settings, ranges, path = out.settings(bowl), bowls.key_ranges(spans), bowl["path"]
     alone = "convey radius" if curve else "convey phase" if best_phase else "convey"
-    out = replace(out, command=WAYS[len(ranges)] if ranges else alone)
+    out = replace(out, command=COMMAND_BY_RANGES[len(ranges)] if ranges else alone)
     with out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings)) as folder:
         if len(ranges) == 2:
             _map(settings, ranges, curve, pictures, folder, out)
@@ -57,7 +57,7 @@ def _fitting(spans, curve, best_phase):
     """Wrong calls."""
     if best_phase and (spans or curve):
         raise click.UsageError("--best-phase stands alone - leave out --vary and --bowl")
-    if len(spans) > len(WAYS):
+    if len(spans) > len(COMMAND_BY_RANGES):
         raise click.UsageError(
             f"--vary is given {len(spans)} times - give it once for a curve, twice for a map"
         )

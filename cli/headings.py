@@ -34,4 +34,6 @@ def headings(part, aspect, bowl, pictures, out):
         out.say(headings_output.answer(result), *headings_output.remarks(result))
         offers.write(folder, headings_output.offers(result, texts(bowl_settings)), pictures=pictures)
     frame, document = headings_output.frame(result), headings_output.document(result, texts(bowl_settings))
-    out.show(frame, document, hidden=headings_output.HIDDEN, spare=headings_output.SPARE)
+    out.show(
+        frame, document, hidden=headings_output.HIDDEN_HEADING_COLUMNS, spare=headings_output.SPARE_COLUMNS
+    )

@@ -10,7 +10,7 @@ from feederscrew_cli.values import LengthUnit, Place, Quantity, Whole
 
 FILE = Place(allow_dash=True)
 METAVARS = {"length": "LENGTH", "number": "SHARE", "time": "TIME"}
-UNITS = LengthUnit(["mm", "cm", "m", "um", "in"])
+LENGTH_UNITS = LengthUnit(["mm", "cm", "m", "um", "in"])
 LAUNCHES = click.Choice(["place", "drop", "flip", "roll", "feed", "tumble"])  # the last: once that of roll
 
 
@@ -101,7 +101,7 @@ DENSITY = click.option(
     help='A material of `feeder config materials`, or a value, as "7.85 g/cm3".  [default: steel]',
 )
 READING = (
-    click.option("--units", type=UNITS, help="Length unit of the file (STL has none).  [default: mm]"),
+    click.option("--units", type=LENGTH_UNITS, help="Length unit of the file (STL has none).  [default: mm]"),
     DENSITY,
     click.option(
         "--centre-of-mass",
@@ -210,7 +210,7 @@ pictures = click.option(
 )
 FORMAT = click.option(
     "--format",
-    type=click.Choice(talk.FORMATS),
+    type=click.Choice(talk.PRINT_FORMATS),
     default="table",
     show_default=True,
     help="What is printed on stdout.",

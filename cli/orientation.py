@@ -8,7 +8,7 @@ import click
 from feederscrew_cli import options, waiting
 from feederscrew_cli.values import Angle, Place, Whole
 
-CHAIN = (
+CHAIN_OPTIONS = (
     click.option(
         "--aspect", required=True, metavar="NAME", help="Aspect on which the part must leave the bowl."
     ),
@@ -31,8 +31,8 @@ LEAVES_MOST = click.option(
     help="Aspect on which the part must leave the bowl.  [default: the one that leaves most often]",
 )
 # the wanted orientation, and what the rate depends on: aspect, heading, rule, gap and fill
-chain = options.group("wanted", *CHAIN)
-any_chain = options.group("wanted", LEAVES_MOST, *CHAIN[1:])  # where ``aspect`` may be left out
+chain = options.group("wanted", *CHAIN_OPTIONS)
+any_chain = options.group("wanted", LEAVES_MOST, *CHAIN_OPTIONS[1:])  # where ``aspect`` may be left out
 
 
 def of_an_aspect(request):
@@ -57,7 +57,7 @@ FED = click.option(
     "--fed", metavar="N", type=Whole(1, 10**6),
     help="Feed N parts onto the moving floor.  [default: until every share is known to 2 %]",
 )  # fmt: skip
-SEED = options.seed("Seed of the parts that are fed.")
+SEED_OPTION = options.seed("Seed of the parts that are fed.")
 PROBABILITIES = click.option(
     "--probabilities",
     metavar="CSV",
@@ -68,7 +68,7 @@ PROBABILITIES = click.option(
 
 # whose shares of the aspects are taken; with a seed for a command that has none of its own
 taken = options.group("taken", LAUNCHED, PROBABILITIES, FED)
-taken_of_a_seed = options.group("taken", LAUNCHED, PROBABILITIES, FED, SEED)
+taken_of_a_seed = options.group("taken", LAUNCHED, PROBABILITIES, FED, SEED_OPTION)
 
 
 def shares(out, part, bowl, taken, rule):
@@ -99,11 +99,11 @@ def arriving(out, part, taken, rule):
 def few(part, taken, rule):
     """Return the same function of few parts, sooner; None where nothing is fed, or as many as are named."""
     from feederscrew.studies import rate as study
-    from feederscrew.studies.tune import FEW
+    from feederscrew.studies.tune import ROUGH_PARTS
 
     if rule != "recommended" or any(taken[name] is not None for name in ("launch", "probabilities", "fed")):
         return None
-    return lambda bowl: study.shares(part, bowl, seed=taken["seed"], fed=FEW)
+    return lambda bowl: study.shares(part, bowl, seed=taken["seed"], fed=ROUGH_PARTS)
 
 
 def choice(taken):
@@ -131,7 +131,7 @@ def telling(out):
     return {"before": before, "progress": bar.reach}
 
 
-DOUBT = (  # how far part and cut may be off
+DOUBT_OPTIONS = (  # how far part and cut may be off
     options.quantity(
         "--position-deviation play", "length", "0 mm",
         "Standard deviation of where a part is over a cut.", former=("--play",),

@@ -33,7 +33,12 @@ def run(part, plate, launch, own, test, pictures, out):
         out.warn(*plate_output.remarks(study))
         offers.write(folder, plate_output.offers(study), pictures=pictures)
     frame = plate_output.plates(study)
-    out.show(frame, plate_output.document(study), hidden=plate_output.HIDDEN, spare=plate_output.spare(frame))
+    out.show(
+        frame,
+        plate_output.document(study),
+        hidden=plate_output.HIDDEN_PLATE_COLUMNS,
+        spare=plate_output.spare(frame),
+    )
 
 
 def _plate_options(shaken, **others):

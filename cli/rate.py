@@ -12,8 +12,8 @@ from feederscrew_cli import grouped, options, orientation
 @options.part
 @orientation.any_chain
 @orientation.taken_of_a_seed
-@orientation.DOUBT[0]
-@orientation.DOUBT[1]
+@orientation.DOUBT_OPTIONS[0]
+@orientation.DOUBT_OPTIONS[1]
 @options.bowl
 @options.output
 def rate(part, wanted, taken, play, tolerance, bowl, out):

@@ -11,7 +11,7 @@ from feederscrew_cli.values import Place, Whole
 
 WANTED = (
     click.option("--aspect", metavar="NAME", help="Aspect to leave the bowl on.  [default: the likeliest]"),
-    *orientation.CHAIN[1:],
+    *orientation.CHAIN_OPTIONS[1:],
     options.target("Size a bowl for this rate as well: 120/min."),
     click.option(
         "--parts",

@@ -14,10 +14,10 @@ from feederscrew.units import printable
 from feederscrew_cli import argument_names
 from feederscrew_cli.interrupt import held_back
 
-FORMATS = ("table", "csv", "json")
+PRINT_FORMATS = ("table", "csv", "json")
 PAGE = 100  # letters of a line that people read, at most
 FOLDER = ("-o", "--output")
-PLACES = ("directory", "depfile")  # options that name what is written, not what is read
+OUTPUT_OPTIONS = ("directory", "depfile")  # options that name what is written, not what is read
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,5 +217,9 @@ def _inputs(context):
     """The files named on a command line, apart from where its results go."""
     for option in context.command.params:
         value = context.params.get(option.name)
-        if isinstance(option.type, click.Path) and option.name not in PLACES and value not in (None, "-"):
+        if (
+            isinstance(option.type, click.Path)
+            and option.name not in OUTPUT_OPTIONS
+            and value not in (None, "-")
+        ):
             yield from value if isinstance(value, tuple) else (value,)

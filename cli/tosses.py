@@ -36,7 +36,9 @@ def run(part, path, own, test, pictures, out):
         out.warn(*tosses_output.remarks(study))
         out.say(*tosses_output.summary(study))
         offers.write(folder, tosses_output.offers(study), pictures=pictures)
-    out.show(tosses_output.tosses(study), tosses_output.document(study), hidden=tosses_output.HIDDEN)
+    out.show(
+        tosses_output.tosses(study), tosses_output.document(study), hidden=tosses_output.HIDDEN_TOSS_COLUMNS
+    )
 
 
 def _fitting(own, test):

@@ -6,7 +6,7 @@ import re
 import click
 
 MICRO_SIGNS = str.maketrans("\u00b5\u03bc", "uu")  # the sign of its own, and the Greek letter
-WHOLE = re.compile(r"[+-]?[0-9]{1,30}")
+WHOLE_NUMBER = re.compile(r"[+-]?[0-9]{1,30}")
 DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 MAX_ANGLE_RAD = 20.0 * math.pi  # further round, rounding begins to tell
 
@@ -47,7 +47,7 @@ class Whole(click.IntRange):
 
     def convert(self, value, param, ctx):
         """The number, or a wrong call."""
-        if isinstance(value, str) and not WHOLE.fullmatch(value.strip()):
+        if isinstance(value, str) and not WHOLE_NUMBER.fullmatch(value.strip()):
             self.fail(f"{value!r} is not a valid whole number - write digits, as 10", param, ctx)
         return super().convert(value, param, ctx)
 

@@ -17,7 +17,7 @@ from feederscrew.dropping.toss_runs import FACE_NAMES
 from feederscrew.part import load
 from feederscrew.studies.aspects import aspects
 from feederscrew.studies.compare import compare_sets
-from feederscrew.studies.tosses import SURE, follow
+from feederscrew.studies.tosses import SURE_SHARE, follow
 
 PAGE = Path(__file__).resolve().parent / "validation.md"
 METHOD = PAGE.parent / "method/validation.md"
@@ -134,7 +134,7 @@ def judged(study):
     half = slice(1, None, 2)
     measured = np.array([FACE_NAMES.index(face) for face in study.launches.faces])
     right, p, off = (study.result.faces == measured)[half], study.p[half], 1e3 * study.off[half]
-    (low, high), sure = wilson(right.sum(), len(right)), p >= SURE
+    (low, high), sure = wilson(right.sum(), len(right)), p >= SURE_SHARE
     return [
         f"{percent(right.mean())} ({percent(low)} to {percent(high)})",
         percent((study.result.released == measured)[half].mean()),

@@ -130,12 +130,12 @@ def _compiled(request):
 
 def _counts(dropped, fed, led):
     return (
-        *((aspects, "MOST", dropped), (tune, "FEW", led)),
+        *((aspects, "MAX_DROPS", dropped), (tune, "ROUGH_PARTS", led)),
         *((arrival, name, fed) for name in ("FIRST_PARTS", "MAX_ARRIVALS", "LONGER_TIME_PARTS")),
     )
 
 
-FEW, FEWEST = _counts(500, 60, tune.FEW), _counts(100, 20, 15)
+FEW, FEWEST = _counts(500, 60, tune.ROUGH_PARTS), _counts(100, 20, 15)
 MANY = [(module, name, getattr(module, name)) for module, name, _ in FEW]
 
 

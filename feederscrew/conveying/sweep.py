@@ -11,8 +11,8 @@ from feederscrew import check
 from feederscrew.conveying import operating_point, point_motion, steady, waves
 from feederscrew.conveying.operating_point import OperatingPoint, checked
 from feederscrew.conveying.steady import COLUMNS, survey
-from feederscrew.geometry.compiled import apart, entry, on_disk
 from feederscrew.geometry.compiled import compiled as inlined
+from feederscrew.geometry.compiled import entry, on_disk, outlined
 
 IN_A_PERIOD = (  # what follows a part through a period of the drive: compiled into one piece
     *(waves.value, waves.after, waves.above, waves.onward, waves.reached),
@@ -111,7 +111,7 @@ def _suspects(settings) -> NDArray[np.int64]:
 @functools.cache
 def _compiled():
     """The loop over settings, compiled with every function it reaches."""
-    for functions, mark in ((IN_A_PERIOD, inlined), (KERNEL, apart)):
+    for functions, mark in ((IN_A_PERIOD, inlined), (KERNEL, outlined)):
         for function in functions:
             mark(function, arrays=True)
     return entry(_loop, arrays=True)

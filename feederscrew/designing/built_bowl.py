@@ -23,7 +23,7 @@ from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import solidbowl
 from feederscrew.studies.bowl import MachineSheet
-from feederscrew.studies.rate import LEAST
+from feederscrew.studies.rate import MIN_POSITIVE
 
 DRIVE = (
     ("frequency", 1.0, "Hz"),
@@ -231,7 +231,7 @@ def _sized(
         return machines.bowl(settings, study.part, study.request.target), why
     except FeederError:
         plain = [s for s in settings if not s.key.name.startswith("devices.")]
-        return machines.bowl(plain, study.part, LEAST), why
+        return machines.bowl(plain, study.part, MIN_POSITIVE), why
 
 
 def _texts(section: str, record: object, rows: Iterable[tuple[str, float, str]]) -> list[str]:

@@ -13,7 +13,7 @@ from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
-from feederscrew.studies.rate import LEAST, Shares, the_shares
+from feederscrew.studies.rate import MIN_POSITIVE, Shares, the_shares
 from feederscrew.studies.tooling import listed as names_of
 from feederscrew.units import listed
 
@@ -135,7 +135,7 @@ def design(
         ``status``.
     """
     request = DesignRequest(
-        target=arguments.amount("target", target, "rate", LEAST),
+        target=arguments.amount("target", target, "rate", MIN_POSITIVE),
         aspect=arguments.an_aspect(aspect),
         heading=arguments.angle("heading", heading),
         up=names_of(up),

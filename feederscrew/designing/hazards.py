@@ -13,14 +13,14 @@ from feederscrew.bowl import default
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
+from feederscrew.geometry.compiled import zero_rows
 from feederscrew.geometry.lattice import Cells, cells, chords, handles
 from feederscrew.geometry.polygons import turned
 from feederscrew.part.record import Part
 from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.tooling.orientations import Orientation
-from feederscrew.trial import air, arrays, crowd, runs, staging, stations, whereabouts
-from feederscrew.trial.kernel import travel
-from feederscrew.trial.kernel.crowd_records import Together
+from feederscrew.trial import air, arrays, crowd, part_poses, runs, staging
+from feederscrew.trial.kernel.workspace import JOURNAL, Together
 from feederscrew.trial.shape import TrueSolid, solid_of
 from feederscrew.units import counted
 
@@ -456,7 +456,7 @@ def _distinct_poses(
 def _turn(numbers: np.ndarray) -> np.ndarray:
     state = np.zeros(body.STATE)
     state[body.Q : body.Q + 4] = numbers / vectors.norm(numbers)
-    return whereabouts.matrix(state)
+    return part_poses.matrix(state)
 
 
 def _section(grid: Cells) -> float:
@@ -531,7 +531,7 @@ class Pulled:
         states[:, 1:3] = HIGH
         states[1, :3] += place
         states[0, body.Q] = 1.0
-        states[1, body.Q : body.Q + 4] = whereabouts.quaternion(turn)
+        states[1, body.Q : body.Q + 4] = part_poses.quaternion(turn)
         for n in (0, 1):
             self.pair.lay(n, states[n])
         rng = np.random.default_rng(SHAKEN)
@@ -552,8 +552,8 @@ class Pulled:
     def through(self) -> bool:
         """Whether the two have come through each other."""
         first, second = self.pair.arrays.states
-        spots = self.separation + vectors.product(self.rim, whereabouts.matrix(second).T)
-        spots = vectors.product(spots, whereabouts.matrix(first))
+        spots = self.separation + vectors.product(self.rim, part_poses.matrix(second).T)
+        spots = vectors.product(spots, part_poses.matrix(first))
         return bool((self.grid.inside[self.grid.at(spots)] > LEAKS * self.grid.size).any())
 
     @property
@@ -563,21 +563,27 @@ class Pulled:
 
     def pull(self, pull: np.ndarray) -> float:
         """Pull both by a velocity (3,) [sqrt(g L)] away from each other; how deep they were in each other."""
-        pair, states, notes = self.pair, self.pair.arrays.states, np.zeros(travel.NOTES + 2)
+        pair, states, journals = self.pair, self.pair.arrays.states, zero_rows(1, JOURNAL)
         states[:, 3:6] -= states[:, 3:6].mean(axis=0)  # they fall freely: that is left out
         states[:, 2] += HIGH - states[:, 2].mean()
         states[0, 3:6] -= pull
         states[1, 3:6] += pull
         steps = max(round(SECONDS / self.setting.floor.step), 1)
-        arrays.move_on(self.setting, pair.surface, pair.arrays, Together(pair.on, 0.0, steps, notes))
-        return notes[travel.SUNK]
+        arrays.move_on(self.setting, pair.surface, pair.arrays, Together(pair.on, 0.0, steps, journals))
+        return float(journals.depth[0])
 
 
 def _nowhere(track: Track, length: float) -> crowd.CrowdedTrack:
     """A track that is too far away to be met."""
     plates = staging.built([], track, length, (-length, length))
     stage = staging.Stage(
-        stations.BARE, *plates, begin=-length, exit=np.inf, air=air.STILL, size=length, width=track.width
+        staging.BARE_TRACK,
+        *plates,
+        begin=-length,
+        exit=np.inf,
+        air=air.STILL_AIR,
+        size=length,
+        width=track.width,
     )
     none = np.zeros((0, 2))
     return crowd.CrowdedTrack(stage, -length, none, np.zeros(1), length)

@@ -77,7 +77,7 @@ class LongRide:
     def distance(self) -> float:
         """How far the parts rode that arrived [m], the median."""
         arrived = self.ride.ended >= 0
-        return float(np.median(self.ride.ways[arrived])) if arrived.any() else 0.0
+        return float(np.median(self.ride.distances[arrived])) if arrived.any() else 0.0
 
     def rows(self) -> list[dict[str, Any]]:
         """Return a dict of each orientation that rode: parts, how many stay, become another, or left."""

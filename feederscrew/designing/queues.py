@@ -26,11 +26,11 @@ from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.tooling.orientations import Hanging
-from feederscrew.trial.queue import GAPS, PartsQueue, QueuedParts, QueuePlan
+from feederscrew.trial.queue import MEAN_GAP_SHARE, PartsQueue, QueuedParts, QueuePlan
 
 FILLS = (
     ("low", short_trials.LOW),
-    ("normal", GAPS),
+    ("normal", MEAN_GAP_SHARE),
     ("high", 0.0),
 )  # free way between parts over their length
 PARTS, SECONDS = 12, 60.0  # in a queue at a time; for so long at the most
@@ -78,8 +78,8 @@ class FollowedRow:
         except KeyboardInterrupt:
             if not queue.periods:
                 raise
-            return self.count(fill, gaps, queue.seen(partial=True))
-        return self.count(fill, gaps, queue.seen())
+            return self.count(fill, gaps, queue.result(partial=True))
+        return self.count(fill, gaps, queue.result())
 
     def say(self, fill: str, seconds: float) -> None:
         """Tell which fill is followed, and until when [s]."""
@@ -212,7 +212,7 @@ class _FillsInTurn:
         queue = self.queue(name, gaps)
         periods_elsewhere = sum(other.periods for other in self.running.values() if other is not queue)
         queue.follow(until, self.row.progressed(periods_elsewhere))
-        return self.row.count(name, gaps, queue.seen())
+        return self.row.count(name, gaps, queue.result())
 
     def queue(self, name: str, gaps: float) -> PartsQueue:
         """Return the queue of a fill."""
@@ -262,7 +262,7 @@ class _FillsSideBySide(_FillsInTurn):
             queue = self.queue(name, gaps)
             for until in self.times[name]:
                 queue.follow(until, end_where_stopped)
-                self.counted[name].put(self.row.count(name, gaps, queue.seen()))
+                self.counted[name].put(self.row.count(name, gaps, queue.result()))
         finally:
             self.counted[name].put(None)  # nothing more comes: who waits learns what ended it
 
@@ -288,7 +288,7 @@ def _stopped(
 ) -> tuple[FilledQueue, ...]:
     """What was seen until the user stopped it at a fill; raises KeyboardInterrupt where that is nothing."""
     if name in running and running[name].periods:
-        queue_of_fill[name] = row.count(name, gaps, running[name].seen(partial=True))
+        queue_of_fill[name] = row.count(name, gaps, running[name].result(partial=True))
     if not queue_of_fill:
         raise KeyboardInterrupt
     last = name if name in queue_of_fill else next(reversed(queue_of_fill))

@@ -22,9 +22,9 @@ shading = heavy("feederscrew.output.shading")
 
 MOST_DRAWN_ASPECTS = 24  # rows that a picture shows
 NORMALS = ("normal_x", "normal_y", "normal_z")
-RECOMMENDED = ("p_recommended", "p_recommended_low", "p_recommended_high")
+RECOMMENDED_COLUMNS = ("p_recommended", "p_recommended_low", "p_recommended_high")
 PRINTED = (  # the table for people, unless they ask for more
-    "aspect", "lies", "stable", "height_mm", *RECOMMENDED,
+    "aspect", "lies", "stable", "height_mm", *RECOMMENDED_COLUMNS,
     "p_pmi", "p_csa", "p_stability", "surface", "tumbling",
 )  # fmt: skip
 
@@ -103,10 +103,10 @@ def _by_heading(frame) -> dict[Any, Any]:
 
 def by_share(frame):
     """Return a table of aspects with the likeliest answer first; as it is where there is no answer."""
-    if RECOMMENDED[0] not in frame:
+    if RECOMMENDED_COLUMNS[0] not in frame:
         return frame
     order = np.argsort(
-        -np.nan_to_num(np.asarray(frame[RECOMMENDED[0]], dtype=float), nan=-1.0), kind="stable"
+        -np.nan_to_num(np.asarray(frame[RECOMMENDED_COLUMNS[0]], dtype=float), nan=-1.0), kind="stable"
     )
     return tables.frame({name: [column[row] for row in order] for name, column in frame.items()})
 

@@ -11,11 +11,11 @@ from feederscrew.part.record import Part
 mpl_image = heavy("matplotlib.image")
 shading = heavy("feederscrew.output.shading")
 
-SHEET = "contact_sheet{}.png"  # as many as the parts need: nothing, then _2, _3 ...
+SHEET_NAME = "contact_sheet{}.png"  # as many as the parts need: nothing, then _2, _3 ...
 ACROSS, DOWN = 5, 8  # thumbnails on a sheet
 WIDTH, HEIGHT = 240, 180  # [px] of a thumbnail
 TEXT, EDGE = 72, 20  # [px] under each thumbnail, round the sheet
-LETTERS = 26  # of a line of text
+NAME_LETTERS = 26  # of a line of text
 LINES, BELOW = 8, 3  # of the reason why a part failed, and of what stands below a picture
 
 
@@ -61,7 +61,9 @@ def _tile(figure, axes, left, bottom, tile) -> None:
     failed = picture is None
     middle, colour = left + WIDTH / 2, style.ACCENT if failed else style.INK
     look = {"fontsize": 7, "color": colour, "ha": "center"}
-    axes.text(middle, bottom + TEXT - 14, _shortened(name, LETTERS), fontweight="bold", va="center", **look)
+    axes.text(
+        middle, bottom + TEXT - 14, _shortened(name, NAME_LETTERS), fontweight="bold", va="center", **look
+    )
     if failed:  # the reason has the place of the picture
         axes.text(middle, bottom + TEXT + HEIGHT / 2, _wrapped(lines, LINES), va="center", **look)
     else:
@@ -70,9 +72,9 @@ def _tile(figure, axes, left, bottom, tile) -> None:
 
 def _wrapped(text, most) -> str:
     """The text in as many lines as there is room for."""
-    lines = textwrap.wrap(text, LETTERS + 2)
+    lines = textwrap.wrap(text, NAME_LETTERS + 2)
     if len(lines) > most:
-        lines = [*lines[: most - 1], _shortened(lines[most - 1] + " ...", LETTERS)]
+        lines = [*lines[: most - 1], _shortened(lines[most - 1] + " ...", NAME_LETTERS)]
     return "\n".join(lines)
 
 

@@ -10,7 +10,7 @@ from feederscrew.output.tables import Frame
 from feederscrew.studies.bowl_fit import QUANTITIES, BowlFit
 from feederscrew.units import MM_S
 
-UNKNOWN = "not decided by these velocities"
+UNDECIDED = "not decided by these velocities"
 
 
 def quantities(study: BowlFit) -> Frame:
@@ -22,7 +22,7 @@ def quantities(study: BowlFit) -> Frame:
             "fitted": study.values.tolist(),
             "low": study.low.tolist(),
             "high": study.high.tolist(),
-            "decided": [UNKNOWN if open_end else "yes" for open_end in study.open_ended],
+            "decided": [UNDECIDED if open_end else "yes" for open_end in study.open_ended],
         }
     )
 

@@ -352,10 +352,17 @@ FIXED = {
     "experiment": ("experiment", "#545f6b"),
     "recommended": ("recommended", style.ANSWER),
 }
-OWN = ("#545f6b", "#cc79a7", "#a9b3bd", "#8f4a71", "#7d6b5d", "#5b3a8e")  # a user's profiles, in turn
-BAR = 0.20  # [in] of paper a bar gets
-WIDEST = 13.0  # [in] of all charts side by side
-UPRIGHT = 0.3  # [in] of a bar below which its number stands upright
+USER_COLOURS = (
+    "#545f6b",
+    "#cc79a7",
+    "#a9b3bd",
+    "#8f4a71",
+    "#7d6b5d",
+    "#5b3a8e",
+)  # a user's profiles, in turn
+BAR_WIDTH_IN = 0.20  # [in] of paper a bar gets
+MAX_CHARTS_IN = 13.0  # [in] of all charts side by side
+UPRIGHT_BAR_IN = 0.3  # [in] of a bar below which its number stands upright
 LEAST_ROOM = 0.17  # [in] of a bar below which its number is left out
 
 
@@ -372,10 +379,10 @@ def look(name: str, place=0):
         return FIXED[name]
     if name.lower() in registry.RULE_OF:
         return style.method(name.lower())
-    return name.replace("_", " "), OWN[place % len(OWN)]
+    return name.replace("_", " "), USER_COLOURS[place % len(USER_COLOURS)]
 
 
-def bars(axes, names, profiles, printed=None, room=BAR) -> None:
+def bars(axes, names, profiles, printed=None, room=BAR_WIDTH_IN) -> None:
     """Draw grouped bars on an Axes, with a tick where print has the number.
 
     ``names`` are the A aspects, ``profiles`` (A,) shares [1] by name, ``printed`` the published ones of some;
@@ -387,14 +394,14 @@ def bars(axes, names, profiles, printed=None, room=BAR) -> None:
         x = places + (place - 0.5 * (len(profiles) - 1)) * width
         axes.bar(x, 100.0 * values, 0.92 * width, color=colour, label=label)
         if room >= LEAST_ROOM:
-            _numbers(axes, x, 100.0 * values, upright=room < UPRIGHT)
+            _numbers(axes, x, 100.0 * values, upright=room < UPRIGHT_BAR_IN)
         if name in (printed or {}):
             _ticks(axes, x, 100.0 * printed[name], width)
     style.named_ticks(axes, places, names)
     axes.tick_params(axis="x", length=0)
     axes.set_xlim(-0.55, len(names) - 0.45)
     above = (
-        132.0 if LEAST_ROOM <= room < UPRIGHT else 114.0
+        132.0 if LEAST_ROOM <= room < UPRIGHT_BAR_IN else 114.0
     )  # numbers that stand upright are kept off the title
     axes.set_ylim(0.0, above * max(values.max() for values in profiles.values()))
 
@@ -405,9 +412,9 @@ def comparison(title: str, names, measured, rules, compared):
     ``names`` are the A aspects, ``measured`` and ``rules`` (A,) shares [1] by name, ``compared`` the
     deviation [1] of each pair of profiles.
     """
-    width = float(np.clip(len(names) * (len(measured) + 1.9) * BAR + 1.0, 4.2, 12.0))
+    width = float(np.clip(len(names) * (len(measured) + 1.9) * BAR_WIDTH_IN + 1.0, 4.2, 12.0))
     side, tall = max(3.1, 0.42 * len(measured) + 1.5), 0.42 * (len(measured) + len(rules)) + 1.3
-    across = max(1, min(len(rules), int(WIDEST / width)))
+    across = max(1, min(len(rules), int(MAX_CHARTS_IN / width)))
     rows = -(-max(len(rules), 1) // across)
     figure = style.figure(across * width + side, max(2.2 * rows, tall))
     grid = figure.add_gridspec(rows, across + 1, width_ratios=(*[width] * across, side))

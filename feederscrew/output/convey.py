@@ -27,7 +27,7 @@ RUNS_AWAY = (
     "this velocity is reached from rest; a part that once slides down fast enough does not stop again: "
     "the climb is steeper than kinetic friction"
 )
-LIMITS = {"forward": "slip up the track", "backward": "slip down the track"}
+SLIP_DIRECTIONS = {"forward": "slip up the track", "backward": "slip down the track"}
 
 
 def document(study) -> dict[Any, Any]:
@@ -70,7 +70,7 @@ def summary(document):
         ("acceleration ratio A w2/g", number(document["acceleration_ratio"])),
         ("throw number", _margin(document["throw_number"], document["margins"]["hop"])),
     ]
-    for direction, meaning in LIMITS.items():
+    for direction, meaning in SLIP_DIRECTIONS.items():
         limit, margin = document[f"mu_{direction}"], document["margins"][direction]
         rows.append((f"friction that stops {meaning}", _margin(limit, margin)))
     times = document["fractions"].items()
@@ -121,7 +121,7 @@ def points(study):
     columns = _in_mm_s(study.cells)
     return tables.frame(
         {
-            **{axis.column: axis.shown for axis in study.axes},
+            **{axis.column: axis.in_unit for axis in study.axes},
             **{column: columns[column] for column in VELOCITIES.values()},
             "regime": np.asarray(answer.SWEEP_REGIMES)[columns["regime"]],
             "throw_number": columns["throw_number"],
@@ -312,15 +312,15 @@ def _map(study):
 PHASE_COLOURS = {"stick": "#5c6b78", "forward": "#009e73", "backward": "#d55e00", "flight": "#0072b2"}
 PLATE = "#aab4bd"
 PHASE_LINES = {"stick": "-", "forward": "-", "backward": "--", "flight": ":"}
-REGIME_COLOURS = {  # what a designer wants is the strongest
+CONVEY_COLOURS = {  # what a designer wants is the strongest
     "stick": "#eef2f5", "forward": "#79bfa4", "backward": "#e3a08a", "both": "#f3dfae", "hop": "#c9dcea",
     "no steady state": "#8c8c8c",
 }  # fmt: skip
 FIRST_PEAK = 3.0  # [1] near here the velocity per stroke has its first peak, without rebound
-THROWS = {1.0: "hop", FIRST_PEAK: "first peak", round(throw_of_flight(1.0), 4): "one period"}
-HATCH = "////"
-LEAST = 1e-9  # [mm/s] a scale of velocities is at least this wide
-NOWHERE = "no steady velocity anywhere"
+THROW_NAMES = {1.0: "hop", FIRST_PEAK: "first peak", round(throw_of_flight(1.0), 4): "one period"}
+SEVERAL_HATCH = "////"
+MIN_SCALE_MM_S = 1e-9  # [mm/s] a scale of velocities is at least this wide
+NO_VELOCITY = "no steady velocity anywhere"
 WAY = "[mm]"
 
 
@@ -420,14 +420,14 @@ def _velocity(figure, axes, grid) -> None:
     axes.set(xlabel=_label(grid.first), ylabel=_label(grid.second))
     velocity = grid.values["velocity"].T / MM_S
     finite = velocity[np.isfinite(velocity)]
-    lowest, highest = finite.min(initial=0.0), finite.max(initial=LEAST)
+    lowest, highest = finite.min(initial=0.0), finite.max(initial=MIN_SCALE_MM_S)
     largest = max(highest, -lowest)
     shades = matplotlib.colormaps["PuOr_r"].with_extremes(bad="#8c8c8c")
     norm = mpl_colors.TwoSlopeNorm(0.0, -largest, largest)
-    x, y = grid.first.shown, grid.second.shown
+    x, y = grid.first.in_unit, grid.second.in_unit
     mesh = axes.pcolormesh(x, y, velocity, cmap=shades, norm=norm, shading="nearest", rasterized=True)
     if not finite.size:
-        axes.text(0.97, 0.93, NOWHERE, transform=axes.transAxes, ha="right", color="white")
+        axes.text(0.97, 0.93, NO_VELOCITY, transform=axes.transAxes, ha="right", color="white")
         return
     bar = figure.colorbar(mesh, ax=axes, fraction=0.05, pad=0.02).ax
     bar.tick_params(labelsize=8)
@@ -439,23 +439,23 @@ def _velocity(figure, axes, grid) -> None:
     several = grid.values["several"].T.astype(float)
     if several.any():
         with matplotlib.rc_context({"hatch.linewidth": 0.5}):
-            axes.contourf(x, y, several, [0.5, 1.5], colors="none", hatches=[HATCH])
+            axes.contourf(x, y, several, [0.5, 1.5], colors="none", hatches=[SEVERAL_HATCH])
 
 
 def _regimes(axes, grid) -> None:
     style.tidy(axes, title="Regimes", x=_label(grid.first), grid="none")
-    colours = mpl_colors.ListedColormap([REGIME_COLOURS[name] for name in grid.names])
+    colours = mpl_colors.ListedColormap([CONVEY_COLOURS[name] for name in grid.names])
     axes.pcolormesh(
-        *(grid.first.shown, grid.second.shown, grid.codes.T),
+        *(grid.first.in_unit, grid.second.in_unit, grid.codes.T),
         **{"cmap": colours, "vmin": -0.5, "vmax": len(grid.names) - 0.5, "shading": "nearest"},
     )
     present = [name for code, name in enumerate(grid.names) if (grid.codes == code).any()]
     handles = [
-        mpl_patches.Patch(facecolor=REGIME_COLOURS[name], label=regime_words(name)) for name in present
+        mpl_patches.Patch(facecolor=CONVEY_COLOURS[name], label=regime_words(name)) for name in present
     ]
     if grid.values["several"].any():
         handles.append(
-            mpl_patches.Patch(fill=False, linewidth=0, hatch=HATCH, label="several velocities (left)")
+            mpl_patches.Patch(fill=False, linewidth=0, hatch=SEVERAL_HATCH, label="several velocities (left)")
         )
     axes.legend(
         handles=handles,
@@ -470,9 +470,9 @@ def _regimes(axes, grid) -> None:
 def _throws(axes, grid) -> None:
     """Lines of equal throw number: the hop, the first peak of the velocity, a flight of one period."""
     throw = grid.values["throw_number"].T
-    levels = [level for level in sorted(THROWS) if throw.min() < level < throw.max()]
+    levels = [level for level in sorted(THROW_NAMES) if throw.min() < level < throw.max()]
     if levels:
-        x, y = grid.first.shown, grid.second.shown
+        x, y = grid.first.in_unit, grid.second.in_unit
         lines = axes.contour(x, y, throw, levels, colors=style.INK, linewidths=0.8, linestyles="--")
         texts = axes.clabel(lines, fmt=lambda level: f"k = {level:.2g} ({_throw_name(level)})", fontsize=7)
         for text in texts:
@@ -480,7 +480,7 @@ def _throws(axes, grid) -> None:
 
 
 def _throw_name(level):
-    return THROWS[min(THROWS, key=lambda known: abs(known - level))]
+    return THROW_NAMES[min(THROW_NAMES, key=lambda known: abs(known - level))]
 
 
 def _label(axis) -> str:
@@ -488,4 +488,4 @@ def _label(axis) -> str:
 
 
 def _ends(axis) -> tuple[Any, ...]:
-    return axis.shown[0], axis.shown[-1]
+    return axis.in_unit[0], axis.in_unit[-1]

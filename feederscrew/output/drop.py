@@ -176,7 +176,7 @@ def _strip(study):
     return strip(study.part, study.aspects, trace, title)
 
 
-STEP = 0.09  # of a group: from the whisker to the mark of a rule, and from there to the next
+MARK_STEP = 0.09  # of a group: from the whisker to the mark of a rule, and from there to the next
 
 
 def counts_figure(title: str, aspects, tally, rules):
@@ -187,7 +187,7 @@ def counts_figure(title: str, aspects, tally, rules):
     bars(axes, places, tally)
     for place, (name, values) in enumerate(rules.items()):
         label, colour = style.method(name, place)
-        mark_places = places + STEP * (place + 1)  # of the whisker, which stands in the middle
+        mark_places = places + MARK_STEP * (place + 1)  # of the whisker, which stands in the middle
         look = {"marker": MARKS[place % len(MARKS)], "ms": 5, "mec": "white", "mew": 0.6, "color": colour}
         axes.plot(mark_places, 100.0 * values, ls="none", label=label, **look)
     style.named_ticks(axes, places, aspects.names)
@@ -206,8 +206,8 @@ def bars(axes, places, tally) -> None:
 
 
 HEIGHT = "#0072b2"  # colour of the height of the centre of mass
-APART = 0.075  # of the axis: labels closer than this would touch
-ABOVE = 0.4  # room over the highest reference line, of that below it, on the logarithmic axis
+LABEL_SPACING = 0.075  # of the axis: labels closer than this would touch
+HEADROOM_SHARE = 0.4  # room over the highest reference line, of that below it, on the logarithmic axis
 LEGEND = (0.96, 0.87)  # places of its lines, of the axis
 
 
@@ -224,7 +224,7 @@ def curve(axes, trace, aspects, rows) -> None:
     lowest = 0.88 * min(heights.min(), *(height for height, _, _ in lines))
     highest = max(height for height, _, _ in lines)
     axes.set_yscale("log")
-    axes.set_ylim(lowest, max(highest * (highest / lowest) ** ABOVE, 1.25 * energies.max()))
+    axes.set_ylim(lowest, max(highest * (highest / lowest) ** HEADROOM_SHARE, 1.25 * energies.max()))
     axes.set_xlim(0.0, 1.015 * times[-1])
     axes.yaxis.set_major_locator(mpl_ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter(mpl_ticker.FuncFormatter(lambda value, _: f"{value:g}"))
@@ -272,7 +272,7 @@ def _named(axes, lines) -> None:
     for height, text, look in lines:
         axes.axhline(height, **look)
         place = (np.log(height) - low) / (high - low)
-        if all(abs(place - other) >= APART for other in taken):
+        if all(abs(place - other) >= LABEL_SPACING for other in taken):
             taken.append(place)
             axes.text(1.01, place, f"{text} {height:.3g}", transform=axes.transAxes, fontsize=7, va="center",
                       color=style.INK)  # fmt: skip
@@ -281,13 +281,15 @@ def _named(axes, lines) -> None:
 ACROSS, DOWN = 6, 2  # stills
 WIDTH, TALLEST, GAP = 262, 430, 12  # [px] of a still; its greatest height; to the next
 EDGE, HEAD, CAPTION, CURVE = 30, 92, 44, 350  # [px]
-ROOM = 1.12  # of a still over the part in it
-FARTHEST = 1.7  # a part that flies high is drawn so much smaller, at most; higher still, its floor is cut off
+STILL_MARGIN = 1.12  # of a still over the part in it
+MAX_ZOOM_OUT = (
+    1.7  # a part that flies high is drawn so much smaller, at most; higher still, its floor is cut off
+)
 UP = 0.1  # of the lowest height of the centre of mass: a gap that is worth telling
-CELLS = 4.0  # of the floor's grid across a still, at least
-DEEP = 1.25  # [size] how far behind and before the part the grid is drawn
+CELLS_ACROSS = 4.0  # of the floor's grid across a still, at least
+GRID_REACH = 1.25  # [size] how far behind and before the part the grid is drawn
 PIECES = 160  # points of a line, to see which are hidden
-BEHIND = 40.0  # [size] how far behind the solid a point may lie
+HIDDEN_DISTANCE = 40.0  # [size] how far behind the solid a point may lie
 GRID = {"color": style.FAINT, "linewidth": 0.8, "zorder": 2}
 PAST = {"color": style.ACCENT, "linewidth": 1.1, "zorder": 4}
 AHEAD = {"color": style.ACCENT, "linewidth": 0.9, "linestyle": (0, (1, 2.2)), "zorder": 4}
@@ -314,7 +316,7 @@ class Strip:
     @property
     def step(self):
         """[m] of the grid on the plane."""
-        return grid_step(self.pixel * WIDTH / CELLS * self.solid.size)
+        return grid_step(self.pixel * WIDTH / CELLS_ACROSS * self.solid.size)
 
     def place(self, panel) -> tuple[Any, ...]:
         """Return the left, bottom, width and height of a still on the page."""
@@ -371,9 +373,9 @@ def _layout(solid, trace, rows) -> tuple[Any, ...]:
     ends = np.array([[standing.framed[0, 1], standing.bounds[1, 1]] for standing in stances])
     ends += lifts[:, None]  # from the foot of the centre of mass
     widest = 2.0 * max(np.abs(standing.framed[:, 0]).max() for standing in stances)
-    close = ROOM * widest / WIDTH
-    pixel = float(np.clip(ROOM * np.ptp(ends) / TALLEST, close, FARTHEST * close))
-    ends += 0.5 * (ROOM - 1.0) * widest * np.array([-1.0, 1.0])
+    close = STILL_MARGIN * widest / WIDTH
+    pixel = float(np.clip(STILL_MARGIN * np.ptp(ends) / TALLEST, close, MAX_ZOOM_OUT * close))
+    ends += 0.5 * (STILL_MARGIN - 1.0) * widest * np.array([-1.0, 1.0])
     by_row = ends.reshape(DOWN, ACROSS, 2)
     low, high = by_row[..., 0].min(axis=1), by_row[..., 1].max(axis=1)
     heights = np.minimum(np.ceil((high - low) / pixel), TALLEST).astype(int)
@@ -411,7 +413,7 @@ def _clear(solid, standing, frame):
 
 def _draw(axes, solid, camera, line, look) -> None:
     """Where a line (N, 3) about the centre of mass is not hidden by the solid."""
-    image, visible = camera.project(line), camera.sees(solid, line, away=BEHIND)
+    image, visible = camera.project(line), camera.sees(solid, line, away=HIDDEN_DISTANCE)
     axes.plot(*np.where(visible[:, None], image, np.nan).T, **look)
 
 
@@ -419,7 +421,7 @@ def _grid(layout, place) -> Iterator[Any]:
     """Lines on the plane about a still, along and across the way, a round number of millimetres apart."""
     step = layout.step / layout.solid.size
     axes = np.array([layout.heading, np.cross([0.0, 0.0, 1.0], layout.heading)])  # along, across
-    reaches, centre = (0.5 * WIDTH * layout.pixel, DEEP), axes @ place
+    reaches, centre = (0.5 * WIDTH * layout.pixel, GRID_REACH), axes @ place
     for across, other in ((0, 1), (1, 0)):
         run = centre[other] + np.linspace(-reaches[other], reaches[other], PIECES)
         first, last = (centre[across] + sign * reaches[across] for sign in (-1.0, 1.0))

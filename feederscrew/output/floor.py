@@ -21,15 +21,15 @@ shading = heavy("feederscrew.output.shading")
 matplotlib = heavy("matplotlib")
 mpl_ticker = heavy("matplotlib.ticker")
 
-COARSE = 46  # values of each quantity of a map in a table
+TABLE_CELLS = 46  # values of each quantity of a map in a table
 MAPS = {  # by the end of their file's name
     "beta_friction": FloorStudy.over_angle_and_friction,
     "frequency_amplitude": FloorStudy.over_frequency_and_amplitude,
 }
 OUTSIDE = "line of action of N outside the contact"  # at that instant; over the strokes it may only rock
 STATE_WORDS = {"tip": "line of action outside the contact", "stick": "held by friction"}  # else as it is
-EVERY = 5  # of the samples of a cycle, in tables and documents
-LABELS = {  # what people read
+SAMPLE_STEP = 5  # of the samples of a cycle, in tables and documents
+FLOOR_LABELS = {  # what people read
     "normal_force_N": "normal force N",
     "alignment_acceleration_rad_s2": "alignment acceleration theta''",
     "stable_heading_deg": "stable heading",
@@ -63,7 +63,7 @@ def instant(motion, posture, bowl) -> dict[str, Any]:
 
 def over_cycle(motion, course) -> dict[Any, Any]:
     """Return one period as columns; ``motion`` is a FloorMotion of shape (N,), ``course`` its Cycle."""
-    samples = slice(None, None, EVERY)
+    samples = slice(None, None, SAMPLE_STEP)
     return {
         "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[samples],
         "state": [MOTION_STATES[code] for code in motion.state[samples]],
@@ -119,7 +119,7 @@ def printed(document, format):
 def summary(document):
     """Return the upper reversal, a row a quantity, for people."""
     now = document["instant"]
-    rows = {label(name, text): now[name] for name, text in LABELS.items() if name in now}
+    rows = {label(name, text): now[name] for name, text in FLOOR_LABELS.items() if name in now}
     for name, state in (
         ("state at the upper reversal", now["state"]),
         ("regime over the cycle", document["regime"]),
@@ -173,12 +173,12 @@ def remarks(study):
 
 def map_cells(study, kind):
     """Return a map of ``MAPS`` as columns."""
-    return MAPS[kind](study, COARSE).columns()
+    return MAPS[kind](study, TABLE_CELLS).columns()
 
 
 def map_remarks(study) -> list[Any]:
     """Return what a reader of the maps should know, a sentence each."""
-    return [line for kind, make in MAPS.items() for line in map_notes(kind, make(study, COARSE))]
+    return [line for kind, make in MAPS.items() for line in map_notes(kind, make(study, TABLE_CELLS))]
 
 
 def map_notes(kind, grid) -> list[Any]:
@@ -220,7 +220,7 @@ def chosen(study) -> list[Any]:
 
 def label(name, text):
     """Return a quantity for people, its unit behind it."""
-    return text + next((f" [{unit}]" for end, unit in tables.UNITS.items() if name.endswith(end)), "")
+    return text + next((f" [{unit}]" for end, unit in tables.COLUMN_UNITS.items() if name.endswith(end)), "")
 
 
 def shown_value(value):
@@ -260,7 +260,7 @@ def _offsets(motion) -> dict[Any, Any]:
 
 PART, CONTACT = "#dfe6ec", style.ACCENT
 DRIVE, FRICTION, MOTION, NORMAL = "#0072b2", "#b5482a", "#2f7d5b", "#5b3a8e"
-LONGEST = 0.62  # of the part's size: the longest arrow
+FORCE_ARROW_SHARE = 0.62  # of the part's size: the longest arrow
 
 
 def plan(posture, heading, motion):
@@ -331,7 +331,7 @@ def alignment_figure(grid, direction, title: str):
     )
     if (printed := grid.get("published_alignment_rad_s2")) is not None:
         label = "as published [4.17], sliding or not"
-        axes.plot(grid["heading_deg"], printed, color=style.SPARE[3], linestyle="--", label=label)
+        axes.plot(grid["heading_deg"], printed, color=style.SPARE_COLOURS[3], linestyle="--", label=label)
     axes.plot(
         grid["heading_deg"],
         grid["alignment_acceleration_rad_s2"],
@@ -424,7 +424,11 @@ def _arrows(axes, forces, size) -> None:
     for name, force, color in forces:
         if longest > 0.0 and np.hypot(*force) > 1e-6 * longest:
             arrow(
-                axes, (0, 0), LONGEST * size * force / longest, f"{name} {newtons(np.hypot(*force))}", color
+                axes,
+                (0, 0),
+                FORCE_ARROW_SHARE * size * force / longest,
+                f"{name} {newtons(np.hypot(*force))}",
+                color,
             )
 
 
@@ -448,13 +452,13 @@ HATCHES = {  # regime: hatch, colour of the face, what it says
     "leaves the wall": ("\\\\\\\\", "#dfe9d2", "leaves the wall"),
     "does not fit": ("xxx", "#d9d2e3", "does not fit: falls off the track"),
 }
-SOLID = ("hop", "stick", "does not fit")  # regimes whose values mean nothing, or are zero
+COVERED_REGIMES = ("hop", "stick", "does not fit")  # regimes whose values mean nothing, or are zero
 STATES = {"stick": "#9fb3c4", "slide": "#4f9d7f", "hop": "#c9ced3", "tip": style.ACCENT}
-HATCH = "#8d979f"
-SHADES = "cividis"
-HALF = 0.5
-THROWS = (1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0, 100.0)  # that a line may be drawn for
-LETTERS = 100  # of a line under a title
+REGION_HATCH_COLOUR = "#8d979f"
+VALUE_COLOURS = "cividis"
+CODE_HALF_STEP = 0.5
+THROW_LEVELS = (1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0, 100.0)  # that a line may be drawn for
+NOTE_LETTERS = 100  # of a line under a title
 
 
 def regime_map(grid, column: str, *, title: str, labels, value: str, own=None, note=()):
@@ -465,16 +469,16 @@ def regime_map(grid, column: str, *, title: str, labels, value: str, own=None, n
     """
     figure = style.figure(6.8, 4.8)
     axes = style.tidy(figure.add_subplot(), title=title, x=labels[0], y=labels[1], grid="none")
-    x, y, values = grid.first.shown, grid.second.shown, np.asarray(grid.values[column]).T
+    x, y, values = grid.first.in_unit, grid.second.in_unit, np.asarray(grid.values[column]).T
     if np.isfinite(values).any():
-        _values(figure, axes, (x, y, values), value, np.isin(grid.codes.T, _places(grid, SOLID)))
+        _values(figure, axes, (x, y, values), value, np.isin(grid.codes.T, _places(grid, COVERED_REGIMES)))
     regions = [name for name in HATCHES if _region(axes, grid, name)]
     _throws(axes, grid)
     if own is not None:
         _own_point(axes, own)
     if note:
         # sentences under the title, each from a line of its own
-        listed = [piece for line in note for piece in textwrap.wrap(line, LETTERS)]
+        listed = [piece for line in note for piece in textwrap.wrap(line, NOTE_LETTERS)]
         axes.text(
             0.0, 1.01, "\n".join(listed), transform=axes.transAxes, fontsize=7.5, color=style.INK, va="bottom"
         )
@@ -497,7 +501,7 @@ def state_band(axes, phase, states, names) -> None:
     for code, name in enumerate(names):
         for run in _runs(np.asarray(states) == code):
             axes.axvspan(
-                phase[run[0]] - HALF * step, phase[run[-1]] + HALF * step,
+                phase[run[0]] - CODE_HALF_STEP * step, phase[run[-1]] + CODE_HALF_STEP * step,
                 ymin=0.965, color=STATES[name], linewidth=0,
             )  # fmt: skip
 
@@ -526,7 +530,7 @@ def _values(figure, axes, data, label, covered) -> None:
     finite = values[np.isfinite(values)]
     low, high = finite.min(), finite.max()
     high = high if high - low > 1e-12 * max(abs(high), 1e-300) else low + 1.0
-    mesh = axes.pcolormesh(x, y, values, cmap=SHADES, vmin=low, vmax=high, shading="nearest", zorder=1)
+    mesh = axes.pcolormesh(x, y, values, cmap=VALUE_COLOURS, vmin=low, vmax=high, shading="nearest", zorder=1)
     bar = figure.colorbar(mesh, ax=axes, pad=0.02)
     bar.set_label(label, fontsize=9, color=style.INK)
     bar.ax.tick_params(labelsize=8, colors=style.INK)
@@ -546,15 +550,21 @@ def _region(axes, grid, name) -> bool:
     if not inside.any():
         return False
     hatch, colour, _ = HATCHES[name]
-    with matplotlib.rc_context({"hatch.color": HATCH, "hatch.linewidth": 0.6}):
+    with matplotlib.rc_context({"hatch.color": REGION_HATCH_COLOUR, "hatch.linewidth": 0.6}):
         cover = np.where(inside, 1.0, 0.0)
         axes.contourf(
-            grid.first.shown, grid.second.shown, cover, [HALF, 1.5], colors=[colour],
-            alpha=1.0 if name in SOLID else 0.55, hatches=[hatch or None], zorder=3,
+            grid.first.in_unit, grid.second.in_unit, cover, [CODE_HALF_STEP, 1.5], colors=[colour],
+            alpha=1.0 if name in COVERED_REGIMES else 0.55, hatches=[hatch or None], zorder=3,
         )  # fmt: skip
     if not inside.all():
         axes.contour(
-            grid.first.shown, grid.second.shown, cover, [HALF], colors=style.INK, linewidths=0.9, zorder=4
+            grid.first.in_unit,
+            grid.second.in_unit,
+            cover,
+            [CODE_HALF_STEP],
+            colors=style.INK,
+            linewidths=0.9,
+            zorder=4,
         )
     return True
 
@@ -567,11 +577,11 @@ def _throws(axes, grid) -> None:
     finite = throw[np.isfinite(throw)]
     if not finite.size or finite.min() == finite.max():
         return
-    levels: Sequence[float] = [level for level in THROWS if finite.min() < level < finite.max()]
+    levels: Sequence[float] = [level for level in THROW_LEVELS if finite.min() < level < finite.max()]
     if len(levels) < 2:
         levels = mpl_ticker.MaxNLocator(5).tick_values(finite.min(), finite.max())
     if len(levels):
-        x, y, masked = grid.first.shown, grid.second.shown, np.ma.masked_invalid(throw)
+        x, y, masked = grid.first.in_unit, grid.second.in_unit, np.ma.masked_invalid(throw)
         lines = axes.contour(
             x, y, masked, levels, colors=style.INK, linewidths=0.8, linestyles="--", zorder=5
         )
@@ -590,13 +600,13 @@ def _own_point(axes, own) -> None:
 def _map_legend(figure, names) -> None:
     if not names:
         return
-    with matplotlib.rc_context({"hatch.color": HATCH, "hatch.linewidth": 0.6}):
+    with matplotlib.rc_context({"hatch.color": REGION_HATCH_COLOUR, "hatch.linewidth": 0.6}):
         handles = [
             mpl_patches.Patch(
                 facecolor=HATCHES[n][1],
                 hatch=HATCHES[n][0],
                 label=HATCHES[n][2],
-                edgecolor=HATCH,
+                edgecolor=REGION_HATCH_COLOUR,
                 linewidth=0.4,
             )
             for n in names
@@ -611,13 +621,13 @@ def _runs(flags) -> list[Any]:
     return [run for run in np.split(indices, np.flatnonzero(np.diff(indices) > 1) + 1) if len(run)]
 
 
-FINE = 181  # values of each quantity of a map in a picture
+PICTURE_CELLS = 181  # values of each quantity of a map in a picture
 AXIS_LABELS = {
     "beta_friction": ("vibration angle β [deg]", "friction μ [1]"),
     "frequency_amplitude": ("frequency f [Hz]", "amplitude A [mm]"),
 }
 ACCELERATION = "acceleration V'_z [m/s²]"
-ALTS = {
+MAP_ALTS = {
     "beta_friction": "Acceleration along the heading over vibration angle and friction",
     "frequency_amplitude": "Acceleration along the heading over frequency and amplitude",
 }
@@ -631,7 +641,7 @@ def offers(study: FloorStudy, settings) -> list[offer.Offer]:
         offer.table("floor_cycle.csv", over_cycle, study.cycle, study.course),
         *(offer.table(f"floor_{kind}.csv", map_cells, study, kind) for kind in MAPS),
         offer.table("floor_heading.csv", alignment, study),
-        *(offer.picture(f"floor_{kind}.png", ALTS[kind], _map, study, kind) for kind in MAPS),
+        *(offer.picture(f"floor_{kind}.png", MAP_ALTS[kind], _map, study, kind) for kind in MAPS),
         offer.picture("floor_heading.png", "Alignment acceleration over the heading", _alignment, study),
         offer.picture("floor_cycle.png", "Forces and velocity over one cycle", _cycle, study),
         *([plan] if len(study.posture.outline) else []),
@@ -644,7 +654,7 @@ def _map(study, kind):
         "beta_friction": (np.degrees(drive.vibration_angle), study.bowl.friction.kinetic),
         "frequency_amplitude": (drive.frequency, 1e3 * drive.amplitude),
     }
-    grid = MAPS[kind](study, FINE)
+    grid = MAPS[kind](study, PICTURE_CELLS)
     return regime_map(
         grid, "acceleration_z_m_s2", title=_title(study), labels=AXIS_LABELS[kind], value=ACCELERATION,
         own=own[kind], note=map_notes(kind, grid),

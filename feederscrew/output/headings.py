@@ -17,8 +17,8 @@ mpl_patches = heavy("matplotlib.patches")
 mpl_ticker = heavy("matplotlib.ticker")
 shading = heavy("feederscrew.output.shading")
 
-HIDDEN = ("contact_1_x_mm", "contact_1_y_mm", "contact_2_x_mm", "contact_2_y_mm")
-SPARE = (
+HIDDEN_HEADING_COLUMNS = ("contact_1_x_mm", "contact_1_y_mm", "contact_2_x_mm", "contact_2_y_mm")
+SPARE_COLUMNS = (
     ("straight_wall_share",),
     ("half_turn_of_deg", "mirror_of_deg"),
 )  # left out of a table that is too wide
@@ -89,8 +89,8 @@ def _partner(degrees, place):
     return float(degrees[place]) if place >= 0 else np.nan
 
 
-COLUMNS = 4
-MOST = 16  # headings of one picture, the most frequent
+PANELS_ACROSS = 4
+MAX_PANELS = 16  # headings of one picture, the most frequent
 WALL, FALLS = "#5d6b78", "#b5482a"
 SIDE = 2.5  # [in] of one picture
 NARROWEST = 0.4  # half a picture's width, over its height above the foot
@@ -99,8 +99,8 @@ TICKS = 4  # steps of an axis, at most: their numbers stand apart in it
 
 def headings(posture, stable, track, title: str):
     """Draw the part in each stable heading, the wall below, the track's free edge dashed."""
-    count = min(len(stable.headings), MOST)
-    columns = min(COLUMNS, count)
+    count = min(len(stable.headings), MAX_PANELS)
+    columns = min(PANELS_ACROSS, count)
     lines = -(-count // columns)
     figure = style.figure(max(columns * SIDE, 2 * SIDE), lines * SIDE + 0.6)
     panels = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True).ravel()

@@ -12,8 +12,8 @@ from feederscrew.part.density import MATERIALS
 from feederscrew.studies.inertia import InertiaStudy
 from feederscrew.units import MM
 
-AXES = "xyz"
-NOISE = 1e-8  # of the largest of a vector or matrix: rounding of the file, 0 in the table
+AXIS_LETTERS = "xyz"
+TENSOR_NOISE = 1e-8  # of the largest of a vector or matrix: rounding of the file, 0 in the table
 
 
 def document(study: InertiaStudy) -> dict[str, Any]:
@@ -66,18 +66,20 @@ def _in(value, unit):
     return None if value is None else value / unit
 
 
-def _vector(values, name, letters=AXES) -> list[Any]:
+def _vector(values, name, letters=AXIS_LETTERS) -> list[Any]:
     values = [None] * len(letters) if values is None else _clean(values)
     return [(name.format(letter), value) for letter, value in zip(letters, values)]
 
 
 def _matrix(values, name) -> list[Any]:
     values = _clean(values)
-    return [(name.format(AXES[i] + AXES[j]), values[i][j]) for i in range(3) for j in range(i, 3)]
+    return [
+        (name.format(AXIS_LETTERS[i] + AXIS_LETTERS[j]), values[i][j]) for i in range(3) for j in range(i, 3)
+    ]
 
 
 def _clean(values):
-    return np.where(np.abs(values) <= NOISE * np.abs(values).max(), 0.0, values)
+    return np.where(np.abs(values) <= TENSOR_NOISE * np.abs(values).max(), 0.0, values)
 
 
 def offers(study: InertiaStudy, format: str = "csv") -> list[offer.Offer]:

@@ -17,7 +17,7 @@ from feederscrew.units import MM, MM_S, counted
 matplotlib = heavy("matplotlib")
 
 SURFACE = ("restitution", "friction")  # of a launch: the plate's own
-HIDDEN = ("velocity_low_mm_s", "velocity_high_mm_s")  # in a table for people
+HIDDEN_PLATE_COLUMNS = ("velocity_low_mm_s", "velocity_high_mm_s")  # in a table for people
 TIMES = 101  # rows an aspect in the course over time, at most
 
 
@@ -218,9 +218,9 @@ def _plate_document(aspects, result, name) -> dict[Any, Any]:
     }
 
 
-COLOURS = [rule.colour for rule in registry.RULES] + list(style.SPARE)
+COLOURS = [rule.colour for rule in registry.RULES] + list(style.SPARE_COLOURS)
 LABELLED = 0.02  # share of the parts from which an aspect carries its name, or a line in a trend
-APART = 0.012  # of the range of throw numbers: from one aspect's points to the next one's
+ASPECT_OFFSET = 0.012  # of the range of throw numbers: from one aspect's points to the next one's
 GREY = "#aab4bd"
 
 
@@ -307,7 +307,7 @@ def trend(study: PlateStudy):
 def over_throw(axes, x, occupancies, names) -> None:
     """Draw the share of each named aspect over the (N,) throw numbers ``x``, set a little apart."""
     for place, (k, name) in enumerate(names.items()):
-        at = x + APART * np.ptp(x) * (place - 0.5 * (len(names) - 1))
+        at = x + ASPECT_OFFSET * np.ptp(x) * (place - 0.5 * (len(names) - 1))
         middle, low, high = (
             100.0 * np.array([getattr(occupancy, end)[k] for occupancy in occupancies])
             for end in ("plate", "plate_low", "plate_high")

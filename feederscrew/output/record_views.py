@@ -257,7 +257,7 @@ LINES: dict[str, Callable[[Any], str]] = {
 
 
 MOST_ROWS = 60  # of a table in a notebook
-VIEW = 360, 280  # [px] of a part
+VIEW_PX = 360, 280  # [px] of a part
 # record: module and function that offer the files of its command, and what else that is handed
 OF: dict[str, tuple[Any, ...]] = {
     "AspectsStudy": ("aspects", "offers"),
@@ -336,9 +336,8 @@ def html(record):
     line = f"<p>{escape(repr(record))}</p>"
     names = {kind.__name__ for kind in type(record).__mro__}
     if "Part" in names and record.vertices is not None:
-        return (
-            f'{line}<img width="{VIEW[0]}" alt="{escape(printable(record.name))}" src="{_view_uri(record)}">'
-        )
+        name = escape(printable(record.name))
+        return f'{line}<img width="{VIEW_PX[0]}" alt="{name}" src="{_view_uri(record)}">'
     frame_of = _settings if "Bowl" in names and record.settings else frame
     cells = frame_of(record).map(lambda cell: printable(cell) if isinstance(cell, str) else cell)
     return line + cells.to_html(index=False, max_rows=MOST_ROWS, na_rep="", border=0)
@@ -349,7 +348,7 @@ def _view_uri(part) -> str:
     from feederscrew.output import shading, style
 
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
-    image = style.pixels(np.round(255.0 * shading.on_its_lowest(solid, VIEW)[..., :3]).astype(np.uint8))
+    image = style.pixels(np.round(255.0 * shading.on_its_lowest(solid, VIEW_PX)[..., :3]).astype(np.uint8))
     return f"data:image/png;base64,{base64.b64encode(style.png(image)).decode()}"
 
 

@@ -16,7 +16,7 @@ mpl_colors = heavy("matplotlib.colors")
 mpl_patches = heavy("matplotlib.patches")
 ndimage = heavy("scipy.ndimage")
 
-LIMITS = {  # what a summary says of each map, in this order
+LIMIT_LABELS = {  # what a summary says of each map, in this order
     "mu_limit": "limiting friction, level floor [4.27]",
     "mu_forward": "friction that stops slipping forward",
     "mu_backward": "friction that stops slipping back",
@@ -47,7 +47,12 @@ def cells(slides):
 def summary(slides):
     """Return what holds at the bowl's own point, a column a map, as a frame for people."""
     first = slides[0]
-    names = ["acceleration ratio G = A w2/g", "alpha - theta [deg]", "static friction", *LIMITS.values()]
+    names = [
+        "acceleration ratio G = A w2/g",
+        "alpha - theta [deg]",
+        "static friction",
+        *LIMIT_LABELS.values(),
+    ]
     names += [
         *ONSETS.values(),
         "regime",
@@ -112,7 +117,9 @@ def _map(slide_map) -> dict[Any, Any]:
 
 def _column(slide_map) -> list[Any]:
     numbers = [slide_map.ratio, np.degrees(slide_map.alpha_minus_theta), slide_map.friction]
-    numbers += [slide_map.at_bowl[name] for name in LIMITS] + [slide_map.onsets[name] for name in ONSETS]
+    numbers += [slide_map.at_bowl[name] for name in LIMIT_LABELS] + [
+        slide_map.onsets[name] for name in ONSETS
+    ]
     shares = [_percent(share) for share in slide_map.grid.shares().values()]
     return [*(_number(number) for number in numbers), regime_words(slide_map.regime), *shares]
 
@@ -132,14 +139,14 @@ RATIO = "acceleration ratio G = A ω² / g [1]"
 FRICTION = "limiting friction μ [1]"
 HIGHEST = 2.0  # [1] friction at which pictures are cut: hardly any pair has more
 LEVELS = (0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 4.0)  # [1] of the contour lines
-NEAR = 0.1  # [1] of a level: the bowl's own friction, nearer than that, takes its place
-REGIME_COLOURS = {  # what a designer wants is the strongest; a hop is hatched as well
+NEAR_LEVEL = 0.1  # [1] of a level: the bowl's own friction, nearer than that, takes its place
+SLIDE_COLOURS = {  # what a designer wants is the strongest; a hop is hatched as well
     "stick": "#eef2f5", "forward": "#79bfa4", "backward": "#e3a08a", "both": "#f3dfae", "hop": "#e1e5e8",
 }  # fmt: skip
-HATCH = "#b4bcc3"
+HOP_HATCH_COLOUR = "#b4bcc3"
 LETTER = (0.0125, 0.055)  # width of a letter and height of a line, over the picture's
-SHADES = "cividis"
-OWN = "this bowl"
+LEVEL_COLOURS = "cividis"
+OWN_LABEL = "this bowl"
 LABEL = {"fontsize": 8.5, "color": style.INK, "zorder": 4}
 
 
@@ -149,7 +156,7 @@ def surface(slide: SlideMap):
     axes = figure.add_subplot(projection="3d", computed_zorder=False)
     angles, ratios, friction = slide.sheet(HIGHEST)
     axes.plot_surface(
-        np.degrees(angles), ratios, friction, cmap=SHADES, vmin=0.0, vmax=HIGHEST,
+        np.degrees(angles), ratios, friction, cmap=LEVEL_COLOURS, vmin=0.0, vmax=HIGHEST,
         rcount=61, ccount=61, edgecolor="white", linewidth=0.15, zorder=1,
     )  # fmt: skip
     own = slide.level_line(slide.friction, angles[:, 0])
@@ -185,7 +192,7 @@ def regimes(slide: SlideMap):
     figure, axes = _map_axes(slide, f"Regimes at static friction {slide.friction:g}")
     widest, top = axes.get_xlim()[1], axes.get_ylim()[1]
     colours = (
-        (255.0 * mpl_colors.to_rgba_array([REGIME_COLOURS[name] for name in slide.grid.names]))
+        (255.0 * mpl_colors.to_rgba_array([SLIDE_COLOURS[name] for name in slide.grid.names]))
         .round()
         .astype(np.uint8)
     )
@@ -215,7 +222,7 @@ def curves(slides):
     _own_point(
         axes, first.ratio, first.friction, f"this bowl, G = {first.ratio:.3g}, μ = {first.friction:g}", drop=9
     )
-    axes.plot([], [], color=style.ACCENT, linewidth=1.0, alpha=0.7, marker="o", label=OWN)
+    axes.plot([], [], color=style.ACCENT, linewidth=1.0, alpha=0.7, marker="o", label=OWN_LABEL)
     figure.legend(
         fontsize=8,
         frameon=False,
@@ -230,7 +237,7 @@ def _map_axes(slide, title) -> tuple[Any, ...]:
     figure = style.figure(6.4, 4.6)
     title = f"{title}, β = {np.degrees(slide.beta):.6g}°"
     axes = style.tidy(figure.add_subplot(), title=title, x=ANGLE, y=RATIO, grid="none")
-    widest = slide.grid.first.shown[-1]
+    widest = slide.grid.first.in_unit[-1]
     axes.set(xlim=(-widest, widest), ylim=(0, slide.grid.second.values[-1]))
     axes.set_xticks(np.linspace(-widest, widest, 7))
     return figure, axes
@@ -241,8 +248,8 @@ def _hop_region(axes, slide, start) -> None:
     top = slide.grid.second.values[-1]
     if start >= top:
         return
-    with matplotlib.rc_context({"hatch.color": HATCH, "hatch.linewidth": 0.5}):
-        axes.axhspan(start, top, facecolor=REGIME_COLOURS["hop"], hatch="////", linewidth=0, zorder=1.5)
+    with matplotlib.rc_context({"hatch.color": HOP_HATCH_COLOUR, "hatch.linewidth": 0.5}):
+        axes.axhspan(start, top, facecolor=SLIDE_COLOURS["hop"], hatch="////", linewidth=0, zorder=1.5)
     axes.axhline(start, color=style.INK, linewidth=1.0, zorder=1.6)
     x = -0.5 * axes.get_xlim()[1] if slide.ratio > start else 0.0  # beside the bowl's own point
     axes.text(
@@ -279,7 +286,7 @@ def _label_region(axes, slide, name) -> bool:
         room = ndimage.minimum_filter(inside, size=box, mode="constant", cval=False)
         if room.any():
             i, j = _most_central(room)
-            x, y = slide.grid.first.shown[i], slide.grid.second.values[j]
+            x, y = slide.grid.first.in_unit[i], slide.grid.second.values[j]
             axes.text(x, y, text, ha="center", va="center", path_effects=style.halo(), **LABEL)
             return True
     return False
@@ -287,7 +294,7 @@ def _label_region(axes, slide, name) -> bool:
 
 def _taken(slide):
     """Cells that the bowl's own point and its name lie over."""
-    angles, ratios = slide.grid.first.shown, slide.grid.second.values
+    angles, ratios = slide.grid.first.in_unit, slide.grid.second.values
     across = (np.asarray(angles) - np.degrees(slide.alpha_minus_theta)) / np.ptp(angles)
     across = np.abs(across) if slide.alpha_minus_theta > 0.0 else across  # the name is on either side
     up = np.abs(np.asarray(ratios) - slide.ratio) / np.ptp(ratios)
@@ -307,7 +314,7 @@ def _legend(figure, slide, names) -> None:
     """Colours of the regimes that are on the map but too thin to be named there."""
     shares = slide.grid.shares()
     patches = [
-        mpl_patches.Patch(color=REGIME_COLOURS[n], label=regime_words(n)) for n in names if shares[n] > 0
+        mpl_patches.Patch(color=SLIDE_COLOURS[n], label=regime_words(n)) for n in names if shares[n] > 0
     ]
     if patches:
         figure.legend(
@@ -318,13 +325,13 @@ def _legend(figure, slide, names) -> None:
 def _levels(axes, slide) -> None:
     """Contour lines, each with its value written at an angle: those that the map reaches."""
     friction = slide.grid.values["mu_limit"]
-    x, y = slide.grid.first.shown, slide.grid.second.values
+    x, y = slide.grid.first.in_unit, slide.grid.second.values
     lines = {
         level: (shade, 1.1, (-22, -40)[place % 2], f"μ = {level:g}")
         for place, (level, shade) in enumerate(zip(LEVELS, _shades(len(LEVELS))))
-        if abs(level - slide.friction) > NEAR * level
+        if abs(level - slide.friction) > NEAR_LEVEL * level
     }
-    lines[slide.friction] = (style.ACCENT, 1.8, 60, f"{OWN}'s μ = {slide.friction:g}")
+    lines[slide.friction] = (style.ACCENT, 1.8, 60, f"{OWN_LABEL}'s μ = {slide.friction:g}")
     levels = [level for level in sorted(lines) if np.nanmin(friction) < level < np.nanmax(friction)]
     if not levels:
         return
@@ -334,7 +341,7 @@ def _levels(axes, slide) -> None:
     named = [place for place in places if place[1] < y[-1]]
     if named:
         for text in axes.clabel(drawn, fmt=dict(zip(levels, texts)), fontsize=7, manual=named):
-            if not text.get_text().startswith(OWN):
+            if not text.get_text().startswith(OWN_LABEL):
                 text.set_color(style.INK)
 
 
@@ -363,11 +370,11 @@ def _right_edge(slides):
 
 
 def _shades(count):
-    return matplotlib.colormaps[SHADES](np.linspace(0.05, 0.8, count))
+    return matplotlib.colormaps[LEVEL_COLOURS](np.linspace(0.05, 0.8, count))
 
 
-PICTURE = (721, 601)  # cells of a map that is drawn
-ALTS = {
+MAP_SHAPE = (721, 601)  # cells of a map that is drawn
+SLIDE_ALTS = {
     "surface": "Limiting friction over the heading and the acceleration ratio",
     "contours": "Lines of equal limiting friction",
     "regimes": "Regimes of a part over its heading and the acceleration ratio",
@@ -376,11 +383,11 @@ ALTS = {
 
 def offers(study) -> list[Any]:
     """Offer the files of a SlideStudy, as a list of Offer."""
-    fine = cache(partial(study.fine, PICTURE))  # once for all pictures
+    fine = cache(partial(study.fine, MAP_SHAPE))  # once for all pictures
     pictures = [
         offer.picture(f"slide_{kind}_beta{np.degrees(slide_map.beta):.6g}.png", alt, _draw, kind, fine, place)
         for place, slide_map in enumerate(study.maps)
-        for kind, alt in ALTS.items()
+        for kind, alt in SLIDE_ALTS.items()
     ]
     return [
         offer.table("slide.csv", cells, study.maps),

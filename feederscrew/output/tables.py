@@ -11,7 +11,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.output import window
 
-UNITS = {  # the end of a column's name, and how a heading writes it
+COLUMN_UNITS = {  # the end of a column's name, and how a heading writes it
     "_n_per_mm": "N/mm",
     "_per_minute": "1/min",
     "_percent": "%",
@@ -42,8 +42,8 @@ UNITS = {  # the end of a column's name, and how a heading writes it
 }
 SHARES = ("share", "efficiency", "purity")  # last words of columns of shares ...
 PASSED = ("passes", "passes_devices", "passed_low", "passed_high")  # ... and whole names of others
-DIGITS = 4  # significant, in a table for people
-NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
+TABLE_DIGITS = 4  # significant, in a table for people
+COLUMN_NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
 MIXED = "value"  # a column whose rows have units of their own: none is rounding beside another
 PAGE = 100  # letters of a line that a table for people should not be wider than
 
@@ -219,8 +219,8 @@ def heading(name, numeric=True) -> tuple[Any, ...]:
         if rule.endswith((" low", " high")):
             return rule.rsplit(" ", 1)[1], "[%]"
         return (rule.upper() if _is_abbreviation(rule) else rule), "[%]"
-    ending = next((ending for ending in UNITS if name.endswith(ending) and name != ending), "")
-    return name.removesuffix(ending).replace("_", " "), f"[{UNITS[ending]}]" if ending else ""
+    ending = next((ending for ending in COLUMN_UNITS if name.endswith(ending) and name != ending), "")
+    return name.removesuffix(ending).replace("_", " "), f"[{COLUMN_UNITS[ending]}]" if ending else ""
 
 
 def _is_abbreviation(name):
@@ -269,7 +269,7 @@ def _numbers(name, values) -> list[Any]:
         return [str(value) for value in values]
     values = values * (100.0 if is_share(name) else 1.0)
     largest = max(np.abs(values[np.isfinite(values)]), default=0.0)
-    nothing = 0.0 if name == MIXED else NOISE * largest
+    nothing = 0.0 if name == MIXED else COLUMN_NOISE * largest
     cells = [_number(0.0 if abs(value) <= nothing else value) for value in values]
     tails = [len(cell) - cell.find(".") if "." in cell else 0 for cell in cells]
     return [cell + " " * (max(tails, default=0) - tail) for cell, tail in zip(cells, tails)]
@@ -281,9 +281,9 @@ def _number(value) -> str:
     if value == 0.0:
         return "0"
     if not 1e-4 <= abs(value) < 1e7:
-        return f"{value:.{DIGITS - 1}e}"
-    exponent = int(f"{value:.{DIGITS - 1}e}".partition("e")[2])  # after rounding: 9.9999 is 10.00
-    return f"{value:.{max(0, DIGITS - 1 - exponent)}f}"
+        return f"{value:.{TABLE_DIGITS - 1}e}"
+    exponent = int(f"{value:.{TABLE_DIGITS - 1}e}".partition("e")[2])  # after rounding: 9.9999 is 10.00
+    return f"{value:.{max(0, TABLE_DIGITS - 1 - exponent)}f}"
 
 
 def _word(value):

@@ -49,7 +49,7 @@ def _graph(study):
 
 
 MOST_GRAPH_ASPECTS = 12  # aspects a picture can show
-CLEAR = 4.0  # [pt] between an arrow and a disc
+LABEL_CLEARANCE = 4.0  # [pt] between an arrow and a disc
 BEND = 0.12  # of an arrow, so that there and back lie apart
 LIFT_SPOTS = (  # of the way: where the lift may be written, the first that is free
     0.3, 0.27, 0.33, 0.24, 0.36, 0.21, 0.39, 0.42, 0.45, 0.48, 0.54, 0.6, 0.66, 0.72,
@@ -58,12 +58,12 @@ CROSSED = 2e-3  # of a point of another arrow under a label, as an overlap
 LETTER_SIZE = (0.041, 0.109)  # width and height of one, over the ring's radius
 DISC_SIZE = (0.22, 0.22)  # half a disc, over the ring's radius
 FRAMED = 4200.0  # [pt2] square about the disc behind a drawn aspect
-HALF = 0.15  # width of a drawn aspect, over the ring's diameter
-PICTURE = (160, 120)  # [px] of it
-LETTERS = 2  # of a name that fits into a disc
-PALE = "#9ba3aa"  # of ways that are not the easiest
+PICTURE_HALF_WIDTH = 0.15  # width of a drawn aspect, over the ring's diameter
+ASPECT_PICTURE_PX = (160, 120)  # [px] of it
+LIFT_DIGITS = 2  # of a name that fits into a disc
+PALE_ARROW = "#9ba3aa"  # of ways that are not the easiest
 EQUAL_LIFT = 1.001  # of the lowest lift out of a disc, up to which another is as easy
-REACH = 1.45  # of the picture, where the ring of discs has radius 1
+RING_REACH = 1.45  # of the picture, where the ring of discs has radius 1
 
 
 def graph(title: str, names, tips, shares, drawn=None):
@@ -76,7 +76,7 @@ def graph(title: str, names, tips, shares, drawn=None):
     figure = style.figure(6.4, 6.4)
     axes = figure.add_subplot()
     head = f"{title}: lift to tip [mm]"
-    axes.text(-REACH, REACH, head, ha="left", va="top", fontsize=10, color=style.INK)
+    axes.text(-RING_REACH, RING_REACH, head, ha="left", va="top", fontsize=10, color=style.INK)
     visible = [k for k in range(len(names)) if np.isfinite(shares[k])][:MOST_GRAPH_ASPECTS]
     turn = np.pi / 2 - 2.0 * np.pi * np.arange(len(visible)) / max(len(visible), 1)
     places = {k: np.array([np.cos(a), np.sin(a)]) for k, a in zip(visible, turn)}
@@ -94,9 +94,9 @@ def graph(title: str, names, tips, shares, drawn=None):
         "orange: the easiest way off each aspect\n"
         "below each aspect: the share of all attitudes from which the part, let go without speed, ends on it"
     )
-    axes.text(0.0, -REACH, note, ha="center", va="bottom", fontsize=8, color=style.INK)
-    axes.set_xlim(-REACH, REACH)
-    axes.set_ylim(-REACH, REACH)
+    axes.text(0.0, -RING_REACH, note, ha="center", va="bottom", fontsize=8, color=style.INK)
+    axes.set_xlim(-RING_REACH, RING_REACH)
+    axes.set_ylim(-RING_REACH, RING_REACH)
     axes.set_aspect("equal")
     axes.axis("off")
     return figure
@@ -113,13 +113,13 @@ def of_part(study: AspectsStudy, tips, shares):
     from feederscrew.output import shading
 
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
-    drawn = partial(shading.thumbnail, solid, resting, size=PICTURE)
+    drawn = partial(shading.thumbnail, solid, resting, size=ASPECT_PICTURE_PX)
     return graph(part.name, resting.names, tips, shares, drawn)
 
 
 def _framed(axes, picture, text, place) -> None:
     """The part as it rests on an aspect, its name and its share below."""
-    half = HALF * np.array([1.0, picture.shape[0] / picture.shape[1]])
+    half = PICTURE_HALF_WIDTH * np.array([1.0, picture.shape[0] / picture.shape[1]])
     low, high = place - half + [0.0, 0.03], place + half + [0.0, 0.03]
     axes.imshow(picture, extent=(low[0], high[0], low[1], high[1]), zorder=4, interpolation="antialiased")
     look = {"ha": "center", "va": "top", "color": style.INK, "fontsize": 9, "fontweight": "bold", "zorder": 5}
@@ -128,7 +128,7 @@ def _framed(axes, picture, text, place) -> None:
 
 def _name(axes, name, place) -> None:
     """A letter within its disc, a longer name across it."""
-    letter = len(name) <= LETTERS
+    letter = len(name) <= LIFT_DIGITS
     box = {} if letter else {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0}}
     look = {"ha": "center", "va": "center", "color": style.INK, "fontsize": 11 if letter else 9}
     axes.annotate(name, place, zorder=4, **look, **box)
@@ -159,7 +159,7 @@ def arrow(axes, begin, end, lift, easiest, taken=(), other_labels=()) -> tuple[A
     of the other arrows: a number stands where it is none of theirs. Returns the box of its own label.
     """
     (start, from_size), (end, to_size) = begin, end
-    colour, text = style.ACCENT if easiest else PALE, _lift_mm(lift)
+    colour, text = style.ACCENT if easiest else PALE_ARROW, _lift_mm(lift)
     box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
     look = {"ha": "center", "va": "center", "fontsize": 9, "zorder": 5, "bbox": box}
     look["color"] = style.ACCENT if easiest else style.INK
@@ -167,7 +167,9 @@ def arrow(axes, begin, end, lift, easiest, taken=(), other_labels=()) -> tuple[A
         axes.annotate(text, 1.32 * start, **look)
         return (*1.32 * start, *_half(text))
     bent = {"connectionstyle": f"arc3,rad={BEND}", "arrowstyle": "-|>,head_length=0.5,head_width=0.22"}
-    shrunk = {f"shrink{e}": 0.5 * np.sqrt(size) + CLEAR for e, size in (("A", from_size), ("B", to_size))}
+    shrunk = {
+        f"shrink{e}": 0.5 * np.sqrt(size) + LABEL_CLEARANCE for e, size in (("A", from_size), ("B", to_size))
+    }
     order = {"zorder": 2 if easiest else 1}
     axes.annotate("", end, start, arrowprops={**bent, **shrunk, "color": colour, "linewidth": 1.1}, **order)
     spots = _curve(start, end, np.array(LIFT_SPOTS))

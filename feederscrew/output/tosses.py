@@ -15,7 +15,15 @@ from feederscrew.units import MM
 
 NONE = "none"  # the side that points up where no run came to rest
 BY_SIDE = tuple(f"p_{'plus' if side[0] == '+' else 'minus'}_{side[1]}" for side in FACE_NAMES)
-HIDDEN = ("p_low", "p_high", *BY_SIDE, "settled_runs", "time_s", "x_measured_mm", "y_measured_mm")
+HIDDEN_TOSS_COLUMNS = (
+    "p_low",
+    "p_high",
+    *BY_SIDE,
+    "settled_runs",
+    "time_s",
+    "x_measured_mm",
+    "y_measured_mm",
+)
 
 
 def tosses(study) -> Frame:
@@ -132,7 +140,7 @@ def offers(study: TossStudy) -> list[offer.Offer]:
     return offered
 
 
-LOOKS = (  # what is computed of the upper side: label, marker, colour
+TOSS_LOOKS = (  # what is computed of the upper side: label, marker, colour
     ("upper side as measured", "o", "#0072b2"),
     ("another upper side", "X", style.ACCENT),
     ("upper side not measured", "o", style.INK),
@@ -150,7 +158,7 @@ def plan(study):
     axes.set_aspect("equal")
     axes.plot(*np.stack([measured, computed]).transpose(2, 0, 1), color=style.FAINT, linewidth=0.8, zorder=1)
     kinds = _kinds(study)
-    for kind, (label, marker, colour) in enumerate(LOOKS):
+    for kind, (label, marker, colour) in enumerate(TOSS_LOOKS):
         chosen = kinds == kind
         if chosen.any():
             look = {"marker": marker, "color": colour, "s": 18, "linewidths": 0.0}

@@ -13,11 +13,11 @@ from feederscrew.output import style, tables
 from feederscrew.output.floor import (
     CONTACT,
     DRIVE,
-    EVERY,
     FRICTION,
     NORMAL,
     OUTSIDE,
     PART,
+    SAMPLE_STEP,
     STATE_WORDS,
     arrow,
     chosen,
@@ -40,23 +40,23 @@ from feederscrew.units import MM
 mpl_patches = heavy("matplotlib.patches")
 shading = heavy("feederscrew.output.shading")
 
-CONTACTS = ("floor", "wall_1", "wall_2")
+CONTACT_NAMES = ("floor", "wall_1", "wall_2")
 HELD_ACROSS = (
     "at rest at the upper reversal, friction across the track or up the wall can hold the part; by the least "
     "friction along the track, which the reactions show and the cycle follows, it would slide"
 )
-ALONG = (
+VELOCITY_LABEL = (
     "velocity along the wall, with its friction and the bank [mm/s]"  # not that of a point mass, of convey
 )
-UNKNOWN = "not known: it hops"
+UNKNOWN_IN_FLIGHT = "not known: it hops"
 IN_FLIGHT = "in flight"  # no contact of all
 TURNED_OFF = (
     "friction turns the part about the wall contact that is left; the velocity is that of a part that keeps "
     "its heading, and too high - feeder trial follows the turning"
 )
-TURNS = 1.0  # [rad/s2] in 10 ms that is less than a hundredth of a degree
+MIN_TURNING_RAD_S2 = 1.0  # [rad/s2] in 10 ms that is less than a hundredth of a degree
 TURNED = 1.0  # [deg] of heading: less is not worth a word
-LABELS = {
+TRACK_LABELS = {
     "normal_force_N": "normal force N",
     "wall_1_N": "wall reaction R1, trailing contact",
     "wall_2_N": "wall reaction R2, leading contact",
@@ -111,7 +111,7 @@ def printed(motion) -> dict[Any, Any]:
 
 def over_cycle(motion, course) -> dict[Any, Any]:
     """One period as columns; ``motion`` is a TrackMotion of shape (N,)."""
-    samples = slice(None, None, EVERY)
+    samples = slice(None, None, SAMPLE_STEP)
     pairs = {"": motion.walls, "_friction": motion.wall_friction}
     return {
         "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[samples],
@@ -183,8 +183,8 @@ def omitted_terms(study):
 def friction_needed(cycle):
     """Greatest friction over normal force that holds the part at rest through the cycle, by contact."""
     if not np.isfinite(cycle.needed).all():
-        return dict.fromkeys(CONTACTS, np.nan)
-    return dict(zip(CONTACTS, cycle.needed.max(axis=0).tolist()))
+        return dict.fromkeys(CONTACT_NAMES, np.nan)
+    return dict(zip(CONTACT_NAMES, cycle.needed.max(axis=0).tolist()))
 
 
 def stays_on_wall(cycle) -> bool | None:
@@ -202,16 +202,18 @@ def frame_of(document, format):
 def summary(document):
     """Return what people want to know first, a row a quantity."""
     now, needed = document["instant"], document["friction_needed"]
-    rows = {label(name, text): now[name] for name, text in LABELS.items() if name in now}
+    rows = {label(name, text): now[name] for name, text in TRACK_LABELS.items() if name in now}
     rows |= {
         "state at the upper reversal": STATE_WORDS.get(now["state"], now["state"]),
         "regime over the cycle": STATE_WORDS.get(document["regime"], document["regime"]),
         "on the track, over the strokes": document["on_the_track_said"],
-        ALONG: None if document["mean_velocity_m_s"] is None else document["mean_velocity_m_s"] / MM,
+        VELOCITY_LABEL: None if document["mean_velocity_m_s"] is None else document["mean_velocity_m_s"] / MM,
         "heading [deg]": document["heading_deg"],
         **_opening(document),
-        "stays against the wall": UNKNOWN if document["stays_on_wall"] is None else document["stays_on_wall"],
-        **{f"friction needed to hold it, {name.replace('_', ' ')}": needed[name] for name in CONTACTS},
+        "stays against the wall": UNKNOWN_IN_FLIGHT
+        if document["stays_on_wall"] is None
+        else document["stays_on_wall"],
+        **{f"friction needed to hold it, {name.replace('_', ' ')}": needed[name] for name in CONTACT_NAMES},
         "bank without radial friction [deg]": document["bank_without_radial_friction_deg"],
     }
     return tables.frame({"quantity": list(rows), "value": [shown_value(value) for value in rows.values()]})
@@ -240,7 +242,7 @@ def remarks(study):
     elif not cycle.closed.all():
         share = 100.0 * np.mean(~cycle.closed.all(axis=-1))
         lines.append(f"a wall contact is open for {share:.0f} % of the cycle: {_which(cycle.closed)}")
-        if study.posture.kind != "rolling" and np.abs(cycle.turning).max() > TURNS:
+        if study.posture.kind != "rolling" and np.abs(cycle.turning).max() > MIN_TURNING_RAD_S2:
             lines.append(TURNED_OFF)
     if study.posture.kind == "rolling":
         lines.append("rolling aspect: held by the wall, its rolling about the axis is not followed")
@@ -258,11 +260,11 @@ def remarks(study):
 
 def opened(closed) -> list[Any]:
     """Return names of the wall contacts that have opened."""
-    return [name for name, shut in zip(CONTACTS[1:], closed) if not shut]
+    return [name for name, shut in zip(CONTACT_NAMES[1:], closed) if not shut]
 
 
 def _which(closed) -> str:
-    names = [name.replace("_", " ") for name, shut in zip(CONTACTS[1:], closed.T) if not shut.all()]
+    names = [name.replace("_", " ") for name, shut in zip(CONTACT_NAMES[1:], closed.T) if not shut.all()]
     return " and ".join(names)
 
 
@@ -272,7 +274,7 @@ def _contacts(study) -> list[Any]:
     sigma = np.degrees(np.arcsin(-study.seat.walls[:, 0] / study.bowl.track.radius))
     return [
         {"name": name, "place_mm": place / MM, "sigma_deg": float(angle)}
-        for name, place, angle in zip(CONTACTS[1:], places, sigma)
+        for name, place, angle in zip(CONTACT_NAMES[1:], places, sigma)
     ]
 
 
@@ -326,10 +328,10 @@ def _value(bowl, axis):
 
 
 WALL, SURFACE, WEIGHT = "#5d6b78", "#e9edf0", "#22303c"
-SHADES = ("#b5482a", "#e08a3c")  # of R1 and R2
-LONGEST = 0.55  # of the part's size: the longest arrow
-LEAST = 1e-3  # of the longest: shorter arrows are left out
-BARE = 0.02  # [m] size of a picture of a part card, which has no outline
+WALL_COLOURS = ("#b5482a", "#e08a3c")  # of R1 and R2
+REACTION_ARROW_SHARE = 0.55  # of the part's size: the longest arrow
+MIN_ARROW_SHARE = 1e-3  # of the longest: shorter arrows are left out
+CARD_SIZE_M = 0.02  # [m] size of a picture of a part card, which has no outline
 
 
 def part(study: TrackStudy, title: str):
@@ -364,7 +366,7 @@ def cycle(motion, course, title: str):
     upper.plot(phase, motion.traction, color=FRICTION, label="traction R4")
     upper.set_ylim(top=1.28 * max(motion.normal_force.max(), 1e-12))
     style.tidy(middle, y="wall [N]")
-    for k, color in enumerate(SHADES):
+    for k, color in enumerate(WALL_COLOURS):
         middle.plot(phase, motion.walls[:, k], color=color, label=f"R{k + 1}")
     middle.plot(phase, motion.radial_friction, color=NORMAL, linestyle="--", label="R3")
     style.tidy(lower, x="phase ωt [deg]; upper reversal at 90°", y="velocity [mm/s]")
@@ -403,7 +405,7 @@ def _above(axes, study) -> None:
         _contact(axes, seat.contact / MM)
     side = frame(study.bowl, seat.walls)
     scale = _Scale(now, size)
-    for k, color in enumerate(SHADES):
+    for k, color in enumerate(WALL_COLOURS):
         start = seat.walls[k, :2] / MM
         scale.draw(axes, start, side.normals[k, :2], now.walls[k], f"R{k + 1}", color, pushing=True)
         scale.draw(axes, start, -side.courses[k, :2], now.wall_friction[k], f"R{k + 1}f", color)
@@ -430,7 +432,7 @@ def _behind(axes, study) -> None:
         return turned(np.asarray(point)[1:], bank) * [-1.0, 1.0] / MM
 
     side = frame(study.bowl, seat.walls)
-    for k, color in enumerate(SHADES):
+    for k, color in enumerate(WALL_COLOURS):
         lift = np.array([0.0, 0.04 - 0.08 * k]) * size / MM  # or two reactions at one height hide each other
         push = _unit(place(side.normals[k]) * now.walls[k] * MM)
         scale.draw(axes, place(seat.walls[k]) + lift, *push, f"R{k + 1}", color, pushing=True)
@@ -448,17 +450,17 @@ class _Scale:
 
     def __init__(self, now, size) -> None:
         self.longest = max(float(now.normal_force), float(np.linalg.norm(now.load)), *now.walls)
-        self.length = LONGEST * size / MM
+        self.length = REACTION_ARROW_SHARE * size / MM
 
     def draw(self, axes, start, direction, value, name, color, **style) -> None:
         """One force of so many newtons along a unit vector; none where it is zero."""
-        if abs(value) > LEAST * self.longest:
+        if abs(value) > MIN_ARROW_SHARE * self.longest:
             step = np.sign(value) * self.length * np.sqrt(abs(value) / self.longest) * np.asarray(direction)
             arrow(axes, start, step, f"{name} {newtons(abs(value))}", color, **style)
 
 
 def _size(posture):
-    return float(np.ptp(posture.outline, axis=0).max()) if len(posture.outline) else BARE
+    return float(np.ptp(posture.outline, axis=0).max()) if len(posture.outline) else CARD_SIZE_M
 
 
 def _drive(study):
@@ -534,7 +536,7 @@ def _contact(axes, polygon) -> None:
     )
 
 
-SHOWN = "acceleration_x_m_s2"
+MAP_COLUMN = "acceleration_x_m_s2"
 
 
 def offers(study: TrackStudy, settings, grid) -> list[offer.Offer]:
@@ -579,7 +581,7 @@ def _map(study, grid):
     from feederscrew.output.floor import regime_map
 
     return regime_map(
-        grid, SHOWN, title=_title(study), labels=labels(grid),
+        grid, MAP_COLUMN, title=_title(study), labels=labels(grid),
         value="acceleration V'_X at the upper reversal [m/s²]",
         own=own_point(grid, study.bowl), note=map_remarks(grid),
     )  # fmt: skip

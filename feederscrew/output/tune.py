@@ -11,14 +11,14 @@ from feederscrew.rates.drive_settings import ACCEPTED_RATE_ERROR
 from feederscrew.units import MM, MM_S, PER_MINUTE
 
 SEVERAL = ", several"  # velocities, depending on how the part arrives
-MET = {False: "at this friction", True: "at the worst friction"}
+TARGET_FRICTION = {False: "at this friction", True: "at the worst friction"}
 
 
 def document(study):
     """Return a TuneStudy as the JSON document."""
     return columns.part(study.part, study.aspects.warnings) | {
         "target_per_minute": study.target / PER_MINUTE,
-        "target_met": MET[study.worst],
+        "target_met": TARGET_FRICTION[study.worst],
         "settings": settings(study),
     }
 
@@ -40,7 +40,7 @@ def summary(study):
     rows = frame.rows()
     return tables.frame(
         {
-            f"{study.target / PER_MINUTE:.6g}/min {MET[study.worst].replace(' the ', ' ')}": [
+            f"{study.target / PER_MINUTE:.6g}/min {TARGET_FRICTION[study.worst].replace(' the ', ' ')}": [
                 f"{row['key']} {row['value']:.6g} {row['unit']}" for row in rows
             ],
             "per min": frame["parts_per_minute"],

@@ -242,7 +242,7 @@ Path: TypeAlias = str | PathLike[str]
 Quantity: TypeAlias = str | float  # '2 mm', or a number in SI units
 Condition: TypeAlias = Quantity | tuple[Quantity, Quantity] | None  # or the smaller and the larger
 SI = {"length": "m", "angular velocity": "rad/s", "velocity": "m/s", "number": ""}
-PART = "give a Part, as load returns it"
+PART_MEND = "give a Part, as load returns it"
 BOWL = "give a Bowl, as read_bowl returns it"
 SEVERAL_BOWLS = f"{BOWL}, or several in a list"
 
@@ -256,7 +256,7 @@ class BowlFile(TypedDict, total=False):
 
 def a_part(part: object) -> Part:
     """Return the part; raises ArgumentError where it is none."""
-    check.kind("part", part, Part, PART)
+    check.kind("part", part, Part, PART_MEND)
     return cast(Part, part)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.exact_tumbling import Transition, ground, transitions
+from feederscrew.resting.exact_tumbling import Transition, require_ground, transitions
 from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.formulas import EXPONENTS
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from feederscrew.studies.drop import DropStudy
 
 AIM = "1%"  # half the widest 95 % interval of the sampling at which a part is dropped no further
-MOST = 20_000  # drops: a share of a half takes half of them
-NOTHING = "none of {} drops came to rest: the closed form is taken"
+MAX_DROPS = 20_000  # drops: a share of a half takes half of them
+NOTHING_AT_REST = "none of {} drops came to rest: the closed form is taken"
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class AspectsStudy(ReadableRecord):
         MeshError
             If the part is a card without a shape.
         """
-        return transitions(ground(self.part, self.aspects))
+        return transitions(require_ground(self.part, self.aspects))
 
 
 def aspects(
@@ -139,7 +139,7 @@ def _dropped(part: Part, closed: Aspects, launch: str, drops: int | None, run: O
     from feederscrew.dropping.ensemble import drops_of
     from feederscrew.studies.drop import drop
 
-    many: dict[str, Any] = {"drops": MOST, "until": AIM} if drops is None else {"drops": drops}
+    many: dict[str, Any] = {"drops": MAX_DROPS, "until": AIM} if drops is None else {"drops": drops}
 
     def make() -> "DropStudy":
         if run.before:
@@ -182,7 +182,7 @@ def with_drops(closed: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:
     if test.result.drops.partial:
         warnings = (f"partial: stopped after {test.drops} drops",)
     if not tally.counts.any():
-        answer, warnings = closed.recommended, (*warnings, NOTHING.format(test.drops))
+        answer, warnings = closed.recommended, (*warnings, NOTHING_AT_REST.format(test.drops))
     return AspectsStudy(
         test.part, replace(closed, recommended=answer, warnings=closed.warnings + warnings), tally
     )

@@ -46,14 +46,14 @@ from feederscrew.studies.arguments import (
     override_texts,
     with_settings,
 )
-from feederscrew.studies.rate import LEAST, arriving
+from feederscrew.studies.rate import MIN_POSITIVE, arriving
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
 from feederscrew.version import __version__
 
 ASSUMED_DENSITY = 7850.0  # [kg/m3] of a fill of which nothing is known: steel, solid
 PART, FILE, ASSUMED = "of the part", "as sizing.fill_density says", "steel assumed: give the part"  # fills
-ENOUGH = 1.0 - 1e-6  # of a target
+TARGET_TOLERANCE = 1.0 - 1e-6  # of a target
 SAME_STROKE = 1e-3  # [1] strokes that are nearer than this are one
 
 
@@ -143,7 +143,9 @@ class MachineSheet(ReadableRecord):
     def lowest(self) -> Lowest:
         """The Lowest rate from the full bowl to the empty one; of a sheet with an order."""
         alone, controlled = (self.rates(v) for v in (self.velocities, self.controlled))
-        enough = alone.min() >= ENOUGH * self.order_of_parts.target or alone.min() >= controlled.min()
+        enough = (
+            alone.min() >= TARGET_TOLERANCE * self.order_of_parts.target or alone.min() >= controlled.min()
+        )
         rates, control = (alone, drive_sizing.ALONE) if enough else (controlled, drive_sizing.CONTROLLED)
         row = int(np.argmin(rates))
         return Lowest(
@@ -315,7 +317,7 @@ def size_bowl(
         At the stroke that was tried, where the file has a trial that is still of this part and bowl.
     """
     own: dict[str, Any] = {"rule": rule, "gap": arguments.amount("gap", gap, "length", 0.0), "fill": fill}
-    wanted = arguments.amount("target", target, "rate", LEAST)
+    wanted = arguments.amount("target", target, "rate", MIN_POSITIVE)
     angle = arguments.angle("heading", heading)
     solid = arguments.a_part(part)
     file = None if path is None else arguments.a_file("path", path)

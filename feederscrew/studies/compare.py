@@ -16,7 +16,7 @@ from feederscrew.studies import arguments
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.passages import FeedingStudy, feeding
 
-MOST = 500  # files of one comparison
+MAX_FILES = 500  # files of one comparison
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,8 +185,8 @@ def compare_sets(
         Every fault of the files.
     """
     names = [str(path) for path in files]
-    if not 0 < len(names) <= MOST:
-        raise FeederError("files", f"are {len(names)}", f"name 1 to {MOST} files of counts")
+    if not 0 < len(names) <= MAX_FILES:
+        raise FeederError("files", f"are {len(names)}", f"name 1 to {MAX_FILES} files of counts")
     faults: list[FeederError] = []
     studies: list[SetStudy | FeedingStudy] = []
     inputs: dict[str, str] = {}

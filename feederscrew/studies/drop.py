@@ -16,7 +16,7 @@ from feederscrew.running import RunSettings
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Condition
 
-BESIDE = ("csa", "surface")  # rules that the drops are shown with
+RULES_DRAWN = ("csa", "surface")  # rules that the drops are shown with
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class DropStudy(ReadableRecord):
     @property
     def rules(self) -> dict[str, np.ndarray]:
         """Probabilities (A,) by the rules that the drops are shown with."""
-        return {rule: self.aspects.probabilities[rule] for rule in BESIDE}
+        return {rule: self.aspects.probabilities[rule] for rule in RULES_DRAWN}
 
     @property
     def telling(self) -> traces.DropTrace:

@@ -15,7 +15,7 @@ from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Condition, DriveSettings, Overrides, Quantity, with_settings
 from feederscrew.studies.drop import check_run
 
-LEAST = 1e-6  # [s]
+MIN_SECONDS_S = 1e-6  # [s]
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +101,7 @@ def shake(
     check_run(drops, seed, jobs)
     pace = plate_test.EXACT_PACE
     if seconds is not None:
-        pace = replace(pace, seconds=arguments.amount("seconds", seconds, "time", LEAST))
+        pace = replace(pace, seconds=arguments.amount("seconds", seconds, "time", MIN_SECONDS_S))
     aspects = find(part)
     plates = plate_test.test(
         part, aspects, driven, launch, ranges,

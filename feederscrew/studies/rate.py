@@ -32,10 +32,10 @@ from feederscrew.tooling.isolating.design import PLAY_M, TOLERANCE_M
 
 DEVICES = "give devices in a list, as a bowl's devices are"
 
-ALIKE = 1.0 - 1e-9  # of the most frequent orientation: as frequent
-LEAST = 1e-6  # of what must be above 0
+EQUAL_SHARE_RATIO = 1.0 - 1e-9  # of the most frequent orientation: as frequent
+MIN_POSITIVE = 1e-6  # of what must be above 0
 CHOOSING = 400  # parts that show which aspect is the likeliest, where its share is well above all others
-SEED = 1  # of the parts that are fed onto the moving floor
+FEED_SEED = 1  # of the parts that are fed onto the moving floor
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ def shares(
     probabilities: str | PathLike[str] | None = None,
     rule: str = RECOMMENDED,
     fed: int | None = None,
-    seed: int = SEED,
+    seed: int = FEED_SEED,
     jobs: int | None = None,
     progress: Callable[..., None] | None = None,
     before: Callable[..., None] | None = None,
@@ -309,7 +309,7 @@ def rate(
             rule=rule, launch=launch, probabilities=probabilities, fed=fed, seed=seed,
         )  # fmt: skip
     angle, space = arguments.angle("heading", heading), arguments.amount("gap", gap, "length", 0.0)
-    check.argument("fill", fill, LEAST, 1.0)
+    check.argument("fill", fill, MIN_POSITIVE, 1.0)
     check.argument("sigma", sigma, 0.0)
     require_rule(rule)
     chain = bowl.devices if devices is None else tuple(devices)
@@ -357,5 +357,7 @@ def most_frequent(orientations: well_oriented.Orientations, rule: str) -> tuple[
     chance = np.nan_to_num(orientations.rules[rule])
     leaving = (chance[:, None] * orientations.leaving).sum(axis=0)[orientations.leaves_as]
     weight = leaving if leaving.any() else chance
-    row = int(np.argmax(weight >= ALIKE * weight.max()))  # the first of equals, whatever the rounding
+    row = int(
+        np.argmax(weight >= EQUAL_SHARE_RATIO * weight.max())
+    )  # the first of equals, whatever the rounding
     return orientations.aspects[row], orientations.headings[row]

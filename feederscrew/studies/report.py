@@ -34,7 +34,7 @@ from feederscrew.studies.floor import FloorStudy, floor
 from feederscrew.studies.headings import HeadingsStudy, headings
 from feederscrew.studies.inertia import InertiaStudy, inertia
 from feederscrew.studies.passages import PassagesStudy, passages
-from feederscrew.studies.rate import LEAST, RateStudy, Shares, rate, shares
+from feederscrew.studies.rate import MIN_POSITIVE, RateStudy, Shares, rate, shares
 from feederscrew.studies.slide import SlideStudy, slide
 from feederscrew.studies.track import TrackStudy, track
 from feederscrew.studies.trial import TrialStudy, trial
@@ -42,7 +42,7 @@ from feederscrew.studies.trial import TrialStudy, trial
 ANGLES, STROKES = 56, 48  # cells of the velocity map
 LEAST_STROKE = 0.1e-3  # [m] the velocity map goes at least so far
 RECOMMENDED = "recommended"  # the default rule
-ROOM = 2.5  # and to so many times the bowl's own stroke
+STROKE_RANGE = 2.5  # and to so many times the bowl's own stroke
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +99,7 @@ class ReportStudy(ReadableRecord):
     @cached_property
     def velocity_map(self) -> ConveyMap:
         """Velocity over vibration angle and stroke, with the bowl's own point, a ConveyMap."""
-        top = 1e3 * max(ROOM * self.bowl.drive.amplitude, LEAST_STROKE)
+        top = 1e3 * max(STROKE_RANGE * self.bowl.drive.amplitude, LEAST_STROKE)
         strokes = f"drive.amplitude={0.02 * top:.4g}mm:{top:.4g}mm:{STROKES}"
         spans = bowls.key_ranges((f"drive.vibration_angle=5deg:60deg:{ANGLES}", strokes))
         return convey.velocity_map(self.settings, spans, drawn="point")
@@ -226,7 +226,7 @@ def report(
     path = None if path is None else arguments.a_file("path", path)
     part, angle = arguments.a_part(part), arguments.angle("heading", heading)
     space = arguments.amount("gap", gap, "length", 0.0)
-    check.argument("fill", fill, LEAST, 1.0)
+    check.argument("fill", fill, MIN_POSITIVE, 1.0)
     wanted = None if target is None else arguments.amount("target", target, "rate")
     bowl_settings = bowls.settings(path, texts)
     chosen = bowls.record(bowl_settings)

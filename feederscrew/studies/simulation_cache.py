@@ -36,7 +36,7 @@ ENTRY_SUFFIX = ".simulated"  # nothing else in the folder is touched
 PARTIAL_PREFIX = "tmp"  # of an entry that is being written
 PARTIAL_AGE_S = 3600.0  # older ones were left by a run that was killed
 MADE_WITH = ("numpy", "scipy", "numba")
-KINDS = {"float": "<f8", "int": "<i8", "bool": "|b1"}  # of arrays, by the name that an entry gives
+ARRAY_KINDS = {"float": "<f8", "int": "<i8", "bool": "|b1"}  # of arrays, by the name that an entry gives
 OPEN_FLAGS = (
     os.O_RDONLY
     | getattr(os, "O_NOFOLLOW", 0)
@@ -194,7 +194,7 @@ def _line(value: Any) -> bytes:
 
 def _packed(array: np.ndarray) -> dict[str, Any]:
     kind = {"f": "float", "i": "int", "b": "bool"}[array.dtype.kind]
-    data = np.ascontiguousarray(array).astype(KINDS[kind]).tobytes()
+    data = np.ascontiguousarray(array).astype(ARRAY_KINDS[kind]).tobytes()
     return {"kind": kind, "shape": list(array.shape), "data": base64.b64encode(data).decode()}
 
 
@@ -214,7 +214,7 @@ def _decoded(data: bytes, full: Mapping[str, str]) -> dict[str, np.ndarray] | No
 
 def _unpacked(kind: str, shape: list[int], data: str) -> np.ndarray:
     """An array of plain numbers; raises ValueError where its data are not of its shape."""
-    flat = np.frombuffer(base64.b64decode(data, validate=True), KINDS[kind])
+    flat = np.frombuffer(base64.b64decode(data, validate=True), ARRAY_KINDS[kind])
     if not all(type(size) is int and 0 <= size <= MAX_ENTRY_BYTES for size in shape):
         raise ValueError("no shape of an array")
     return flat.reshape(shape)  # of bytes: closed to writing

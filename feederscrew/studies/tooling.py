@@ -34,7 +34,7 @@ from feederscrew.tooling.orientations import Orientation, name_mirror_images, or
 from feederscrew.units import quantity_text
 
 SEARCH_SECONDS = 600.0  # [s] the last resort: a search that it ends may differ from machine to machine
-OUTCOMES = ("lying", "hanging", "any")
+OUTCOME_NAMES = ("lying", "hanging", "any")
 
 
 def _usable(
@@ -48,8 +48,8 @@ def _usable(
     **wishes: Any,
 ) -> DesignConstraints:
     """What a design may use, checked."""
-    if outcome not in OUTCOMES:
-        raise ArgumentError("outcome", f"{outcome!r} is unknown", f"choose {', '.join(OUTCOMES)}")
+    if outcome not in OUTCOME_NAMES:
+        raise ArgumentError("outcome", f"{outcome!r} is unknown", f"choose {', '.join(OUTCOME_NAMES)}")
     kinds = may_be_left_out(without)
     usable = DesignConstraints(outcome=outcome, without=kinds, up=may_be_up(part, aspects, up), **wishes)
     return replace(usable, separation=_separation(bowl, usable))
@@ -348,7 +348,7 @@ def _best(
         ]
         other = _designed(cache[width], wanted, request) if has_same_orientations else None
         if other is not None and tracks.gains(other, best):
-            best = replace(other, width=width, reasons=(*other.reasons, WIDER.format(1e3 * width)))
+            best = replace(other, width=width, remarks=(*other.remarks, WIDER.format(1e3 * width)))
     return best
 
 

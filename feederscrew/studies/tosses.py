@@ -12,10 +12,10 @@ from feederscrew.dropping.toss_runs import FACE_NAMES, LaunchFile
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.exact_tumbling import ground
+from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.studies.drop import check_run
 
-SURE = 0.95  # [1] from here on an answer is called sure
+SURE_SHARE = 0.95  # [1] from here on an answer is called sure
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ class TossStudy(ReadableRecord):
         measured = np.array([FACE_NAMES.index(face) for face in self.launches.faces[: len(p)]])
         right, settled = result.faces == measured, result.faces >= 0
         low, high = wilson(right.sum(), len(right))
-        sure = settled & (np.nan_to_num(p) >= SURE)
+        sure = settled & (np.nan_to_num(p) >= SURE_SHARE)
         return Agreement(
             tosses=int(settled.sum()),
             right_share=float(right.mean()),
@@ -131,7 +131,7 @@ def follow(
     check_run(runs, seed, jobs)
     read = toss_runs.read_launches(launches)
     aspects = find(part)
-    grounded = ground(part, aspects)
+    grounded = require_ground(part, aspects)
     _, length = shape_of_part(part, grounded)
     ranges = {key: (own or {}).get(key) for key in ("restitution", "friction")}
     launch = launch_conditions.launch_of("feed", length, ranges)

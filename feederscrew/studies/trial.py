@@ -30,10 +30,10 @@ from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.trial import course, outlet
 from feederscrew.trial import landing as landings
 from feederscrew.trial.outlet import Outlet
-from feederscrew.trial.queue import GAPS, QueuePlan, queue_of
+from feederscrew.trial.queue import MEAN_GAP_SHARE, QueuePlan, queue_of
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.shape import solid_of
-from feederscrew.trial.starts import PLAY
+from feederscrew.trial.starts import MAX_START_PLAY_M
 
 ENGINE = "feeder's own kernel"
 QUEUE_SECONDS = 10.0  # [s] for which a queue is followed
@@ -69,7 +69,7 @@ class TrialStudy(ReadableRecord):
         if run.queue is None:
             return None
         columns = () if self.measured is None else self.measured.profiles
-        return outlet.outlet(run.queue, run.known.lying, run.shares, self.aspects.names, columns)
+        return outlet.outlet(run.queue, run.orientations.lying, run.shares, self.aspects.names, columns)
 
     @property
     def partial(self) -> bool:
@@ -86,7 +86,9 @@ class TrialStudy(ReadableRecord):
         """What a user must not overlook, a sentence each."""
         first = self.runs[0]
         listed = [*unknown_aspects(first.bowl.devices, self.aspects.names), *self.aspects.warnings]
-        listed += small_part_remarks(self.part, {"play at the wall": PLAY}, first.bowl.track.width)
+        listed += small_part_remarks(
+            self.part, {"play at the wall": MAX_START_PLAY_M}, first.bowl.track.width
+        )
         listed += () if self.measured is None else self.measured.warnings(self.part)
         several = len(self.runs) > 1
         for run in self.runs:
@@ -188,7 +190,7 @@ def trial(
     count = parts or (FEW if queue else PARTS)
     launch = LAUNCH if aspects.recommended is None else aspects.recommended.launch
     fall = None if landing is None else {"launch": launch, "parts": landing}
-    crowd = None if queue is None else QueuePlan(queue, followed, None if poured else GAPS, frames)
+    crowd = None if queue is None else QueuePlan(queue, followed, None if poured else MEAN_GAP_SHARE, frames)
     run = RunSettings(seed, jobs, progress)
     runs: list[TrialRun] = []
     stopped = False

@@ -17,11 +17,11 @@ from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Path, Quantity, with_settings
-from feederscrew.studies.rate import LEAST, RECOMMENDED, Shares, shares, the_shares
+from feederscrew.studies.rate import MIN_POSITIVE, RECOMMENDED, Shares, shares, the_shares
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
 
-FEW = 200  # parts that lead to a setting; as many as `rate` feeds decide on it
+ROUGH_PARTS = 200  # parts that lead to a setting; as many as `rate` feeds decide on it
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,16 +111,16 @@ def tune(
         If the part never leaves in that orientation, or no setting gives the rate.
     """
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
-    wanted_rate = arguments.amount("target", target, "rate", LEAST)
+    wanted_rate = arguments.amount("target", target, "rate", MIN_POSITIVE)
     angle, space = arguments.angle("heading", heading), arguments.amount("gap", gap, "length", 0.0)
-    check.argument("fill", fill, LEAST, 1.0)
+    check.argument("fill", fill, MIN_POSITIVE, 1.0)
     if (shared := the_shares(aspect_shares)) is not None:
         arriving, rough = (lambda driven: shared), None
     if arriving is None:
         own: dict[str, Any] = {"rule": rule, "launch": launch, "probabilities": probabilities, "seed": seed}
         arriving = partial(shares, part, fed=fed, **own)
         is_fed = rule == RECOMMENDED and launch is None and probabilities is None and fed is None
-        rough = partial(shares, part, fed=FEW, **own) if is_fed else None
+        rough = partial(shares, part, fed=ROUGH_PARTS, **own) if is_fed else None
     chain = bowl.devices if devices is None else tuple(devices)
     drive_ways = _DriveWays(part, bowl, chain, arriving)
     lead = None if rough is None else _DriveWays(part, bowl, chain, rough)

@@ -8,8 +8,7 @@ from conveying_agreement import agreed
 from conveying_reference import Reference, random_settings
 
 from feederscrew.conveying import answer, steady, sweep, waves
-from feederscrew.conveying.operating_point import OperatingPoint, contact, law, plain
-from feederscrew.conveying.point_motion import State
+from feederscrew.conveying.operating_point import OperatingPoint, plain
 from feederscrew.conveying.waves import PERIOD_RAD, above, harmonic, value
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.limits import effective
@@ -63,15 +62,6 @@ def test_no_second_harmonic_is_the_plain_drive():
         one = plain(*row, 0.2)
         other = one._replace(second=0.0, second_phase=1.0)
         np.testing.assert_array_equal(travel_of(one), travel_of(other))
-
-
-def test_a_vanishing_second_harmonic_vanishes():
-    plains = [plain(*row) for row in random_settings(30, np.random.default_rng(6))]
-    pairs = [(one, travel_of(one._replace(second=1e-13, second_phase=1.0))) for one in plains]
-    periodic = [(one, other) for one, other in pairs if other[steady.STATUS] == steady.PERIODIC]
-    assert len(periodic) > 15
-    for one, other in periodic:
-        assert other[steady.VELOCITY] == pytest.approx(travel_of(one)[steady.VELOCITY], abs=1e-9)
 
 
 def test_a_vanishing_first_harmonic_leaves_a_plain_drive_of_twice_the_frequency():
@@ -166,21 +156,6 @@ def test_mirror():
         **{"static_back": up.static, "kinetic_back": up.kinetic},
     )
     assert travel_of(down)[steady.VELOCITY] == pytest.approx(-travel_of(up)[steady.VELOCITY], rel=1e-12)
-
-
-@pytest.mark.parametrize("angle", [0.5, 2.0, 4.0, 5.5])
-def test_when_the_part_is_put_down_does_not_matter(angle):
-    setting, out = everything(), np.empty(steady.COLUMNS)
-    rules = law(setting)
-    phase = contact(rules, angle, 0.0)
-    steady.steady(rules, State(angle, phase, 0.0, 0.0, 0.0, 0.0), out)
-    assert out[steady.VELOCITY] == pytest.approx(travel_of(setting)[steady.VELOCITY], rel=1e-10)
-
-
-def test_whole_turns_change_nothing():
-    setting = everything()
-    turned = setting._replace(lead=setting.lead + PERIOD_RAD, second_phase=setting.second_phase - PERIOD_RAD)
-    assert travel_of(turned)[steady.VELOCITY] == pytest.approx(travel_of(setting)[steady.VELOCITY], rel=1e-10)
 
 
 def test_limits_of_slip_of_any_drive():

@@ -84,7 +84,7 @@ def test_a_floor_that_does_not_move_is_the_floor_of_a_drop_test():
     one_drop.settle_all(
         BOX, one_drop.scratch(BOX), given, one_drop.Steps(early=False, longest=60.0), faces, times
     )
-    seen = shaken.unseen(150, np.array([60.0]))
+    seen = shaken.empty_looks(150, np.array([60.0]))
     shaken.ride_all(BOX, falling.scratch(BOX), at_rest(), given, one_drop.Steps(), seen, np.inf)
     assert (seen.faces[:, 0] == faces).mean() >= 0.985
 
@@ -186,6 +186,8 @@ def test_a_part_near_its_edge_lies_on_no_face():
         for tilt in np.linspace(0.02, 1.5, 40):
             face, lift = seen(tilt, axis)
             if face != one_drop.UNSETTLED:
-                assert lift - (BOX.heights[face] - flat[body.Z]) < shaken.SURE * BOX.barriers[face]
+                assert (
+                    lift - (BOX.heights[face] - flat[body.Z]) < shaken.SURE_BARRIER_SHARE * BOX.barriers[face]
+                )
         tipping = [lift for face, lift in (seen(t, axis) for t in np.linspace(0.0, 1.5, 40)) if face < 0]
-        assert tipping and max(tipping) > shaken.SURE * least
+        assert tipping and max(tipping) > shaken.SURE_BARRIER_SHARE * least

@@ -162,7 +162,7 @@ def test_the_point_of_the_bowl_among_the_curves_is_named():
 
     found = study(read(), (0.3, 0.6))
     labels = [text.get_text() for text in slide_output.curves(found.maps).legends[0].get_texts()]
-    assert slide_output.OWN in labels
+    assert slide_output.OWN_LABEL in labels
 
 
 def test_a_long_name_leaves_the_scale_bar_alone():

@@ -54,7 +54,7 @@ def test_the_regime_map_shows_its_codes_and_names_them():
     one = slide(20)
     figure = slide_output.regimes(one)
     (image,) = figure.axes[0].images
-    colours = 255.0 * to_rgba_array([slide_output.REGIME_COLOURS[name] for name in one.grid.names])
+    colours = 255.0 * to_rgba_array([slide_output.SLIDE_COLOURS[name] for name in one.grid.names])
     assert (np.asarray(image.get_array()) == np.round(colours)[one.grid.codes.T]).all()
     named = texts(figure)
     for name, share in one.grid.shares().items():
@@ -69,7 +69,9 @@ def test_the_hop_begins_at_its_ratio():
 
 
 def test_contour_lines_follow_4_27_and_carry_their_values():
-    figure = slide_output.contours(sliding_map(bowl.default(), math.radians(20), shape=slide_output.PICTURE))
+    figure = slide_output.contours(
+        sliding_map(bowl.default(), math.radians(20), shape=slide_output.MAP_SHAPE)
+    )
     axes = figure.axes[0]
     assert {"μ = 0.1", "μ = 1", "μ = 2", "this bowl's μ = 0.6"} <= set(texts(figure))
     assert "μ = 0.6" not in texts(figure)
@@ -95,7 +97,7 @@ def test_curves_are_4_28_for_each_angle():
     one, two = slide(10), slide(40)
     figure = slide_output.curves([one, two])
     axes, labels = figure.axes[0], [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == ["β = 10°", "β = 40°", "slips back, this track", slide_output.OWN]
+    assert labels == ["β = 10°", "β = 40°", "slips back, this track", slide_output.OWN_LABEL]
     line = next(line for line in axes.lines if line.get_label() == "β = 40°")
     ratio, friction = line.get_xydata()[np.isfinite(line.get_ydata())].T
     b = math.radians(40)

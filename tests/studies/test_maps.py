@@ -56,14 +56,14 @@ def test_a_range_of_the_bowl_becomes_an_axis():
     axis = grids.axis(span)
     assert axis.column == "amplitude_mm"
     assert axis.values == pytest.approx([1e-4, 2e-4, 3e-4], rel=1e-14)
-    assert axis.shown == pytest.approx([0.1, 0.2, 0.3], rel=1e-14)
+    assert axis.in_unit == pytest.approx([0.1, 0.2, 0.3], rel=1e-14)
 
 
 @pytest.mark.parametrize("beta", [1, 5, 10, 20, 40, 60, 90])
 def test_every_map_reaches_past_the_hop_and_over_the_published_range(beta):
     found = slide(beta)
     assert found.grid.shares()["hop"] > 0.1
-    assert found.grid.first.shown[[0, -1]] == pytest.approx([-90, 90])
+    assert found.grid.first.in_unit[[0, -1]] == pytest.approx([-90, 90])
     assert found.grid.second.values[0] == 0.0
     assert found.grid.second.values[-1] >= 3.0
 
@@ -71,7 +71,7 @@ def test_every_map_reaches_past_the_hop_and_over_the_published_range(beta):
 def test_every_map_holds_the_bowls_own_point():
     found = slide(20, "drive.amplitude=1 mm", "drive.frequency=60 Hz", "drive.direction=-120 deg")
     assert found.grid.second.values[-1] > found.ratio > 14
-    assert found.grid.first.shown[0] == pytest.approx(-180)
+    assert found.grid.first.in_unit[0] == pytest.approx(-180)
     assert found.regime == "hop"
 
 
@@ -98,7 +98,7 @@ def test_as_published_keeps_what_is_negative():
     complete, published = (slide(20, as_published=flag).grid for flag in (False, True))
     assert np.nanmin(complete.values["mu_limit"]) == 0.0
     past = complete.codes == limits.HOP
-    at_pole_angle = np.isclose(np.abs(complete.first.shown), 90, rtol=1e-12, atol=0)
+    at_pole_angle = np.isclose(np.abs(complete.first.in_unit), 90, rtol=1e-12, atol=0)
     assert (published.values["mu_limit"][past & ~at_pole_angle[:, None]] < 0).all()
     assert published.unanswered("mu_limit") == 0
     below = ~np.isnan(complete.values["mu_limit"])
@@ -107,10 +107,10 @@ def test_as_published_keeps_what_is_negative():
 
 def test_a_reversed_drive_swaps_forward_and_backward_on_a_level_track():
     grid = slide(25, "drive.direction=180 deg", "track.climb=0 deg", "friction.static=0.4").grid
-    along, against = (grid.codes[np.flatnonzero(np.isclose(grid.first.shown, x))[0]] for x in (0, 180))
+    along, against = (grid.codes[np.flatnonzero(np.isclose(grid.first.in_unit, x))[0]] for x in (0, 180))
     swap = np.array([limits.RIDE, limits.BACKWARD, limits.FORWARD, limits.BOTH, limits.HOP])
     assert (along == swap[against]).all()
-    assert np.isnan(grid.values["mu_limit"][np.flatnonzero(np.isclose(grid.first.shown, 180))]).all()
+    assert np.isnan(grid.values["mu_limit"][np.flatnonzero(np.isclose(grid.first.in_unit, 180))]).all()
 
 
 def test_regimes_follow_from_the_limits():

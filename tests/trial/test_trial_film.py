@@ -61,7 +61,9 @@ def test_air_is_drawn_while_the_sensor_lets_it_blow(study, small):
     pose, steel = rejected.path[:1, 1:], [np.ones(3)]
     still, blown = (scene.drawn(pose, steel, [blows] * len(scene.air)) for blows in (False, True))
     bluer = (blown - still)[..., 2] - (blown - still)[..., 0] > 0.1
-    mouth = scene.camera.project(stage.air.jets[:1, :3] - scene.centre)[0]
+    mouth = scene.camera.project(np.array([[stage.air.jets[f"mouth_{e}"][0] for e in "xyz"]]) - scene.centre)[
+        0
+    ]
     column = (mouth[0] - scene.across[0]) / (scene.across[1] - scene.across[0])
     assert bluer.sum() > 10 and np.abs(np.nonzero(bluer)[1] - column).min() < 3.0
 

@@ -55,7 +55,7 @@ def test_one_that_passes_and_one_that_does_not_are_shown_of_two_trials():
 
     from feederscrew.output.trial.rides import rides_to_show
     from feederscrew.trial import course, runs
-    from feederscrew.trial.air import STILL
+    from feederscrew.trial.air import STILL_AIR
 
     def tried(names, ends, fate):
         rides = [SimpleNamespace(outcomes=np.array(one), paths=np.zeros((len(one), 2, 8))) for one in ends]
@@ -66,7 +66,7 @@ def test_one_that_passes_and_one_that_does_not_are_shown_of_two_trials():
         lying = [SimpleNamespace(name=name) for name in names]
         return SimpleNamespace(course=found, known=SimpleNamespace(lying=lying))
 
-    still = SimpleNamespace(air=STILL)  # neither sensor nor jet
+    still = SimpleNamespace(air=STILL_AIR)  # neither sensor nor jet
     gone = runs.PASSED + 1
     wanted = tried(["A@0"], [[runs.PASSED]] * 3, course.PASSED)
     others = tried(["B@0", "C@0"], [[runs.PASSED] * 2, [gone, gone]], course.RETURNED)

@@ -25,7 +25,6 @@ from feederscrew.output.trial.section import WALL, Mesh, air_cones, fittings, jo
 from feederscrew.part.record import Part
 from feederscrew.studies.trial import TrialStudy
 from feederscrew.tooling import solid
-from feederscrew.trial.kernel import crowd_records, jets
 from feederscrew.trial.queue import QueuedParts
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.staging import Stage
@@ -284,7 +283,7 @@ def _bowl_around(stage: Stage, run: TrialRun, above: float, below: float) -> Mes
     middle = shapely.Point(0.0, radius)
     full, inner = middle.buffer(radius, quad_segs=64), middle.buffer(radius - width, quad_segs=64)
     outer = middle.buffer(radius + WALL, quad_segs=64)
-    deep = -stage.plates[0, crowd_records.DEPTH]
+    deep = -stage.plates.depth[0]
     bodies = [solid.prism(outer, -below - WALL, -below), solid.prism(outer.difference(full), -below, deep)]
     if last - first < 2.0 * math.pi - 0.05:
         turns = np.linspace(last, first + 2.0 * math.pi, 181)
@@ -360,7 +359,7 @@ def _queue(part: Part, run: TrialRun, queue: QueuedParts) -> Iterator[tuple[NDAr
     speed = _speed(queue.seconds / (len(queue.poses) / FRAMES_PER_S))
     before = 0.0
     for poses, (time, left, returned) in zip(queue.poses, queue.moments):
-        blowing = np.isinf(air.jets[:, jets.END]) & (air.jets[:, jets.BEGIN] <= 0.0)  # the steady ones
+        blowing = np.isinf(air.jets.end) & (air.jets.begin <= 0.0)  # the steady ones
         for watch, pulses in zip(air.watches, queue.pulses):
             blowing[watch.jets] = any(begin <= time and before < end for begin, end in pulses)
         words = f"queue of {queue.parts}: {left} left, {returned} returned"

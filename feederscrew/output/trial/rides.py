@@ -87,7 +87,7 @@ def _ride(part: Part, run: TrialRun, place: int, rider: int) -> DeviceRide:
     fate = course.FATES[course.PASSED if passed else sent.fates[number]]
     path = ride.paths[rider][np.isfinite(ride.paths[rider][:, 0])]
     looked, blows = air_at(part, run, sent.stations[place], path)
-    return DeviceRide(place, run.known.lying[sent.entered[number]].name, fate, path, looked, blows)
+    return DeviceRide(place, run.orientations.lying[sent.entered[number]].name, fate, path, looked, blows)
 
 
 def air_at(
@@ -121,6 +121,6 @@ def air_at(
     state[0, :3], state[0, body.Q : body.Q + 4] = path[first, 1:4] / length, path[first, 4:]
     if not sensed_rides.blows_off(watch.sensor, runs.setting(solid, length, run.bowl), state):
         return looked, None
-    speed = max((ways[first] - ways[0]) / max(looked - path[0, 0], 1e-9), sensed_rides.SLOW)
+    speed = max((ways[first] - ways[0]) / max(looked - path[0, 0], 1e-9), sensed_rides.STANDING_SPEED_M_S)
     begin = looked + max(watch.nozzles - ways[first], 0.0) / speed
     return looked, (begin, begin + watch.seconds)

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from feederscrew.output.trial.figures import solids, unrolled
 from feederscrew.tooling import solid
 from feederscrew.tooling.track_sections import bend_ring
-from feederscrew.trial.kernel import crowd_records, jets
 from feederscrew.trial.staging import Stage
 
 WALL = 3e-3  # [m] thickness of the wall that is drawn
@@ -71,10 +70,9 @@ def fittings(stage: Stage, radius: float, size: float) -> list[Mesh]:
     """
     bodies = []
     for jet in stage.air.jets:
-        mouth, way, wide = jet[jets.MOUTH : jets.TOWARDS], jet[jets.TOWARDS : jets.RADIUS], jet[jets.RADIUS]
-        bodies.append(
-            _cone(mouth - NOZZLE_LENGTH * wide * way, way, NOZZLE_LENGTH * wide, 2.0 * wide, 2.0 * wide)
-        )
+        mouth, direction, wide = _vector(jet, "mouth"), _vector(jet, "towards"), jet.radius
+        start = mouth - NOZZLE_LENGTH * wide * direction
+        bodies.append(_cone(start, direction, NOZZLE_LENGTH * wide, 2.0 * wide, 2.0 * wide))
     for watch in stage.air.watches:
         off, up = watch.sensor.wanted[0].distance, SENSOR_HEIGHT * size
         if watch.sensor.sees == "side":
@@ -95,18 +93,16 @@ def air_cones(stage: Stage, track_width: float) -> list[Mesh]:
     """Return the air of each nozzle of a stretch of track as a cone, as wide as the trial has it."""
     cones = []
     for jet in stage.air.jets:
-        long = min(jet[jets.REACH], AIR_BEYOND * track_width)
-        wide = jet[jets.RADIUS]
+        long, wide = min(jet.reach, AIR_BEYOND * track_width), jet.radius
         cones.append(
-            _cone(
-                jet[jets.MOUTH : jets.TOWARDS],
-                jet[jets.TOWARDS : jets.RADIUS],
-                long,
-                wide,
-                wide + jet[jets.SPREAD] * long,
-            )
+            _cone(_vector(jet, "mouth"), _vector(jet, "towards"), long, wide, wide + jet.spread * long)
         )
     return cones
+
+
+def _vector(row: np.record, name: str) -> NDArray[np.float64]:
+    """Three fields of a record as a vector (3,)."""
+    return np.array([row[f"{name}_{e}"] for e in "xyz"])
 
 
 def _cone(
@@ -137,9 +133,9 @@ def _plate(station, k, track) -> tuple[Any, ...]:
         area = area.symmetric_difference(shapely.make_valid(shapely.Polygon(ring)))
     if k == 0:
         area = area.intersection(shapely.Point(0.0, track.radius).buffer(track.radius, quad_segs=256))
-    vertices, faces = solid.prism(area, -row[crowd_records.DEPTH], 0.0)
-    axes = row[crowd_records.ACROSS : crowd_records.ACROSS + 9].reshape(3, 3)
-    return row[:3] + np.einsum("vi,ij->vj", vertices, axes), faces
+    vertices, faces = solid.prism(area, -row.depth, 0.0)
+    axes = np.array([_vector(row, name) for name in ("first", "second", "front")])
+    return _vector(row, "origin") + np.einsum("vi,ij->vj", vertices, axes), faces
 
 
 def _wall(station, track, height) -> list[Any]:
@@ -161,4 +157,4 @@ def _stretch(station, track, height, low, high, lean):
     if lean:
         return solid.leaning_wall(track.radius, low, high, lean, height)
     ring = bend_ring(np.array([[low, -WALL], [high, -WALL], [high, 0.0], [low, 0.0]]), track.radius)
-    return solid.prism(shapely.Polygon(ring), -station.plates[0, crowd_records.DEPTH], height)
+    return solid.prism(shapely.Polygon(ring), -station.plates.depth[0], height)

@@ -391,7 +391,7 @@ def design(
     if task.constraints.turn and not (proposal.isolated and proposal.efficiency >= goal.efficiency > 0.0):
         proposal = _with_turning(task, proposal, search, goal.efficiency)
     short = _short(task, proposal, goal.efficiency)
-    return replace(proposal, reasons=(*proposal.reasons, *short)) if short else proposal
+    return replace(proposal, remarks=(*proposal.remarks, *short)) if short else proposal
 
 
 def _returning(task, search):
