@@ -26,7 +26,7 @@ class Result(ReadableRecord):
 
     launch: dict  # name and ranges sampled, in the units of the shop
     seed: int
-    require_ground: Ground
+    ground: Ground
     drops: Drops
     tally: Tally
     heights: np.ndarray  # (A,) [m] of the centre of mass on each class; over the true circle of a round side

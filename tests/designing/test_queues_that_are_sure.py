@@ -131,7 +131,7 @@ class FakeQueue:
         self.time = seconds
         tell(self.periods, 0)
 
-    def seen(self, partial=False):
+    def result(self, partial=False):
         return SimpleNamespace(queue=self, partial=partial)
 
 

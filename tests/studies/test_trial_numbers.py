@@ -131,10 +131,10 @@ def test_what_creeps_is_followed_to_the_end_and_its_places_are_noted_for_three_t
     assert seconds == pytest.approx(way / (0.03 * speed) + 1.0)
     assert patience == pytest.approx(20e-3 / speed) and patience > 0.5 and back == pytest.approx(20e-3)
     assert least == pytest.approx(0.03 * patience * speed)
-    periods = found["every"] * bowl.drive.frequency
+    periods = found["interval"] * bowl.drive.frequency
     assert periods == pytest.approx(round(periods)) and periods >= 1.0
-    assert 300 * (found["every"] - 1.0 / bowl.drive.frequency) <= way / speed <= 300 * found["every"]
-    assert found["places"] * found["every"] >= 3.0 * way / speed
+    assert 300 * (found["interval"] - 1.0 / bowl.drive.frequency) <= way / speed <= 300 * found["interval"]
+    assert found["places"] * found["interval"] >= 3.0 * way / speed
 
 
 def test_a_velocity_is_the_mean_over_the_second_half_of_a_path_round_the_bowl():

@@ -64,7 +64,7 @@ def test_one_that_passes_and_one_that_does_not_are_shown_of_two_trials():
             entered=np.arange(len(names)), stations=[still] * len(ends),
         )  # fmt: skip
         lying = [SimpleNamespace(name=name) for name in names]
-        return SimpleNamespace(course=found, known=SimpleNamespace(lying=lying))
+        return SimpleNamespace(course=found, orientations=SimpleNamespace(lying=lying))
 
     still = SimpleNamespace(air=STILL_AIR)  # neither sensor nor jet
     gone = runs.PASSED + 1

@@ -48,8 +48,8 @@ def speed(floor, amplitude, second, angle):
 
     Source: a harmonic drive; docs/conveying.md, "The model".
     """
-    turned = amplitude * math.cos(angle) + 2.0 * second * math.cos(2.0 * angle + floor.second_phase)
-    return floor.rate * turned
+    first, rate = amplitude * floor.rate * math.cos(angle), 2.0 * floor.rate
+    return first + second * rate * math.cos(2.0 * angle + floor.second_phase)
 
 
 @compiled

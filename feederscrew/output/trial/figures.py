@@ -141,7 +141,7 @@ def solids(station, plate=0):
     borders = station.borders[row.begin : row.end]
     starts, ends = (np.column_stack([borders[f"{end}_x"], borders[f"{end}_y"]]) for end in ("start", "end"))
     breaks = np.flatnonzero(np.hypot(*(starts[1:] - ends[:-1]).T) > 1e-12) + 1
-    return np.split(starts, breaks)
+    return np.split(starts, breaks) if len(starts) else []
 
 
 def _track(axes, station, radius) -> None:
