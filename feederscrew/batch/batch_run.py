@@ -33,6 +33,7 @@ from feederscrew.errors import FeederError
 from feederscrew.output import tables
 from feederscrew.output.batch import SHEET_NAME
 from feederscrew.output.folder import RECORD
+from feederscrew.output.page.as_html import html
 from feederscrew.part import loading
 
 MARKER = "batch.json"  # says that the folder is a batch's
@@ -403,8 +404,6 @@ def _stopped(store, requests, finished):
 
 def _finished(store, requests, complete, workers) -> Batch:
     """Write the summary, the contact sheets and the index page, from what lies on the disk."""
-    from feederscrew.output.page.as_html import html
-
     rows = summary.rows(store, requests)
     sheets = workers.each(_contact_sheet, summary.sheets(store, rows))
     files = {

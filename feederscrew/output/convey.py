@@ -7,9 +7,9 @@ import numpy as np
 from feederscrew.conveying import answer, sensitivity, steady
 from feederscrew.conveying.answer import throw_of_flight
 from feederscrew.conveying.operating_point import PHASES
+from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.heavy import heavy
 from feederscrew.output.tables import heading
 from feederscrew.output.words import PHASE_WORDS, regime_words
 from feederscrew.studies.convey import ConveyStudy

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from feederscrew.geometry.polygons import centroid, turned
+from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, ON_THE_LINE, regime, rolls, stable_heading
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.heavy import heavy
 from feederscrew.output.tables import Frame
 from feederscrew.studies.floor import FloorStudy
 from feederscrew.units import MM, factor

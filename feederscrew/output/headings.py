@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 
 from feederscrew.geometry.polygons import turned
+from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.floor import CONTACT, PART
-from feederscrew.output.heavy import heavy
 from feederscrew.part.size_limits import small_part_remarks
 from feederscrew.studies.headings import HeadingsStudy
 from feederscrew.units import MM

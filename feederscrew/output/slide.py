@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.heavy import heavy
 from feederscrew.output.words import regime_words
 from feederscrew.studies.slide import SlideMap, SlideStudy
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.geometry.polygons import outline, turned
+from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, regime
 from feederscrew.mechanics.track_balance import frame
 from feederscrew.output import offers as offer
@@ -33,7 +34,6 @@ from feederscrew.output.floor import (
     state_legend,
     tips,
 )
-from feederscrew.output.heavy import heavy
 from feederscrew.studies.track import TrackStudy
 from feederscrew.units import MM
 

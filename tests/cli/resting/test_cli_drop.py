@@ -158,7 +158,7 @@ def test_a_width_that_is_not_reached_is_said(run, stl):
 
 
 def test_until_gives_up_and_says_so(run, stl, monkeypatch):
-    monkeypatch.setattr(ensemble, "MAX_DROPS", 2000)
+    monkeypatch.setattr(ensemble, "MAX_DROPS_UNTIL_WIDTH", 2000)
     done = run("drop", stl, "--until", "0.1%", "--format", "json")
     assert document(done)["drops"] == 2000
     assert "Warning: after 2000 drops the widest interval is" in done.stderr
