@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from feederscrew_cli import grouped, options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, progress
 from feederscrew_cli.interrupt import held_back
 from feederscrew_cli.values import Number, Place, Whole
 
@@ -131,10 +131,10 @@ def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent):
         | ({measured: measured_at_outlet.sha256} if measured_at_outlet else {})
     )
     with out.folder(solid.name, inputs, effective) as folder:
-        with waiting.bar(out, "runs") as bar:
+        with progress.bar(out, "runs") as bar:
             study = studies.trial(
                 solid, driven, aspect_shares=aspect_shares, measured=measured_at_outlet, progress=bar.reach,
-                before=lambda: waiting.trial(out), frames=films.QUEUE_FRAMES if film else 0,
+                before=lambda: progress.trial(out), frames=films.QUEUE_FRAMES if film else 0,
                 **sent | {"jobs": sent["jobs"] or os.cpu_count()},
             )  # fmt: skip
         document = tables.document(study)

@@ -18,9 +18,9 @@ from feederscrew.designing import record
 from feederscrew.designing.record import NOT_PROVED
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
+from feederscrew.heavy import heavy
 from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import columns, style, tables
-from feederscrew.output.heavy import heavy
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")

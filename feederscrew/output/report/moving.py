@@ -51,7 +51,7 @@ def convey(case) -> Chapter:
     document = convey_output.document(study)
     blocks = [Table(convey_output.summary(document))]
     if study.answer.status != "no steady state":
-        (cycle,) = _taken(convey_output.offers(study, bowls.texts(case.settings)), "convey")
+        (cycle,) = _taken(convey_output.offers(study), "convey")
         title = convey_output.cycle_title(study.trace(), study.answer)
         blocks.append(replace(cycle, alt=f"Plate and part: {title}"))
     blocks += [*_knobs(case), _velocity_map(case)]
@@ -64,10 +64,17 @@ def convey(case) -> Chapter:
 
 def floor(case) -> Chapter:
     """Forces and regimes on the bowl's floor."""
+<<<<<<< HEAD
     study, settings = case.floor, bowls.texts(case.settings)
     document = floor_output.document(study, settings)
     result = floor_output.map_remarks(study)
     offered = floor_output.offers(study, settings)
+=======
+    found = case.floor
+    document = floor_output.document(found)
+    result = floor_output.map_remarks(found)
+    offered = floor_output.offers(found)
+>>>>>>> 07f2983df0455b804f1524bc996df4f3348ad0a2
     pictures = _taken(offered, "floor_plan", "floor_frequency_amplitude", "floor_beta_friction")
     lead = Text(
         f"Aspect {study.posture.name}, heading {np.degrees(study.heading):.4g} deg, at the upper reversal of "
@@ -86,17 +93,24 @@ def headings(case) -> Chapter:
         "The directions in which the part is stable when pushed against the wall, the share of all "
         "directions of laying down that ends in each, and the room it takes."
     )
-    own = headings_output.offers(study.only(case.aspect), bowls.texts(case.settings))
+    own = headings_output.offers(study.only(case.aspect))
     pictures = _taken(own, "headings")
     return Chapter((lead, Table(frame), *pictures), warnings=tuple(headings_output.remarks(study)))
 
 
 def track(case) -> Chapter:
     """Reactions on the track, against the wall."""
+<<<<<<< HEAD
     study = case.track
     settings, grid = bowls.texts(case.settings), study.over(case.settings)
     document = track_output.document(study, settings)
     offered = track_output.offers(study, settings, grid)
+=======
+    found = case.track
+    grid = found.over(case.settings)
+    document = track_output.document(found)
+    offered = track_output.offers(found, grid)
+>>>>>>> 07f2983df0455b804f1524bc996df4f3348ad0a2
     pictures = _taken(offered, "track_part", "track_map", "track_cycle")
     lines = _notes(track_output.remarks(study) + track_output.map_remarks(grid))
     return Chapter(
