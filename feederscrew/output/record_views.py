@@ -258,7 +258,7 @@ VIEWS = {  # by the name of the record's class
     "TuneStudy": RecordView(_tune, "tune.offers"),
     "MachineSheet": RecordView(_machine, "machine.offers"),
     "ToolingStudy": RecordView(_tooling, "tooling.offers", ((),)),
-    "TrialStudy": RecordView(_trial, "trial.files.offers"),
+    "TrialStudy": RecordView(_trial, "trial.tables.offers"),
     "DesignStudy": RecordView(_design, "design_pages.offers", ((),)),
     "FamilyStudy": RecordView(_family, "design_pages.family_offers"),
     "CompareStudy": RecordView(_compare, "compare.offers"),
@@ -281,35 +281,6 @@ def view_of(record: Any) -> RecordView:
 
 MOST_ROWS = 60  # of a table in a notebook
 VIEW_PX = 360, 280  # [px] of a part
-<<<<<<< HEAD
-# record: module and function that offer the files of its command, and what else that is handed
-OF: dict[str, tuple[Any, ...]] = {
-    "AspectsStudy": ("aspects", "offers"),
-    "CalibrateStudy": ("calibrate", "offers"),
-    "CompareStudy": ("compare", "offers"),
-    "SetsStudy": ("compare", "sets_offers"),
-    "ConveyStudy": ("convey", "offers", {}),
-    "ConveyCurve": ("convey", "curve_offers"),
-    "ConveyPhase": ("convey", "phase_offers", {}),
-    "ConveyMap": ("convey", "map_offers"),
-    "DesignStudy": ("design_pages", "offers", ()),
-    "DropStudy": ("drop", "offers"),
-    "FamilyStudy": ("design_pages", "family_offers"),
-    "FeedingStudy": ("compare", "feeding_offers"),
-    "FloorStudy": ("floor", "offers", {}),
-    "HeadingsStudy": ("headings", "offers", {}),
-    "InertiaStudy": ("inertia", "offers"),
-    "MachineSheet": ("machine", "offers"),
-    "PlateStudy": ("plate", "offers"),
-    "RateStudy": ("rate", "offers"),
-    "SlideStudy": ("slide", "offers"),
-    "ToolingStudy": ("tooling", "offers", ()),
-    "TrackStudy": ("track", "at_one_point"),
-    "TrialStudy": ("trial.tables", "offers"),
-    "TuneStudy": ("tune", "offers"),
-}
-=======
->>>>>>> 07f2983df0455b804f1524bc996df4f3348ad0a2
 
 
 def frame(record, name=None):

@@ -64,17 +64,10 @@ def convey(case) -> Chapter:
 
 def floor(case) -> Chapter:
     """Forces and regimes on the bowl's floor."""
-<<<<<<< HEAD
-    study, settings = case.floor, bowls.texts(case.settings)
-    document = floor_output.document(study, settings)
+    study = case.floor
+    document = floor_output.document(study)
     result = floor_output.map_remarks(study)
-    offered = floor_output.offers(study, settings)
-=======
-    found = case.floor
-    document = floor_output.document(found)
-    result = floor_output.map_remarks(found)
-    offered = floor_output.offers(found)
->>>>>>> 07f2983df0455b804f1524bc996df4f3348ad0a2
+    offered = floor_output.offers(study)
     pictures = _taken(offered, "floor_plan", "floor_frequency_amplitude", "floor_beta_friction")
     lead = Text(
         f"Aspect {study.posture.name}, heading {np.degrees(study.heading):.4g} deg, at the upper reversal of "
@@ -100,17 +93,10 @@ def headings(case) -> Chapter:
 
 def track(case) -> Chapter:
     """Reactions on the track, against the wall."""
-<<<<<<< HEAD
     study = case.track
-    settings, grid = bowls.texts(case.settings), study.over(case.settings)
-    document = track_output.document(study, settings)
-    offered = track_output.offers(study, settings, grid)
-=======
-    found = case.track
-    grid = found.over(case.settings)
-    document = track_output.document(found)
-    offered = track_output.offers(found, grid)
->>>>>>> 07f2983df0455b804f1524bc996df4f3348ad0a2
+    grid = study.over(case.settings)
+    document = track_output.document(study)
+    offered = track_output.offers(study, grid)
     pictures = _taken(offered, "track_part", "track_map", "track_cycle")
     lines = _notes(track_output.remarks(study) + track_output.map_remarks(grid))
     return Chapter(
