@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from feederscrew.errors import ArgumentError
+from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import MOTION_STATES
 from feederscrew.output import offers, style, tables
-from feederscrew.output.heavy import heavy
 from feederscrew.units import DEGREE, MINUTE, MM, counted, listed, printable
 
 shading = heavy("feederscrew.output.shading")

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from feederscrew.dropping.ensemble import wilson
+from feederscrew.heavy import heavy
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.convey import rebound
-from feederscrew.output.heavy import heavy
 from feederscrew.studies.trial import ENGINE
 from feederscrew.trial import course
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
