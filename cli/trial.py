@@ -112,7 +112,7 @@ def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent):
     with held_back():
         from feederscrew import bowl as bowls
         from feederscrew.output import columns, offers
-        from feederscrew.output.trial import files, tables
+        from feederscrew.output.trial import tables
         from feederscrew.studies import trial as studies
 
         if film:
@@ -145,7 +145,7 @@ def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent):
         if film:
             films.write_film(film, study)
             out.say(f"Wrote {film}")
-        offers.write(folder, files.offers(study), pictures=pictures)
+        offers.write(folder, tables.offers(study), pictures=pictures)
         frame = tables.frame(study, people=out.format == "table")
         hidden = tables.HIDDEN if not out.verbose else ("fell_mm", "seconds")
         out.show(frame, document, hidden=hidden, spare=tables.spare(study))

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from feederscrew.heavy import heavy
 from feederscrew.output import tables
-from feederscrew.output.heavy import heavy
 
 style = heavy("feederscrew.output.style")
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from feederscrew.errors import ArgumentError
+from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import MOTION_STATES
 from feederscrew.output import offers, style, tables
-from feederscrew.output.heavy import heavy
 from feederscrew.units import DEGREE, MINUTE, MM, counted, listed, printable
 
 shading = heavy("feederscrew.output.shading")
@@ -258,7 +258,7 @@ VIEWS = {  # by the name of the record's class
     "TuneStudy": RecordView(_tune, "tune.offers"),
     "MachineSheet": RecordView(_machine, "machine.offers"),
     "ToolingStudy": RecordView(_tooling, "tooling.offers", ((),)),
-    "TrialStudy": RecordView(_trial, "trial.files.offers"),
+    "TrialStudy": RecordView(_trial, "trial.tables.offers"),
     "DesignStudy": RecordView(_design, "design_pages.offers", ((),)),
     "FamilyStudy": RecordView(_family, "design_pages.family_offers"),
     "CompareStudy": RecordView(_compare, "compare.offers"),

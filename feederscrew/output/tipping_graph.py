@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.columns import UJ
-from feederscrew.output.heavy import heavy
 from feederscrew.output.tables import Frame
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.units import GRAVITY, MM

@@ -329,7 +329,7 @@ def _design_options(values: dict[str, Any]) -> list[str]:
     """The options of ``feeder design``: each value is one of a list, or a number within bounds."""
     material, machine, units = (values.get(name) for name in ("material", "machine", "units"))
     rate = values.get("rate")
-    if material not in [known.name for known in MATERIALS]:
+    if material not in [density.name for density in MATERIALS]:
         raise Refusal(400, "material is not one of the list - choose one")
     if machine not in list(MACHINES):
         raise Refusal(400, "machine is not one of the list - choose one")
