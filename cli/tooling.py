@@ -152,4 +152,9 @@ def tooling(part, asked, cad, static, taken, bowl, fields, pictures, out):
         out.say(*agreed, *tables.remarks(found, asked["efficiency"]))
         made = files.offers(found, settings, cad, fields=marking.SheetFields(**fields))
         offers.write(folder, made, pictures=pictures)
-        out.show(tables.summary(found, out.format), document, hidden=tables.HIDDEN, spare=tables.SPARE)
+        out.show(
+            tables.summary(found, out.format),
+            document,
+            hidden=tables.HIDDEN,
+            spare=tables.TABLE_SPARE_COLUMNS,
+        )

@@ -12,7 +12,7 @@ from feederscrew.units import MM
 
 BOWL_HEADER = "feeder bowl: the bowl as a solid, in mm"
 HEADER_BYTES = 80  # of a binary STL
-BETWEEN = 10e-3  # [m] from segment to segment
+SEGMENT_GAP_M = 10e-3  # [m] from segment to segment
 ZIP_DATE = (1980, 1, 1, 0, 0, 0)  # of each file in the archive: the same bytes twice
 TYPES = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -89,16 +89,18 @@ def bowl_3mf(solid, title, mark=""):
 
 def segments_3mf(pieces, title, mark=""):
     """Return segments of a bowl as the bytes of a 3MF file, one object each, beside each other."""
-    across = np.cumsum([0.0, *(one.size[0] + BETWEEN for one in pieces)])
+    across = np.cumsum([0.0, *(piece.size[0] + SEGMENT_GAP_M for piece in pieces)])
     moved = zip(across, pieces)
-    return pack_3mf([(one.name, one.vertices + [x, 0.0, 0.0], one.faces) for x, one in moved], title, mark)
+    return pack_3mf(
+        [(piece.name, piece.vertices + [x, 0.0, 0.0], piece.faces) for x, piece in moved], title, mark
+    )
 
 
 def pack_3mf(objects, title, mark=""):
     """Return objects (name, vertices (V, 3) [m], faces (F, 3)) as the bytes of a 3MF file."""
     objects = [(marking.marked_title(name, mark), *surface) for name, *surface in objects]
     model = MODEL + f'<metadata name="Title">{quoteattr(title)[1:-1]}</metadata>\n<resources>\n'
-    model += "".join(_object(k + 1, *one) for k, one in enumerate(objects))
+    model += "".join(_object(k + 1, *body) for k, body in enumerate(objects))
     items = "".join(f'<item objectid="{k + 1}"/>' for k in range(len(objects)))
     model += f"</resources>\n<build>{items}</build>\n</model>\n"
     contents = {"[Content_Types].xml": TYPES, "_rels/.rels": RELATIONS, "3D/3dmodel.model": model}

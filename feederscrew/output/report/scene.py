@@ -57,7 +57,7 @@ def over_cuts(part, met, every):
         of mass; and ``reach``, how far the view goes, in radii of the part.
     """
     tracks = [shading.track(*tooling_views.track_below(one, every)) for one in met]
-    return shading.viewed(part, tooling_views.VIEW) | {
+    return shading.viewed(part, tooling_views.TO_VIEWER) | {
         "reach": REACH,
         "tracks": tracks,
         "poses": [_over_cut(one, place) for place, one in enumerate(met)],

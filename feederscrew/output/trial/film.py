@@ -13,7 +13,18 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.output import DPI, style
-from feederscrew.output.shading import AWAY, EDGE, MISSED, STEEL, Camera, Rays, Shot, averaged, edges, lit
+from feederscrew.output.shading import (
+    AWAY,
+    EDGE_COLOUR,
+    MISSED,
+    STEEL_COLOUR,
+    Camera,
+    Rays,
+    Shot,
+    averaged,
+    edges,
+    lit,
+)
 from feederscrew.output.tooling_views import camera_at
 from feederscrew.output.trial.figures import LOOKS, solids, unrolled
 from feederscrew.output.trial.section import WALL, section
@@ -172,7 +183,7 @@ class FilmSet:
         ):
             self.samples[mask] = _shaded(normals[mask], self.camera, colour)
         step = (self.up[0] - self.up[1]) / rays.size
-        self.samples[edges(depths, normals, self.camera, step)] = EDGE
+        self.samples[edges(depths, normals, self.camera, step)] = EDGE_COLOUR
         self.image = averaged(self.samples, SAMPLES)
         self.nearness = (AWAY - depths) * rays.size  # [m] towards the viewer; -inf where nothing is
 
@@ -217,7 +228,7 @@ class FilmSet:
         inside = np.isfinite(depths)
         shades = np.ones((*depths.shape, 3))
         shades[inside] = _shaded(normals[inside], camera, colour)
-        shades[edges(depths, normals, camera, (self.up[0] - self.up[1]) / size) & inside] = EDGE
+        shades[edges(depths, normals, camera, (self.up[0] - self.up[1]) / size) & inside] = EDGE_COLOUR
         front = inside & (own >= nearness[box] - 1e-3 * size)
         hidden = inside & ~front
         samples[box][front] = shades[front]
@@ -279,7 +290,7 @@ def _single_parts(part: Part, run: TrialRun, frames: int) -> Iterator[tuple[NDAr
         count = frames * (k + 1) // len(rides) - frames * k // len(rides)
         rgb = LOOKS[ride.fate][0]
         passed = ride.fate == "passed"
-        colour = STEEL if passed else np.array([int(rgb[n : n + 2], 16) / 255 for n in (1, 3, 5)])
+        colour = STEEL_COLOUR if passed else np.array([int(rgb[n : n + 2], 16) / 255 for n in (1, 3, 5)])
         yield from _one_ride(scene, ride, ride.title(run.course), count, colour)
 
 
@@ -311,7 +322,7 @@ def _queue(part: Part, run: TrialRun, queue: QueuedParts) -> Iterator[tuple[NDAr
     speed = _speed(queue.seconds / (len(queue.poses) / FRAMES_PER_S))
     for poses, (time, left, returned) in zip(queue.poses, queue.moments):
         words = f"queue of {queue.parts}: {left} left, {returned} returned"
-        yield scene.drawn(poses, [STEEL] * len(poses)), words, f"{time:.2f} s, {speed}"
+        yield scene.drawn(poses, [STEEL_COLOUR] * len(poses)), words, f"{time:.2f} s, {speed}"
 
 
 def _speed(times: float) -> str:

@@ -36,7 +36,7 @@ def scene(part, *tried) -> tuple[Any, ...]:
         What each pose is, and what becomes of it.
     """
     rides, run, found = shown(*tried), tried[0], tried[0].course
-    seen = shading.viewed(part, tooling_views.VIEW)
+    seen = shading.viewed(part, tooling_views.TO_VIEWER)
     cut = section(found.stations[rides[0].place], run.bowl.track, ABOVE * seen["radius"] * MM)
     paths = [_path(ride.path, found.principal) for ride in rides]
     return seen | {
