@@ -97,12 +97,12 @@ results/%/slide.csv: configs/%.yaml | $(READY)
 TABLES := waits kernels
 BENCHES := conveying speed tooling
 
-bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minutes: the tables of docs/speed.md
+bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minutes: the tables of docs/method/speed.md
 	for name in $(TABLES); do $(BIN)/python benchmarks/$$name.py --write || exit 1; done
 	for name in $(BENCHES); do $(BIN)/python benchmarks/$$name.py || exit 1; done
 	$(BIN)/python benchmarks/aspects.py --repeats 1
 
-PICTURES := aspects regimes drop bowl bowl_solid design tooling trial report conveying_map glossary
+PICTURES := aspects regimes drop bowl bowl_solid design tooling trial report conveying_map glossary_part glossary_track glossary_chain
 
 docs: $(PICTURES:%=docs/%.png) docs/trial_film.gif $(READY) ## pictures, outputs and tables of the pages
 	$(BIN)/python docs/readme.py
@@ -155,14 +155,14 @@ docs/report.png: parts/$(DEMO).stl docs/screenshot.py | $(READY)
 docs/conveying_map.png: docs/conveying_map.py | $(READY)
 	$(BIN)/python docs/conveying_map.py
 
-docs/glossary.png: docs/glossary.py | $(READY)
+docs/glossary_%.png: docs/glossary.py | $(READY)
 	$(BIN)/python docs/glossary.py
 
 # Its own environment: mkdocs and its theme are needed for nothing else. site/ needs no server and no network.
 site: $(READY) ## the pages as a site in site/, with search, API pages and a gallery that is made anew
 	$(PYTHON) -m venv .venv-site
 	.venv-site/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
-	.venv-site/bin/python -m mkdocs build --quiet --strict --config-file docs/site/mkdocs.yml
+	NO_MKDOCS_2_WARNING=1 .venv-site/bin/python -m mkdocs build --quiet --strict
 
 wheels: ## sdist and wheel in dist/, tried in fresh environments on each Python at hand
 	$(PYTHON) docs/release.py --build

@@ -11,7 +11,7 @@ import trimesh
 
 from feederscrew.dropping import drop_test, launch_conditions
 from feederscrew.resting.aspects import find
-from feederscrew.resting.exact_tumbling import ground
+from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.formulas import surface_weights
 from feederscrew.running import RunSettings
@@ -30,7 +30,7 @@ class Body:
 
     def __init__(self, name, part, drops, keep=None, jobs=1):
         self.name, self.part, self.aspects = name, part, find(part)
-        self.ground = ground(part, self.aspects)
+        self.ground = require_ground(part, self.aspects)
         self.tips, self.radius = self.ground.tips, self.ground.hull.radius
         self.drops, self.tallies, self.jobs, self.answers = drops, {}, jobs, {}
         self.file = None if keep is None else keep / f"{name}.json"

@@ -52,7 +52,7 @@ def velocity(row, count):
         long_ride.ride_of_track(part, bowl, every, [start], each=count, distance=way, run=RunSettings(SEED))
         for way in (RUN_UP, WAY)
     )
-    ways, seconds = ride.ways - first.ways, ride.seconds - first.seconds
+    ways, seconds = ride.distances - first.distances, ride.seconds - first.seconds
     speeds = 1e3 * ways[seconds > 0.0] / seconds[seconds > 0.0]
     error = speeds.std(ddof=1) / len(speeds) ** 0.5
     return speeds.mean(), error, 1e3 * answer.answer(bowl).velocity, (ride.ended != start).mean()

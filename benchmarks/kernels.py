@@ -1,7 +1,7 @@
 """The kernels beside their targets, by processor time of one core.
 
 Run: python benchmarks/kernels.py            (prints the table)
-     python benchmarks/kernels.py --write    (puts it into docs/speed.md as well)
+     python benchmarks/kernels.py --write    (puts it into docs/method/speed.md as well)
 
 Each script of its own tells more: speed.py (tumbling, drops), conveying.py (beside plain Python
 and SciPy's solver), aspects.py (meshes up to a million facets) and tooling.py (beside a scan with shapely).

@@ -36,7 +36,7 @@ def main(path):
         for row in ride.rows:
             own = ride.entered == row
             stays = own & (ride.ended == row)
-            speeds = 1e3 * ride.ways[stays] / ride.seconds[stays]
+            speeds = 1e3 * ride.distances[stays] / ride.seconds[stays]
             ends = sorted({every[k].name for k in ride.ended[own] if k not in (row, LEFT)})
             print(
                 f"| {restitution:g} | {wall:g} | {every[row].name} |"

@@ -57,11 +57,11 @@ TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "trial.course": "tests/studies/test_trial_numbers.py tests/trial/test_trial_course.py",
     "trial.result": "tests/studies/test_trial_numbers.py tests/cli/moving/test_cli_trial.py",
     "trial.queue.PartsQueue.enter": "tests/trial/test_trial_queue.py -k 'enter or wait'",
-    "trial.kernel.pushes.wanted": f"{SIGNS} -k 'slides and 0.2'",
-    "trial.kernel.pushes.reversal": f"{SIGNS} -k stand",
-    "trial.kernel.pushes.give": f"{SIGNS} -k air",
-    "trial.kernel.track_leans.wall_friction": f"{SIGNS} -k 'brake and 0.7'",
-    "trial.kernel.motion.lift": "tests/trial/test_trial_queue.py -k pushed_apart",
+    "trial.kernel.steps._want_no_strike": f"{SIGNS} -k 'slides and 0.2'",
+    "trial.kernel.steps._stand_share": f"{SIGNS} -k stand",
+    "trial.kernel.steps._add_forces": f"{SIGNS} -k air",
+    "trial.kernel.track_contacts.wall_friction": f"{SIGNS} -k 'brake and 0.7'",
+    "trial.kernel.steps.lift_island": "tests/trial/test_trial_queue.py -k pushed_apart",
     "dropping.kernel.falling.resist": "tests/dropping/test_drop_resistance.py",
 }
 EXCUSED = {  # constants whose value within reason has no consequence, and why

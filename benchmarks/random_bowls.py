@@ -25,7 +25,7 @@ from feederscrew.running import RunSettings
 from feederscrew.solidbowl import cuts, facets, measuring, riding
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.measuring import ways_down
-from feederscrew.solidbowl.plan import NAMES, SolidOptions, material, plan
+from feederscrew.solidbowl.plan import MATERIAL_NAMES, SolidOptions, material, plan
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import course
 
@@ -75,7 +75,7 @@ def drawn(seed, ridden=False):
     radius = rng.uniform(max(60.0, 3.5 * size[0]), 190.0)
     width = min(rng.uniform(0.8, 1.4) * size[0], 0.45 * radius)
     shape = str(rng.choice(["cylinder", "stepped", "conical"], p=[0.5, 0.35, 0.15]))
-    made_of = str(rng.choice(NAMES))
+    made_of = str(rng.choice(MATERIAL_NAMES))
     chain = _chain(rng, size, width, ridden) if shape != "conical" else []
     hanging = size[0] if any("rails" in one for one in chain) else 0.0
     climb = rng.uniform(2.5, 5.0)

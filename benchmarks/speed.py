@@ -20,7 +20,7 @@ from feederscrew.dropping.launch_conditions import Launch, sample
 from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.part.hull import convex_hull
 from feederscrew.resting.aspects import find
-from feederscrew.resting.exact_tumbling import ground, tumble
+from feederscrew.resting.exact_tumbling import require_ground, tumble
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 import shapes
@@ -77,7 +77,7 @@ def bodies():
     }
     for name, mesh in meshes.items():
         part = shapes.part(mesh)
-        yield name, shape_of_part(part, ground(part, find(part)))[0]
+        yield name, shape_of_part(part, require_ground(part, find(part)))[0]
 
 
 def rates(shape, count):

@@ -67,7 +67,9 @@ def chain(part, folder, drive):
     first = tooling_study.tooling(part, bowl, rule=RULE, verdicts=1, seconds=1e-3)
     for k in np.argsort(-first.shares, kind="stable"):
         one = first.orientations[k]
-        study = tooling_study.tooling(part, bowl, one.aspect, heading=one.heading, known=first.aspects, **own)
+        study = tooling_study.tooling(
+            part, bowl, one.aspect, heading=one.heading, aspect_shares=first.aspects, **own
+        )
         found = study.design
         nearest = nearest or (found.cuts and (study, f"{one.name}, not isolated"))
         if found.isolated and found.cuts and tracks.TRACK_REMARK not in found.reasons:
@@ -84,7 +86,7 @@ def single(part, seed, folder, drive, kinds):
     """One bowl for each kind of device that drops parts or sweeps them off, and what it is."""
     bowl = bowls.read(None, drive)
     aspects = trial.arriving(part, bowl, rule=RULE).aspects
-    every = trial.stream.orientations(part, aspects, bowl.track, bowl=bowl).lying
+    every = trial.stream.follow_orientations(part, aspects, bowl.track, bowl=bowl).lying
     every = [one for one in every if not one.returned]
     rng, path = np.random.default_rng((24, 1, seed)), Path(folder) / f"{part.name}.yaml"
     for kind in SINGLE if kinds >= len(SINGLE) else rng.choice(SINGLE, kinds, replace=False):
@@ -126,12 +128,12 @@ def bowls_of(part, name, each, drive, kinds):
 
 def rows(run):
     """One line an orientation: what is said, by which margin, and what became of its parts."""
-    for k, one in enumerate(run.known.lying):
+    for k, one in enumerate(run.orientations.lying):
         said = "passes" if run.predicted[k] else "goes"
         margin = 1e3 * run.margin[k]
         sure = "track" if one.returned else "clear" if run.sure[k] and abs(margin) > 0.25 else "unsure"
         fates = ", ".join(f"{n} {fate}" for fate, n in zip(course.FATES, run.counts[k]) if n)
-        names = [*(state.name for state in run.known.states), "other"]
+        names = [*(state.name for state in run.orientations.states), "other"]
         onto = [f"{n} as {names[m]}" for m, n in enumerate(run.matrix[k]) if n and m != k]
         mark = f" ({', '.join(onto)})" if onto else ""
         mark += " <-" if run.odd[k] else ""
@@ -151,10 +153,10 @@ def kept(run):
     """(M,) bool, whether the parts of each orientation ended as the static rule says, fate for fate."""
     fates = {"returned": ("returned", "rolled_back"), "stopped": ("stopped", "stuck", "hanging")}
     fates["carried"] = fates["returned"]  # by the devices, but it rolls back before them
-    said = ["passed" if passes else fate for passes, fate in zip(run.predicted, run.known.fates)]
+    said = ["passed" if passes else fate for passes, fate in zip(run.predicted, run.orientations.fates)]
     rows = [fates.get(one, (one,)) for one in said]
     held = [sum(counts[course.FATES.index(fate)] for fate in some) for counts, some in zip(run.counts, rows)]
-    return np.array(held) >= result.HELD * run.tried
+    return np.array(held) >= result.VERDICT_SHARE * run.tried
 
 
 def names_of(words):
@@ -172,8 +174,8 @@ def names_of(words):
 def tried(part, bowl, count):
     """So many trials of every orientation of a part in a bowl."""
     known = trial.arriving(part, bowl, rule=RULE)
-    every = len(trial.stream.orientations(part, known.aspects, bowl.track).lying)
-    return trial.trial(part, [bowl], rule=RULE, parts=count * every, jobs=1, known=known).runs[0]
+    every = len(trial.stream.follow_orientations(part, known.aspects, bowl.track).lying)
+    return trial.trial(part, [bowl], rule=RULE, parts=count * every, jobs=1, aspect_shares=known).runs[0]
 
 
 def main():
@@ -191,7 +193,7 @@ def main():
             print(f"{name}: {devices}; wanted {wanted}")
             print("\n".join(rows(run)), flush=True)
             margin = np.abs(np.nan_to_num(run.margin, nan=0.0))
-            clear = run.sure & (margin > result.CLEAR)
+            clear = run.sure & (margin > result.CLEAR_MARGIN_M)
             total, asked = total + len(clear), asked + int(clear.sum())
             held += int((clear & kept(run)).sum())
             print(f"so far {total} orientations, {asked} clear, {held} of them as the rule says", flush=True)

@@ -1,7 +1,7 @@
 """What people wait for at the command line, each wait beside its target.
 
 Run: python benchmarks/waits.py            (prints the table)
-     python benchmarks/waits.py --write    (puts it into docs/speed.md as well)
+     python benchmarks/waits.py --write    (puts it into docs/method/speed.md as well)
 
 Where there is a bare floor, both are paired. Every call is a process of its own, with its modules compiled to
 bytecode as an installation leaves them. Its processor time, with that of all it started, is told beside the
@@ -22,7 +22,7 @@ from pathlib import Path
 from processes import adopt, at_once, finished, spent, together
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs/speed.md"
+PAGE = ROOT / "docs/method/speed.md"
 PART = str(ROOT / "parts/lbracket_30x20x15.stl")
 STARTED = time.perf_counter()
 BARE = (sys.executable, "-c", "import numpy, scipy.spatial")
@@ -268,7 +268,7 @@ def main(name, description, rows):
         Of a folder to write to; gives the Rows as they are known.
     """
     parser = argparse.ArgumentParser(description=description.splitlines()[0])
-    parser.add_argument("--write", action="store_true", help="put the table into docs/speed.md")
+    parser.add_argument("--write", action="store_true", help="put the table into docs/method/speed.md")
     wanted = parser.parse_args()
     adopt()
     with tempfile.TemporaryDirectory() as folder:

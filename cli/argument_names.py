@@ -27,6 +27,6 @@ def _params(command):
     return [param for part in parts for param in getattr(part, "params", ())]
 
 
-def translated(text, known):
+def translated(text, options_by_argument):
     """The text with `argument` as --option where the command has one, else bare."""
-    return MARKED.sub(lambda found: known.get(found[1], found[1]), text)
+    return MARKED.sub(lambda found: options_by_argument.get(found[1], found[1]), text)

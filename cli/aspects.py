@@ -3,6 +3,7 @@
 import click
 
 from feederscrew_cli import grouped, options, waiting
+from feederscrew_cli.values import Number, Whole
 
 SURFACES = click.Choice(["soft", "medium", "hard"])
 
@@ -22,9 +23,9 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
     type=SURFACES,
     help="What it lands on: p_surface is then the answer.  [default: hard]",
 )
-@click.option("--surface-exponent", type=options.Number(-10, 10), help="The same as a number, 0 to about 3.")
+@click.option("--surface-exponent", type=Number(-10, 10), help="The same as a number, 0 to about 3.")
 @click.option(
-    "--drops", type=options.Whole(0, 10**7), cls=options.Renamed, former=("--drop",),
+    "--drops", type=Whole(0, 10**7), cls=options.Renamed, former=("--drop",),
     help="How many drops; 0 for none.  [default: until every share is known to 1 %]",
 )  # fmt: skip
 @click.option(
@@ -59,7 +60,8 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     from feederscrew.output import offers
     from feederscrew.output.columns import conditions
 
-    _files_wanted(graph, out)
+    if graph and out.directory is None:
+        raise click.UsageError("--graph writes files: give -o DIR as well")
     solid = out.part(part)
     exponent = chosen.pop("surface_exponent")
     chosen["surface"] = chosen["surface"] if exponent is None else exponent
@@ -67,23 +69,18 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     with out.folder(solid.name, solid.inputs, effective) as folder:
         study = _study(solid, chosen, out)
         frame = aspects_output.aspects(study)
-        shown = aspects_output.printed(frame, columns) if columns or out.format == "table" else frame
+        printed = aspects_output.printed(frame, columns) if columns or out.format == "table" else frame
         offers.write(folder, aspects_output.offers(study, tipping=graph), pictures=pictures)
         out.say(*aspects_output.remarks(study) if folder and pictures else ())
-    out.show(shown, aspects_output.document(study))
+    out.show(printed, aspects_output.document(study))
 
 
-ONCE = (
+CLASS_COUNTS_ONCE = (
     "PMI counts an aspect once, as Tables 3-8 and 3-9: without --as-published each of its equal faces counts."
 )
-EACH = (
+EACH_FACE_COUNTS = (
     "PMI counts each of the equal faces of an aspect: --as-published counts it once, as Tables 3-8 and 3-9."
 )
-
-
-def _files_wanted(graph, out):
-    if graph and out.directory is None:
-        raise click.UsageError("--graph writes files: give -o DIR as well")
 
 
 def _study(solid, chosen, out):
@@ -104,5 +101,5 @@ def _study(solid, chosen, out):
     if out.format == "table" and study.recommended is not None:
         out.say("PMI, CSA and stability are published rules, to compare with: go by recommended.")
     if out.format == "table" and (study.aspects.faces > 1).any():
-        out.say(ONCE if chosen["as_published"] else EACH)
+        out.say(CLASS_COUNTS_ONCE if chosen["as_published"] else EACH_FACE_COUNTS)
     return study

@@ -5,8 +5,9 @@ import click
 from feederscrew_cli import grouped, options, orientation
 from feederscrew_cli.interrupt import INTERRUPTED, ended_within
 from feederscrew_cli.progress import Progress
+from feederscrew_cli.values import WHOLE_NUMBER, Whole
 
-PATIENCE = 6.0  # [s] from Ctrl-C to the end, whatever is loading
+END_AFTER_S = 6.0  # [s] from Ctrl-C to the end, whatever is loading
 
 
 class Jobs(click.ParamType):
@@ -18,15 +19,9 @@ class Jobs(click.ParamType):
         """The number; None for 'auto'."""
         if value == "auto":
             return None
-        if not options.WHOLE.fullmatch(value) or not int(value) > 0:
+        if not WHOLE_NUMBER.fullmatch(value) or not int(value) > 0:
             self.fail(f"{value!r} is not a number of processes - give 1, 2, ... or auto", param, ctx)
         return int(value)
-
-
-def _grouped(command):
-    """Hand over what is computed as ``asked``, and what of it as ``choices``."""
-    choices = options.packed(command, "choices", ("rule", "launch", "drops", "pictures"))
-    return options.packed(choices, "asked", ("sources", "configs", "overrides", "density"))
 
 
 @grouped.command(short_help="Aspects, conveying and rate of any number of parts, in parallel.")
@@ -46,7 +41,7 @@ def _grouped(command):
 @click.option(
     "--drops",
     metavar="N",
-    type=options.Whole(0, 10_000_000),
+    type=Whole(0, 10_000_000),
     default=0,
     help="Simulated drops of each part; none without it.",
 )
@@ -60,9 +55,8 @@ def _grouped(command):
 @click.option("--resume", is_flag=True, help="Go on where a batch stopped: only what is missing or changed.")
 @options.pictures
 @options.output
-@_grouped
 @click.pass_context
-def batch(ctx, asked, choices, jobs, scheduler, resume, out):
+def batch(ctx, rule, launch, drops, pictures, jobs, scheduler, resume, out, **inputs):
     """Example: feeder batch parts/ --config bowl.yaml -o results/all --jobs 2
 
     Compute every part in every bowl: its aspects, how it travels, and a rate. The rate is that of the
@@ -76,20 +70,23 @@ def batch(ctx, asked, choices, jobs, scheduler, resume, out):
     or some. -o DIR gets summary.csv with a row a part, index.html, contact_sheet.png, and a folder a
     part in DIR/parts.
     """
-    ctx.with_resource(ended_within(PATIENCE))
+    ctx.with_resource(ended_within(END_AFTER_S))
     from feederscrew import batch as batches
 
     if out.directory is None:
         raise click.UsageError("Missing option '-o' - say where the results go")
-    requests = batches.gather(**asked)
+    requests = batches.gather(**inputs)
     out.warn(*dict.fromkeys(line for request in requests for line in request.conditions.warnings))
     workers = batches.crew(jobs, None if _typed(ctx, "jobs") else scheduler)
-    chosen = batches.Choices(**choices)
+    chosen = batches.Choices(rule=rule, launch=launch, drops=drops, pictures=pictures)
     if resume:
-        _say_what_is_stale(batches.count_stale(requests, out.directory, chosen), len(requests), out)
+        reasons = batches.count_stale(requests, out.directory, chosen)
+        if reasons:
+            why = ", ".join(f"{count} {reason}" for reason, count in reasons.items())
+            out.say(f"Computes {sum(reasons.values())} of {len(requests)} parts: {why}")
     try:
         with Progress(len(requests), not out.quiet) as progress:
-            found = batches.run(
+            result = batches.run(
                 requests, out.directory, workers=workers, choices=chosen, resume=resume, tell=progress.tell
             )
     except batches.StoppedBatchError as stopped:
@@ -98,9 +95,9 @@ def batch(ctx, asked, choices, jobs, scheduler, resume, out):
         last = f"Stopped: {stopped.done} of {stopped.total} parts {verb} done; go on with --resume"
         click.echo(last, err=True)
         ctx.exit(INTERRUPTED)
-    out.depend(found.targets, found.sources)
-    _report(found, out)
-    ctx.exit(1 if found.faults else 0)
+    out.depend(result.targets, result.sources)
+    _report(result, out)
+    ctx.exit(1 if result.faults else 0)
 
 
 def _typed(ctx, name):
@@ -108,22 +105,15 @@ def _typed(ctx, name):
     return ctx.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
 
 
-def _say_what_is_stale(reasons, total, out):
-    """Say how many parts are computed, and why; nothing where all stay as they are."""
-    if reasons:
-        why = ", ".join(f"{count} {reason}" for reason, count in reasons.items())
-        out.say(f"Computes {sum(reasons.values())} of {total} parts: {why}")
-
-
-def _report(found, out):
+def _report(result, out):
     from feederscrew.batch import summary
     from feederscrew.units import counted
 
-    out.say(*(f"Error: {fault}" for fault in found.faults))
-    if found.foreign:
-        folders, one = counted(len(found.foreign), "folder"), len(found.foreign) == 1
-        text = f"{'is of a part' if one else 'are of parts'} not in this batch: {found.foreign[0]}"
-        out.warn(f"{folders} {text}{'' if one else ', ...'}")
-    kept = f", {found.reused} of them as they were" if found.reused else ""
-    out.say(f"Wrote {out.directory} ({counted(len(found.rows), 'part')}{kept}; open index.html)")
-    out.show(summary.frame(found.rows), {"parts": list(found.rows)}, hidden=summary.HIDDEN_SUMMARY_COLUMNS)
+    out.say(*(f"Error: {fault}" for fault in result.faults))
+    if result.foreign:
+        folders, is_single = counted(len(result.foreign), "folder"), len(result.foreign) == 1
+        text = f"{'is of a part' if is_single else 'are of parts'} not in this batch: {result.foreign[0]}"
+        out.warn(f"{folders} {text}{'' if is_single else ', ...'}")
+    reused = f", {result.reused} of them as they were" if result.reused else ""
+    out.say(f"Wrote {out.directory} ({counted(len(result.rows), 'part')}{reused}; open index.html)")
+    out.show(summary.frame(result.rows), {"parts": list(result.rows)}, hidden=summary.HIDDEN_SUMMARY_COLUMNS)

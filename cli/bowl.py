@@ -3,22 +3,16 @@
 import click
 from click.core import ParameterSource
 
-from feederscrew_cli import grouped, options, orientation, quantity, waiting
-from feederscrew_cli.quantity import Quantity
+from feederscrew_cli import grouped, options, orientation, waiting
 
-TARGET = click.option(
-    "--target",
-    type=Quantity("rate", positive=True),
-    metavar="RATE",
-    help="Parts that must leave the bowl: 120/min.  [needed with PART]",
-)
+TARGET = options.target("Parts that must leave the bowl: 120/min.  [needed with PART]")
 ASPECT = click.option(
     "--aspect",
     metavar="NAME",
     help="Aspect that must leave the bowl.  [default: every one that passes the track and the devices]",
 )
 
-SOLID = (
+SOLID_OPTIONS = (
     click.option("--solid", is_flag=True, help="Make the bowl as one closed body: STL, 3MF and a drawing."),
     click.option(
         "--print",
@@ -40,7 +34,7 @@ SOLID = (
         "[default: dowels]",
     ),
     click.option("--step", is_flag=True, help="Write bowl.step, of exact faces; needs feederscrew[cad]."),
-    quantity.with_default(
+    options.quantity(
         "--chord",
         "length",
         "0.05 mm",
@@ -50,27 +44,14 @@ SOLID = (
 )
 
 
-def _wanted(command):
-    """The options of ``orientation.CHAIN``, none of them required."""
-    for option in reversed((TARGET, ASPECT, *orientation.CHAIN[1:])):
-        command = option(command)
-    return command
-
-
-def _of_the_solid(command):
-    """The options of SOLID, packed as ``made``."""
-    return options.stacked(
-        options.packed(command, "made", ("solid", "material", "chord", "bed", "join", "step")), *SOLID
-    )
-
-
 @grouped.command(
     short_help="Size the bowl for a part and a rate; its springs, tuning and drift.",
     rare=("heading", "gap", "fill", "material", "bed", "join", "step", "chord"),
 )
 @options.optional_part
-@_wanted
-@_of_the_solid
+@TARGET
+@options.group("wanted", ASPECT, *orientation.CHAIN_OPTIONS[1:])
+@options.group("solid_request", *SOLID_OPTIONS)
 @click.option(
     "--measured",
     metavar="VALUES",
@@ -81,7 +62,7 @@ def _of_the_solid(command):
 @options.title_block
 @options.pictures
 @options.output
-def bowl(part, target, made, measured, bowl, fields, pictures, out, **wanted):
+def bowl(part, target, solid_request, measured, bowl, fields, pictures, out, wanted):
     """Example: feeder bowl parts/lbracket_30x20x15.stl --target 60/min -o results
 
     With PART and --target: the diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs
@@ -106,9 +87,9 @@ def bowl(part, target, made, measured, bowl, fields, pictures, out, **wanted):
     from feederscrew.studies import bowl as study
     from feederscrew.studies import solidbowl as solids
 
-    _fitting(part, target, made, measured)
+    _fitting(part, target, solid_request, measured)
     if measured is not None:
-        _found(bowl, measured, out)
+        _diagnose(bowl, measured, out)
         return
     settings, path = bowls.settings(**bowl), bowl["path"]
     out.warn(*bowls.assumptions(settings))
@@ -118,35 +99,35 @@ def bowl(part, target, made, measured, bowl, fields, pictures, out, **wanted):
     name = solid.name if solid else bowls.name(path)
     with out.folder(name, identity | bowls.identity(path), effective) as folder:
         waiting.conveying(out)
-        shape = solids.asked(settings, **made)
+        shape = solids.solid_options(settings, **solid_request)
         tried, own = bowls.verified(path), (solid, bowls.record(settings), orientation.name(wanted))
         holding = tried if proof.holds(tried, *own) else None
         try:
-            found = (
+            sheet = (
                 study.bowl(settings, solid, target, **wanted, solid=shape, as_tried=holding is not None)
                 if solid
                 else study.machine(settings)
             )
         except FeederError as fault:  # a bowl that was tried has its machine, whatever the static rule says
-            if made["solid"] or holding is None:
+            if solid_request["solid"] or holding is None:
                 raise
             out.warn(f"{fault}; what follows is the machine as it was tried")
-            found = study.machine(settings)
-        out.warn(*found.remarks, *proof.warnings(tried, *own))
-        made_of = machine.offers(found, holding, fields=marking.SheetFields(**fields))
+            sheet = study.machine(settings)
+        out.warn(*sheet.remarks, *proof.warnings(tried, *own))
+        made_of = machine.offers(sheet, holding, fields=marking.SheetFields(**fields))
         offers.write(folder, made_of, pictures=pictures)
-        document = proof.beside(machine.document(found), tried, *own)
-        out.show(machine.summary(found, holding), document)
+        document = proof.with_trial(machine.document(sheet), tried, *own)
+        out.show(machine.summary(sheet, holding), document)
 
 
 def _typed_options(*names):
     """The options, as '--bed', of those parameters that the user typed."""
     context = click.get_current_context()
     typed = [name for name in names if context.get_parameter_source(name) is ParameterSource.COMMANDLINE]
-    yield from (one.opts[0] for one in context.command.params if one.name in typed)
+    yield from (option.opts[0] for option in context.command.params if option.name in typed)
 
 
-def _found(bowl, measured, out):
+def _diagnose(bowl, measured, out):
     """The machine of a bowl file as it was found."""
     from feederscrew import bowl as bowls
     from feederscrew.machine import condition
@@ -154,23 +135,23 @@ def _found(bowl, measured, out):
     from feederscrew.studies import bowl as study
 
     values = condition.read(measured)
-    found = condition.diagnose(study.machine(bowls.settings(**bowl)), values)
-    out.show(machine.measured_summary(found), machine.measured_document(found))
+    diagnosis = condition.diagnose(study.machine(bowls.settings(**bowl)), values)
+    out.show(machine.measured_summary(diagnosis), machine.measured_document(diagnosis))
 
 
-def _fitting(part, target, made, measured):
+def _fitting(part, target, solid_request, measured):
     """Wrong calls."""
     if measured is not None and part["source"]:
         raise click.UsageError("--measured is given with PART - leave PART out: the bowl file says it all")
-    if made["solid"] and not part["source"]:
+    if solid_request["solid"] and not part["source"]:
         raise click.UsageError("--solid is given without PART - name the part's file")
-    if not made["solid"]:
+    if not solid_request["solid"]:
         for option in _typed_options("material", "bed", "step", "chord"):
             raise click.UsageError(f"{option} is given without --solid - add --solid")
     if not part["source"]:
-        for option in _typed_options(*options.READING, *orientation.WANTED):
+        for option in _typed_options(*options.names(*options.READING, *orientation.CHAIN_OPTIONS)):
             raise click.UsageError(f"{option} is given without PART - name the part's file")
-    if made["join"] and not made["bed"]:
+    if solid_request["join"] and not solid_request["bed"]:
         raise click.UsageError("--join is given without --bed - give the printer's bed: --bed 220x220x250mm")
     if part["source"] and target is None:
         raise click.UsageError("PART is given without --target - give the rate as well: --target 120/min")

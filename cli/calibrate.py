@@ -3,13 +3,12 @@
 import click
 
 from feederscrew_cli import grouped, options
+from feederscrew_cli.values import Place
 
 
 @grouped.command(short_help="Fit the surface exponent to your own counts.")
 @options.part
-@click.option(
-    "--with", "counts", metavar="CSV", required=True, type=options.Place(), help="Counted parts by aspect."
-)
+@click.option("--with", "counts", metavar="CSV", required=True, type=Place(), help="Counted parts by aspect.")
 @options.output
 def calibrate(part, counts, out):
     """Example: feeder calibrate parts/lbracket_30x20x15.stl --with counts.csv

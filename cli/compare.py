@@ -5,11 +5,12 @@ from pathlib import Path
 import click
 
 from feederscrew_cli import grouped, options, orientation, waiting
+from feederscrew_cli.values import Place
 
 
 @grouped.command(short_help="Measured aspects against every rule, of one part or over many files.")
 @options.parts
-@click.option("--with", "counts", metavar="CSV", type=options.Place(), help="Counts or fractions of PART.")
+@click.option("--with", "counts", metavar="CSV", type=Place(), help="Counts or fractions of PART.")
 @click.option(
     "--launch", type=options.LAUNCHES, help="What was done to PART.  [default: as the file says, else feed]"
 )
@@ -53,11 +54,11 @@ def compare(sources, reading, counts, launch, as_published, bowl, pictures, out)
     The acceptance.csv of `feeder design`, filled in at the machine, is read back: it says line by line
     what agrees with what was computed.
     """
-    from feederscrew.designing import accepting
+    from feederscrew.designing import acceptance_sheet
 
     if bowl is not None:
         _fitted(sources, bowl, out)
-    elif counts is None and len(sources) == 1 and accepting.is_sheet(sources[0]):
+    elif counts is None and len(sources) == 1 and acceptance_sheet.is_sheet(sources[0]):
         _accepted(sources[0], out)
     elif counts is None:
         _over_files(sources, launch, as_published, pictures, out)
@@ -90,10 +91,10 @@ def _fitted(sources, bowl, out):
 
 def _accepted(source, out):
     """A filled-in acceptance sheet."""
-    from feederscrew.designing import accepting
+    from feederscrew.designing import acceptance_sheet
     from feederscrew.output import designs
 
-    lines = accepting.sheet(source)
+    lines = acceptance_sheet.sheet(source)
     out.show(designs.accepted_summary(lines), designs.accepted_document(lines))
 
 
@@ -128,5 +129,5 @@ def _over_files(sources, launch, as_published, pictures, out):
     out.warn(*study.warnings)
     with out.folder("measured", study.inputs) as folder:
         offers.write(folder, compare_output.sets_offers(study), pictures=pictures)
-    for shown in compare_output.sets_printed(study, out.format):
-        out.show(shown, compare_output.sets_document(study), spare=compare_output.SPARE_RULES)
+    for frame in compare_output.sets_printed(study, out.format):
+        out.show(frame, compare_output.sets_document(study), spare=compare_output.SPARE_RULES)

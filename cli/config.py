@@ -102,9 +102,9 @@ def show(bowl, out):
     from feederscrew.bowl import identity, name, settings, texts
     from feederscrew.output import slide, tables
 
-    given, path = settings(**bowl), bowl["path"]
-    frame = slide.settings(given)
-    with out.folder(name(path), identity(path), texts(given)) as folder:
+    bowl_settings, path = settings(**bowl), bowl["path"]
+    frame = slide.settings(bowl_settings)
+    with out.folder(name(path), identity(path), texts(bowl_settings)) as folder:
         if folder:
             folder.write("config.csv", tables.text(frame, "csv"))
     out.show(frame, {"settings": frame}, hidden=("lowest", "highest", "meaning"))

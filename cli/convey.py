@@ -6,7 +6,7 @@ import click
 
 from feederscrew_cli import completion, grouped, options, waiting
 
-WAYS = {1: "convey curve", 2: "convey map"}  # by how many keys are varied
+COMMAND_BY_RANGES = {1: "convey curve", 2: "convey map"}  # by how many keys are varied
 
 
 @grouped.command(short_help="How fast a part travels on the track, and how.")
@@ -41,7 +41,7 @@ def convey(bowl, spans, curve, best_phase, pictures, out):
     _fitting(spans, curve, best_phase)
     settings, ranges, path = out.settings(bowl), bowls.key_ranges(spans), bowl["path"]
     alone = "convey radius" if curve else "convey phase" if best_phase else "convey"
-    out = replace(out, command=WAYS[len(ranges)] if ranges else alone)
+    out = replace(out, command=COMMAND_BY_RANGES[len(ranges)] if ranges else alone)
     with out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings)) as folder:
         if len(ranges) == 2:
             _map(settings, ranges, curve, pictures, folder, out)
@@ -57,7 +57,7 @@ def _fitting(spans, curve, best_phase):
     """Wrong calls."""
     if best_phase and (spans or curve):
         raise click.UsageError("--best-phase stands alone - leave out --vary and --bowl")
-    if len(spans) > len(WAYS):
+    if len(spans) > len(COMMAND_BY_RANGES):
         raise click.UsageError(
             f"--vary is given {len(spans)} times - give it once for a curve, twice for a map"
         )
@@ -71,10 +71,10 @@ def _point(settings, pictures, folder, out):
     from feederscrew.output import offers
     from feederscrew.studies import convey as studies
 
-    found, texts = studies.convey(bowls.record(settings)), bowls.texts(settings)
-    document = convey_output.document(found) | {"bowl": texts}
-    out.warn(*convey_output.remarks(document), *found.warnings)
-    offers.write(folder, convey_output.offers(found, texts), pictures=pictures)
+    study, texts = studies.convey(bowls.record(settings)), bowls.texts(settings)
+    document = convey_output.document(study) | {"bowl": texts}
+    out.warn(*convey_output.remarks(document), *study.warnings)
+    offers.write(folder, convey_output.offers(study, texts), pictures=pictures)
     out.show(convey_output.summary(document), document, spare=())
 
 
@@ -85,10 +85,10 @@ def _map(settings, ranges, curve, pictures, folder, out):
 
     waiting.conveying(out)
     with out.step("map"):
-        found = studies.velocity_map(settings, ranges, drawn="radius" if curve else None)
-    out.say(*convey_output.map_remarks(found))
-    offers.write(folder, convey_output.map_offers(found), pictures=pictures)
-    frame = convey_output.cells(found)
+        study = studies.velocity_map(settings, ranges, drawn="radius" if curve else None)
+    out.say(*convey_output.map_remarks(study))
+    offers.write(folder, convey_output.map_offers(study), pictures=pictures)
+    frame = convey_output.cells(study)
     out.show(frame, {"cells": frame})
 
 
@@ -99,10 +99,10 @@ def _curve(settings, ranges, pictures, folder, out):
     from feederscrew.studies import convey as studies
 
     waiting.conveying(out)
-    found = studies.curve(settings, *ranges) if ranges else studies.along_radius(bowls.record(settings))
-    out.say(*convey_output.curve_remarks(found))
-    offers.write(folder, convey_output.curve_offers(found), pictures=pictures)
-    frame = convey_output.points(found)
+    study = studies.curve(settings, *ranges) if ranges else studies.along_radius(bowls.record(settings))
+    out.say(*convey_output.curve_remarks(study))
+    offers.write(folder, convey_output.curve_offers(study), pictures=pictures)
+    frame = convey_output.points(study)
     out.show(frame, {"cells": frame})
 
 
@@ -113,7 +113,7 @@ def _phase(settings, pictures, folder, out):
     from feederscrew.studies import convey as studies
 
     waiting.conveying(out)
-    found, texts = studies.best_phase(bowls.record(settings)), bowls.texts(settings)
-    best = convey_output.phase_document(found.best)
-    offers.write(folder, convey_output.phase_offers(found, texts), pictures=pictures)
+    study, texts = studies.best_phase(bowls.record(settings)), bowls.texts(settings)
+    best = convey_output.phase_document(study.best)
+    offers.write(folder, convey_output.phase_offers(study, texts), pictures=pictures)
     out.show(convey_output.phase_summary(best), {"best_phase": best, "bowl": texts})

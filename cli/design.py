@@ -6,19 +6,12 @@ import os
 
 import click
 
-from feederscrew_cli import grouped, options, orientation, quantity, waiting
-from feederscrew_cli.angle import Angle
+from feederscrew_cli import grouped, options, orientation, waiting
 from feederscrew_cli.interrupt import INTERRUPTED, held_back, noted
-from feederscrew_cli.quantity import Quantity
-from feederscrew_cli.span import Span
+from feederscrew_cli.values import Angle, Span, Whole
 
 REQUEST = (  # what shall leave, and what may be used
-    click.option(
-        "--target",
-        type=Quantity("rate", positive=True),
-        metavar="RATE",
-        help="Parts that must leave the bowl: 60/min.",
-    ),
+    options.target("Parts that must leave the bowl: 60/min."),
     click.option(
         "--aspect",
         metavar="NAME",
@@ -59,7 +52,7 @@ REQUEST = (  # what shall leave, and what may be used
         metavar="LOW:HIGH",
         help="Least and greatest diameter of the bowl: 200mm:400mm.",
     ),
-    quantity.with_default(
+    options.quantity(
         "--tolerance", "length", "0.1 mm", "How much larger or smaller than its file a part may be."
     ),
     click.option(
@@ -67,7 +60,7 @@ REQUEST = (  # what shall leave, and what may be used
         "budget",
         cls=options.Renamed,
         former=("--budget",),
-        type=options.Whole(1, 1000),
+        type=Whole(1, 1000),
         default=16,
         show_default=True,
         help="Short trials of the search, at most.",
@@ -79,29 +72,14 @@ REQUEST = (  # what shall leave, and what may be used
     ),
     click.option(
         "--draws",
-        type=options.Whole(1, 1000),
+        type=Whole(1, 1000),
         default=20,
         show_default=True,
         help="Trials of the answer with part, friction, drive and cuts drawn from their spread.",
     ),
-    click.option(
-        "--seed",
-        type=options.Whole(0),
-        default=1,
-        show_default=True,
-        help="Seed of everything that is drawn.",
-    ),
-    click.option("--jobs", type=options.Whole(1, 256), metavar="N", help="Cores to use.  [default: all]"),
+    options.seed("Seed of everything that is drawn."),
+    options.jobs,
 )
-REQUESTED = (
-    "target", "aspect", "heading", "up", "outcome", "without", "drive", "diameter", "tolerance", "budget",
-    "alternatives", "draws", "seed", "jobs",
-)  # fmt: skip
-
-
-def _asked(command):
-    """What shall leave, and what may be used; the command receives ``asked``."""
-    return options.stacked(options.packed(command, "asked", REQUESTED), *REQUEST)
 
 
 @grouped.command(
@@ -109,8 +87,8 @@ def _asked(command):
     rare=("heading", "budget", "draws", "tolerance"),
 )
 @options.part
-@click.argument("others", metavar="[PART...]", nargs=-1, type=options.FILE)
-@_asked
+@click.argument("more_parts", metavar="[PART...]", nargs=-1, type=options.FILE)
+@options.group("request_options", *REQUEST)
 @click.option(
     "--batch", "listed", is_flag=True, help="PART is a list of parts and targets: part,target,aspect."
 )
@@ -119,7 +97,7 @@ def _asked(command):
 @options.bowl
 @options.pictures
 @options.output
-def design(part, others, asked, listed, rule, taken, bowl, pictures, out):
+def design(part, more_parts, request_options, listed, rule, taken, bowl, pictures, out):
     """Example: feeder design parts/washer_m6.stl --target 40/min -o results
 
     Which way up to feed PART, the chain of devices, the track and the drive. Each proposal is tried, and
@@ -146,16 +124,16 @@ def design(part, others, asked, listed, rule, taken, bowl, pictures, out):
     bowl, with the bowl as a solid. Drawings of what falls short bear a mark across; what delivers nothing
     has none.
     """
-    if asked["target"] is None and not listed:
+    if request_options["target"] is None and not listed:
         raise click.MissingParameter(
             ctx=click.get_current_context(),
             param=next(p for p in click.get_current_context().command.params if p.name == "target"),
         )
-    if others or listed:
-        _of_one_part(asked, taken, part)
-    if others and listed:
+    if more_parts or listed:
+        _of_one_part(request_options, taken, part)
+    if more_parts and listed:
         raise click.UsageError("--batch goes with one list - or name the parts without it")
-    orientation.of_an_aspect(asked)
+    orientation.of_an_aspect(request_options)
     with held_back():
         from feederscrew import bowl as bowls
         from feederscrew.designing import loop
@@ -164,26 +142,26 @@ def design(part, others, asked, listed, rule, taken, bowl, pictures, out):
 
     settings = bowls.settings(**bowl)
     out.warn(*bowls.assumptions(settings))
-    record, given = bowls.record(settings), {s.key.name for s in settings if s.is_own}
-    own = asked | {"jobs": asked["jobs"] or os.cpu_count(), "rule": rule}
+    record, user_keys = bowls.record(settings), {s.key.name for s in settings if s.is_own}
+    own = request_options | {"jobs": request_options["jobs"] or os.cpu_count(), "rule": rule}
     if listed:
-        _batch(out, part, own, (record, given), (settings, bowl["path"], pictures))
+        _batch(out, part, own, (record, user_keys), (settings, bowl["path"], pictures))
         return
     request = DesignRequest(**own)
     named = any(value is not None for value in taken.values())
-    if others:
-        parts = [out.part(part | {"source": source}) for source in (part["source"], *others)]
-        _family(out, parts, (record, given, request), (settings, bowl["path"], pictures))
+    if more_parts:
+        parts = [out.part(part | {"source": source}) for source in (part["source"], *more_parts)]
+        _family(out, parts, (record, user_keys, request), (settings, bowl["path"], pictures))
         return
     solid = out.part(part)
-    known = orientation.shares(out, solid, record, taken, rule) if named else None
-    inputs = solid.inputs | (known.inputs if known else {}) | bowls.identity(bowl["path"])
+    aspect_shares = orientation.shares(out, solid, record, taken, rule) if named else None
+    inputs = solid.inputs | (aspect_shares.inputs if aspect_shares else {}) | bowls.identity(bowl["path"])
     with _folder(out, solid, inputs, settings) as folder:
         with _stoppable(out) as search:
-            found = loop.design(solid, record, given, request, known=known, **search)
-        found = _written(out, folder, found, settings, pictures)
-        out.show(designs.summary(found), designs.document(found))
-    _ended(found)
+            study = loop.design(solid, record, user_keys, request, shares=aspect_shares, **search)
+        study = _written(out, folder, study, settings, pictures)
+        out.show(designs.summary(study), designs.document(study))
+    _ended(study)
 
 
 def _batch(out, part, own, bowl, written):
@@ -195,26 +173,26 @@ def _batch(out, part, own, bowl, written):
     from feederscrew.errors import FeederError
     from feederscrew.output import designs, offers
 
-    (settings, path, pictures), (record, given) = written, bowl
+    (settings, path, pictures), (record, user_keys) = written, bowl
     orders = design_list.read_orders(part["source"])
     lacks = next((order for order in orders if (order.target or own["target"]) is None), None)
     if lacks:
         raise click.UsageError(f"{lacks.line} has no target, nor has the call - add --target 40/min")
     rows = []
     for order in orders:
-        asked = own | {"target": order.target or own["target"], "aspect": order.aspect}
+        values = own | {"target": order.target or own["target"], "aspect": order.aspect}
         out.say(f"{order.line}: {order.source}")
         try:
             solid = out.part(part | {"source": order.source})
             with _folder(out, solid, solid.inputs | bowls.identity(path), settings) as folder:
                 with _stoppable(out) as search:
-                    study = loop.design(solid, record, given, DesignRequest(**asked), **search)
+                    study = loop.design(solid, record, user_keys, DesignRequest(**values), **search)
                 study = _written(out, folder, study, settings, pictures)
         except FeederError as fault:
             out.say(f"Error: {fault}")
-            rows.append(design_list.row_of_fault(order, asked["target"], fault))
+            rows.append(design_list.row_of_fault(order, values["target"], fault))
             continue
-        rows.append(design_list.row_of(order, asked["target"], designs.document(study)))
+        rows.append(design_list.row_of(order, values["target"], designs.document(study)))
         if study.partial:
             break
     inputs = bowls.identity(part["source"]) | bowls.identity(path)
@@ -226,27 +204,27 @@ def _batch(out, part, own, bowl, written):
     click.get_current_context().exit(int(any(row["status"] == design_list.FAILED for row in rows)))
 
 
-def _ended(found):
+def _ended(study):
     """End as stopped where the user stopped it: what is not proved is no success."""
-    if found.partial:
+    if study.partial:
         click.get_current_context().exit(INTERRUPTED)
 
 
 @contextlib.contextmanager
 def _stoppable(out):
     """What tells of a search, and ends it where a Ctrl-C was dropped while something loaded."""
-    with noted() as again:
-        shown = waiting.design(out)
+    with noted() as let_through:
+        bar = waiting.design(out)
 
-        def told(text):
-            again()
-            shown.clear()
+        def tell(text):
+            let_through()
+            bar.clear()
             out.say(text)
 
         try:
-            yield {"told": told, "before": lambda: waiting.trial(out), "progress": shown.reach}
+            yield {"tell": tell, "before": lambda: waiting.trial(out), "progress": bar.reach}
         finally:
-            shown.end()
+            bar.end()
 
 
 OF_ONE = (
@@ -273,19 +251,19 @@ def _folder(out, solid, inputs, settings):
     return out.folder(solid.name, inputs, columns.conditions(solid) | bowls.texts(settings))
 
 
-def _written(out, folder, found, settings, pictures):
+def _written(out, folder, study, settings, pictures):
     """What one design leaves in its folder; returns the design with what its machine is out of limits in."""
-    from feederscrew.designing import beside
+    from feederscrew.designing import built_bowl
     from feederscrew.output import design_pages, designs, offers
 
-    made = beside.Built() if found.partial else beside.built(found, settings)
-    found = beside.with_machine(found, made)
-    if found.bowl is not None:  # read back and compared, whether or not it is kept
-        designs.bowl_file(found, settings, made.sheet)
-    out.warn(*found.warnings, *([f"no solid of the bowl is made: {made.why}"] if made.why else []))
-    if not (found.partial and _keeps_earlier(out, folder, "design.html")):
-        offers.write(folder, design_pages.offers(found, settings, made), pictures=pictures)
-    return found
+    built = built_bowl.Built() if study.partial else built_bowl.built(study, settings)
+    study = built_bowl.with_machine(study, built)
+    if study.bowl is not None:  # read back and compared, whether or not it is kept
+        designs.bowl_file(study, settings, built.sheet)
+    out.warn(*study.warnings, *([f"no solid of the bowl is made: {built.why}"] if built.why else []))
+    if not (study.partial and _keeps_earlier(out, folder, "design.html")):
+        offers.write(folder, design_pages.offers(study, settings, built), pictures=pictures)
+    return study
 
 
 def _keeps_earlier(out, folder, page):
@@ -297,7 +275,7 @@ def _keeps_earlier(out, folder, page):
     return True
 
 
-def _family(out, parts, asked, written):
+def _family(out, parts, problem, written):
     """Several parts for one bowl."""
     from feederscrew import bowl as bowls
     from feederscrew.designing import families
@@ -306,15 +284,15 @@ def _family(out, parts, asked, written):
     settings, path, pictures = written
     families.named_apart(parts)
     with _stoppable(out) as search:
-        found = families.family(parts, *asked, **search)
+        study = families.family(parts, *problem, **search)
     members = []
-    for one in found.members:
-        with _folder(out, one.part, one.part.inputs | bowls.identity(path), settings) as folder:
-            members.append(_written(out, folder, one, settings, pictures))
-    found = dataclasses.replace(found, members=tuple(members))
+    for member in study.members:
+        with _folder(out, member.part, member.part.inputs | bowls.identity(path), settings) as folder:
+            members.append(_written(out, folder, member, settings, pictures))
+    study = dataclasses.replace(study, members=tuple(members))
     inputs = {name: value for part in parts for name, value in part.inputs.items()}
     with out.folder("family", inputs | bowls.identity(path), bowls.texts(settings)) as folder:
-        if not (found.partial and _keeps_earlier(out, folder, "family.html")):
-            offers.write(folder, design_pages.family_offers(found), pictures=pictures)
-        out.show(design_pages.family_summary(found), design_pages.family_document(found))
-    _ended(found)
+        if not (study.partial and _keeps_earlier(out, folder, "family.html")):
+            offers.write(folder, design_pages.family_offers(study), pictures=pictures)
+        out.show(design_pages.family_summary(study), design_pages.family_document(study))
+    _ended(study)

@@ -16,5 +16,5 @@ def doctor():
 
     for title, lines in health.report().items():
         click.echo(click.style(title, bold=True))
-        for name, shown in lines:
-            click.echo(f"  {name:<20} {shown}")
+        for name, value in lines:
+            click.echo(f"  {name:<20} {value}")

@@ -7,38 +7,40 @@ import click
 from feederscrew_cli import grouped, options, tosses, waiting
 from feederscrew_cli import plate as plates
 from feederscrew_cli.interrupt import held_back
+from feederscrew_cli.values import Whole
 
-
-def conditions(command):
-    """A launch preset and the ranges that replace its own."""
-    for option in reversed(
-        [
-            options.launch,
-            click.option(
-                "--height",
-                "fall",
-                metavar="LENGTH",
-                help='Height from which it falls: "20 mm" or "5 mm:50 mm".',
-            ),
-            click.option("--spin", metavar="RATE", help='How fast it turns: "20 rad/s".'),
-            click.option("--speed", metavar="SPEED", help='Velocity along the plane: "0.3 m/s".'),
-            click.option(
-                "--restitution",
-                metavar="E",
-                help="Coefficient of restitution where a corner hits: 0.3 or 0.1:0.5.",
-            ),
-            click.option(
-                "--friction", metavar="MU", help="Coefficient of friction on the plane: 0.4 or 0.3:0.6."
-            ),
-        ]
-    ):
-        command = option(command)
-    return command
-
-
-def _tested(command):
-    """Hand over how often and how it is dropped; the command receives ``test``."""
-    return options.packed(command, "test", ("drops", "until", "seed", "jobs", "trace"))
+# a launch preset and the ranges that replace its own
+CONDITIONS = (
+    click.option(
+        "--height",
+        "fall",
+        metavar="LENGTH",
+        help='Height from which it falls: "20 mm" or "5 mm:50 mm".',
+    ),
+    click.option("--spin", metavar="RATE", help='How fast it turns: "20 rad/s".'),
+    click.option("--speed", metavar="SPEED", help='Velocity along the plane: "0.3 m/s".'),
+    click.option(
+        "--restitution",
+        metavar="E",
+        help="Coefficient of restitution where a corner hits: 0.3 or 0.1:0.5.",
+    ),
+    click.option("--friction", metavar="MU", help="Coefficient of friction on the plane: 0.4 or 0.3:0.6."),
+)
+TEST = (  # how often and how it is dropped
+    click.option(
+        "--drops",
+        type=Whole(1, 10**7),
+        help="How many drops.  [default: 10000; on a plate 400; 64 of each of --launches]",
+    ),
+    click.option(
+        "--until", metavar="SHARE", help='Go on until no 95 % interval is wider: "1%" to either side.'
+    ),
+    options.seed("Seed of the random launches."),
+    options.jobs,
+    click.option(
+        "--trace", type=Whole(1, 1000), metavar="K", help="With -o: the motion of the first K drops."
+    ),
+)
 
 
 @grouped.command(
@@ -46,26 +48,14 @@ def _tested(command):
     rare=("spin", "speed", "restitution", "friction", "trace", "launches", "amplitudes", "seconds"),
 )
 @options.part
-@conditions
-@click.option(
-    "--drops",
-    type=options.Whole(1, 10**7),
-    help="How many drops.  [default: 10000; on a plate 400; 64 of each of --launches]",
-)
-@click.option("--until", metavar="SHARE", help='Go on until no 95 % interval is wider: "1%" to either side.')
-@click.option(
-    "--seed", type=options.Whole(0), default=1, show_default=True, help="Seed of the random launches."
-)
-@click.option("--jobs", type=options.Whole(1, 256), metavar="N", help="Cores to use.  [default: all]")
-@click.option(
-    "--trace", type=options.Whole(1, 1000), metavar="K", help="With -o: the motion of the first K drops."
-)
+@options.launch
+@options.group("own", *CONDITIONS)
+@options.group("test", *TEST)
 @tosses.launches
 @plates.plate
 @options.pictures
 @options.output
-@_tested
-def drop(part, launch, test, launches, plate, pictures, out, **own):
+def drop(part, launch, test, launches, plate, pictures, own, out):
     """Example: feeder drop parts/lbracket_30x20x15.stl --launch feed --until 1% -o results
 
     Drop PART on a hard plane, again and again, and count the aspects it comes to rest on. Each launch is
@@ -112,8 +102,8 @@ def drop(part, launch, test, launches, plate, pictures, out, **own):
 
 def _fitting(until, trace, plate, out):
     """Wrong calls."""
-    for option, given in (("--until", until), ("--trace", trace)):
-        if plate and given:
+    for option, value in (("--until", until), ("--trace", trace)):
+        if plate and value:
             raise click.UsageError(f"{option} is for a plane at rest - leave out {option} or --plate")
     if trace and out.directory is None:
         raise click.UsageError("--trace writes files: give -o DIR as well")

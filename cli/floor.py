@@ -3,7 +3,7 @@
 import click
 
 from feederscrew_cli import grouped, options
-from feederscrew_cli.angle import Angle
+from feederscrew_cli.values import Angle
 
 
 @grouped.command(short_help="Forces and motion of a part on the bowl floor.")
@@ -32,12 +32,14 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out):
     from feederscrew.studies import floor as complete
     from feederscrew.thesis import motion as by_print
 
-    solid, given = out.part(part), out.settings(bowl)
-    conditions = columns.conditions(solid) | texts(given)
+    solid, bowl_settings = out.part(part), out.settings(bowl)
+    conditions = columns.conditions(solid) | texts(bowl_settings)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
-        found = (by_print if as_published else complete).floor(solid, record(given), aspect, heading=heading)
-        out.say(*floor_output.remarks(found), *(floor_output.map_remarks(found) if folder else ()))
-        offered = floor_output.offers(found, texts(given))
+        study = (by_print if as_published else complete).floor(
+            solid, record(bowl_settings), aspect, heading=heading
+        )
+        out.say(*floor_output.remarks(study), *(floor_output.map_remarks(study) if folder else ()))
+        offered = floor_output.offers(study, texts(bowl_settings))
         offers.write(folder, offered, pictures=pictures)
-    document = floor_output.document(found, texts(given))
+    document = floor_output.document(study, texts(bowl_settings))
     out.show(floor_output.printed(document, out.format), document)

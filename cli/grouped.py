@@ -5,18 +5,18 @@ import textwrap
 
 import click
 
-GROUPS = {  # heading: names of the options that commands share
+OPTION_GROUPS = {  # heading: names of the options that commands share
     "The part": ("units", "density", "centre_of_mass", "names", "body", "allow_open"),
     "The bowl": ("path", "paths", "overrides"),
     "How parts arrive": ("launch", "rule", "probabilities", "fed", "surface", "surface_exponent"),
     "The run": ("seed", "jobs"),
     "Output": ("pictures", "directory", "depfile", "format", "quiet", "verbose"),
 }
-HEADINGS = {name: heading for heading, names in GROUPS.items() for name in names}
-OWN = "Options"
+OPTION_HEADINGS = {name: heading for heading, names in OPTION_GROUPS.items() for name in names}
+OWN_OPTIONS = "Options"
 COMMON = "Options of most commands"
 # shared options that few calls need
-RARE = {
+RARE_OPTIONS = {
     "centre_of_mass", "names", "allow_open", "body", "rule", "launch", "probabilities", "fed", "surface",
     "surface_exponent", "seed", "jobs", "pictures", "depfile", "quiet", "verbose",
 }  # fmt: skip
@@ -27,7 +27,7 @@ class Grouped(click.Command):
 
     def __init__(self, *arguments, rare=(), **keywords):
         super().__init__(*arguments, **keywords)
-        self.rare = RARE | set(rare)
+        self.rare = RARE_OPTIONS | set(rare)
         self.params.append(_help_all())
 
     def format_help_text(self, ctx, formatter):
@@ -41,14 +41,16 @@ class Grouped(click.Command):
 
     def format_options(self, ctx, formatter):
         """Write the command's own options, then those that it shares; the rare ones with --help-all."""
-        shown = [option for option in self.get_params(ctx) if isinstance(option, click.Option)]
+        listed = [option for option in self.get_params(ctx) if isinstance(option, click.Option)]
         if _is_whole(ctx):
-            self._write(ctx, formatter, {heading: _of(shown, heading) for heading in (OWN, *GROUPS)})
+            self._write(
+                ctx, formatter, {heading: _of(listed, heading) for heading in (OWN_OPTIONS, *OPTION_GROUPS)}
+            )
             return
-        often = [option for option in shown if option.name not in self.rare]
-        shared = [option for option in often if option.name in HEADINGS]
-        self._write(ctx, formatter, {OWN: _of(often, OWN), COMMON: shared})
-        rare = [max(option.opts, key=len) for option in shown if option.name in self.rare]
+        often = [option for option in listed if option.name not in self.rare]
+        shared = [option for option in often if option.name in OPTION_HEADINGS]
+        self._write(ctx, formatter, {OWN_OPTIONS: _of(often, OWN_OPTIONS), COMMON: shared})
+        rare = [max(option.opts, key=len) for option in listed if option.name in self.rare]
         if rare:
             formatter.write_paragraph()
             text = f"Rare, see --help-all: {', '.join(rare)}"
@@ -64,7 +66,7 @@ class Grouped(click.Command):
 
 def _of(options, heading):
     """Those of a heading."""
-    return [option for option in options if HEADINGS.get(option.name, OWN) == heading]
+    return [option for option in options if OPTION_HEADINGS.get(option.name, OWN_OPTIONS) == heading]
 
 
 def _is_whole(ctx):

@@ -27,11 +27,13 @@ def headings(part, aspect, bowl, pictures, out):
     from feederscrew.output import headings as headings_output
     from feederscrew.studies.headings import headings as study
 
-    solid, given = out.part(part), out.settings(bowl)
-    conditions = columns.conditions(solid) | texts(given)
+    solid, bowl_settings = out.part(part), out.settings(bowl)
+    conditions = columns.conditions(solid) | texts(bowl_settings)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
-        found = study(solid, record(given), aspect)
-        out.say(headings_output.answer(found), *headings_output.remarks(found))
-        offers.write(folder, headings_output.offers(found, texts(given)), pictures=pictures)
-    shown, document = headings_output.frame(found), headings_output.document(found, texts(given))
-    out.show(shown, document, hidden=headings_output.HIDDEN, spare=headings_output.SPARE)
+        result = study(solid, record(bowl_settings), aspect)
+        out.say(headings_output.answer(result), *headings_output.remarks(result))
+        offers.write(folder, headings_output.offers(result, texts(bowl_settings)), pictures=pictures)
+    frame, document = headings_output.frame(result), headings_output.document(result, texts(bowl_settings))
+    out.show(
+        frame, document, hidden=headings_output.HIDDEN_HEADING_COLUMNS, spare=headings_output.SPARE_COLUMNS
+    )

@@ -11,7 +11,7 @@ import feederscrew
 
 DISTRIBUTION = "feederscrew"
 EXTRA = re.compile(r"extra\s*==\s*['\"]([^'\"]+)['\"]")
-NAME = re.compile(r"[A-Za-z0-9._-]+")
+PACKAGE_NAME = re.compile(r"[A-Za-z0-9._-]+")
 DEVELOPERS = ("test", "oracle", "docs")  # extras that a user has no need of
 KERNELS = "*.nbi"  # one index a compiled function
 SHELLS = ("bash", "zsh", "fish")
@@ -44,7 +44,7 @@ def requirements():
     extras: dict[str, list[str]] = {}
     needed = []
     for line in metadata.requires(DISTRIBUTION) or []:
-        named, extra = NAME.match(line), EXTRA.search(line)
+        named, extra = PACKAGE_NAME.match(line), EXTRA.search(line)
         name = named[0] if named else line
         if extra is None:
             needed.append(name)

@@ -22,12 +22,12 @@ def heeding(tell):
     For work that says how far it is, and that nothing of is given where it is stopped.
     """
 
-    def told(*values):
+    def tell_unless_stopped(*values):
         if was_heard():
             raise KeyboardInterrupt
         tell(*values)
 
-    return told
+    return tell_unless_stopped
 
 
 @contextlib.contextmanager
@@ -107,13 +107,13 @@ def noted():
         caught.append(received)
         raise KeyboardInterrupt
 
-    def again():
+    def let_through():
         if caught:
             raise KeyboardInterrupt
 
     before = signal.signal(signal.SIGINT, catch)
     try:
-        yield again
+        yield let_through
     finally:
         signal.signal(signal.SIGINT, before)
 
@@ -153,8 +153,11 @@ def ended_within(seconds):
 
 def _endings():
     """Signals that end the program, but for those that it was started to ignore, as by nohup."""
-    others = (getattr(signal, name, None) for name in ("SIGTERM", "SIGHUP"))  # Windows has the first only
-    return [signal.SIGINT, *(one for one in others if one and signal.getsignal(one) is signal.SIG_DFL)]
+    signals = (getattr(signal, name, None) for name in ("SIGTERM", "SIGHUP"))  # Windows has the first only
+    return [
+        signal.SIGINT,
+        *(number for number in signals if number and signal.getsignal(number) is signal.SIG_DFL),
+    ]
 
 
 def _leave(children):

@@ -17,16 +17,18 @@ from feederscrew.units import printable
 from feederscrew_cli import argument_names
 from feederscrew_cli.interrupt import INTERRUPTED, listening, was_heard
 
-GROUPS = {  # heading: commands, in the order of a job
+COMMAND_GROUPS = {  # heading: commands, in the order of a job
     "Design": ("design", "tooling", "trial", "bowl", "report"),
     "Part": ("aspects", "drop", "inertia", "compare", "calibrate"),
     "Bowl": ("rate", "tune", "convey", "slide", "floor", "track", "headings"),
     "Files": ("batch", "config", "serve", "doctor", "reproduce"),
 }
-COMMANDS = {name: f"feederscrew_cli.{name}" for names in GROUPS.values() for name in names}
+COMMANDS = {name: f"feederscrew_cli.{name}" for names in COMMAND_GROUPS.values() for name in names}
 COLOUR = False if os.environ.get("NO_COLOR") else None  # None: on a terminal only
 NO_CHOICE = re.compile(r"'([^']*)' is not one of")
-SELDOM = 20_000  # objects made between two searches for garbage: libraries make hardly any as they load
+GARBAGE_THRESHOLD = (
+    20_000  # objects made between two searches for garbage: libraries make hardly any as they load
+)
 WRONG_DATA, WRONG_CALL = 1, 2  # the second as click ends for a value that it checks itself
 PIPE_CLOSED = 141  # what a shell reports of any filter whose reader went away
 
@@ -53,7 +55,7 @@ class Fence(click.Group):
 
     def format_commands(self, ctx, formatter):
         """Write the commands by group."""
-        for heading, names in GROUPS.items():
+        for heading, names in COMMAND_GROUPS.items():
             with formatter.section(heading):
                 formatter.write_dl([(name, self.commands[name].short_help) for name in names])
 
@@ -61,7 +63,7 @@ class Fence(click.Group):
         """Run one command line and leave the interpreter."""
         arguments = list(sys.argv[1:] if args is None else args)
         _take_any_name()
-        gc.set_threshold(SELDOM)
+        gc.set_threshold(GARBAGE_THRESHOLD)
         with listening(ends=args is None) as finish:
             try:
                 status = self._status(arguments, extra)

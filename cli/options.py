@@ -1,37 +1,16 @@
 """Every option that two commands share, once."""
 
 import functools
-import re
 from typing import Any
 
 import click
 
 from feederscrew_cli import completion, talk
-
-
-class Place(click.Path):
-    """A path; the library says what is wrong with it, unless it is none, as of an unset shell variable."""
-
-    def convert(self, value, param, ctx):
-        """The path as typed, or a wrong call."""
-        return (
-            super().convert(value, param, ctx) if value else self.fail("is empty - give a path", param, ctx)
-        )
-
+from feederscrew_cli.values import LengthUnit, Place, Quantity, Whole
 
 FILE = Place(allow_dash=True)
-MICRO_SIGNS = str.maketrans("\u00b5\u03bc", "uu")  # the sign of its own, and the Greek letter
-
-
-class LengthUnit(click.Choice):
-    """A unit of a file; that of a micrometre also with its sign."""
-
-    def convert(self, value, param, ctx):
-        """The unit, or a wrong call."""
-        return super().convert(value.translate(MICRO_SIGNS) if isinstance(value, str) else value, param, ctx)
-
-
-UNITS = LengthUnit(["mm", "cm", "m", "um", "in"])
+METAVARS = {"length": "LENGTH", "number": "SHARE", "time": "TIME"}
+LENGTH_UNITS = LengthUnit(["mm", "cm", "m", "um", "in"])
 LAUNCHES = click.Choice(["place", "drop", "flip", "roll", "feed", "tumble"])  # the last: once that of roll
 
 
@@ -44,16 +23,12 @@ class Named(click.Option):
 
     def get_help_record(self, context):
         """The help with the names behind it."""
-        shown = self.help or ""
-        self.help = f"{shown.removesuffix('.')}: {', '.join(self.names())}."
+        text = self.help or ""
+        self.help = f"{text.removesuffix('.')}: {', '.join(self.names())}."
         try:
             return super().get_help_record(context)
         finally:
-            self.help = shown
-
-
-WHOLE = re.compile(r"[+-]?[0-9]{1,30}")
-DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+            self.help = text
 
 
 class Renamed(click.Option):
@@ -75,50 +50,38 @@ class Renamed(click.Option):
         return names, f"{text}  (once {former})"
 
 
-class Number(click.FloatRange):
-    """A number within limits, of the digits 0 to 9; not 'nan', which is within any."""
-
-    name = "number"
-
-    def convert(self, value, param, ctx):
-        """The number, or a wrong call."""
-        if isinstance(value, str) and not DECIMAL.fullmatch(value.strip()):
-            self.fail(f"{value!r} is not a number", param, ctx)
-        number = super().convert(value, param, ctx)
-        return number if number == number else self.fail(f"{value!r} is not a number", param, ctx)
+def stacked(command, *decorators):
+    """The command with several decorators, the first outermost: options are listed in this order."""
+    for decorate in reversed(decorators):
+        command = decorate(command)
+    return command
 
 
-class Whole(click.IntRange):
-    """A whole number within limits, of the digits 0 to 9: Python takes those of other scripts, and '1_0'."""
+def names(*decorators):
+    """Return the names of the parameters that decorators add to a command."""
 
-    def convert(self, value, param, ctx):
-        """The number, or a wrong call."""
-        if isinstance(value, str) and not WHOLE.fullmatch(value.strip()):
-            self.fail(f"{value!r} is not a valid whole number - write digits, as 10", param, ctx)
-        return super().convert(value, param, ctx)
+    def bare():
+        """Take the options, to say their names."""
 
-
-def optional_part(command):
-    """As ``part``, but PART may be left out: its ``source`` is None then."""
-    return part(command, required=False)
+    return [option.name for option in stacked(bare, *decorators).__click_params__]
 
 
-def part(command, *, required=True):
-    """PART and how to read it; the command receives the keywords of ``feederscrew.part.load``."""
-    return stacked(
-        packed(command, "part", ("source", *READING)),
-        click.argument("source", metavar="PART" if required else "[PART]", type=FILE, required=required),
-        *_reading(),
-    )
+def group(name, *decorators, pack=dict):
+    """Return a decorator that adds options; the command receives all of them as the argument ``name``.
 
+    It is ``pack`` of them by keyword.
+    """
+    keywords = names(*decorators)
 
-def parts(command):
-    """PART or many FILEs, and how to read the part: ``sources`` and ``reading``."""
-    return stacked(
-        packed(command, "reading", READING),
-        click.argument("sources", metavar="PART|FILE...", nargs=-1, type=FILE, required=True),
-        *_reading(),
-    )
+    def decorate(command):
+        @functools.wraps(command)
+        def with_group(**options):
+            options[name] = pack(**{keyword: options.pop(keyword) for keyword in keywords})
+            return command(**options)
+
+        return stacked(with_group, *decorators)
+
+    return decorate
 
 
 def _known_density(context, option, value):
@@ -137,57 +100,59 @@ DENSITY = click.option(
     shell_complete=completion.materials,
     help='A material of `feeder config materials`, or a value, as "7.85 g/cm3".  [default: steel]',
 )
-READING = ("units", "density", "centre_of_mass", "names", "body", "allow_open")
+READING = (
+    click.option("--units", type=LENGTH_UNITS, help="Length unit of the file (STL has none).  [default: mm]"),
+    DENSITY,
+    click.option(
+        "--centre-of-mass",
+        metavar="X,Y,Z",
+        help="Where it is, in the file's units and axes, if the part is not homogeneous.",
+    ),
+    click.option(
+        "--names",
+        metavar="FILE",
+        type=Place(),
+        help="Names of its aspects (names.yaml of aspects -o): they stay when the ranks change.",
+    ),
+    click.option(
+        "--body",
+        metavar="BODY",
+        help="Which of several bodies in the file: its number, its name, or largest.",
+    ),
+    click.option("--allow-open", is_flag=True, help="Compute from an open surface; every output says so."),
+)
 
 
-def _reading():
-    """The options of READING."""
-    return (
-        click.option("--units", type=UNITS, help="Length unit of the file (STL has none).  [default: mm]"),
-        DENSITY,
-        click.option(
-            "--centre-of-mass",
-            metavar="X,Y,Z",
-            help="Where it is, in the file's units and axes, if the part is not homogeneous.",
-        ),
-        click.option(
-            "--names",
-            metavar="FILE",
-            type=Place(),
-            help="Names of its aspects (names.yaml of aspects -o): they stay when the ranks change.",
-        ),
-        click.option(
-            "--body",
-            metavar="BODY",
-            help="Which of several bodies in the file: its number, its name, or largest.",
-        ),
-        click.option(
-            "--allow-open", is_flag=True, help="Compute from an open surface; every output says so."
-        ),
-    )
+def _source(**keywords):
+    """The option group of a part; the command receives the keywords of ``feederscrew.part.load``."""
+    return group("part", click.argument("source", type=FILE, **keywords), *READING)
 
 
-def bowl(command):
-    """The bowl file; the command receives the keywords of ``feederscrew.bowl.read``."""
-    return stacked(
-        packed(command, "bowl", ("path", "overrides")),
-        click.option(
-            "--config", "path", metavar="FILE", type=FILE, help="Bowl file (YAML); without it, the defaults."
-        ),
-        overrides,
-    )
+part = _source(metavar="PART", required=True)
+optional_part = _source(metavar="[PART]", required=False)  # without it its ``source`` is None
 
 
-def overrides(command):
-    """``--set``; the command receives ``overrides``, a tuple of texts."""
-    return click.option(
-        "--set",
-        "overrides",
-        metavar="KEY=VALUE",
-        multiple=True,
-        shell_complete=completion.keys,
-        help='Override one value: --set drive.frequency="50 Hz".',
-    )(command)
+def parts(command):
+    """PART or many FILEs, and how to read the part: ``sources`` and ``reading``."""
+    sources = click.argument("sources", metavar="PART|FILE...", nargs=-1, type=FILE, required=True)
+    return stacked(command, sources, group("reading", *READING))
+
+
+overrides = click.option(
+    "--set",
+    "overrides",
+    metavar="KEY=VALUE",
+    multiple=True,
+    shell_complete=completion.keys,
+    help='Override one value: --set drive.frequency="50 Hz".',
+)
+bowl = group(  # the keywords of ``feederscrew.bowl.read``
+    "bowl",
+    click.option(
+        "--config", "path", metavar="FILE", type=FILE, help="Bowl file (YAML); without it, the defaults."
+    ),
+    overrides,
+)
 
 
 def _known_rule(context, option, value):
@@ -198,43 +163,54 @@ def _known_rule(context, option, value):
     return value
 
 
-def rule(command):
-    """``--rule``; the command receives its name."""
+rule = click.option(
+    "--rule",
+    default="recommended",
+    show_default=True,
+    metavar="NAME",
+    cls=Named,
+    names=completion.known_rules,
+    callback=_known_rule,
+    shell_complete=completion.rules,
+    help="Whose probabilities are taken.",
+)
+launch = click.option(
+    "--launch", type=LAUNCHES, default="feed", show_default=True, help="What is done to the part."
+)
+jobs = click.option("--jobs", type=Whole(1, 256), metavar="N", help="Cores to use.  [default: all]")
+
+
+def quantity(names, dimension, default, meaning, former=(), **bounds):
+    """Return an option of a quantity with a default, which its help shows; bounds as of ``Quantity``."""
+    renamed: Any = {"cls": Renamed, "former": former} if former else {}
     return click.option(
-        "--rule",
-        default="recommended",
+        *names.split(),
+        type=Quantity(dimension, **bounds),
+        default=default,
         show_default=True,
-        metavar="NAME",
-        cls=Named,
-        names=completion.known_rules,
-        callback=_known_rule,
-        shell_complete=completion.rules,
-        help="Whose probabilities are taken.",
-    )(command)
+        metavar=METAVARS[dimension],
+        help=meaning,
+        **renamed,
+    )
 
 
-def launch(command):
-    """``--launch``; the command receives its name."""
-    return click.option(
-        "--launch", type=LAUNCHES, default="feed", show_default=True, help="What is done to the part."
-    )(command)
+def target(meaning, *, required=False):
+    """Return ``--target``, the rate [1/s] that ``meaning`` speaks of."""
+    rate = Quantity("rate", positive=True)
+    return click.option("--target", type=rate, required=required, metavar="RATE", help=meaning)
 
 
-def listed(text):
-    """Return the names of a list that is typed with commas, as a tuple."""
-    return tuple(name.strip() for name in text.split(",") if name.strip())
+def seed(meaning):
+    """Return ``--seed``, of what ``meaning`` says."""
+    return click.option("--seed", type=Whole(0), default=1, show_default=True, help=meaning)
 
 
-def pictures(command):
-    """``--no-pictures``; the command receives ``pictures``, true unless it is given."""
-    return click.option(
-        "--no-pictures", "pictures", is_flag=True, flag_value=False, default=True, help="Tables only."
-    )(command)
-
-
+pictures = click.option(
+    "--no-pictures", "pictures", is_flag=True, flag_value=False, default=True, help="Tables only."
+)
 FORMAT = click.option(
     "--format",
-    type=click.Choice(talk.FORMATS),
+    type=click.Choice(talk.PRINT_FORMATS),
     default="table",
     show_default=True,
     help="What is printed on stdout.",
@@ -244,33 +220,28 @@ FORMAT = click.option(
 QUIET = click.option("-q", "--quiet", is_flag=True, help="Suppress warnings and messages.")
 
 
-def printed(command):
-    """``--format`` alone, for what writes no files; the command receives ``out``, a ``talk.Output``."""
-    return stacked(packed(command, "out", ("format",), talk.Output.of), FORMAT)
-
-
-def output(command):
-    """Where results and talk go; the command receives ``out``, a ``talk.Output``."""
-    return stacked(
-        packed(command, "out", ("directory", "depfile", "format", "quiet", "verbose"), talk.Output.of),
-        click.option(
-            "-o",
-            "--output",
-            "directory",
-            metavar="DIR",
-            type=Place(),
-            help="Write tables, pictures and run.json to DIR/<name>/.",
-        ),
-        click.option(
-            "--depfile",
-            metavar="FILE",
-            type=Place(),
-            help="Write a rule for make: what the files of -o are made from.",
-        ),
-        FORMAT,
-        QUIET,
-        click.option("-v", "--verbose", is_flag=True, help="Say what is read and how long each step takes."),
-    )
+printed = group("out", FORMAT, pack=talk.Output.of)  # of what writes no files
+output = group(
+    "out",
+    click.option(
+        "-o",
+        "--output",
+        "directory",
+        metavar="DIR",
+        type=Place(),
+        help="Write tables, pictures and run.json to DIR/<name>/.",
+    ),
+    click.option(
+        "--depfile",
+        metavar="FILE",
+        type=Place(),
+        help="Write a rule for make: what the files of -o are made from.",
+    ),
+    FORMAT,
+    QUIET,
+    click.option("-v", "--verbose", is_flag=True, help="Say what is read and how long each step takes."),
+    pack=talk.Output.of,
+)
 
 
 TITLE_LETTERS = 40  # of a field of the title block
@@ -283,29 +254,9 @@ def _title_text(context, option, value):
     return value
 
 
-def title_block(command):
-    """Fields of the title block of drawings; the command receives them as ``fields``, by keyword."""
-    named: Any = {"default": "", "callback": _title_text, "metavar": "TEXT"}
-    return stacked(
-        packed(command, "fields", ("date", "revision")),
-        click.option("--date", help="Date in the title block of the drawings.  [default: empty]", **named),
-        click.option("--rev", "revision", help="Revision, in the same place.  [default: empty]", **named),
-    )
-
-
-def packed(command, name, keywords, pack=dict):
-    """The command with several options handed to it as one argument: ``pack`` of them by keyword."""
-
-    @functools.wraps(command)
-    def handed(**options):
-        options[name] = pack(**{keyword: options.pop(keyword) for keyword in keywords})
-        return command(**options)
-
-    return handed
-
-
-def stacked(command, *decorators):
-    """The command with several decorators, the first outermost: options are listed in this order."""
-    for decorate in reversed(decorators):
-        command = decorate(command)
-    return command
+_TITLE: Any = {"default": "", "callback": _title_text, "metavar": "TEXT"}
+title_block = group(
+    "fields",
+    click.option("--date", help="Date in the title block of the drawings.  [default: empty]", **_TITLE),
+    click.option("--rev", "revision", help="Revision, in the same place.  [default: empty]", **_TITLE),
+)

@@ -5,10 +5,10 @@ from typing import Any
 
 import click
 
-from feederscrew_cli import options, quantity, waiting
-from feederscrew_cli.angle import Angle
+from feederscrew_cli import options, waiting
+from feederscrew_cli.values import Angle, Place, Whole
 
-CHAIN = (
+CHAIN_OPTIONS = (
     click.option(
         "--aspect", required=True, metavar="NAME", help="Aspect on which the part must leave the bowl."
     ),
@@ -20,45 +20,32 @@ CHAIN = (
         "[default: the most frequent that stays on the track]",
     ),
     options.rule,
-    quantity.with_default("--gap", "length", "0 mm", "Gap between one part and the next."),
-    quantity.with_default(
+    options.quantity("--gap", "length", "0 mm", "Gap between one part and the next."),
+    options.quantity(
         "--fill", "number", "1", "Share of the track that is occupied.", positive=True, most=1.0
     ),
 )
-WANTED = ("aspect", "heading", "rule", "gap", "fill")
-
-
-def chain(command):
-    """Add the options of the wanted orientation, and of what the rate depends on.
-
-    The command receives ``wanted``: ``aspect``, ``heading``, ``rule``, ``gap`` and ``fill``.
-    """
-    return options.stacked(options.packed(command, "wanted", WANTED), *CHAIN)
-
-
-def of_an_aspect(asked):
-    """Refuse a heading without the aspect that it is a heading of."""
-    if asked["heading"] is not None and asked["aspect"] is None:
-        raise click.UsageError("--heading is given without --aspect - name the aspect as well")
-
-
-def name(asked):
-    """Return the name of the orientation that is asked for, 'A@90', or of its aspect; None where none is."""
-    if asked["aspect"] is None or asked["heading"] is None:
-        return asked["aspect"]
-    return f"{asked['aspect']}@{round(math.degrees(asked['heading'])) % 360}"
-
-
 LEAVES_MOST = click.option(
     "--aspect",
     metavar="NAME",
     help="Aspect on which the part must leave the bowl.  [default: the one that leaves most often]",
 )
+# the wanted orientation, and what the rate depends on: aspect, heading, rule, gap and fill
+chain = options.group("wanted", *CHAIN_OPTIONS)
+any_chain = options.group("wanted", LEAVES_MOST, *CHAIN_OPTIONS[1:])  # where ``aspect`` may be left out
 
 
-def any_chain(command):
-    """As ``chain``, but ``aspect`` may be left out."""
-    return options.stacked(options.packed(command, "wanted", WANTED), LEAVES_MOST, *CHAIN[1:])
+def of_an_aspect(request):
+    """Refuse a heading without the aspect that it is a heading of."""
+    if request["heading"] is not None and request["aspect"] is None:
+        raise click.UsageError("--heading is given without --aspect - name the aspect as well")
+
+
+def name(request):
+    """Return the name of the orientation that is asked for, 'A@90', or of its aspect; None where none is."""
+    if request["aspect"] is None or request["heading"] is None:
+        return request["aspect"]
+    return f"{request['aspect']}@{round(math.degrees(request['heading'])) % 360}"
 
 
 LAUNCHED = click.option(
@@ -67,30 +54,21 @@ LAUNCHED = click.option(
     help="What is done to the part, on a floor at rest.  [default: fed onto the bowl's moving floor]",
 )
 FED = click.option(
-    "--fed", metavar="N", type=options.Whole(1, 10**6),
+    "--fed", metavar="N", type=Whole(1, 10**6),
     help="Feed N parts onto the moving floor.  [default: until every share is known to 2 %]",
 )  # fmt: skip
-SEED = click.option(
-    "--seed", type=options.Whole(0), default=1, show_default=True, help="Seed of the parts that are fed."
-)
+SEED_OPTION = options.seed("Seed of the parts that are fed.")
 PROBABILITIES = click.option(
     "--probabilities",
     metavar="CSV",
-    type=options.Place(),
+    type=Place(),
     help="Take the shares of a file of counts, or of drop.csv.",
 )
 
 
-def taken(command):
-    """Add the options that say whose shares of the aspects are taken; the command receives ``taken``."""
-    names = ("launch", "probabilities", "fed")
-    return options.stacked(options.packed(command, "taken", names), LAUNCHED, PROBABILITIES, FED)
-
-
-def taken_of_a_seed(command):
-    """Add the same with ``--seed``, for a command that has no seed of its own."""
-    names = ("launch", "probabilities", "fed", "seed")
-    return options.stacked(options.packed(command, "taken", names), LAUNCHED, PROBABILITIES, FED, SEED)
+# whose shares of the aspects are taken; with a seed for a command that has none of its own
+taken = options.group("taken", LAUNCHED, PROBABILITIES, FED)
+taken_of_a_seed = options.group("taken", LAUNCHED, PROBABILITIES, FED, SEED_OPTION)
 
 
 def shares(out, part, bowl, taken, rule):
@@ -107,34 +85,36 @@ def arriving(out, part, taken, rule):
     """Return a function from a bowl to what ``shares`` returns of it; it shows how far the first one is."""
     from feederscrew.studies import rate as study
 
-    known: dict[Any, Any] = {}  # Shares by their Bowl
+    shares_by_bowl: dict[Any, Any] = {}  # Shares by their Bowl
 
-    def found(bowl):
-        if bowl not in known:
-            values = {} if known else telling(out)
-            known[bowl] = study.shares(part, bowl, **choice(taken), rule=rule, **values)
-        return known[bowl]
+    def shares_of(bowl):
+        if bowl not in shares_by_bowl:
+            values = {} if shares_by_bowl else telling(out)
+            shares_by_bowl[bowl] = study.shares(part, bowl, **choice(taken), rule=rule, **values)
+        return shares_by_bowl[bowl]
 
-    return found
+    return shares_of
 
 
 def few(part, taken, rule):
     """Return the same function of few parts, sooner; None where nothing is fed, or as many as are named."""
     from feederscrew.studies import rate as study
-    from feederscrew.studies.tune import FEW
+    from feederscrew.studies.tune import ROUGH_PARTS
 
     if rule != "recommended" or any(taken[name] is not None for name in ("launch", "probabilities", "fed")):
         return None
-    return lambda bowl: study.shares(part, bowl, seed=taken["seed"], fed=FEW)
+    return lambda bowl: study.shares(part, bowl, seed=taken["seed"], fed=ROUGH_PARTS)
 
 
 def choice(taken):
     """Return the keywords of ``studies.rate.shares`` that the options name; a wrong call if two clash."""
-    asked = click.get_current_context().get_parameter_source("rule") is click.core.ParameterSource.COMMANDLINE
-    ways = [("--launch", taken["launch"]), ("--rule", asked), ("--fed", taken["fed"])]
-    others = [name for name, given in ways if given]
-    if taken["probabilities"] is not None and others:
-        raise click.UsageError(f"--probabilities takes the place of {others[0]} - leave one of them out")
+    has_rule = (
+        click.get_current_context().get_parameter_source("rule") is click.core.ParameterSource.COMMANDLINE
+    )
+    own_answers = [("--launch", taken["launch"]), ("--rule", has_rule), ("--fed", taken["fed"])]
+    names = [name for name, value in own_answers if value]
+    if taken["probabilities"] is not None and names:
+        raise click.UsageError(f"--probabilities takes the place of {names[0]} - leave one of them out")
     if taken["launch"] is not None and taken["fed"] is not None:
         raise click.UsageError("--fed is for parts on the moving floor - leave out --fed or --launch")
     return taken
@@ -151,17 +131,12 @@ def telling(out):
     return {"before": before, "progress": bar.reach}
 
 
-def doubt(command):
-    """How far part and cut may be off; the command receives ``play`` and ``tolerance``."""
-    return options.stacked(command, *DOUBT)
-
-
-DOUBT = (
-    quantity.with_default(
+DOUBT_OPTIONS = (  # how far part and cut may be off
+    options.quantity(
         "--position-deviation play", "length", "0 mm",
         "Standard deviation of where a part is over a cut.", former=("--play",),
     ),
-    quantity.with_default(
+    options.quantity(
         "--edge-deviation tolerance", "length", "0 mm",
         "Standard deviation of where a cut's edge is.", former=("--tolerance",),
     ),

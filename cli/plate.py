@@ -6,37 +6,9 @@ import click
 
 from feederscrew_cli import options, waiting
 from feederscrew_cli.interrupt import held_back
+from feederscrew_cli.values import Number
 
-KEYWORDS = ("shaken", "paths", "overrides", "amplitudes", "seconds")
 OPTIONS = {"paths": "--config", "overrides": "--set", "amplitudes": "--amplitude", "seconds": "--seconds"}
-
-
-def plate(command):
-    """--plate and what goes with it; the command receives ``plate``, None unless it is given."""
-    return options.stacked(
-        options.packed(command, "plate", KEYWORDS, _given),
-        click.option("--plate", "shaken", is_flag=True, help="The plane vibrates with a bowl's drive."),
-        click.option(
-            "--config",
-            "paths",
-            metavar="FILE",
-            type=options.FILE,
-            multiple=True,
-            help="With --plate: the bowl file (YAML); give it again for a further plate.",
-        ),
-        options.overrides,
-        click.option(
-            "--amplitude",
-            "amplitudes",
-            metavar="LIST",
-            help="With --plate: a plate for each, '78%,80%,82%' of the bowl's or '0.3 mm,0.4 mm'.",
-        ),
-        click.option(
-            "--seconds",
-            type=options.Number(0.05, 3600.0),
-            help="With --plate: how long each part is on it.  [default: 5]",
-        ),
-    )
 
 
 def run(part, plate, launch, own, test, pictures, out):
@@ -61,10 +33,15 @@ def run(part, plate, launch, own, test, pictures, out):
         out.warn(*plate_output.remarks(study))
         offers.write(folder, plate_output.offers(study), pictures=pictures)
     frame = plate_output.plates(study)
-    out.show(frame, plate_output.document(study), hidden=plate_output.HIDDEN, spare=plate_output.spare(frame))
+    out.show(
+        frame,
+        plate_output.document(study),
+        hidden=plate_output.HIDDEN_PLATE_COLUMNS,
+        spare=plate_output.spare(frame),
+    )
 
 
-def _given(shaken, **others):
+def _plate_options(shaken, **others):
     """The options of a plate, or None; a wrong call where they come without ``--plate``."""
     if shaken:
         return others
@@ -80,8 +57,39 @@ def _bowls(plate):
 
     paths = plate["paths"] or (None,)
     settings = [bowls.settings(path, plate["overrides"]) for path in paths]
-    every = [bowls.at_strokes(bowls.record(one), plate["amplitudes"]) for one in settings]
-    names = [name for name, plates in zip(bowls.bowl_names(paths), every) for _ in plates]
+    driven = [
+        bowls.at_strokes(bowls.record(bowl_settings), plate["amplitudes"]) for bowl_settings in settings
+    ]
+    names = [name for name, plates in zip(bowls.bowl_names(paths), driven) for _ in plates]
     files = {source: digest for path in paths for source, digest in bowls.identity(path).items()}
-    values = {name: bowls.texts(one) for name, one in zip(bowls.bowl_names(paths), settings)}
-    return [bowl for plates in every for bowl in plates], names, files, values
+    values = {
+        name: bowls.texts(bowl_settings) for name, bowl_settings in zip(bowls.bowl_names(paths), settings)
+    }
+    return [bowl for plates in driven for bowl in plates], names, files, values
+
+
+plate = options.group(  # None unless it is given
+    "plate",
+    click.option("--plate", "shaken", is_flag=True, help="The plane vibrates with a bowl's drive."),
+    click.option(
+        "--config",
+        "paths",
+        metavar="FILE",
+        type=options.FILE,
+        multiple=True,
+        help="With --plate: the bowl file (YAML); give it again for a further plate.",
+    ),
+    options.overrides,
+    click.option(
+        "--amplitude",
+        "amplitudes",
+        metavar="LIST",
+        help="With --plate: a plate for each, '78%,80%,82%' of the bowl's or '0.3 mm,0.4 mm'.",
+    ),
+    click.option(
+        "--seconds",
+        type=Number(0.05, 3600.0),
+        help="With --plate: how long each part is on it.  [default: 5]",
+    ),
+    pack=_plate_options,
+)

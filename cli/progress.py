@@ -25,16 +25,16 @@ class Progress:
         They are.
     """
 
-    def __init__(self, total, shown=True, what="parts"):
-        hidden = not (shown and sys.stderr.isatty())
-        self.lines, self.what = shown and not sys.stderr.isatty(), what
+    def __init__(self, total, is_shown=True, what="parts"):
+        hidden = not (is_shown and sys.stderr.isatty())
+        self.lines, self.what = is_shown and not sys.stderr.isatty(), what
         self.begun = self.last_line = time.monotonic()
         self.bar = click.progressbar(
             itertools.repeat(None),  # never asked: they are counted by hand
             length=total,
             label=what,
             show_pos=True,
-            item_show_func=_said,
+            item_show_func=_interval_text,
             file=sys.stderr,
             hidden=hidden,
         )
@@ -48,9 +48,9 @@ class Progress:
         if self.bar.entered:
             self.bar.__exit__(*fault)
 
-    def tell(self, kept):
-        """Count one more; one that was ``kept`` took no time and leaves the bar altogether."""
-        self.reach(self.bar.pos + (not kept), self.bar.length - kept)
+    def tell(self, is_reused):
+        """Count one more; one that was ``is_reused`` took no time and leaves the bar altogether."""
+        self.reach(self.bar.pos + (not is_reused), self.bar.length - is_reused)
 
     def reach(self, done, total, widest=None):
         """So many are done of so many, and the widest interval [1] is so wide to either side."""
@@ -84,9 +84,9 @@ class StageBar:
 
     WIDTH = 24  # letters of the bar
 
-    def __init__(self, shown=True):
-        self.terminal = shown and sys.stderr.isatty()
-        self.lines, self.drawn, self.last_line = shown and not self.terminal, False, time.monotonic()
+    def __init__(self, is_shown=True):
+        self.terminal = is_shown and sys.stderr.isatty()
+        self.lines, self.drawn, self.last_line = is_shown and not self.terminal, False, time.monotonic()
 
     def reach(self, stage, done, total, gone, rest):
         """So many of a stage are done of so many; ``gone`` and ``rest`` are seconds of the whole run."""
@@ -127,5 +127,5 @@ def _time(seconds):
     return f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.0f} min"
 
 
-def _said(widest):
+def _interval_text(widest):
     return None if widest is None else f"widest interval ±{100.0 * widest:.2g} %"

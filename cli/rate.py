@@ -12,7 +12,8 @@ from feederscrew_cli import grouped, options, orientation
 @options.part
 @orientation.any_chain
 @orientation.taken_of_a_seed
-@orientation.doubt
+@orientation.DOUBT_OPTIONS[0]
+@orientation.DOUBT_OPTIONS[1]
 @options.bowl
 @options.output
 def rate(part, wanted, taken, play, tolerance, bowl, out):
@@ -41,12 +42,14 @@ def rate(part, wanted, taken, play, tolerance, bowl, out):
     solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
-    known = orientation.shares(out, solid, record, taken, wanted["rule"])
-    with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
-        found = study(solid, record, known=known, sigma=math.hypot(play, tolerance), **wanted)
+    aspect_shares = orientation.shares(out, solid, record, taken, wanted["rule"])
+    with out.folder(solid.name, solid.inputs | aspect_shares.inputs, effective) as folder:
+        result = study(
+            solid, record, aspect_shares=aspect_shares, sigma=math.hypot(play, tolerance), **wanted
+        )
         tried = bowls.verified(bowl["path"])
-        own = solid, record, found.rate.orientations.lying[found.rate.row].name
-        document = proof.beside(rate_output.document(found), tried, *own)
-        out.warn(*found.warnings, *rate_output.remarks(found), *proof.warnings(tried, *own))
-        offers.write(folder, rate_output.offers(found))
+        own = solid, record, result.rate.orientations.lying[result.rate.row].name
+        document = proof.with_trial(rate_output.document(result), tried, *own)
+        out.warn(*result.warnings, *rate_output.remarks(result), *proof.warnings(tried, *own))
+        offers.write(folder, rate_output.offers(result))
         out.show(rate_output.summary(document), document)

@@ -7,30 +7,25 @@ from dataclasses import replace
 import click
 
 from feederscrew_cli import grouped, options, orientation, talk, waiting
-from feederscrew_cli.quantity import Quantity
+from feederscrew_cli.values import Place, Whole
 
 WANTED = (
     click.option("--aspect", metavar="NAME", help="Aspect to leave the bowl on.  [default: the likeliest]"),
-    *orientation.CHAIN[1:],
-    click.option(
-        "--target",
-        type=Quantity("rate", positive=True),
-        metavar="RATE",
-        help="Size a bowl for this rate as well: 120/min.",
-    ),
+    *orientation.CHAIN_OPTIONS[1:],
+    options.target("Size a bowl for this rate as well: 120/min."),
     click.option(
         "--parts",
         "sent",
         cls=options.Renamed,
         former=("--trial",),
-        type=options.Whole(1, 10**4),
+        type=Whole(1, 10**4),
         metavar="N",
         help="Send N parts along the track and through the devices, to be played.",
     ),
 )
 PLACE = (
     click.option(
-        "-o", "--output", "directory", metavar="DIR", type=options.Place(),
+        "-o", "--output", "directory", metavar="DIR", type=Place(),
         default="results", show_default=True,
         help="Write the page and run.json to DIR/<name>/.",
     ),
@@ -46,24 +41,13 @@ PLACE = (
 TALK = {"-q", "--quiet", "-v", "--verbose"}
 
 
-def _all(decorators):
-    """Several options as one decorator."""
-
-    def decorate(command):
-        for option in reversed(decorators):
-            command = option(command)
-        return command
-
-    return decorate
-
-
 @grouped.command(short_help="Everything about a part in a bowl, on one page to read, print and keep.")
 @options.part
-@_all(WANTED)
+@options.group("wanted", *WANTED)
 @orientation.taken_of_a_seed
 @options.bowl
-@_all(PLACE)
-def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
+@options.group("out", *PLACE, pack=talk.Output.of)
+def report(part, wanted, taken, bowl, out):
     """Example: feeder report parts/lbracket_30x20x15.stl --config bowl.yaml -o results
 
     Everything the other commands say of PART in a bowl. The page shows its aspects in 3-D views that can be
@@ -79,20 +63,19 @@ def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
     from feederscrew.output.report import page, write
     from feederscrew.studies.report import report as study
 
-    out = talk.Output.of(format=format, directory=directory, quiet=quiet, verbose=verbose)
     solid = out.part(part)
     waiting.conveying(out)
     chosen = orientation.choice(taken) | orientation.telling(out)
-    found = study(solid, bowl=bowl, **wanted, **chosen, command=repeated(out.arguments))
-    tried, kept = verified(bowl["path"]), record(found.settings)
-    found = replace(found, as_tried=proof.holds(tried, solid, kept, orientation.name(wanted)))
-    effective = columns.conditions(solid) | texts(found.settings)
+    result = study(solid, bowl=bowl, **wanted, **chosen, command=repeated(out.arguments))
+    tried, bowl_record = verified(bowl["path"]), record(result.settings)
+    result = replace(result, as_tried=proof.holds(tried, solid, bowl_record, orientation.name(wanted)))
+    effective = columns.conditions(solid) | texts(result.settings)
     gc.freeze()  # what is loaded stays: it need not be looked through after every chapter
-    with out.folder(solid.name, found.inputs, effective) as folder:
-        made = page(found, out.step)
-        out.warn(*(line for line in made.warnings if line not in solid.warnings))
-        out.warn(*proof.warnings(tried, solid, kept, found.aspect))
-        write(folder, made, format)
+    with out.folder(solid.name, result.inputs, effective) as folder:
+        built_page = page(result, out.step)
+        out.warn(*(line for line in built_page.warnings if line not in solid.warnings))
+        out.warn(*proof.warnings(tried, solid, bowl_record, result.aspect))
+        write(folder, built_page, out.format)
 
 
 def repeated(arguments):
@@ -107,5 +90,5 @@ def repeated(arguments):
     -------
     str
     """
-    kept = [argument for argument in talk.placeless(arguments) if argument not in TALK]
-    return shlex.join(["feeder", *kept])
+    words = [argument for argument in talk.placeless(arguments) if argument not in TALK]
+    return shlex.join(["feeder", *words])

@@ -10,9 +10,10 @@ import click
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew_cli import grouped, options
 from feederscrew_cli.interrupt import ended_within, held_back
+from feederscrew_cli.values import Whole
 
-PROGRAM = (sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()")
-MISSING = "pip install 'feederscrew[serve]'"
+FEEDER_CALL = (sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()")
+INSTALL_SERVE = "pip install 'feederscrew[serve]'"
 END_WITHIN_S = 40.0  # after Ctrl-C or SIGTERM, a running design with it
 IDLE_S = 60.0  # after which a connection that sends nothing is closed
 
@@ -20,7 +21,7 @@ IDLE_S = 60.0  # after which a connection that sends nothing is closed
 @grouped.command(short_help="The main job in a browser, on this machine alone.")
 @click.option(
     "--port",
-    type=options.Whole(0, 65535),
+    type=Whole(0, 65535),
     default=0,
     metavar="N",
     help="Port on 127.0.0.1.  [default: any that is free]",
@@ -41,7 +42,7 @@ def serve(port: int, browser: bool, quiet: bool) -> None:
         try:
             from werkzeug.serving import WSGIRequestHandler, make_server
         except ImportError:
-            raise MissingPackage("serve", "needs werkzeug, which is not installed", MISSING) from None
+            raise MissingPackage("serve", "needs werkzeug, which is not installed", INSTALL_SERVE) from None
         from feederscrew.serving.job import DesignJob
         from feederscrew.serving.site import HOST, Site
 
@@ -57,7 +58,7 @@ def serve(port: int, browser: bool, quiet: bool) -> None:
         ended_within(END_WITHIN_S),
         tempfile.TemporaryDirectory(prefix="feeder.", ignore_cleanup_errors=True) as folder,
     ):
-        site = Site(Path(folder), PROGRAM, DesignJob)
+        site = Site(Path(folder), FEEDER_CALL, DesignJob)
         try:
             server = make_server(HOST, port, site, threaded=True, request_handler=Handler)
         except (OSError, SystemExit):

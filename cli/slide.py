@@ -41,7 +41,7 @@ def slide(betas, as_published, bowl, pictures, out):
 
     Map the limiting friction over alpha - theta (from the part's heading to the vibration) and the
     acceleration ratio G = A w2/g. A second map shows what a part does there at the bowl's own friction:
-    it sticks, slips forward, backward or both ways within a cycle, or hops.
+    it sticks, slips forward, back or both ways within a cycle, or hops.
 
     mu_limit is the thesis's [4.27] for a level floor. mu_forward and mu_backward are the friction that
     stops either slip on the bowl's track, whose smooth wall takes the force across it. Beyond 90 deg
@@ -54,9 +54,9 @@ def slide(betas, as_published, bowl, pictures, out):
     from feederscrew.output import slide as slide_output
     from feederscrew.studies.slide import slide as study
 
-    given, path = out.settings(bowl), bowl["path"]
-    with out.folder(name(path), identity(path), texts(given)) as folder:
-        found = study(record(given), betas, as_published=as_published)
-        offers.write(folder, slide_output.offers(found), pictures=pictures)
-    out.say(*slide_output.remarks(found))
-    out.show(slide_output.printed(found, out.format), slide_output.document(found, texts(given)))
+    bowl_settings, path = out.settings(bowl), bowl["path"]
+    with out.folder(name(path), identity(path), texts(bowl_settings)) as folder:
+        result = study(record(bowl_settings), betas, as_published=as_published)
+        offers.write(folder, slide_output.offers(result), pictures=pictures)
+    out.say(*slide_output.remarks(result))
+    out.show(slide_output.printed(result, out.format), slide_output.document(result, texts(bowl_settings)))

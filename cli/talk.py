@@ -14,10 +14,10 @@ from feederscrew.units import printable
 from feederscrew_cli import argument_names
 from feederscrew_cli.interrupt import held_back
 
-FORMATS = ("table", "csv", "json")
+PRINT_FORMATS = ("table", "csv", "json")
 PAGE = 100  # letters of a line that people read, at most
 FOLDER = ("-o", "--output")
-PLACES = ("directory", "depfile")  # options that name what is written, not what is read
+OUTPUT_OPTIONS = ("directory", "depfile")  # options that name what is written, not what is read
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,9 +91,9 @@ class Output:
         """Read the bowl file of ``options.bowl`` and tell what a machine makes of its drive; the settings."""
         from feederscrew import bowl as bowls
 
-        found = bowls.settings(**bowl)
-        self.warn(*bowls.remarks(found))
-        return found
+        settings = bowls.settings(**bowl)
+        self.warn(*bowls.remarks(settings))
+        return settings
 
     @contextlib.contextmanager
     def step(self, name):
@@ -111,14 +111,14 @@ class Output:
         """
         from feederscrew.output import tables
 
-        shown = frame.without(hidden) if self.format == "table" else frame
+        printed = frame.without(hidden) if self.format == "table" else frame
         if self.format == "table" and spare is not None:
-            shown, left_out = tables.to_page(shown, spare)
+            printed, left_out = tables.to_page(printed, spare)
             if left_out:
                 those = "it" if len(left_out) == 1 else "them"
                 self.say(f"Left out of the table: {', '.join(left_out)}; --format csv prints {those} too")
         width = _window() or (None if spare is None else tables.PAGE)
-        text = tables.text(shown, self.format, width)
+        text = tables.text(printed, self.format, width)
         click.echo(text, nl=False)
         if self.format == "table":
             self.explain(text)
@@ -205,17 +205,21 @@ def _window():
 
 def placeless(arguments):
     """Return arguments as typed without the folder of ``-o``: the same wherever the results are put."""
-    kept, skip = [], False
+    words, skip = [], False
     for argument in arguments:
         if not (skip or argument in FOLDER or argument.startswith(("--output=", "-o="))):
-            kept.append(argument)
+            words.append(argument)
         skip = argument in FOLDER
-    return kept
+    return words
 
 
 def _inputs(context):
     """The files named on a command line, apart from where its results go."""
     for option in context.command.params:
         value = context.params.get(option.name)
-        if isinstance(option.type, click.Path) and option.name not in PLACES and value not in (None, "-"):
+        if (
+            isinstance(option.type, click.Path)
+            and option.name not in OUTPUT_OPTIONS
+            and value not in (None, "-")
+        ):
             yield from value if isinstance(value, tuple) else (value,)

@@ -2,20 +2,10 @@
 
 import click
 
-from feederscrew_cli import grouped, options, orientation, quantity, waiting
-from feederscrew_cli.angle import Angle
+from feederscrew_cli import grouped, options, orientation, waiting
 from feederscrew_cli.interrupt import heeding
 from feederscrew_cli.progress import Progress
-
-ASKED = (
-    *("aspect", "rule", "heading", "margin", "purity", "efficiency", "outcome", "without"),
-    *("step", "up", "cutter", "play", "tolerance", "turn", "seed", "verdicts", "seconds"),
-)
-
-
-def _asked(command):
-    """What the design shall keep to; the command receives ``asked``."""
-    return options.packed(command, "asked", ASKED)
+from feederscrew_cli.values import Angle, Whole
 
 
 @grouped.command(
@@ -30,14 +20,14 @@ def _asked(command):
     "--heading", type=Angle(), metavar="DEG", help="Heading of that aspect.  [default: the most frequent]"
 )
 @options.rule
-@quantity.with_default(
+@options.quantity(
     "--margin",
     "length",
     "0.15 mm",
     "Least margin by which the wanted orientation passes and the others fail, beside play and tolerance.",
     positive=True,
 )
-@quantity.with_default(
+@options.quantity(
     "--purity",
     "number",
     "1",
@@ -45,7 +35,7 @@ def _asked(command):
     positive=True,
     most=1.0,
 )
-@quantity.with_default(
+@options.quantity(
     "--efficiency",
     "number",
     "0",
@@ -65,7 +55,7 @@ def _asked(command):
     metavar="KIND,...",
     help="Kinds of devices that are not used: wiper,cut_out.",
 )
-@quantity.with_default(
+@options.quantity(
     "--step",
     "length",
     "0.05 mm",
@@ -73,24 +63,20 @@ def _asked(command):
     positive=True,
 )
 @click.option("--up", default="", metavar="NAME,...", help="Other aspects that count as the one wanted: B,C.")
-@quantity.with_default("--cutter", "length", "0 mm", "Radius that corners of holes are rounded to.")
-@quantity.with_default("--play", "length", "0.05 mm", "Play of parts at the wall, on top of every margin.")
-@quantity.with_default(
-    "--tolerance", "length", "0.05 mm", "Tolerance of the part's size, on top of every margin."
-)
+@options.quantity("--cutter", "length", "0 mm", "Radius that corners of holes are rounded to.")
+@options.quantity("--play", "length", "0.05 mm", "Play of parts at the wall, on top of every margin.")
+@options.quantity("--tolerance", "length", "0.05 mm", "Tolerance of the part's size, on top of every margin.")
 @click.option("--cad", is_flag=True, help="Write tooling.step as well; needs feederscrew[cad].")
 @click.option("--turn", is_flag=True, help="Allow steps and ledges that turn parts over, before the cuts.")
-@click.option(
-    "--seed", type=options.Whole(min=0), default=1, show_default=True, help="Seed of the search for holes."
-)
+@options.seed("Seed of the search for holes.")
 @click.option(
     "--verdicts",
-    type=options.Whole(min=1),
+    type=Whole(min=1),
     default=30000,
     show_default=True,
     help="Limit of the search for holes, in verdicts an orientation: it ends alike on every machine.",
 )
-@quantity.with_default(
+@options.quantity(
     "--limit seconds",
     "time",
     "10 min",
@@ -103,8 +89,7 @@ def _asked(command):
 @options.title_block
 @options.pictures
 @options.output
-@_asked
-def tooling(part, asked, cad, static, taken, bowl, fields, pictures, out):
+def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request):
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect, the
@@ -124,7 +109,7 @@ def tooling(part, asked, cad, static, taken, bowl, fields, pictures, out):
     from functools import partial
 
     from feederscrew import bowl as bowls
-    from feederscrew.designing import own_trial
+    from feederscrew.designing import tooling_trials
     from feederscrew.output import columns, marking, offers
     from feederscrew.output import tooling as files
     from feederscrew.output import tooling_tables as tables
@@ -132,28 +117,28 @@ def tooling(part, asked, cad, static, taken, bowl, fields, pictures, out):
     from feederscrew.studies.tooling import tooling as study
     from feederscrew.studies.tooling import tooling_without
 
-    orientation.of_an_aspect(asked)
+    orientation.of_an_aspect(request)
     if cad:
         exact_body.check()
     solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
-    known = orientation.shares(out, solid, record, taken, asked["rule"])
-    with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
-        given = {"known": known.aspects, **asked}
+    aspect_shares = orientation.shares(out, solid, record, taken, request["rule"])
+    with out.folder(solid.name, solid.inputs | aspect_shares.inputs, effective) as folder:
+        values = {"aspect_shares": aspect_shares.aspects, **request}
         with Progress(None, not out.quiet, "orientations") as bar:
-            found = study(solid, record, progress=heeding(bar.reach), **given)
+            result = study(solid, record, progress=heeding(bar.reach), **values)
         if not static:
-            again = partial(tooling_without, part=solid, bowl=record, **given)
-            found = own_trial.own_trials(found, again, before=lambda: waiting.trial(out))
-        document = tables.document(found) | {"trial": own_trial.document(found.trials)}
-        denied, agreed = tables.trials(found)
-        out.warn(*found.warnings, *denied)
-        out.say(*agreed, *tables.remarks(found, asked["efficiency"]))
-        made = files.offers(found, settings, cad, fields=marking.SheetFields(**fields))
-        offers.write(folder, made, pictures=pictures)
+            without_kinds = partial(tooling_without, part=solid, bowl=record, **values)
+            result = tooling_trials.own_trials(result, without_kinds, before=lambda: waiting.trial(out))
+        document = tables.document(result) | {"trial": tooling_trials.document(result.trials)}
+        denied, agreed = tables.trials(result)
+        out.warn(*result.warnings, *denied)
+        out.say(*agreed, *tables.remarks(result, request["efficiency"]))
+        offered = files.offers(result, settings, cad, fields=marking.SheetFields(**fields))
+        offers.write(folder, offered, pictures=pictures)
         out.show(
-            tables.summary(found, out.format),
+            tables.summary(result, out.format),
             document,
             hidden=tables.HIDDEN,
             spare=tables.TABLE_SPARE_COLUMNS,

@@ -4,20 +4,17 @@ from dataclasses import replace
 
 import click
 
-from feederscrew_cli import options, waiting
+from feederscrew_cli import waiting
 from feederscrew_cli.interrupt import held_back
+from feederscrew_cli.values import Place
 
 FOREIGN = {"fall": "--height", "spin": "--spin", "speed": "--speed"}  # what the file says instead
-
-
-def launches(command):
-    """--launches; the command receives ``launches``, a path or None."""
-    return click.option(
-        "--launches",
-        metavar="FILE",
-        type=options.Place(),
-        help="Follow each launch of a CSV file from its own state, in place of random ones.",
-    )(command)
+launches = click.option(
+    "--launches",
+    metavar="FILE",
+    type=Place(),
+    help="Follow each launch of a CSV file from its own state, in place of random ones.",
+)
 
 
 def run(part, path, own, test, pictures, out):
@@ -39,14 +36,16 @@ def run(part, path, own, test, pictures, out):
         out.warn(*tosses_output.remarks(study))
         out.say(*tosses_output.summary(study))
         offers.write(folder, tosses_output.offers(study), pictures=pictures)
-    out.show(tosses_output.tosses(study), tosses_output.document(study), hidden=tosses_output.HIDDEN)
+    out.show(
+        tosses_output.tosses(study), tosses_output.document(study), hidden=tosses_output.HIDDEN_TOSS_COLUMNS
+    )
 
 
 def _fitting(own, test):
     """Wrong calls."""
     context = click.get_current_context()
-    given = context.get_parameter_source("launch") is click.core.ParameterSource.COMMANDLINE
-    foreign = ["--launch"] * given + [option for key, option in FOREIGN.items() if own[key] is not None]
+    has_launch = context.get_parameter_source("launch") is click.core.ParameterSource.COMMANDLINE
+    foreign = ["--launch"] * has_launch + [option for key, option in FOREIGN.items() if own[key] is not None]
     foreign += [option for key, option in (("until", "--until"), ("traced", "--trace")) if test[key]]
     if foreign:
         raise click.UsageError(f"{foreign[0]} cannot be combined with --launches - leave one of them out")

@@ -3,7 +3,7 @@
 import click
 
 from feederscrew_cli import completion, grouped, options
-from feederscrew_cli.angle import Angle
+from feederscrew_cli.values import Angle
 
 
 @grouped.command(short_help="Reactions and motion of a part on the track, against the wall.")
@@ -40,17 +40,19 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
     from feederscrew.thesis import motion as by_print
 
     _fitting(spans)
-    solid, given, varied = out.part(part), out.settings(bowl), key_ranges(spans)
-    conditions = columns.conditions(solid) | texts(given)
+    solid, bowl_settings, varied = out.part(part), out.settings(bowl), key_ranges(spans)
+    conditions = columns.conditions(solid) | texts(bowl_settings)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
-        found = (by_print if as_published else complete).track(solid, record(given), aspect, heading=heading)
-        grid = found.over(given, varied) if spans or folder else None
-        out.say(*track_output.remarks(found), *(track_output.map_remarks(grid) if grid else ()))
+        study = (by_print if as_published else complete).track(
+            solid, record(bowl_settings), aspect, heading=heading
+        )
+        grid = study.over(bowl_settings, varied) if spans or folder else None
+        out.say(*track_output.remarks(study), *(track_output.map_remarks(grid) if grid else ()))
         if folder:
-            offered = track_output.offers(found, texts(given), grid)
+            offered = track_output.offers(study, texts(bowl_settings), grid)
             offers.write(folder, offered, pictures=pictures)
-    document = track_output.document(found, texts(given))
-    out.show(track_output.cells(grid) if spans else track_output.shown(document, out.format), document)
+    document = track_output.document(study, texts(bowl_settings))
+    out.show(track_output.cells(grid) if spans else track_output.frame_of(document, out.format), document)
 
 
 def _fitting(spans):

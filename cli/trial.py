@@ -7,12 +7,12 @@ import click
 
 from feederscrew_cli import grouped, options, orientation, waiting
 from feederscrew_cli.interrupt import held_back
+from feederscrew_cli.values import Number, Place, Whole
 
 FILMS = (".gif", ".mp4", ".webm")
-SENT = ("aspect", "rule", "parts", "landing", "queue", "poured", "seconds", "measured", "seed", "jobs")
 
 
-class FilmFile(options.Place):
+class FilmFile(Place):
     """The name of a film, whose ending says its format."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
@@ -20,51 +20,6 @@ class FilmFile(options.Place):
         if not str(value).lower().endswith(FILMS):
             self.fail(f"{value!r} is not a name for a film - end it in {', '.join(FILMS)}", param, ctx)
         return super().convert(value, param, ctx)
-
-
-def _sent(command):
-    """Hand over how parts are sent; the command receives ``sent``."""
-    return options.packed(command, "sent", SENT, _together)
-
-
-def _queued(command):
-    """Add the options of a queue."""
-    return options.stacked(
-        command,
-        click.option(
-            "--queue",
-            type=options.Whole(1, 1000),
-            metavar="N",
-            help="Send a queue of N parts as well, which push each other.",
-        ),
-        click.option(
-            "--poured",
-            is_flag=True,
-            help="The parts of the queue fall onto the track; without it they lie in a row.",
-        ),
-        click.option(
-            "--seconds",
-            type=options.Number(0.05, 3600.0),
-            default=10.0,
-            show_default=True,
-            help="Simulated time of the queue, in seconds.",
-        ),
-        click.option(
-            "--with",
-            "measured",
-            metavar="CSV",
-            type=options.Place(),
-            help="Counts of a feeding test, set beside the profile of the queue.",
-        ),
-    )
-
-
-def _together(queue, **others):
-    """All of them by keyword; a wrong call if there are options of a queue without one."""
-    for name, given in (("--poured", others["poured"]), ("--with", others["measured"])):
-        if given and not queue:
-            raise click.UsageError(f"{name} is for a queue - give --queue N as well")
-    return {"queue": queue, **others}
 
 
 @grouped.command(
@@ -81,27 +36,43 @@ def _together(queue, **others):
 @orientation.taken
 @click.option(
     "--parts",
-    type=options.Whole(1, 10**6),
+    type=Whole(1, 10**6),
     help="Parts that are sent one at a time.  [default: 200; with --queue 60]",
 )
+@click.option("--landing", type=Whole(1, 10**6), metavar="N", help="Let N parts fall onto the track as well.")
 @click.option(
-    "--landing", type=options.Whole(1, 10**6), metavar="N", help="Let N parts fall onto the track as well."
+    "--queue",
+    type=Whole(1, 1000),
+    metavar="N",
+    help="Send a queue of N parts as well, which push each other.",
 )
-@_queued
+@click.option(
+    "--poured",
+    is_flag=True,
+    help="The parts of the queue fall onto the track; without it they lie in a row.",
+)
+@click.option(
+    "--seconds",
+    type=Number(0.05, 3600.0),
+    default=10.0,
+    show_default=True,
+    help="Simulated time of the queue, in seconds.",
+)
+@click.option(
+    "--with",
+    "measured",
+    metavar="CSV",
+    type=Place(),
+    help="Counts of a feeding test, set beside the profile of the queue.",
+)
 @click.option(
     "--amplitude",
     "amplitudes",
     metavar="LIST",
     help="A trial at each, '60%,80%,100%' of the bowl's or '0.3 mm,0.4 mm'.",
 )
-@click.option(
-    "--seed",
-    type=options.Whole(0),
-    default=1,
-    show_default=True,
-    help="Seed of the play and the phases that are drawn.",
-)
-@click.option("--jobs", type=options.Whole(1, 256), metavar="N", help="Cores to use.  [default: all]")
+@options.seed("Seed of the play and the phases that are drawn.")
+@options.jobs
 @click.option(
     "--film",
     type=FilmFile(),
@@ -111,8 +82,7 @@ def _together(queue, **others):
 @options.bowl
 @options.pictures
 @options.output
-@_sent
-def trial(part, sent, taken, amplitudes, film, bowl, pictures, out):
+def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent):
     """Example: feeder trial parts/lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed.
@@ -134,8 +104,11 @@ def trial(part, sent, taken, amplitudes, film, bowl, pictures, out):
     With -o: trial.csv, trial_stations.csv, trial.json, trial.png (orientations in and out),
     trial_paths.png (paths from above), trial_stills.png and run.json; trial_landing.csv, and
     trial_outlet.csv of a queue. --film shows a part that passes and one that does not at the device that
-    decides, then the queue, with the bowl around them.
+    decides, then the queue, with the bowl around them, its sensors and their air.
     """
+    for option, value in (("--poured", sent["poured"]), ("--with", sent["measured"])):
+        if value and not sent["queue"]:
+            raise click.UsageError(f"{option} is for a queue - give --queue N as well")
     with held_back():
         from feederscrew import bowl as bowls
         from feederscrew.output import columns, offers
@@ -149,26 +122,30 @@ def trial(part, sent, taken, amplitudes, film, bowl, pictures, out):
     solid, settings = out.part(part), out.settings(bowl)
     driven = bowls.at_strokes(bowls.record(settings), amplitudes)
     effective = columns.conditions(solid) | bowls.texts(settings)
-    known = orientation.shares(out, solid, driven[0], taken, sent["rule"])
+    aspect_shares = orientation.shares(out, solid, driven[0], taken, sent["rule"])
     measured = sent.pop("measured")
-    beside = studies.at_outlet(measured, known) if measured else None
-    inputs = solid.inputs | known.inputs | ({measured: beside.sha256} if beside else {})
+    measured_at_outlet = studies.at_outlet(measured, aspect_shares) if measured else None
+    inputs = (
+        solid.inputs
+        | aspect_shares.inputs
+        | ({measured: measured_at_outlet.sha256} if measured_at_outlet else {})
+    )
     with out.folder(solid.name, inputs, effective) as folder:
         with waiting.bar(out, "runs") as bar:
-            found = studies.trial(
-                solid, driven, known=known, measured=beside, progress=bar.reach,
+            study = studies.trial(
+                solid, driven, aspect_shares=aspect_shares, measured=measured_at_outlet, progress=bar.reach,
                 before=lambda: waiting.trial(out), frames=films.QUEUE_FRAMES if film else 0,
                 **sent | {"jobs": sent["jobs"] or os.cpu_count()},
             )  # fmt: skip
-        document = tables.document(found)
-        out.warn(*found.warnings)
-        out.say(*tables.summary(found))
-        for line in tables.engine(found):
+        document = tables.document(study)
+        out.warn(*study.warnings)
+        out.say(*tables.summary(study))
+        for line in tables.engine(study):
             out.detail(line)
         if film:
-            films.write_film(film, found)
+            films.write_film(film, study)
             out.say(f"Wrote {film}")
-        offers.write(folder, files.offers(found), pictures=pictures)
-        shown = tables.frame(found, people=out.format == "table")
+        offers.write(folder, files.offers(study), pictures=pictures)
+        frame = tables.frame(study, people=out.format == "table")
         hidden = tables.HIDDEN if not out.verbose else ("fell_mm", "seconds")
-        out.show(shown, document, hidden=hidden, spare=tables.spare(found))
+        out.show(frame, document, hidden=hidden, spare=tables.spare(study))

@@ -3,18 +3,11 @@
 import click
 
 from feederscrew_cli import grouped, options, orientation, waiting
-from feederscrew_cli.quantity import Quantity
 
 
 @grouped.command(short_help="Amplitude, angle or frequency that reaches a rate.", rare=("gap", "fill"))
 @options.part
-@click.option(
-    "--target",
-    type=Quantity("rate", positive=True),
-    required=True,
-    metavar="RATE",
-    help="Correctly oriented parts: 120/min.",
-)
+@options.target("Correctly oriented parts: 120/min.", required=True)
 @orientation.chain
 @orientation.taken_of_a_seed
 @click.option("--worst", is_flag=True, help="Give the rate at the worst friction and restitution.")
@@ -47,13 +40,13 @@ def tune(part, target, wanted, taken, worst, bowl, out):
     shares = solid, taken, wanted["rule"]
     arriving, rough = orientation.arriving(out, *shares), orientation.few(*shares)
     with out.folder(solid.name, solid.inputs | arriving(record).inputs, effective) as folder:
-        found = study(
+        result = study(
             solid, record, target=target, arriving=arriving, rough=rough, worst=worst,
-            progress=waiting.told(out, "settings"), **wanted,
+            progress=waiting.progress_in_bar(out, "settings"), **wanted,
         )  # fmt: skip
         tried = bowls.verified(bowl["path"])
         own = solid, record, orientation.name(wanted)
-        out.warn(*found.warnings, *tune_output.remarks(found), *proof.warnings(tried, *own))
-        offers.write(folder, tune_output.offers(found))
-        document = proof.beside(tune_output.document(found), tried, *own)
-        out.show(tune_output.printed(found, out.format), document, spare=())
+        out.warn(*result.warnings, *tune_output.remarks(result), *proof.warnings(tried, *own))
+        offers.write(folder, tune_output.offers(result))
+        document = proof.with_trial(tune_output.document(result), tried, *own)
+        out.show(tune_output.printed(result, out.format), document, spare=())

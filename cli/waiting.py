@@ -42,11 +42,11 @@ def design(out):
     return StageBar(not out.quiet)
 
 
-def told(out, what):
+def progress_in_bar(out, what):
     """Return a function of how many ``what`` are done and of how many, which shows it in a bar."""
-    shown = bar(out, what)
-    click.get_current_context().with_resource(shown)
-    return shown.reach
+    progress_bar = bar(out, what)
+    click.get_current_context().with_resource(progress_bar)
+    return progress_bar.reach
 
 
 def bar(out, what):

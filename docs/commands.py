@@ -17,7 +17,8 @@ PAGE = Path(__file__).resolve().parent / "commands.md"
 HEAD = "# Commands\n\nWritten by `docs/commands.py` from the commands themselves.\n"
 COMMON = "\n## Options of several commands\n\nThe section of each command names those that it takes.\n\n"
 MANY = 4  # commands that share an option, by its names and its text: the page says it once
-COLUMNS = "| Option | Meaning |\n|---|---|\n"
+COLUMNS = "| {} | Meaning |\n|---|---|\n"
+SHARED = "[of several commands](#options-of-several-commands)"
 
 
 def reference():
@@ -28,17 +29,17 @@ def reference():
     }
     counts = Counter(row for command, context in commands.items() for row in _rows(command, context))
     shared = [row for row, count in counts.items() if count >= MANY]
-    common = COMMON + COLUMNS + "".join(_line(*row) for row in shared)
+    common = COMMON + COLUMNS.format("Option") + "".join(_line(*row) for row in shared)
     return HEAD + common + "".join(_section(*one, shared) for one in commands.items())
 
 
 def _section(command, context, shared, level="##"):
-    """Usage, help and options of a command, then of the commands below it."""
-    usage = " ".join(command.collect_usage_pieces(context))
+    """Example, help, usage and options of a command, then of the commands below it."""
+    usage = " ".join([context.command_path, *command.collect_usage_pieces(context)])
     example, _, prose = command.help.partition("\n")
     text = f"\n{level} `{context.command_path}`: {_within(command.short_help)}\n\n"
-    text += f"```sh\n{context.command_path} {usage}\n{example.removeprefix('Example:').strip()}\n```\n\n"
-    text += _prose(prose) + _options(_rows(command, context), shared)
+    text += f"Example: `{example.removeprefix('Example:').strip()}`\n\n"
+    text += _prose(prose) + _options(usage, _rows(command, context), shared)
     for name, below in getattr(command, "commands", {}).items():
         text += _section(below, click.Context(below, info_name=name, parent=context), shared, f"{level}#")
     return text
@@ -60,12 +61,14 @@ def _rows(command, context):
     return [(names, text) for names, text in filter(None, records) if text]
 
 
-def _options(rows, shared):
-    """The options of one command as a table, and the names of those that the page says once."""
+def _options(usage, rows, shared):
+    """The options of one command as a table below its usage, and the names of the shared ones."""
     own, others = [row for row in rows if row not in shared], [row for row in rows if row in shared]
     names = ", ".join(f"`{names.split(', ')[-1].split()[0]}`" for names, _ in others)
-    also = f"| [of several commands](#options-of-several-commands) | {names} |\n" if others else ""
-    return COLUMNS + "".join(_line(*row) for row in own) + also
+    if not own:
+        return f"`{usage}`; options {SHARED}: {names}\n"
+    also = f"| {SHARED} | {names} |\n" if others else ""
+    return COLUMNS.format(f"`{_piped(usage)}`") + "".join(_line(*row) for row in own) + also
 
 
 def _line(names, text):

@@ -1,4 +1,4 @@
-"""Draw docs/glossary.png: the words of docs/glossary.md on a bowl's track and on a bolt.
+"""Draw the pictures of docs/glossary.md: its words on a bowl's track and on a bolt.
 
 Example: python docs/glossary.py
 """
@@ -9,7 +9,7 @@ import numpy as np
 
 from feederscrew.output import style
 
-PICTURE = Path(__file__).resolve().parent / "glossary.png"
+FOLDER = Path(__file__).resolve().parent
 STEEL, TRACK, WALL, AIR = "#b9c4cd", "#eef1f4", "#8fa5b5", "#56b4e9"
 BOLT = np.array([(-4, -6), (0, -6), (0, -2.5), (14, -2.5), (14, 2.5), (0, 2.5), (0, 6), (-4, 6)], float)
 CENTRE = np.array((3.0, 0.0))  # of mass
@@ -99,10 +99,10 @@ def section(axes):
     fill(axes, [foot - (0, 3), foot + (2, -3), foot + (2, 18), foot + (0, 18)], WALL)
     near = foot - 1.4 * along
     fill(axes, [near, near - 10 * along, near - 10 * along + 6 * up, near + 6 * up])
-    axes.plot((8.0, foot[0]), (foot[1], foot[1]), color=style.INK, lw=0.8, ls="--")
-    arc(axes, foot, 12, 168, 180, "bank", 1.35)
+    axes.plot((5.0, foot[0]), (foot[1], foot[1]), color=style.INK, lw=0.8, ls="--")
+    arc(axes, foot, 12, 168, 180, "bank", 0.78)
     note(axes, "wall", 29.3, 12, ha="left")
-    note(axes, "track", 13, -1.5)
+    note(axes, "track", 16, -3)
     note(axes, "free edge", 2, 7)
     arrow(axes, (3.4, 2.5), (-1.5, -4), style.INK, connectionstyle="arc3,rad=0.3")
     note(axes, "returned", 2.3, -4.6, ha="left")
@@ -122,6 +122,40 @@ def side(axes):
     arc(axes, at, 9, 6, 32, "vibration angle", 1.7)
     note(axes, "drive: to and fro\nby the amplitude", 25, 15.5)
     note(axes, "throw number above 1:\nthe part hops", 8, 11.5)
+
+
+def drives(axes):
+    """The motion of a track with one set of leaf springs, and with two magnets."""
+    bare(axes, "Drive: leaf springs, two axes", (-3, 41), (-6, 13))
+    beta, phase = 32 * DEG, np.linspace(0.0, 2.0 * np.pi, 100)
+    for x, lead, name in (
+        (4, 0.0, "leaf springs:\na line, phase 0"),
+        (24, 70 * DEG, "two magnets:\nan ellipse"),
+    ):
+        axes.plot((x - 4, x + 14), (0, 0), color=style.INK, lw=2.5)
+        along, up = 5 * np.cos(beta) * np.sin(phase), 5 * np.sin(beta) * np.sin(phase + lead)
+        axes.plot(x + 5 + along, 5 + up, color=style.ACCENT, lw=1.4)
+        note(axes, name, x + 5, -3.5)
+    arrow(axes, (26, 9.5), (33, 9.5), style.INK)
+    note(axes, "travel", 29.5, 11)
+    arrow(axes, (9, 5), 5 * np.array((np.cos(beta), np.sin(beta))) + (9, 5), style.INK)
+    note(axes, "amplitude", 4.5, 8.6)
+
+
+def queue(axes):
+    """A queue from above, with its pitch, and the place where it leaves the track when it backs up."""
+    bare(axes, "Queue, from above: pitch, gap, pressure break", (-2, 78), (-7, 27))
+    axes.fill([0, 44, 44, 58, 58, 76, 76, 0], [13, 13, 5.6, 5.6, 13, 13, 0, 0], color=TRACK)
+    axes.fill_between((0, 76), -1.6, 0, color=WALL)
+    for x in (1, 13, 25, 37, 49, 62):
+        fill(axes, np.array([(0, 0), (11, 0), (11, 5), (0, 5)]) + (x, 0.1))
+    arrow(axes, (49, 9), (62, 9), kind="<|-|>")
+    note(axes, "pitch", 55.5, 10.6, color=style.ACCENT)
+    arrow(axes, (60, -3.5), (62, -3.5), style.INK, kind="-")
+    note(axes, "gap", 61, -5)
+    fill(axes, turned(np.array([(0, 0), (11, 0), (11, 5), (0, 5)]), 35 * DEG, (50, 16)))
+    arrow(axes, (47, 8), (45, 14.5), style.INK, connectionstyle="arc3,rad=0.2")
+    note(axes, "pressure break: what backs up\nleaves over the narrow ledge", 22, 17.5)
 
 
 def chain(axes):
@@ -157,20 +191,23 @@ def disc(place, radius, colour):
     return Circle(place, radius, facecolor=colour, edgecolor=style.INK, linewidth=1.0)
 
 
-def picture():
-    """Return the whole picture as PNG."""
-    figure = style.figure(8.4, 8.4)
-    grid = figure.add_gridspec(3, 2, height_ratios=(1.0, 1.2, 1.25))
-    for panel, place in (
-        (aspects, grid[0, 0]),
-        (headings, grid[0, 1]),
-        (section, grid[1, 0]),
-        (side, grid[1, 1]),
-    ):
-        panel(figure.add_subplot(place))
-    chain(figure.add_subplot(grid[2, :]))
+PICTURES = {  # panels of each, a row of them below the other
+    "glossary_part": ((aspects, headings),),
+    "glossary_track": ((section, side), (drives, queue)),
+    "glossary_chain": ((chain,),),
+}
+HEIGHTS = {"glossary_part": 2.5, "glossary_track": 5.2, "glossary_chain": 3.4}  # [in]
+
+
+def picture(name):
+    """Return one of the pictures as PNG."""
+    figure, rows = style.figure(8.4, HEIGHTS[name]), PICTURES[name]
+    for row, panels in enumerate(rows):
+        for column, panel in enumerate(panels):
+            panel(figure.add_subplot(len(rows), len(panels), row * len(panels) + column + 1))
     return style.png(figure)
 
 
 if __name__ == "__main__":
-    PICTURE.write_bytes(picture())
+    for name in PICTURES:
+        (FOLDER / f"{name}.png").write_bytes(picture(name))

@@ -23,7 +23,7 @@ WORKED = (
 )  # pages whose console examples are outputs as well
 TUTORIAL = "docs/tutorial.md"  # written with them; a test of its own runs it
 ROOT = Path(__file__).resolve().parent.parent
-BLOCK = re.compile(r"```console( sampled| designed)?\n\$ (feeder .*)\n((?:(?!```).*\n)*)```")
+BLOCK = re.compile(r"```console( sampled)?\n\$ (feeder .*)\n((?:(?!```).*\n)*)```")
 CUT = "...\n"
 FEW = ("--drops", "10")  # in place of those the example asks for
 CHECKED = contextlib.nullcontext  # round a sampled command that is checked: a test takes fewer parts there
@@ -38,12 +38,9 @@ def _block(match):
     """A command line with its output; one that ended in '...' keeps its length.
 
     Of one that is sampled only the headings are checked, by a few drops: a sine whose last digit another
-    library rounds differently may end a drop on another side. One that is designed takes minutes: it is not
-    checked.
+    library rounds differently may end a drop on another side.
     """
     sampled, line, shown = match.groups()
-    if sampled == " designed" and "--check" in sys.argv:
-        return match.group(0)
     words, check = shlex.split(line)[1:], sampled and "--check" in sys.argv
     if check and "--drops" in words:
         words += FEW

@@ -44,7 +44,7 @@ def measured_sets():
     study = compare_sets(sorted(MEASURED.glob("*.csv")))
     lines = [["series", "launch", "sets", *(name.lower() for name in study.answers)]]
     for name, sets in study.series.items():
-        apart = [one.apart for one in sets]
+        apart = [one.distances for one in sets]
         known = [[away[answer] for away in apart if answer in away] for answer in study.answers]
         means = [f"{sum(some) / len(some):.3f}" if some else "" for some in known]
         lines.append([name, sets[0].measured.head.launch, str(len(sets)), *means])

@@ -17,7 +17,7 @@ from feederscrew.dropping.toss_runs import FACE_NAMES
 from feederscrew.part import load
 from feederscrew.studies.aspects import aspects
 from feederscrew.studies.compare import compare_sets
-from feederscrew.studies.tosses import SURE, follow
+from feederscrew.studies.tosses import SURE_SHARE, follow
 
 PAGE = Path(__file__).resolve().parent / "validation.md"
 METHOD = PAGE.parent / "method/validation.md"
@@ -95,7 +95,7 @@ def cards(pattern):
         rows.append(
             [name, *(percent(one.profile.fractions[k]) for one in sets), *(percent(own[k]) for own in ours)]
         )
-    apart = [np.mean([one.apart[rule] for one in sets]) for rule in rules]
+    apart = [np.mean([one.distances[rule] for one in sets]) for rule in rules]
     rows.append(["total variation, mean", *[""] * len(sets), *(f"{value:.3f}" for value in apart)])
     head = [
         "aspect",
@@ -117,10 +117,11 @@ def tosses():
         study = follow(cube, MEASURED / "filmed/cube_tosses.csv", CUBE, runs=runs)
         found = study.agreement
         rows.append([
-            name, f"{percent(found.told)} ({percent(found.low)} to {percent(found.high)})",
+            name, f"{percent(found.right_share)} ({percent(found.low)} to {percent(found.high)})",
             percent(found.at_release), f"{1e3 * found.median_off:.1f}",
             f"{1e3 * np.percentile(study.off, 75):.1f}",
-            *([percent(found.expected), f"{found.sure}: {percent(found.sure_told)}"] if runs > 1 else "  "),
+            *([percent(found.expected), f"{found.sure}: {percent(found.sure_right_share)}"] if runs > 1
+              else "  "),
         ])  # fmt: skip
     rows.append(["of these, those no width was chosen on", *judged(study)])
     head = ["ours", "upper side as measured [%]", "nearest at release [%]", "median distance [mm]",
@@ -133,7 +134,7 @@ def judged(study):
     half = slice(1, None, 2)
     measured = np.array([FACE_NAMES.index(face) for face in study.launches.faces])
     right, p, off = (study.result.faces == measured)[half], study.p[half], 1e3 * study.off[half]
-    (low, high), sure = wilson(right.sum(), len(right)), p >= SURE
+    (low, high), sure = wilson(right.sum(), len(right)), p >= SURE_SHARE
     return [
         f"{percent(right.mean())} ({percent(low)} to {percent(high)})",
         percent((study.result.released == measured)[half].mean()),

@@ -10,6 +10,7 @@ import signal
 from collections import OrderedDict
 
 import compile_first
+import entered
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -36,6 +37,11 @@ PIXEL = base64.b64decode(  # a picture as small as it can be
 )
 COARSE = 40  # pixels of a picture to the inch of its figure
 COMPILING = pytest.StashKey()
+
+
+def pytest_configure(config):
+    """Let ``entered``, which watches what is imported after it, print its figure."""
+    config.pluginmanager.register(entered)
 
 
 def pytest_sessionstart(session):
@@ -124,12 +130,12 @@ def _compiled(request):
 
 def _counts(dropped, fed, led):
     return (
-        *((aspects, "MOST", dropped), (tune, "FEW", led)),
+        *((aspects, "MAX_DROPS", dropped), (tune, "ROUGH_PARTS", led)),
         *((arrival, name, fed) for name in ("FIRST_PARTS", "MAX_ARRIVALS", "LONGER_TIME_PARTS")),
     )
 
 
-FEW, FEWEST = _counts(500, 60, tune.FEW), _counts(100, 20, 15)
+FEW, FEWEST = _counts(500, 60, tune.ROUGH_PARTS), _counts(100, 20, 15)
 MANY = [(module, name, getattr(module, name)) for module, name, _ in FEW]
 
 

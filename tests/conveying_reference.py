@@ -12,7 +12,7 @@ class Reference:
 
     def __init__(
         self, ratio, angle, climb, static, kinetic, restitution=0.0, bank=0.0, wall=0.0, lead=0.0, back=None,
-        second=(0.0, 0.0),
+        second=(0.0, 0.0, 0.0),
     ):  # fmt: skip
         self.gravity = 1.0 / ratio
         self.angle, self.climb, self.bank, self.lead = angle, climb, bank, lead
@@ -21,14 +21,15 @@ class Reference:
         self.static = {way: pair[0] for way, pair in pairs.items()}
         self.kinetic = {way: pair[1] for way, pair in pairs.items()}
 
-    def shake(self, t):
-        """Acceleration of the plate, reversed, along its direction of vibration."""
-        share, phase = self.second
-        return math.sin(t) + 4.0 * share * math.sin(2.0 * t + phase)
+    def shake(self, t, axis):
+        """Acceleration of the plate, reversed, along an axis; each mode has its own direction."""
+        share, phase, turn = self.second
+        first, second = axis(self.angle), axis(self.angle + turn)
+        return first * math.sin(t) + 4.0 * share * second * math.sin(2.0 * t + phase)
 
     def pressed(self, t):
         """Force that floor and upright wall carry together, square to the tangent, while in contact."""
-        return self.gravity * math.cos(self.climb) - math.sin(self.angle) * self.shake(t)
+        return self.gravity * math.cos(self.climb) - self.shake(t, math.sin)
 
     def held(self, pressed, coefficient):
         """Largest friction force of floor and wall that share a force; their normals are told apart here."""
@@ -38,7 +39,7 @@ class Reference:
 
     def needed(self, t):
         """Friction force that keeps the part from slipping."""
-        return self.gravity * math.sin(self.climb) - math.cos(self.angle) * self.shake(t + self.lead)
+        return self.gravity * math.sin(self.climb) - self.shake(t + self.lead, math.cos)
 
     def most(self, t, coefficient):
         """Largest friction force of track and wall."""

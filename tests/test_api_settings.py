@@ -23,7 +23,7 @@ devices:
 OTHER = {  # neither the default nor the file's
     "track.hand": "left", "sizing.shape": "conical", "drive.peak_to_peak": 1e-3, "machine.leaves": 12.0,
     "sizing.leaves": 12.0, "friction.kinetic": 0.2, "friction.kinetic_backward": 0.2,
-    "machine.mains": "60 Hz", "machine.controller": "frequency",
+    "drive.second_harmonic_angle": 0.7, "machine.mains": "60 Hz", "machine.controller": "frequency",
 }  # fmt: skip
 SHARED = sorted(word for word, count in Counter(key.word for key in BOWL_KEYS).items() if count > 1)
 
@@ -149,16 +149,16 @@ def test_every_function_of_a_bowl_takes_settings(monkeypatch):
 
 def test_a_design_keeps_what_its_bowl_was_read_from_and_the_settings(monkeypatch, bowl):
     """As ``feeder design --config``: it kept the devices alone, without the names of the keys."""
-    from feederscrew.designing import beside, loop
+    from feederscrew.designing import built_bowl, loop
 
     calls = []
     monkeypatch.setattr(
         loop, "design", lambda part, plain, given, request, **own: calls.append((plain, given))
     )
-    monkeypatch.setattr(beside, "built", lambda study, settings: None)
-    monkeypatch.setattr(beside, "with_machine", lambda study, built: study)
+    monkeypatch.setattr(built_bowl, "built", lambda study, settings: None)
+    monkeypatch.setattr(built_bowl, "with_machine", lambda study, built: study)
     part = fs.load(ROOT / "parts/washer_m6.stl")
-    fs.design(part, "60/min", fs.read_bowl(bowl), given={"track.width"}, climb="2 deg")
+    fs.design(part, "60/min", fs.read_bowl(bowl), kept_keys={"track.width"}, climb="2 deg")
     fs.design(part, "60/min", frequency="60 Hz")
     (first, keys), (second, own) = calls
     assert keys >= {"drive.frequency", "drive.peak_to_peak", "friction.static", "track.climb", "track.width"}

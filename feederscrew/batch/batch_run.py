@@ -31,7 +31,7 @@ from feederscrew.batch.task import (
 from feederscrew.batch.workers import Cluster, Processes, processors
 from feederscrew.errors import FeederError
 from feederscrew.output import tables
-from feederscrew.output.batch import SHEET
+from feederscrew.output.batch import SHEET_NAME
 from feederscrew.output.folder import RECORD
 from feederscrew.part import loading
 
@@ -147,6 +147,10 @@ class Store:
         """Read the bytes of one result of a part; None where it is not there."""
         path = self.parts / name / file
         return path.read_bytes() if path.exists() else None
+
+    def has(self, name, file) -> bool:
+        """Return whether one result of a part is there."""
+        return (self.parts / name / file).exists()
 
     def text(self, name):
         """Read a text of the whole batch; None where it is not there."""
@@ -367,7 +371,7 @@ class _UnderWay:
             if self.resume and self.store.holds(request.name, task.key):
                 self.kept += 1
                 self.finished.add(request.name)
-                self.tell(kept=True)
+                self.tell(True)
             else:
                 yield task
 
@@ -375,7 +379,7 @@ class _UnderWay:
         """Put what came of a part in place."""
         self.store.keep(outcome)
         self.finished.add(outcome.name)
-        self.tell(kept=False)
+        self.tell(False)
 
 
 def _contact_sheet(tiles):
@@ -404,11 +408,13 @@ def _finished(store, requests, complete, workers) -> Batch:
     rows = summary.rows(store, requests)
     sheets = workers.each(_contact_sheet, summary.sheets(store, rows))
     files = {
-        SHEET.format(f"_{number}" if number > 1 else ""): sheet for number, sheet in enumerate(sheets, 1)
+        SHEET_NAME.format(f"_{number}" if number > 1 else ""): sheet for number, sheet in enumerate(sheets, 1)
     }
-    files[summary.INDEX_FILE] = html(summary.index_page(store, rows))
+    pages = summary.index_pages(store, rows)
+    files |= {file: html(page) for file, page in pages.items()}
     files[summary.SUMMARY_FILE] = tables.text(summary.frame(rows), "csv")  # last: it says that all is there
-    store.write(files, without=[SHEET.format("*"), summary.PARTIAL])
+    old = [SHEET_NAME.format("*"), summary.LATER_INDEX_FILE.format("*"), summary.PARTIAL]
+    store.write(files, without=old)
     return Batch(
         rows=rows,
         reused=complete,

@@ -11,10 +11,10 @@ from feederscrew.errors import ConfigError, FeederError
 from feederscrew.output import tables
 from feederscrew.output.tables import Frame
 
-COLUMNS = ("part", "target", "aspect")
+LIST_COLUMNS = ("part", "target", "aspect")
 MAX_BYTES = 2_000_000
 FAILED = "failed"
-SHOWN = {  # columns of the table, from the document of a design
+DESIGN_COLUMNS = {  # columns of the table, from the document of a design
     "status": "status",
     "wanted": "wanted",
     "delivered_per_minute": "delivered_per_minute",
@@ -38,7 +38,7 @@ def read_orders(path: str) -> tuple[DesignOrder, ...]:
     Parameters
     ----------
     path : str
-        A CSV whose first line names columns out of ``COLUMNS``; lines that begin with # are comments.
+        A CSV whose first line names columns out of ``LIST_COLUMNS``; lines that begin with # are comments.
 
     Returns
     -------
@@ -56,8 +56,10 @@ def read_orders(path: str) -> tuple[DesignOrder, ...]:
         if "".join(cells).strip() and not cells[0].startswith("#")
     ]
     (first, head), *lines = rows or [(1, [])]
-    if "part" not in head or set(head) - set(COLUMNS):
-        raise ConfigError(f"{path}:{first}", "is not the head of a list", f"begin with {','.join(COLUMNS)}")
+    if "part" not in head or set(head) - set(LIST_COLUMNS):
+        raise ConfigError(
+            f"{path}:{first}", "is not the head of a list", f"begin with {','.join(LIST_COLUMNS)}"
+        )
     if not lines:
         raise ConfigError(path, "lists no part", "write a line a part")
     return tuple(_order(path, number, dict(zip(head, cells))) for number, cells in lines)
@@ -78,7 +80,7 @@ def _order(path: str, number: int, row: dict[str, str]) -> DesignOrder:
 
 def row_of(order: DesignOrder, target: float, document: dict[str, Any]) -> dict[str, Any]:
     """Return the row of a design that was made."""
-    own = {name: document.get(key) for name, key in SHOWN.items()}
+    own = {name: document.get(key) for name, key in DESIGN_COLUMNS.items()}
     return {"part": order.source, "target_per_minute": target / units.PER_MINUTE} | own
 
 

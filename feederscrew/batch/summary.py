@@ -1,4 +1,4 @@
-"""One row a part for summary and contact sheets; and one page over the whole batch, complete in itself."""
+"""One row a part for summary and contact sheets; and the index, in pages with a line a part."""
 
 import csv
 import io
@@ -122,7 +122,8 @@ def _reason(row) -> str:
     return f"failed: {rest if colon and Path(place.split(':')[0]).name == row['part'] else reason}"
 
 
-INDEX_FILE = "index.html"
+INDEX_FILE, LATER_INDEX_FILE = "index.html", "index_{}.html"
+INDEX_ROWS = 200  # parts of one page of the index: what a browser lays out at once
 INDEX_HEADINGS = (
     "", "part", "bowl", "mass [g]", "aspects", "leaves on", "velocity [mm/s]", "parts a minute",
     "what to know",
@@ -130,8 +131,10 @@ INDEX_HEADINGS = (
 SUMMARY_LINK_TABLE = Matrix(("all numbers",), ((MarkedCell(SUMMARY_FILE, link=SUMMARY_FILE),),))
 
 
-def index_page(store, rows) -> Page:
-    """Build the page of a batch: a line a part, with its picture and a link to its folder.
+def index_pages(store, rows) -> dict[str, Page]:
+    """Build the index of a batch by its files: a line a part, with its picture and a link to its folder.
+
+    Pictures stay in the folders of the parts, so a page takes some 400 bytes a part.
 
     Parameters
     ----------
@@ -141,12 +144,25 @@ def index_page(store, rows) -> Page:
 
     Returns
     -------
-    Page
+    dict of str to Page
+        The first one is INDEX_FILE. Each leads to all others.
     """
     failed = sum(row["status"] != DONE for row in rows)
     text = counted(len(rows), "part") + (f", {failed} of them failed" if failed else "")
-    lines = tuple(_index_row(store, row) for row in rows)
-    return Page(text, "", (Chapter((Matrix(INDEX_HEADINGS, lines, sortable=True), SUMMARY_LINK_TABLE)),))
+    starts = range(0, max(len(rows), 1), INDEX_ROWS)
+    files = [
+        LATER_INDEX_FILE.format(number) if number > 1 else INDEX_FILE for number in range(1, len(starts) + 1)
+    ]
+    folders = [row["folder"] for row in rows]
+    ends = [f"{folders[k]} to {folders[min(k + INDEX_ROWS, len(rows)) - 1]}" for k in starts] if rows else []
+    others = [Matrix(("pages",), tuple((MarkedCell(end, link=file),) for file, end in zip(files, ends)))]
+    pages: dict[str, Page] = {}
+    for file, start in zip(files, starts):
+        lines = tuple(_index_row(store, row) for row in rows[start : start + INDEX_ROWS])
+        blocks = (Matrix(INDEX_HEADINGS, lines, sortable=True), *others[: len(files) > 1], SUMMARY_LINK_TABLE)
+        subtitle = f"page {len(pages) + 1} of {len(files)}" if len(files) > 1 else ""
+        pages[file] = Page(text, subtitle, (Chapter(blocks),))
+    return pages
 
 
 def _index_row(store, row) -> tuple[Any, ...]:
@@ -166,11 +182,7 @@ def _number(value) -> MarkedCell:
 
 
 def _picture(store, row) -> Picture | None:
-    content = store.file(row["folder"], THUMBNAIL) if row["status"] == DONE else None
-    return (
-        None
-        if content is None
-        else Picture(
-            THUMBNAIL, content, f"{row['folder']} on aspect {row['aspect'] or 'it rests on most often'}"
-        )
-    )
+    if row["status"] != DONE or not store.has(row["folder"], THUMBNAIL):
+        return None
+    text = f"{row['folder']} on aspect {row['aspect'] or 'it rests on most often'}"
+    return Picture(THUMBNAIL, b"", text, link=f"{PARTS}/{quote(row['folder'])}/{THUMBNAIL}")

@@ -14,7 +14,6 @@ from feederscrew.bowl.verified import Verified, VoidTrial
 from feederscrew.output.folder import LIBRARIES
 from feederscrew.part.aspect_names import AspectNames
 
-PARTS = "parts"  # the folder of what is written of each part
 DONE, FAILED = "done", "failed"
 NOT_COMPUTED = "not computed"  # of a part to which a run that was stopped did not come
 NEW, CHANGED_FILE, CHANGED_OPTIONS = (

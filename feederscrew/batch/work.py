@@ -104,9 +104,9 @@ def _rate(part, aspects, task, files) -> tuple[Any, ...]:
     if part.vertices is None:
         return {"note": "a part card has no outline: no rate"}, _tried(part, task.request, None)
     conditions, rule = task.request.conditions, task.choices.rule
-    study = rate(part, conditions.bowl, task.request.aspect, rule=rule, known=Shares(aspects))
+    study = rate(part, conditions.bowl, task.request.aspect, rule=rule, aspect_shares=Shares(aspects))
     path = study.rate.orientations.lying[study.rate.row].name
-    document = proof.beside(rate_output.document(study), conditions.tried, part, conditions.bowl, path)
+    document = proof.with_trial(rate_output.document(study), conditions.tried, part, conditions.bowl, path)
     offers.write(files, rate_output.offers(study))
     wanted = ("aspect", "heading_deg", "pitch_mm", "p_orientation", "passes_devices")
     rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")

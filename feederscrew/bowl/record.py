@@ -17,7 +17,7 @@ MAX_TRACK_WIDTH_SHARE = 0.95  # of the wall's radius: about the axis there is no
 
 @dataclass(frozen=True)
 class Drive:
-    """Vibration of the bowl: harmonic, and straight, unless its last three fields say otherwise."""
+    """Vibration of the bowl: harmonic, and straight, unless its last four fields say otherwise."""
 
     amplitude: float  # [m] half the peak-to-peak stroke, along the vibration direction
     frequency: float  # [Hz]
@@ -26,6 +26,14 @@ class Drive:
     phase: float = 0.0  # [rad] by which the motion along the normal leads the one along the track
     second_harmonic: float = 0.0  # [1] amplitude at twice the frequency, of ``amplitude``
     second_harmonic_phase: float = 0.0  # [rad] psi of sin(w t) + r sin(2 w t + psi)
+    second_harmonic_angle: float | None = None  # [rad] of a second mode; None: as vibration_angle
+
+    @property
+    def second_harmonic_turn(self) -> float:
+        """Angle from the direction of the first harmonic up to that of the second [rad]."""
+        if self.second_harmonic_angle is None:
+            return 0.0
+        return self.second_harmonic_angle - self.vibration_angle
 
 
 @dataclass(frozen=True)
@@ -70,7 +78,7 @@ class Unbalance:
     turns: float = 1.0  # [1] 1 where it turns counter-clockwise as it rises, -1 of a left hand
 
 
-BALANCED = Unbalance()  # nothing of it is known
+UNBALANCE_UNKNOWN = Unbalance()  # nothing of it is known
 
 
 @dataclass(frozen=True)
@@ -90,7 +98,7 @@ class Machine:
     leaves: float  # of all banks together
     damping: float  # [1] of the critical one
     supply: float  # [Hz] at which the supply drives the bowl
-    unbalance: Unbalance = BALANCED  # known of a bowl that is a solid
+    unbalance: Unbalance = UNBALANCE_UNKNOWN  # known of a bowl that is a solid
 
 
 @dataclass(frozen=True)

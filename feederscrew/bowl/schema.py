@@ -408,6 +408,11 @@ BOWL_KEYS = (
         "psi of the motion sin(w t) + r sin(2 w t + psi), r being drive.second_harmonic",
     ),
     Key(
+        "drive.second_harmonic_angle", "drive.second_harmonic_angle", "angle", "0 deg", "180 deg",
+        "drive.vibration_angle",
+        "vibration angle of the second harmonic, where a second mode of the springs makes it",
+    ),
+    Key(
         "friction.static", "friction.static", "number", "0", "10", "0.6",
         "part on track, at the onset of sliding",
     ),

@@ -124,6 +124,9 @@ class Verified:
         )
 
 
+LATER_KEYS = ("second_harmonic_angle",)  # since version 0.2.0
+
+
 def fingerprint(bowl: Bowl) -> str:
     """Return a short text that another drive, friction, track or device changes.
 
@@ -143,7 +146,11 @@ def fingerprint(bowl: Bowl) -> str:
 
 
 def _number_text(record: object) -> str:
-    return " ".join("-" if value is None else f"{value:.5g}" for value in vars(record).values())
+    """Its values; those of a key that files of version 0.2.0 did not have count only where they are given."""
+    values = {
+        name: value for name, value in vars(record).items() if value is not None or name not in LATER_KEYS
+    }
+    return " ".join("-" if value is None else f"{value:.5g}" for value in values.values())
 
 
 def _device(device: Device) -> str:

@@ -129,7 +129,7 @@ def settings(bowl) -> NDArray[np.float64]:
 
     Returns
     -------
-    (..., 11) float [1 and rad, as OperatingPoint]
+    (..., 12) float [1 and rad, as OperatingPoint]
         An ``OperatingPoint`` along the last axis; the acceleration ratio of a bowl at rest is ``STILL``.
     """
     here = limits.level(bowl)
@@ -139,7 +139,7 @@ def settings(bowl) -> NDArray[np.float64]:
     )
     surface = (friction.static, friction.kinetic, *friction.backward)
     fields = (ratio, drive.vibration_angle, here.track.climb, *surface, bowl.restitution)
-    second = (drive.second_harmonic, drive.second_harmonic_phase)
+    second = (drive.second_harmonic, drive.second_harmonic_phase, drive.second_harmonic_turn)
     rows = np.broadcast_arrays(*fields, -np.asarray(drive.phase), *second)
     return np.stack(rows, axis=-1).astype(float)
 
@@ -235,16 +235,16 @@ def greatest_speed(bowl) -> Any:
     return bowl.drive.amplitude * 2.0 * np.pi * bowl.drive.frequency
 
 
-def validity(found, bowl) -> str:
+def validity(run, bowl) -> str:
     """Say what an answer leaves out, in one sentence."""
-    said = (
+    remarks = (
         f"{POINT_MASS_REMARK} ({VALIDITY_SOURCE})"
-        if found.throw_number > 1.0
+        if run.throw_number > 1.0
         else "point mass: tipping and turning are left out"
     )
     most = greatest_speed(bowl) * (1.0 + 2.0 * bowl.drive.second_harmonic)
     share = most**2 / (bowl.track.radius * bowl.gravity)
-    return f"{said}; the centripetal force, up to {100.0 * share:.2g} % of the weight, is left out"
+    return f"{remarks}; the centripetal force, up to {100.0 * share:.2g} % of the weight, is left out"
 
 
 def scaled(bowl, *, amplitude=1.0, friction=1.0, angle=1.0):
@@ -264,7 +264,9 @@ def _answer(bowl, setting, out) -> Answer:
     speed = float(greatest_speed(bowl))
     status = int(out[steady.STATUS])
     mu, throw, limit = bowl.friction, float(out[steady.THROW]), limits_of_slip(setting)
-    forward, backward = (float(limits.of_floor(one, mu.wall, bowl.track.bank)) for one in limit)
+    forward, backward = (
+        float(limits.of_floor(floor_limit, mu.wall, bowl.track.bank)) for floor_limit in limit
+    )
     return Answer(
         setting=setting,
         speed=speed,
@@ -386,9 +388,9 @@ def best_phase(bowl) -> Any:
         what = "has no steady velocity at any value: the part slides down the track without stopping"
         raise ConfigError("drive.phase", what, "lower track.climb, or raise the friction")
     near = phases[np.nanargmax(velocities)] + PHASE_STEP_RAD * np.linspace(-1.0, 1.0, 2 * FINE_PHASES + 1)
-    found = cells(with_phase(bowl, near))["velocity"]
-    best = int(np.nanargmax(found))
-    phase, velocity = float(near[best]), float(found[best])
+    near_velocities = cells(with_phase(bowl, near))["velocity"]
+    best = int(np.nanargmax(near_velocities))
+    phase, velocity = float(near[best]), float(near_velocities[best])
     low, high = _range(phases, velocities, velocity)
     frictions = np.array(FRICTION_FACTORS)
     return BestPhase(
@@ -414,9 +416,9 @@ def _range(phases, velocities, best) -> tuple[float, float]:
     """First and last phase of those on both sides of the best that give nearly its velocity."""
     count, peak = len(phases), int(np.nanargmax(velocities))
     good = velocities >= NEAR_BEST_SHARE * best if best > 0.0 else velocities == velocities[peak]
-    back = next((k for k in range(count) if not good[(peak - k - 1) % count]), count - 1)
+    lower = next((k for k in range(count) if not good[(peak - k - 1) % count]), count - 1)
     on = next((k for k in range(count) if not good[(peak + k + 1) % count]), count - 1)
-    return float(phases[peak] - PHASE_STEP_RAD * back), float(phases[peak] + PHASE_STEP_RAD * on)
+    return float(phases[peak] - PHASE_STEP_RAD * lower), float(phases[peak] + PHASE_STEP_RAD * on)
 
 
 def _velocity(bowl, phase) -> float:

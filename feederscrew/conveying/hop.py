@@ -13,7 +13,7 @@ from feederscrew.conveying.steady import settle
 from feederscrew.conveying.waves import PERIOD_RAD, after, gain, onward, travel
 
 FOLLOWED_PERIODS = 32  # periods of a motion that does not repeat
-MARGIN_M = 2.5e-4  # that a static verdict has where it counts as sure
+HOP_MARGIN_M = 2.5e-4  # that a static verdict has where it counts as sure
 PEAK_HALVINGS = 60  # of the span in which a part is highest
 
 
@@ -80,7 +80,7 @@ def remark(bowl: Bowl) -> tuple[str, ...]:
         A sentence, or none where the hop is lower than ``MARGIN_M``.
     """
     own = hop(bowl)
-    if own.height <= MARGIN_M:
+    if own.height <= HOP_MARGIN_M:
         return ()
     return (
         f"parts hop {own.text}: an edge, rail or blade that a part passes by less, and a hole that is "
@@ -96,7 +96,7 @@ def _hop(setting: OperatingPoint) -> tuple[float, float, float]:
         return 0.0, 0.0, 0.0
     state, period = settle(rules, at_rest(rules))
     tally = np.zeros(TALLY)
-    height = farthest = longest = way = 0.0
+    height = farthest = longest = flight_distance = 0.0
     for _ in range(
         period + 1 if period > 0 else FOLLOWED_PERIODS
     ):  # one more: a flight may begin in the last one
@@ -106,8 +106,8 @@ def _hop(setting: OperatingPoint) -> tuple[float, float, float]:
             if state.phase == FLIGHT:
                 span = following.angle - state.angle
                 height = max(height, _greatest_gap(rules, state, span))
-                way = tally[TRAVEL] - before + (way if state.aloft > 0.0 else 0.0)
-                farthest, longest = max(farthest, abs(way)), max(longest, state.aloft + span)
+                flight_distance = tally[TRAVEL] - before + (flight_distance if state.aloft > 0.0 else 0.0)
+                farthest, longest = max(farthest, abs(flight_distance)), max(longest, state.aloft + span)
             state = following
         state = state._replace(angle=0.0)
     return height, farthest, longest / PERIOD_RAD

@@ -16,7 +16,8 @@ class OperatingPoint(NamedTuple):
     """Everything the velocity in units of A w depends on.
 
     The plate moves A cos(angle) s(w t + lead) along the track and A sin(angle) s(w t) along its normal, with
-    s(x) = sin x + second sin(2 x + second_phase); A is half the stroke of the first harmonic.
+    s(x) = sin x + second sin(2 x + second_phase); A is half the stroke of the first harmonic. The second
+    harmonic swings in a direction of its own, ``angle + second_turn``.
     """
 
     ratio: float  # [1] A w^2 / g, the dimensionless vibration parameter
@@ -30,6 +31,7 @@ class OperatingPoint(NamedTuple):
     lead: float = 0.0  # [rad] by which the motion along the track leads the one along the normal
     second: float = 0.0  # [1] second harmonic of the displacement, of the first
     second_phase: float = 0.0  # [rad]
+    second_turn: float = 0.0  # [rad] by which the second harmonic swings steeper than the first
 
 
 def plain(ratio, angle, climb, friction, restitution=0.0) -> OperatingPoint:
@@ -113,8 +115,8 @@ def law(setting) -> Law:
 def lift_wave(setting) -> Wave:
     """Return the acceleration [A w2] along the normal of a part in flight; pressed on, what it lacks."""
     weight = math.cos(setting.climb) / setting.ratio
-    normal = math.sin(setting.angle)
-    second, phase = normal * OVERTONE_RATIO * setting.second, setting.second_phase
+    normal, phase = math.sin(setting.angle), setting.second_phase
+    second = math.sin(setting.angle + setting.second_turn) * OVERTONE_RATIO * setting.second
     return Wave(-weight, normal, 0.0, second * math.cos(phase), second * math.sin(phase))
 
 
@@ -139,12 +141,14 @@ def pull_wave(setting, direction, friction) -> Wave:
     level = -direction * math.sin(setting.climb) / setting.ratio - resist
     lead, second, phase = setting.lead, OVERTONE_RATIO * setting.second, setting.second_phase
     turned = phase + 2.0 * lead  # a lead is a shift of the whole motion in time
+    second_angle = setting.angle + setting.second_turn
+    along_2, normal_2 = direction * math.cos(second_angle), friction * math.sin(second_angle)
     return Wave(
         level,
         along * math.cos(lead) + normal,
         along * math.sin(lead),
-        second * (along * math.cos(turned) + normal * math.cos(phase)),
-        second * (along * math.sin(turned) + normal * math.sin(phase)),
+        second * (along_2 * math.cos(turned) + normal_2 * math.cos(phase)),
+        second * (along_2 * math.sin(turned) + normal_2 * math.sin(phase)),
     )
 
 

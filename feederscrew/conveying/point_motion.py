@@ -211,14 +211,14 @@ def step(rules, state, tally) -> State:
 def _ride(rules, state, tally) -> State:
     now = state.angle
     lift, ahead = later(rules.lift.rises, now), later(rules.onset.rises, now)
-    back = later(rules.onset_back.rises, now)
-    end = min(lift, ahead, back, PERIOD_RAD)
+    onset = later(rules.onset_back.rises, now)
+    end = min(lift, ahead, onset, PERIOD_RAD)
     phase = STICK
     if lift == end:
         phase = FLIGHT
     elif ahead == end:
         phase = FORWARD
-    elif back == end:
+    elif onset == end:
         phase = BACKWARD
     tally[TIMES + STICK] += end - now
     tally[STOPS] += 1.0

@@ -39,14 +39,14 @@ def numbers(setting) -> Numbers:
     return Numbers(coupling, steepness, throw, setting.restitution, -setting.lead)
 
 
-def with_numbers(found, friction):
+def with_numbers(velocity, friction):
     """Return a setting with given numbers.
 
     Source: own; the five numbers of docs/conveying.md, "The model".
 
     Parameters
     ----------
-    found : Numbers
+    velocity : Numbers
         Coupling and throw number above 0.
     friction : float [1]
         Above 0: one of the many settings with these numbers.
@@ -60,9 +60,9 @@ def with_numbers(found, friction):
     ValueError
         If one of them is not above 0.
     """
-    check.positive("coupling", found.coupling)
-    check.positive("throw", found.throw)
-    angle = math.atan(found.coupling / check.positive("friction", friction))
-    climb = math.atan(found.steepness * friction)
-    ratio = found.throw * math.cos(climb) / math.sin(angle)
-    return plain(ratio, angle, climb, friction, found.restitution)._replace(lead=-found.phase)
+    check.positive("coupling", velocity.coupling)
+    check.positive("throw", velocity.throw)
+    angle = math.atan(velocity.coupling / check.positive("friction", friction))
+    climb = math.atan(velocity.steepness * friction)
+    ratio = velocity.throw * math.cos(climb) / math.sin(angle)
+    return plain(ratio, angle, climb, friction, velocity.restitution)._replace(lead=-velocity.phase)

@@ -64,8 +64,8 @@ def surfaces(bowl, hops):
     list of Bowl
         As it is, friction ``FRICTION_DOUBT`` lower and higher, and both ends of ``even_range`` [1].
     """
-    found = [bowl, *(scaled(bowl, friction=1.0 + sign * FRICTION_DOUBT) for sign in (-1.0, 1.0))]
-    return found + ([replace(bowl, restitution=end) for end in rebounds(bowl)] if hops else [])
+    bowls = [bowl, *(scaled(bowl, friction=1.0 + sign * FRICTION_DOUBT) for sign in (-1.0, 1.0))]
+    return bowls + ([replace(bowl, restitution=end) for end in rebounds(bowl)] if hops else [])
 
 
 def rebounds(bowl) -> tuple[Any, ...]:

@@ -67,7 +67,7 @@ def settle(rules, state) -> tuple[State, int]:
     return follow(rules, state, np.empty((0, 3)), TRANSIENT)
 
 
-def follow(rules, state, known, patience) -> Any:
+def follow(rules, state, states, patience) -> Any:
     """Follow a part as ``settle`` does, or to where it joins a motion that is known.
 
     Source: own; docs/conveying.md, "How it is computed".
@@ -76,7 +76,7 @@ def follow(rules, state, known, patience) -> Any:
     ----------
     rules : Law
     state : State
-    known : (N, 3) float [A, A w, A w]
+    states : (N, 3) float [A, A w, A w]
         Of ``noted``: states of steady motions at the start of a period.
     patience : int
         Periods followed before the motion is hastened, or counts as not periodic.
@@ -98,7 +98,7 @@ def follow(rules, state, known, patience) -> Any:
             return state, RUNS if sliding >= period and sense != 0.0 else period
         if sense != 0.0 and _grows(history, count, state, sliding, sense):
             return state, RUNS
-        if _joins(known, state, even):
+        if _joins(states, state, even):
             return state, JOINS
         if even and count >= FIRST_LEAP:
             before, state = state.speed, _leap(rules, history, count, state, tally)
@@ -123,12 +123,12 @@ def evenly(rules) -> bool:
     return same and min(rules.kinetic, rules.kinetic_back) > 0.0
 
 
-def _joins(known, state, even) -> bool:
+def _joins(states, state, even) -> bool:
     """Whether a state is one of a known motion; with even friction the motion along the normal tells."""
     height, rising, speed = noted(state)
-    for k in range(len(known)):
-        apart = max(abs(known[k, 0] - height), abs(known[k, 1] - rising))
-        if apart <= JOINING_STATES_GAP and (even or abs(known[k, 2] - speed) <= JOINING_STATES_GAP):
+    for k in range(len(states)):
+        distance = max(abs(states[k, 0] - height), abs(states[k, 1] - rising))
+        if distance <= JOINING_STATES_GAP and (even or abs(states[k, 2] - speed) <= JOINING_STATES_GAP):
             return True
     return False
 
@@ -139,13 +139,13 @@ def _leap(rules, history, count, state, tally) -> State:
     Three speeds in a row tell (Aitken). The leap is kept where the speed then changes less than before it:
     a period is followed to see.
     """
-    one, two = (count - 1) % (LONGEST_PERIOD + 1), (count - 2) % (LONGEST_PERIOD + 1)
+    newest, before = (count - 1) % (LONGEST_PERIOD + 1), (count - 2) % (LONGEST_PERIOD + 1)
     if (
-        _normal_apart(history, one, state) > EQUAL_STATES_GAP
-        or _normal_apart(history, two, state) > EQUAL_STATES_GAP
+        _normal_apart(history, newest, state) > EQUAL_STATES_GAP
+        or _normal_apart(history, before, state) > EQUAL_STATES_GAP
     ):
         return state
-    first, second = history[one, 0] - history[two, 0], state.speed - history[one, 0]
+    first, second = history[newest, 0] - history[before, 0], state.speed - history[newest, 0]
     if not (0.0 < second * first < first * first and abs(second) > LEAST_LEAP):
         return state
     beyond = second * second / (first - second)  # the rest of a geometric series
@@ -171,10 +171,10 @@ def _repeats(history, streak, count, state) -> int:
     """Periods after which the state came back for the second time running, or 0; notes the state."""
     for q in range(1, min(count, LONGEST_PERIOD) + 1):
         then = (count - q) % (LONGEST_PERIOD + 1)
-        apart = abs(state.speed - history[then, 0])
-        if apart <= EQUAL_STATES_GAP:
-            apart = _normal_apart(history, then, state)
-        streak[q] = streak[q] + 1.0 if apart <= EQUAL_STATES_GAP else 0.0
+        distance = abs(state.speed - history[then, 0])
+        if distance <= EQUAL_STATES_GAP:
+            distance = _normal_apart(history, then, state)
+        streak[q] = streak[q] + 1.0 if distance <= EQUAL_STATES_GAP else 0.0
         if streak[q] == 2.0:
             return q
     row = count % (LONGEST_PERIOD + 1)
@@ -200,12 +200,12 @@ def _period_of_normal(history, count) -> int:
     """Periods after which the motion along the normal repeats, twice in a row; 0 where it does not."""
     size = LONGEST_PERIOD + 1
     for q in range(1, LONGEST_PERIOD):
-        apart = 0.0
-        for back in range(2):
-            now, then = (count - back) % size, (count - back - q) % size
-            apart = max(apart, abs(history[now, 1] - history[then, 1]))
-            apart = max(apart, abs(history[now, 2] - history[then, 2]))
-        if apart <= EQUAL_STATES_GAP:
+        distance = 0.0
+        for cycle in range(2):
+            now, then = (count - cycle) % size, (count - cycle - q) % size
+            distance = max(distance, abs(history[now, 1] - history[then, 1]))
+            distance = max(distance, abs(history[now, 2] - history[then, 2]))
+        if distance <= EQUAL_STATES_GAP:
             return q
     return 0
 
@@ -329,26 +329,26 @@ def steady(rules, state, out) -> None:
     _steady(rules, state, out, np.empty((MAX_NOTED_STATES, 3)), 0, TRANSIENT)
 
 
-def _steady(rules, state, out, known, count, patience) -> int:
+def _steady(rules, state, out, states, count, patience) -> int:
     """The same, noting the states of a steady motion; their number with it, unchanged where it was known."""
-    state, repeat = follow(rules, state, known[:count], patience)
+    state, repeat = follow(rules, state, states[:count], patience)
     if repeat == RUNS:
         _nothing(out)
     elif repeat > 0:
-        return _cycle(rules, state, repeat, out, known, count)
+        return _cycle(rules, state, repeat, out, states, count)
     elif repeat == 0:
         _long_run(rules, state, out, AVERAGED_LOTS if patience == TRANSIENT else BRIEF_LOTS)
     return count
 
 
-def _cycle(rules, state, repeat, out, known, noticed) -> int:
+def _cycle(rules, state, repeat, out, states, noticed) -> int:
     """Averages over the periods after which the motion repeats; the least of them is its period."""
     tally, start, period = np.zeros(TALLY), state, repeat
     out[SLOWEST], out[FASTEST] = math.inf, -math.inf
     for count in range(1, repeat + 1):
         state = _noted_turn(rules, state, tally, out)
         if noticed < MAX_NOTED_STATES:
-            known[noticed, 0], known[noticed, 1], known[noticed, 2] = noted(state)
+            states[noticed, 0], states[noticed, 1], states[noticed, 2] = noted(state)
             noticed += 1
         if count < period and repeat % count == 0 and _state_distance(state, start) <= ALTERNATING_STATES_GAP:
             period = count
@@ -363,14 +363,14 @@ def _cycle(rules, state, repeat, out, known, noticed) -> int:
 def _long_run(rules, state, out, blocks) -> None:
     """Averages over lots of periods, unless the part slides through them all and gets faster."""
     for _ in range(RUNAWAY_LOTS):
-        tally, way, first = np.zeros(TALLY), 0.0, state.speed
+        tally, travelled, first = np.zeros(TALLY), 0.0, state.speed
         low, high = math.inf, -math.inf
         out[SLOWEST], out[FASTEST] = math.inf, -math.inf
         for _ in range(blocks):
             for _ in range(AVERAGED_PERIODS):
                 state = _noted_turn(rules, state, tally, out)
-            velocity = (tally[TRAVEL] - way) / (AVERAGED_PERIODS * PERIOD_RAD)
-            way, low, high = tally[TRAVEL], min(low, velocity), max(high, velocity)
+            velocity = (tally[TRAVEL] - travelled) / (AVERAGED_PERIODS * PERIOD_RAD)
+            travelled, low, high = tally[TRAVEL], min(low, velocity), max(high, velocity)
         out[STATUS], out[PERIOD], out[LOW], out[HIGH] = AVERAGED, 0.0, low, high
         _averages(out, tally, float(AVERAGED_PERIODS * blocks))
         if _slid(tally) and (state.speed - first) * state.speed > 0.0:
@@ -382,9 +382,9 @@ def _long_run(rules, state, out, blocks) -> None:
 
 def _noted_turn(rules, state, tally, out) -> State:
     """The state a period of the drive on; the range of the velocities in single periods grows by its own."""
-    way = tally[TRAVEL]
+    travelled = tally[TRAVEL]
     state = turn(rules, state, tally)
-    velocity = (tally[TRAVEL] - way) / PERIOD_RAD
+    velocity = (tally[TRAVEL] - travelled) / PERIOD_RAD
     out[SLOWEST], out[FASTEST] = min(out[SLOWEST], velocity), max(out[FASTEST], velocity)
     return state
 
@@ -412,8 +412,10 @@ def escape(rules) -> float:
     return max(rules.slip.level, rules.slip_back.level)
 
 
-def _state_distance(one, other) -> float:
-    return max(abs(one.speed - other.speed), abs(one.height - other.height), abs(one.rising - other.rising))
+def _state_distance(first, second) -> float:
+    return max(
+        abs(first.speed - second.speed), abs(first.height - second.height), abs(first.rising - second.rising)
+    )
 
 
 def _averages(out, tally, periods) -> None:
@@ -438,14 +440,14 @@ def survey(setting, out) -> None:
     """
     rules = law(setting)
     out[THROW], out[REGIME] = throw_number(rules), regime(rules)
-    known = np.empty((MAX_NOTED_STATES, 3))
-    count = _steady(rules, at_rest(rules), out, known, 0, TRANSIENT)
+    states = np.empty((MAX_NOTED_STATES, 3))
+    count = _steady(rules, at_rest(rules), out, states, 0, TRANSIENT)
     if out[STATUS] == NO_STEADY_STATE:
         out[RUNAWAY] = 1.0
         return
     out[RUNAWAY] = 1.0 if escape(rules) > 0.0 else 0.0
     if setting.restitution > 0.0:
-        _widen(rules, out, known, count)
+        _widen(rules, out, states, count)
 
 
 def _nothing(out) -> None:
@@ -465,14 +467,14 @@ def regime(rules) -> int:
     return forward + (limits.BACKWARD if peak(rules.onset_back) > 0.0 else limits.RIDE)
 
 
-def _widen(rules, out, known, count) -> None:
+def _widen(rules, out, states, count) -> None:
     other = np.zeros(COLUMNS)
     patience = TRANSIENT if out[STATUS] == PERIODIC else BRIEF_PERIODS
     for start in range(2 * MAX_BOUNCE_PERIODS + len(DROP_FLIGHTS)):
         state = thrown(rules, start)
         if state.rising > 0.0:
             other[STATUS], other[LOW], other[HIGH] = PERIODIC, out[LOW], out[HIGH]
-            count = _steady(rules, state, other, known, count, patience)
+            count = _steady(rules, state, other, states, count, patience)
             if other[STATUS] == NO_STEADY_STATE:
                 out[RUNAWAY] = 1.0
             else:
@@ -557,13 +559,13 @@ def trace(setting) -> CycleTrace:
     return _around_plate(setting, time, phase.astype(int), slip, height)
 
 
-def _piece(rules, state, end, way, count) -> NDArray[np.float64]:
+def _piece(rules, state, end, distance, count) -> NDArray[np.float64]:
     """Time, phase, way relative to the plate and height in one phase, sampled to both of its ends."""
     span = end - state.angle
     samples = np.linspace(0.0, span, max(2, round(TRACE_SAMPLES * span / PERIOD_RAD)))
     sign = 1.0 if state.phase in (FORWARD, FLIGHT) else -1.0
     growth = {STICK: None, FORWARD: rules.slip, FLIGHT: rules.free}.get(state.phase, rules.slip_back)
-    slip, height = np.full_like(samples, way), np.zeros_like(samples)
+    slip, height = np.full_like(samples, distance), np.zeros_like(samples)
     if growth is not None:
         arc = onward(growth, state.angle)
         slip += [state.speed * x + sign * travel(arc, x) for x in samples]
@@ -575,12 +577,13 @@ def _piece(rules, state, end, way, count) -> NDArray[np.float64]:
 
 
 def _around_plate(setting, time, phase, slip, height) -> CycleTrace:
-    along = np.cos(setting.angle) * _displacement(setting, PERIOD_RAD * time + setting.lead)
-    normal = np.sin(setting.angle) * _displacement(setting, PERIOD_RAD * time)
-    ways = (time, phase, along, along + slip, normal, normal + height)
-    return CycleTrace(*(check.frozen(array) for array in ways))
+    first, second = setting.angle, setting.angle + setting.second_turn
+    along = _displacement(setting, np.cos(first), np.cos(second), PERIOD_RAD * time + setting.lead)
+    normal = _displacement(setting, np.sin(first), np.sin(second), PERIOD_RAD * time)
+    columns = (time, phase, along, along + slip, normal, normal + height)
+    return CycleTrace(*(check.frozen(array) for array in columns))
 
 
-def _displacement(setting, angle) -> NDArray[np.float64]:
-    """Of the plate along its direction of vibration [A]."""
-    return np.sin(angle) + setting.second * np.sin(2.0 * angle + setting.second_phase)
+def _displacement(setting, first, second, angle) -> NDArray[np.float64]:
+    """Of the plate along an axis [A], to which the two harmonics have these cosines."""
+    return first * np.sin(angle) + second * setting.second * np.sin(2.0 * angle + setting.second_phase)

@@ -11,8 +11,8 @@ from feederscrew import check
 from feederscrew.conveying import operating_point, point_motion, steady, waves
 from feederscrew.conveying.operating_point import OperatingPoint, checked
 from feederscrew.conveying.steady import COLUMNS, survey
-from feederscrew.geometry.compiled import apart, entry, on_disk
 from feederscrew.geometry.compiled import compiled as inlined
+from feederscrew.geometry.compiled import entry, on_disk, outlined
 
 IN_A_PERIOD = (  # what follows a part through a period of the drive: compiled into one piece
     *(waves.value, waves.after, waves.above, waves.onward, waves.reached),
@@ -57,7 +57,7 @@ def sweep(settings, workers=None) -> NDArray[np.float64]:
 
     Parameters
     ----------
-    settings : (N, 11) float [1 and rad, as OperatingPoint]
+    settings : (N, 12) float [1 and rad, as OperatingPoint]
         One ``OperatingPoint`` a row.
     workers : int, optional
         Threads; by default one a core.
@@ -111,7 +111,7 @@ def _suspects(settings) -> NDArray[np.int64]:
 @functools.cache
 def _compiled():
     """The loop over settings, compiled with every function it reaches."""
-    for functions, mark in ((IN_A_PERIOD, inlined), (KERNEL, apart)):
+    for functions, mark in ((IN_A_PERIOD, inlined), (KERNEL, outlined)):
         for function in functions:
             mark(function, arrays=True)
     return entry(_loop, arrays=True)
@@ -120,5 +120,5 @@ def _compiled():
 def _loop(settings, out) -> None:
     for row in range(len(settings)):
         s = settings[row]
-        drive = s[8], s[9], s[10]
+        drive = s[8], s[9], s[10], s[11]
         survey(OperatingPoint(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], *drive), out[row])

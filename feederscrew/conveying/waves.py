@@ -74,22 +74,22 @@ def find_bends(wave) -> NDArray[np.float64]:
     return crossings(rate, crossings(second, crossings(third, knots, 0), 0), 0)
 
 
-def _knots(first, apart, count) -> NDArray[np.float64]:
+def _knots(first, spacing, count) -> NDArray[np.float64]:
     """(4,) float [rad]: so many angles, this far apart, then inf."""
     angles = np.empty(MAX_ZEROS)
     for k in range(MAX_ZEROS):
-        angles[k] = first + apart * k if k < count else math.inf
+        angles[k] = first + spacing * k if k < count else math.inf
     return angles
 
 
 def crest(wave) -> float:
     """Return the angle [rad] of its greatest value; the wave has a harmonic."""
-    best, found = -math.inf, 0.0
+    best, angle = -math.inf, 0.0
     angles = find_bends(wave)
     for k in range(MAX_ZEROS):
         if angles[k] < math.inf and height(wave, angles[k]) > best:
-            best, found = height(wave, angles[k]), angles[k]
-    return found
+            best, angle = height(wave, angles[k]), angles[k]
+    return angle
 
 
 def crossings(wave, knots, sense) -> NDArray[np.float64]:
@@ -111,7 +111,7 @@ def crossings(wave, knots, sense) -> NDArray[np.float64]:
     (4,) float [rad]
         From 0 to 2 pi, ascending, then inf.
     """
-    found = _knots(0.0, 0.0, 0)
+    places = _knots(0.0, 0.0, 0)
     for k in range(MAX_ZEROS):
         if knots[k] == math.inf:
             break
@@ -120,8 +120,8 @@ def crossings(wave, knots, sense) -> NDArray[np.float64]:
             high = knots[k + 1]
         before, after = height(wave, low) > 0.0, height(wave, high) > 0.0
         if (after and not before and sense >= 0) or (before and not after and sense <= 0):
-            _insert(found, _zero(wave, low, high, after) % PERIOD_RAD % PERIOD_RAD)
-    return found
+            _insert(places, _zero(wave, low, high, after) % PERIOD_RAD % PERIOD_RAD)
+    return places
 
 
 def _insert(ascending, number) -> None:

@@ -74,21 +74,21 @@ class PlainBowl:
     """A bowl without devices, and which of its keys the user gave."""
 
     bowl: Bowl
-    given: frozenset[str]
+    kept_keys: frozenset[str]
     size: sizing.Size | None = field(compare=False)  # None once the bowl has changed
     drive: str = LEAF_SPRING  # kind of drive that is asked for, of DRIVES
 
     @property
     def has_stroke(self) -> bool:
         """Whether the user gave the stroke."""
-        return bool(STROKES & self.given)
+        return bool(STROKES & self.kept_keys)
 
 
 def section(
     part: Part,
     aspects: Aspects,
     plain: Bowl,
-    given: Collection[str],
+    kept_keys: Collection[str],
     *,
     diameter: tuple[float, float] | None = None,
     bank: float = BANKS[0],
@@ -102,7 +102,7 @@ def section(
     aspects : Aspects
     plain : Bowl
         What the user gave, completed by the defaults.
-    given : collection of str
+    kept_keys : collection of str
         Names of the keys the user gave: those are kept.
     diameter : (float, float) [m], optional
         Least and greatest.
@@ -118,17 +118,17 @@ def section(
     rules = plain.sizing
     if diameter is not None:
         rules = replace(rules, least_diameter=diameter[0], greatest_diameter=diameter[1])
-    known = {"diameter": "track.radius", "width": "track.width", "climb": "track.climb"}
-    kept = {"diameter": 2.0 * plain.track.radius, "width": plain.track.width, "climb": plain.track.climb}
-    own = {name: kept[name] for name, key in known.items() if key in given}
+    keys = {"diameter": "track.radius", "width": "track.width", "climb": "track.climb"}
+    values = {"diameter": 2.0 * plain.track.radius, "width": plain.track.width, "climb": plain.track.climb}
+    own = {name: values[name] for name, key in keys.items() if key in kept_keys}
     size = sizing.size_bowl(sizing.find_lying(part, aspects), part.source, rules, sorts=True, **own)
     track = Track(
         climb=_tenths(size.climb, np.radians(0.1)) if "climb" not in own else size.climb,
-        bank=plain.track.bank if "track.bank" in given else bank,
+        bank=plain.track.bank if "track.bank" in kept_keys else bank,
         radius=0.5 * size.diameter,
         width=size.track_width if "width" in own else _tenths(size.track_width, 1e-4),
     )
-    return PlainBowl(replace(plain, track=track, devices=()), frozenset(given), size, drive)
+    return PlainBowl(replace(plain, track=track, devices=()), frozenset(kept_keys), size, drive)
 
 
 def _tenths(value: float, step: float) -> float:
@@ -136,12 +136,12 @@ def _tenths(value: float, step: float) -> float:
 
 
 @functools.lru_cache(maxsize=256)
-def driven(made: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
+def driven(plain_bowl: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
     """Return a bowl with the calmest drive that carries a point mass at a velocity, or with the fastest.
 
     Parameters
     ----------
-    made : PlainBowl
+    plain_bowl : PlainBowl
     velocity : float [m/s]
         Infinite for the fastest.
     hops : bool
@@ -166,34 +166,37 @@ def driven(made: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
     A. H. Redford, G. Boothroyd, "Vibratory feeding", Proc. Inst. Mech. Eng. 182, 135-152, 1967.
     """
     velocity = velocity if hops else max(velocity, LEAST)
-    levels = list(itertools.chain(*_kinds(made, hops)))
-    chosen = _calmest(made, levels, velocity, _can_build)
+    levels = list(itertools.chain(*_kinds(plain_bowl, hops)))
+    chosen = _calmest(plain_bowl, levels, velocity, _can_build)
     if chosen is None:
         order = sorted(itertools.chain(*levels), key=_fast, reverse=True)  # of equal ones the calmest first
-        chosen = next((bowl for bowl in order if _can_build(made, bowl)), None)
+        chosen = next((bowl for bowl in order if _can_build(plain_bowl, bowl)), None)
         if chosen is None:  # no machine makes any: as if one did
-            chosen = _calmest(made, levels, velocity, lambda *_: True) or order[0]
+            chosen = _calmest(plain_bowl, levels, velocity, lambda *_: True) or order[0]
     return chosen
 
 
 def _calmest(
-    made: PlainBowl, levels: list[list[Bowl]], velocity: float, can_build: Callable[[PlainBowl, Bowl], bool]
+    plain_bowl: PlainBowl,
+    levels: list[list[Bowl]],
+    velocity: float,
+    can_build: Callable[[PlainBowl, Bowl], bool],
 ) -> Bowl | None:
     """The calmest bowl of groups of about the same hop that is fast enough; None where none is."""
     for level in levels if math.isfinite(velocity) else ():
-        enough = [bowl for bowl in level if _is_fast(bowl, velocity) and can_build(made, bowl)]
+        enough = [bowl for bowl in level if _is_fast(bowl, velocity) and can_build(plain_bowl, bowl)]
         if enough:
-            least = enough if made.has_stroke else [_slowed(bowl, velocity) for bowl in enough]
+            least = enough if plain_bowl.has_stroke else [_slowed(bowl, velocity) for bowl in enough]
             return min(least, key=_calmness)
     return None
 
 
-def calmer(made: PlainBowl, bowl: Bowl) -> Bowl | None:
+def calmer(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
     """Return a bowl with a calmer drive than another one's.
 
     Parameters
     ----------
-    made : PlainBowl
+    plain_bowl : PlainBowl
         The bowl without devices, as for ``driven``.
     bowl : Bowl
         With the drive that turned or lost a part.
@@ -205,25 +208,25 @@ def calmer(made: PlainBowl, bowl: Bowl) -> Bowl | None:
         it does not: a drive that is ``CALMER`` times as fast and throws nothing. None where the user gave the
         stroke, or none is calmer.
     """
-    if made.has_stroke:
+    if plain_bowl.has_stroke:
         return None
     height = hop(bowl).height
     if height > 0.0 and not is_two_axis(bowl.drive):
-        levels = itertools.chain(*_kinds(made, True))
-        rows = [one for one in itertools.chain(*levels) if _is_calmer(one, height)]
+        levels = itertools.chain(*_kinds(plain_bowl, True))
+        rows = [other for other in itertools.chain(*levels) if _is_calmer(other, height)]
         order = sorted(rows, key=_fast, reverse=True)
-        return next((one for one in order if _fast(one) > 0.0 and _can_build(made, one)), None)
-    other = driven(made, CALMER * speed(bowl))
+        return next((other for other in order if _fast(other) > 0.0 and _can_build(plain_bowl, other)), None)
+    other = driven(plain_bowl, CALMER * speed(bowl))
     gentler = throw_number(bowl) > CALM + CALMER_STEP or speed(other) <= CALMER_SHARE * speed(bowl)
     return other if gentler and 0.0 < throw_number(other) <= CALM + CALMER_STEP else None
 
 
-def livelier(made: PlainBowl, bowl: Bowl) -> Bowl | None:
+def livelier(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
     """Return a bowl with the calmest drive that throws parts ``LIVELIER_HOP`` times as high as another one's.
 
     Parameters
     ----------
-    made : PlainBowl
+    plain_bowl : PlainBowl
         The bowl without devices, as for ``driven``.
     bowl : Bowl
         With the drive at which parts stay at a blade.
@@ -234,12 +237,12 @@ def livelier(made: PlainBowl, bowl: Bowl) -> Bowl | None:
         Without devices. None where the user gave the stroke, or no drive is that lively.
     """
     height = max(LIVELIER_HOP * hop(bowl).height, LEAST_LIVELY_M)
-    if made.has_stroke:
+    if plain_bowl.has_stroke:
         return None
-    levels = itertools.chain(*_kinds(made, True))
+    levels = itertools.chain(*_kinds(plain_bowl, True))
     order = sorted(itertools.chain(*levels), key=_calmness)
-    rows = (one for one in order if hop(one).height >= height and speed(one) > 0.0)
-    return next((one for one in rows if _can_build(made, one)), None)
+    rows = (other for other in order if hop(other).height >= height and speed(other) > 0.0)
+    return next((other for other in rows if _can_build(plain_bowl, other)), None)
 
 
 def _is_calmer(bowl: Bowl, height: float) -> bool:
@@ -247,16 +250,16 @@ def _is_calmer(bowl: Bowl, height: float) -> bool:
     return hop(bowl).height <= CALMER_HOP * height
 
 
-def _kinds(made: PlainBowl, hops: bool) -> Iterator[list[list[Bowl]]]:
+def _kinds(plain_bowl: PlainBowl, hops: bool) -> Iterator[list[list[Bowl]]]:
     """Drives of each kind that is asked for, in groups of about the same hop, the calmest first."""
-    drive = made.drive
-    if "drive.phase" in made.given:
-        drive = TWO_AXIS if is_two_axis(made.bowl.drive) else LEAF_SPRING
+    drive = plain_bowl.drive
+    if "drive.phase" in plain_bowl.kept_keys:
+        drive = TWO_AXIS if is_two_axis(plain_bowl.bowl.drive) else LEAF_SPRING
     if drive in (LEAF_SPRING, ANY):
-        order = sorted(set(_leaf_spring_drives(made)), key=_calmness)
+        order = sorted(set(_leaf_spring_drives(plain_bowl)), key=_calmness)
         yield [list(group) for _, group in itertools.groupby(order, key=lambda bowl: _calmness(bowl)[0])]
     if drive in (TWO_AXIS, ANY):
-        yield [[bowl] for bowl in dict.fromkeys(_two_axis_drives(made, hops))]
+        yield [[bowl] for bowl in dict.fromkeys(_two_axis_drives(plain_bowl, hops))]
 
 
 def _calmness(bowl: Bowl) -> tuple[float, float]:
@@ -264,58 +267,58 @@ def _calmness(bowl: Bowl) -> tuple[float, float]:
     return float(f"{hop(bowl).height:.2g}"), bowl.drive.amplitude
 
 
-def _leaf_spring_drives(made: PlainBowl) -> Iterator[Bowl]:
+def _leaf_spring_drives(plain_bowl: PlainBowl) -> Iterator[Bowl]:
     """Every leaf-spring drive that the supply and the springs make."""
-    frequencies, angles = _frequencies(made), _angles(made)
+    frequencies, angles = _frequencies(plain_bowl), _angles(plain_bowl)
     for frequency, angle in itertools.product(frequencies, angles):
         own = {"frequency": frequency, "vibration_angle": angle, "phase": 0.0}
-        kept = {"phase": made.bowl.drive.phase} if "drive.phase" in made.given else {}
-        bowl = replace(made.bowl, drive=replace(made.bowl.drive, **own | kept))
-        if made.has_stroke:
+        kept_phase = {"phase": plain_bowl.bowl.drive.phase} if "drive.phase" in plain_bowl.kept_keys else {}
+        bowl = replace(plain_bowl.bowl, drive=replace(plain_bowl.bowl.drive, **own | kept_phase))
+        if plain_bowl.has_stroke:
             yield bowl
             continue
         for throw in THROW_NUMBERS:
             yield _thrown(bowl, throw)
 
 
-def _frequencies(made: PlainBowl) -> tuple[float, ...]:
+def _frequencies(plain_bowl: PlainBowl) -> tuple[float, ...]:
     """Frequencies [Hz] that the supply makes, or the one that the user gave."""
-    if "drive.frequency" in made.given:
-        return (made.bowl.drive.frequency,)
-    rules = made.bowl.sizing
+    if "drive.frequency" in plain_bowl.kept_keys:
+        return (plain_bowl.bowl.drive.frequency,)
+    rules = plain_bowl.bowl.sizing
     if rules.control == "frequency":
-        return (_controlled(made),) if "machine.leaves" in made.given else CONTROLLED_HZ
-    if has_machine(made.given):
-        return (made.bowl.machine.supply,)
+        return (_controlled(plain_bowl),) if "machine.leaves" in plain_bowl.kept_keys else CONTROLLED_HZ
+    if has_machine(plain_bowl.kept_keys):
+        return (plain_bowl.bowl.machine.supply,)
     return tuple(wave * rules.mains_frequency for wave in WAVES)
 
 
-def _controlled(made: PlainBowl) -> float:
+def _controlled(plain_bowl: PlainBowl) -> float:
     """The frequency [Hz] at which a controller runs a machine that has its leaves, below its natural one."""
-    rules, machine = made.bowl.sizing, drive_sizing.machine_on(made.bowl, made.given)
+    rules, machine = plain_bowl.bowl.sizing, drive_sizing.machine_on(plain_bowl.bowl, plain_bowl.kept_keys)
     detuning = 0.5 * (rules.least_detuning + rules.greatest_detuning)
     return round(float(analyse_springs(machine).natural_frequency) / (1.0 + detuning), 1)
 
 
-def _angles(made: PlainBowl) -> tuple[float, ...]:
+def _angles(plain_bowl: PlainBowl) -> tuple[float, ...]:
     """Vibration angles at the track [rad], or the one that the user's drive or springs make."""
-    bowl = made.bowl
-    if "drive.vibration_angle" in made.given:
+    bowl = plain_bowl.bowl
+    if "drive.vibration_angle" in plain_bowl.kept_keys:
         return (bowl.drive.vibration_angle,)
-    if "machine.spring_angle" in made.given:
-        machine = drive_sizing.machine_on(bowl, made.given)
+    if "machine.spring_angle" in plain_bowl.kept_keys:
+        machine = drive_sizing.machine_on(bowl, plain_bowl.kept_keys)
         return (float(vibration_angle(machine, bowl.track.radius, bowl.track.climb)),)
     return TRACK_ANGLES
 
 
-def _two_axis_drives(made: PlainBowl, hops: bool) -> Iterator[Bowl]:
+def _two_axis_drives(plain_bowl: PlainBowl, hops: bool) -> Iterator[Bowl]:
     """Every drive with two magnets, the simplest first."""
-    plain, given = made.bowl, made.given
+    plain, kept_keys = plain_bowl.bowl, plain_bowl.kept_keys
     for throw, row in itertools.product((CALM, *LIVELY) if hops else (CALM,), ELLIPTIC):
         own = dict(zip(("frequency", "vibration_angle", "phase"), row))
-        kept = {name: getattr(plain.drive, name) for name in own if f"drive.{name}" in given}
-        bowl = replace(plain, drive=replace(plain.drive, **own | kept))
-        yield bowl if made.has_stroke else _thrown(bowl, throw)
+        kept_values = {name: getattr(plain.drive, name) for name in own if f"drive.{name}" in kept_keys}
+        bowl = replace(plain, drive=replace(plain.drive, **own | kept_values))
+        yield bowl if plain_bowl.has_stroke else _thrown(bowl, throw)
 
 
 def _thrown(bowl: Bowl, throw: float) -> Bowl:
@@ -324,11 +327,11 @@ def _thrown(bowl: Bowl, throw: float) -> Bowl:
     return with_amplitude(bowl, min(amplitude, greatest_amplitude(bowl)))
 
 
-def _can_build(made: PlainBowl, bowl: Bowl) -> bool:
+def _can_build(plain_bowl: PlainBowl, bowl: Bowl) -> bool:
     """Whether a machine of usual springs and magnets makes the drive; what the user owns counts as built."""
-    if is_two_axis(bowl.drive) or made.has_stroke or "machine.leaves" in made.given:
+    if is_two_axis(bowl.drive) or plain_bowl.has_stroke or "machine.leaves" in plain_bowl.kept_keys:
         return True
-    return not drive_sizing.drive_shortfall(bowl, frozenset(made.given))
+    return not drive_sizing.drive_shortfall(bowl, frozenset(plain_bowl.kept_keys))
 
 
 def with_amplitude(bowl: Bowl, amplitude: float) -> Bowl:
@@ -340,7 +343,7 @@ def with_amplitude(bowl: Bowl, amplitude: float) -> Bowl:
 def _slowed(bowl: Bowl, velocity: float) -> Bowl:
     """The bowl at the least amplitude that is as fast as that, down to the next lower throw number."""
     throw, high = float(throw_number(bowl)), bowl.drive.amplitude
-    lower = [one for one in THROW_NUMBERS if one < throw - CALMER_STEP]
+    lower = [number for number in THROW_NUMBERS if number < throw - CALMER_STEP]
     low = high * max(lower) / throw if lower and not is_two_axis(bowl.drive) else 0.0
     for _ in range(HALVINGS if low == 0.0 else HALVINGS // 2):
         middle = 0.5 * (low + high)
@@ -363,7 +366,7 @@ def slowest(bowl: Bowl) -> float:
     return min(speed(rubbed(bowl, share)) for share in WORST)
 
 
-def kept(bowl: Bowl) -> float:
+def velocity_kept(bowl: Bowl) -> float:
     """Return the share [1] of its velocity that a bowl keeps at the worst friction; 0 where it has none."""
     own = speed(bowl)
     return min(slowest(bowl) / own, 1.0) if own > 0.0 else 0.0
@@ -384,7 +387,7 @@ def speed(bowl: Bowl) -> float:
 @functools.lru_cache(maxsize=4096)
 def _speed(bowl: Bowl) -> float:
     try:
-        found = answer.answer(bowl).velocity
+        velocity = answer.answer(bowl).velocity
     except ConfigError:
         return 0.0
-    return max(float(found), 0.0) if np.isfinite(found) else 0.0
+    return max(float(velocity), 0.0) if np.isfinite(velocity) else 0.0

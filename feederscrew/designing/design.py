@@ -6,14 +6,14 @@ from typing import Unpack, overload
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl import Bowl
-from feederscrew.designing import beside, families, loop
+from feederscrew.designing import built_bowl, families, loop
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import OUTCOMES, DesignRequest, DesignStudy
 from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
-from feederscrew.studies.rate import LEAST, Shares, the_shares
+from feederscrew.studies.rate import MIN_POSITIVE, Shares, the_shares
 from feederscrew.studies.tooling import listed as names_of
 from feederscrew.units import listed
 
@@ -21,7 +21,7 @@ from feederscrew.units import listed
 class DesignOptions(BowlSettings, total=False):
     """The keywords of ``design`` for a type checker: of one part and of several it returns two records."""
 
-    given: Collection[str]
+    kept_keys: Collection[str]
     aspect: str | None
     heading: Quantity | None
     up: str | Sequence[str]
@@ -36,7 +36,7 @@ class DesignOptions(BowlSettings, total=False):
     draws: int
     seed: int
     jobs: int
-    known: Shares | None
+    aspect_shares: Shares | None
     progress: Callable[[str], None] | None
     overrides: Overrides
 
@@ -59,7 +59,7 @@ def design(
     target: Quantity,
     bowl: Bowl | None = None,
     *,
-    given: Collection[str] = frozenset(),
+    kept_keys: Collection[str] = frozenset(),
     aspect: str | None = DesignRequest.aspect,
     heading: Quantity | None = None,
     up: str | Sequence[str] = DesignRequest.up,
@@ -74,7 +74,7 @@ def design(
     draws: int = DesignRequest.draws,
     seed: int = DesignRequest.seed,
     jobs: int = DesignRequest.jobs,
-    known: Shares | None = None,
+    aspect_shares: Shares | None = None,
     progress: Callable[[str], None] | None = None,
     overrides: Overrides = (),
     **settings: Unpack[BowlSettings],
@@ -89,7 +89,7 @@ def design(
         Parts that shall leave, '60/min'.
     bowl : Bowl, optional
         What its file says is kept, its devices too; the rest is designed.
-    given : collection of str
+    kept_keys : collection of str
         Names of further keys of that bowl that are kept, 'track.width'.
     aspect : str, optional
         On which parts leave; the one that delivers most without it.
@@ -120,7 +120,7 @@ def design(
         Of everything that is drawn.
     jobs : int
         Cores to use; the answer does not depend on it.
-    known : Shares, optional
+    aspect_shares : Shares, optional
         Of ``shares``; what lies on the moving floor of the designed bowl without it.
     progress : callable, optional
         Called with what is tried, a sentence.
@@ -135,7 +135,7 @@ def design(
         ``status``.
     """
     request = DesignRequest(
-        target=arguments.amount("target", target, "rate", LEAST),
+        target=arguments.amount("target", target, "rate", MIN_POSITIVE),
         aspect=arguments.an_aspect(aspect),
         heading=arguments.angle("heading", heading),
         up=names_of(up),
@@ -154,13 +154,16 @@ def design(
     if request.outcome not in OUTCOMES:
         raise ArgumentError("outcome", f"is {request.outcome!r}", f"give {listed(list(OUTCOMES))}")
     plain = arguments.a_bowl(bowls.default() if bowl is None else bowl, overrides, settings)
-    kept_keys = frozenset(given) | {setting.key.name for setting in plain.settings if setting.is_own}
-    kept_settings = beside.settings_of(plain, kept_keys)
+    kept_keys = frozenset(kept_keys) | {setting.key.name for setting in plain.settings if setting.is_own}
+    kept_settings = built_bowl.settings_of(plain, kept_keys)
     if isinstance(part, (list, tuple)) and part:
-        parts = [arguments.a_part(one) for one in part]
-        family = families.family(parts, plain, kept_keys, request, told=progress)
-        members = (beside.with_machine(one, beside.built(one, kept_settings)) for one in family.members)
+        parts = [arguments.a_part(given_part) for given_part in part]
+        family = families.family(parts, plain, kept_keys, request, tell=progress)
+        members = (
+            built_bowl.with_machine(member, built_bowl.built(member, kept_settings))
+            for member in family.members
+        )
         return replace(family, members=tuple(members))
-    shared = the_shares(known)
-    study = loop.design(arguments.a_part(part), plain, kept_keys, request, known=shared, told=progress)
-    return beside.with_machine(study, beside.built(study, kept_settings))
+    shared = the_shares(aspect_shares)
+    study = loop.design(arguments.a_part(part), plain, kept_keys, request, shares=shared, tell=progress)
+    return built_bowl.with_machine(study, built_bowl.built(study, kept_settings))

@@ -5,24 +5,29 @@ import heapq
 import itertools
 import math
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from feederscrew.bowl.devices import check_written
-from feederscrew.designing import calm_drive, proposals, trying
-from feederscrew.designing.record import DEVICE, DRIVE, PART, Attempt
-from feederscrew.designing.robust import denied, robust_run
-from feederscrew.designing.searching import Candidate
+from feederscrew.bowl.record import Bowl
+from feederscrew.designing import calm_drive, proposals, short_trials
+from feederscrew.designing.record import DEVICE, DRIVE, PART, RATE_KEPT, Attempt, DesignRequest, RobustRun
+from feederscrew.designing.robust import HALF, denied, robust_run
 from feederscrew.dropping.plate_test import throw_number
+from feederscrew.part.record import Part
 from feederscrew.rates import arrivals, stream
+from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import FLAT_KIND
+from feederscrew.running import RunSettings
 from feederscrew.studies import solidbowl
-from feederscrew.studies.rate import shares
+from feederscrew.studies.rate import Shares, shares
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.orientations import neck
+from feederscrew.trial import runs
 
 EACH = 2  # parts of each orientation in a short trial
 MENDED = 3  # times that one proposal is mended
@@ -46,17 +51,247 @@ AVOIDED = 2  # times that a device is left out at which what is wanted was lost
 HANGS_BELOW = np.radians(5.0)  # bank above which a part askew comes to rails beside its slot
 ASKED_STEP = 1.2  # between the velocities at which chains are looked for
 SLOWER = 1.2  # a chain that gains so many times what was taken for it is proposed again, at its own drive
+LYING = proposals.Recipe(1, proposals.MARGINS[0], "any", ())  # of what a part may do at best
+Progress = Callable[[str, int, int, float, float], None]
+USUAL_S = {"trial": 4.0, "draws": 1.0, "queue": 60.0}  # [s] a trial, a draw, all queues, before any was timed
+USUAL_SLOWNESS_S = 10.0  # [s] of stages that count as having taken as long as usual
+USUAL_TRIALS = 5  # of a design: the mean of those of docs/design.md is 5.4
+TELL_EVERY_S = 0.5  # [s] between two calls of progress in a queue
+RESERVE = 1.6  # of the target, for which a bowl is driven: queues bring less than rows, counts scatter
 
 
-LYING = proposals.ProposalWay(1, proposals.MARGINS[0], "any", ())  # of what a part may do at best
+@dataclass(eq=False)
+class Search:
+    """What the loop knows while it runs."""
+
+    part: Part
+    request: DesignRequest
+    plain: Bowl  # as given
+    kept_keys: frozenset[str]
+    tell: Callable[[str], None]  # of a sentence
+    shares: Shares | None = None
+    attempts: list = field(default_factory=list)
+    passed: list = field(default_factory=list)  # (rate, Candidate) of clean attempts
+    failed: list = field(default_factory=list)  # the same of others that deliver
+    before: Callable[[], None] | None = None
+    reserve: float = RESERVE
+    least: float = 0.0  # [m/s] through tooling, where what is wanted was lost at a slower drive
+    avoided: dict = field(default_factory=dict)  # kinds of devices at which a row was lost, by bank and row
+    tracks: list = field(default_factory=list)  # of each bank what comes along it
+    proposed: dict = field(default_factory=dict)  # proposals or None, by bank, row and way
+    chains: set = field(default_factory=set)  # tracks and chains that were tried, whatever the drive
+    lost_behind: list = field(default_factory=list)  # (bank and row, first devices) that lost all of it
+    reach: float = np.inf  # trials, those made included, after which the next cost class has its turn
+    most: float = np.inf  # short trials that are worth it
+    first: int = 0  # trials that were made before this search began
+    shares_given: bool = False  # the user says what arrives
+    progress: Progress | None = None  # told what is done, how many of how many, seconds gone and to go
+    further: int | None = None  # trials at most, where the nearest that holds is looked for
+    clock: "Clock" = field(default_factory=lambda: Clock())
+
+    @property
+    def limit(self) -> int:
+        """Short trials at most."""
+        return int(self.further or min(self.request.budget, self.most))
+
+    def begin_trial(self, text: str) -> None:
+        """Tell which trial begins, of how many, what came of the last one, the time gone and to go."""
+        if self.before and not self.attempts:  # what has to be compiled is told before the first trial
+            self.before()
+        number = len(self.attempts) + 1
+        last = f"; trial {number - 1}: {outcome(self.attempts[-1])}" if self.attempts else ""
+        self.clock.begin("trial", counts=runs.compiled())
+        self.tell(f"trial {number} of at most {max(self.limit, number)}: {text}{last}{self._times()}")
+        self._progressed("trial", number - 1, max(self.limit, number))
+
+    def end_trial(self) -> None:
+        """Note how long a trial took."""
+        self.clock.end()
+
+    def begin_proof(self, text: str) -> None:
+        """Tell that draws begin, what came of the last trial, the time gone and to go."""
+        last = f"; trial {len(self.attempts)}: {outcome(self.attempts[-1])}" if self.attempts else ""
+        self.clock.begin("draws")
+        self.tell(f"{text}{last}{self._times()}")
+
+    def run(self, stage: str) -> RunSettings:
+        """Return how draws or a queue run: as was asked, and progress is told.
+
+        Parameters
+        ----------
+        stage : str
+            'draws' or 'queue'.
+        """
+
+        def tell_progress(done: int, total: int) -> None:
+            if self.clock.reach(stage, done, total):
+                self._progressed(stage, done, total)
+
+        return replace(self.request.run, progress=tell_progress)
+
+    def _progressed(self, stage: str, done: int, total: int) -> None:
+        if self.progress:
+            gone, rest = self.clock.gone, self.clock.rest(len(self.attempts), self.limit, self.request.draws)
+            self.progress(stage, done, total, gone, rest)
+
+    def _times(self) -> str:
+        if not self.clock.timed:
+            return ""
+        rest = self.clock.rest(len(self.attempts), self.limit, self.request.draws)
+        return f"; {self.clock.gone:.0f} s gone, about {_about(rest):.0f} s to go"
+
+    @property
+    def spent(self) -> bool:
+        """Whether the budget of trials is used up."""
+        return len(self.attempts) >= min(self.request.budget, self.most, self.reach)
+
+    def enough(self, attempt: Attempt) -> float:
+        """Return the share [1] of what is wanted that has to leave in a draw, for the target to be kept."""
+        need = RATE_KEPT * self.request.target / max(attempt.rate, 1e-300)
+        return float(np.clip(need, HALF, 1.0))
+
+    def avoid(
+        self, place: tuple[float, int], proposal: proposals.Proposal, tried: short_trials.Tried
+    ) -> None:
+        """Note the devices of a chain at which what is wanted is lost; rails are the only way to hang.
+
+        Parameters
+        ----------
+        place : (float [rad], int)
+            Bank of the track, and row of the orientation.
+        proposal : Proposal
+        tried : Tried
+        """
+        lost = {cut.device.kind for cut in proposal.cuts if not cut.device.hangs}
+        kinds = sorted(kind for kind in lost if proposals.lost_at(tried, kind))
+        avoided = self.avoided.get(place, ())
+        self.avoided[place] = tuple(dict.fromkeys((*avoided, *kinds)))
+
+    def note_lost(
+        self, place: tuple[float, int], proposal: proposals.Proposal, tried: short_trials.Tried
+    ) -> None:
+        """Note the first devices of a chain, where nothing wanted comes past the last of them.
+
+        Another chain that begins with them does no better on that track: parameters as for ``avoid``.
+        """
+        ends = {end for n, k in enumerate(tried.rows) if k == proposal.row for end in tried.places[n]}
+        if tried.efficiency > 0.0 or len(ends) != 1:
+            return
+        (end,) = ends
+        names = [f" at {device.name}" for device in proposal.devices]
+        heads = [k for k, name in enumerate(names) if end.endswith(name)]
+        if len(heads) == 1:
+            self.lost_behind.append((place, proposal.chain[: heads[0] + 1]))
+
+    @property
+    def best_rate(self) -> float:
+        """The most that a clean attempt would deliver [1/s]."""
+        return max((candidate.attempt.rate for candidate in self.passed), default=0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A chain on its bowl, as it was tried."""
+
+    proposal: proposals.Proposal
+    bowl: Bowl
+    orientations: Orientations
+    weights: np.ndarray  # (M,)
+    tried: short_trials.Tried
+    attempt: Attempt
+    drawn: RobustRun | None = None  # some draws that it did not all hold
+
+
+def outcome(attempt: Attempt) -> str:
+    """Return what came of a short trial, in few words."""
+    if attempt.faults:
+        return ", ".join(attempt.faults[:2])
+    return f"clean, {60.0 * attempt.rate:.3g}/min" if attempt.clean else "nothing leaves"
+
+
+def _about(seconds: float) -> float:
+    """Seconds as a guess says them: on steps of 10 s above 20 s."""
+    return max(round(seconds / 10.0) * 10.0, 10.0) if seconds > 20.0 else max(seconds, 1.0)
+
+
+class Clock:
+    """How long the stages of a design take, and a guess of what is still to come."""
+
+    def __init__(self) -> None:
+        self.begun = self.last = self.since = time.monotonic()
+        self.stage, self.done, self.total, self.counts = "", 0, 0, True
+        self.spent: dict[str, tuple[float, float]] = {}  # of each stage seconds, and how many they were
+
+    @property
+    def gone(self) -> float:
+        """Seconds since it began."""
+        return time.monotonic() - self.begun
+
+    @property
+    def timed(self) -> bool:
+        """Whether anything was timed."""
+        return bool(self.spent)
+
+    def begin(self, stage: str, *, counts: bool = True) -> None:
+        """Begin a stage, 'trial', 'draws' or 'queue'; one that waits for the compiler does not count."""
+        self.end()
+        self.counts = counts
+        self.stage, self.done, self.total, self.since = stage, 0, 1, time.monotonic()
+
+    def end(self) -> None:
+        """End the stage that runs, and note how long it took."""
+        if self.stage and self.counts:
+            count = 1.0 if self.stage == "trial" else self._units(self.stage, self.done, self.total)
+            if count > 0.0:
+                seconds, number = self.spent.get(self.stage, (0.0, 0.0))
+                self.spent[self.stage] = seconds + time.monotonic() - self.since, number + count
+        self.stage = ""
+
+    def reach(self, stage: str, done: int, total: int) -> bool:
+        """So many of a stage are done; returns whether it is time to tell so."""
+        if stage != self.stage or done < self.done:
+            self.begin(stage)
+        self.done, self.total = done, total
+        if done < total and time.monotonic() - self.last < TELL_EVERY_S:
+            return False
+        self.last = time.monotonic()
+        return True
+
+    @staticmethod
+    def _units(stage: str, done: int, total: int) -> float:
+        """Draws that are done, or how much of the queues at all fills."""
+        return float(done) if stage == "draws" else done / max(total, 1)
+
+    def each(self, stage: str) -> float:
+        """Return how long [s] one of a stage takes: as it did, or as usual on so fast a machine."""
+        if stage in self.spent:
+            seconds, number = self.spent[stage]
+            return seconds / number
+        seconds = sum(duration for duration, _ in self.spent.values())
+        usual = sum(number * USUAL_S[name] for name, (_, number) in self.spent.items())
+        slower = (seconds + USUAL_SLOWNESS_S) / (
+            usual + USUAL_SLOWNESS_S
+        )  # one quick trial is no fast machine
+        return USUAL_S[stage] * slower
+
+    def rest(self, trials: int, limit: int, draws: int) -> float:
+        """Return a guess of the seconds to go: as if a usual number of trials led to one proof."""
+        running = self._units(self.stage, self.done, self.total) if self.stage else 0.0
+        proof = draws * self.each("draws") + self.each("queue")
+        if self.stage == "draws":
+            return max(draws - running, 0.0) * self.each("draws") + self.each("queue")
+        if self.stage == "queue":
+            return max(1.0 - running, 0.1) * self.each("queue")
+        left = min(max(USUAL_TRIALS - trials, 1), max(limit - trials, 1))
+        return left * self.each("trial") + proof
 
 
 @dataclass(frozen=True, eq=False)
 class _BankedTrack:
     """A bank of the track: the bowl without devices, and what comes along it."""
 
-    made: calm_drive.PlainBowl
-    ways: stream.Orientations
+    plain_bowl: calm_drive.PlainBowl
+    orientations: stream.Orientations
     weights: np.ndarray  # (M,)
     rows: list[int]  # those worth a try
     rank: float  # [1] how likely the bank is to do
@@ -64,7 +299,7 @@ class _BankedTrack:
     @functools.cached_property
     def fastest(self):
         """Velocity [m/s] at the fastest drive."""
-        return calm_drive.speed(calm_drive.driven(self.made, np.inf, hops=True))
+        return calm_drive.speed(calm_drive.driven(self.plain_bowl, np.inf, hops=True))
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,9 +308,9 @@ class _Idea:
 
     track: _BankedTrack
     row: int
-    way: proposals.ProposalWay
+    recipe: proposals.Recipe
     proposal: proposals.Proposal | None = None  # once it was looked for
-    again: int = 0  # times that a device was left out at which it was lost
+    left_out: int = 0  # times that a device was left out at which it was lost
 
 
 def candidates(search, cost_class=None) -> Iterator[Any]:
@@ -101,13 +336,13 @@ def _of_class(search, cost_class) -> Iterator[Any]:
     tracks = _tracks(search)
     if cost_class == max(1, cost_class_of(search.plain.devices)):
         for track in tracks:
-            alone = proposals.bare(track.ways, track.weights, search.request, search.plain.devices)
+            alone = proposals.bare(track.orientations, track.weights, search.request, search.plain.devices)
             if alone is not None and not _tried_before(search, track, alone) and not search.spent:
-                yield from _tried_out(search, track.made, alone, track.weights)
-    ways = proposals.ways_of(cost_class, search.request)
+                yield from _tried_out(search, track.plain_bowl, alone, track.weights)
+    recipes = proposals.recipes_of(cost_class, search.request)
     ideas = [
-        _Idea(track, row, way)
-        for track in tracks for row in track.rows for way in ways if _worth(search, track, row, way)
+        _Idea(track, row, recipe)
+        for track in tracks for row in track.rows for recipe in recipes if _worth(search, track, row, recipe)
     ]  # fmt: skip
     yield from _best_first(search, ideas)
 
@@ -119,7 +354,7 @@ def _best_first(search, ideas) -> Iterator[Any]:
     heapq.heapify(heap)
     while heap and not search.spent:
         _, _, idea = heapq.heappop(heap)
-        if _promise(search, idea.track, idea.row, idea.way) < _least(search):
+        if _promise(search, idea.track, idea.row, idea.recipe) < _least(search):
             continue
         if idea.proposal is None:
             proposal = _proposal(search, idea)
@@ -131,12 +366,12 @@ def _best_first(search, ideas) -> Iterator[Any]:
             continue
         if idea.proposal.purity < HOPELESS:
             continue
-        yield from _tried_out(search, idea.track.made, idea.proposal, idea.track.weights)
+        yield from _tried_out(search, idea.track.plain_bowl, idea.proposal, idea.track.weights)
         kinds = search.avoided.get(_place(idea.track, idea.row), ())
-        more = tuple(kind for kind in kinds if kind not in idea.way.without)
-        if more and idea.again < AVOIDED:
-            way = replace(idea.way, without=(*idea.way.without, *more))
-            other = _Idea(idea.track, idea.row, way, again=idea.again + 1)
+        more = tuple(kind for kind in kinds if kind not in idea.recipe.without)
+        if more and idea.left_out < AVOIDED:
+            recipe = replace(idea.recipe, without=(*idea.recipe.without, *more))
+            other = _Idea(idea.track, idea.row, recipe, left_out=idea.left_out + 1)
             heapq.heappush(heap, (-_bound(search, other), next(order), other))
 
 
@@ -146,19 +381,19 @@ def _proposal(search, idea):
     A smaller margin asks for less, and so do chains without turning devices: where even those isolate
     nothing, the longer search is left out.
     """
-    if idea.way.turns and _kept(search, idea, replace(idea.way, turns=False)) is None:
+    if idea.recipe.turns and _proposal_of(search, idea, replace(idea.recipe, turns=False)) is None:
         return None
-    least = replace(idea.way, margin=min(proposals.MARGINS))
-    if least != idea.way and _kept(search, idea, least) is None:
+    least = replace(idea.recipe, margin=min(proposals.MARGINS))
+    if least != idea.recipe and _proposal_of(search, idea, least) is None:
         return None
-    return _kept(search, idea, idea.way)
+    return _proposal_of(search, idea, idea.recipe)
 
 
-def _kept(search, idea, way):
+def _proposal_of(search, idea, recipe):
     """The chain that a way proposes for the orientation of an idea, looked for once."""
-    key = *_place(idea.track, idea.row), way
+    key = *_place(idea.track, idea.row), recipe
     if key not in search.proposed:
-        search.proposed[key] = _proposed(search, idea.track, idea.row, way)
+        search.proposed[key] = _proposed(search, idea.track, idea.row, recipe)
     return search.proposed[key]
 
 
@@ -168,39 +403,45 @@ def _tracks(search):
         aspects = _aspects(search)
         banks = _banks(search, aspects)
         for place, bank in enumerate(banks):
-            made = calm_drive.section(
-                search.part, aspects, search.plain, search.given, diameter=search.request.diameter, bank=bank,
-                drive=search.request.drive,
+            plain_bowl = calm_drive.section(
+                search.part, aspects, search.plain, search.kept_keys, diameter=search.request.diameter,
+                bank=bank, drive=search.request.drive,
             )  # fmt: skip
-            start = replace(calm_drive.driven(made, 0.0), devices=search.plain.devices)
-            if search.known is None:
-                search.known = arriving(search, start)
-            ways, weights = offered(search, start)
-            rows = proposals.promising(ways, weights, search.request)[: proposals.ROWS]
-            search.tracks.append(_BankedTrack(made, ways, weights, rows, BANK_RANK**place))
+            start = replace(calm_drive.driven(plain_bowl, 0.0), devices=search.plain.devices)
+            if search.shares is None:
+                search.shares = arriving(search, start)
+            orientations, weights = offered(search, start)
+            rows = proposals.promising(orientations, weights, search.request)[: proposals.ROWS]
+            search.tracks.append(_BankedTrack(plain_bowl, orientations, weights, rows, BANK_RANK**place))
         lying = [
-            _promise(search, one, row, LYING) for one in search.tracks for row in one.rows
+            _promise(search, banked_track, row, LYING)
+            for banked_track in search.tracks
+            for row in banked_track.rows
         ]  # also of what may hang: infinite
-        turns = any(_share(search, one, row) < proposals.RARE for one in search.tracks for row in one.rows)
+        turns = any(
+            _share(search, banked_track, row) < proposals.RARE
+            for banked_track in search.tracks
+            for row in banked_track.rows
+        )
         if not any(rate >= search.request.target for rate in lying) and not turns:
             search.most = search.first + SHORT
     return search.tracks
 
 
-def _worth(search, track, row, way):
+def _worth(search, track, row, recipe):
     """Whether an idea is one at all: what is not rare needs nothing that turns others into it."""
-    return not way.turns or _share(search, track, row) < proposals.RARE
+    return not recipe.turns or _share(search, track, row) < proposals.RARE
 
 
 def _bound(search, idea):
     """How promising [1] the chain of an idea can be at best."""
     enough = search.reserve * search.request.target
-    rate = min(_promise(search, idea.track, idea.row, idea.way) / enough, 1.0)
-    flat = idea.track.made.bowl.track.bank <= HANGS_BELOW
-    rank = idea.track.rank if idea.way.outcome == "lying" else 1.0 if flat else BANK_RANK**2
-    ways = (TURNED if idea.way.turns else 1.0) * (HOLED if idea.way.holes else 1.0)
+    rate = min(_promise(search, idea.track, idea.row, idea.recipe) / enough, 1.0)
+    flat = idea.track.plain_bowl.bowl.track.bank <= HANGS_BELOW
+    rank = idea.track.rank if idea.recipe.outcome == "lying" else 1.0 if flat else BANK_RANK**2
+    simplicity = (TURNED if idea.recipe.turns else 1.0) * (HOLED if idea.recipe.holes else 1.0)
     share = _share(search, idea.track, idea.row) ** OFTENER
-    return rate * rank * ways * share * _of_margin(idea.way.margin) * AGAIN**idea.again
+    return rate * rank * simplicity * share * _of_margin(idea.recipe.margin) * AGAIN**idea.left_out
 
 
 def _of_margin(margin):
@@ -212,13 +453,13 @@ def _score(search, idea):
     """How promising [1] a chain is: rate, purity, margin and number of devices, and what was lost before."""
     proposal = idea.proposal
     lost = set(search.avoided.get(_place(idea.track, idea.row), ()))
-    known = LOST_BEFORE if lost & {cut.device.kind for cut in proposal.cuts} else 1.0
-    return _bound(search, idea) * proposal.purity * EACH_DEVICE ** len(proposal.cuts) * known
+    loss = LOST_BEFORE if lost & {cut.device.kind for cut in proposal.cuts} else 1.0
+    return _bound(search, idea) * proposal.purity * EACH_DEVICE ** len(proposal.cuts) * loss
 
 
 def _place(track, row) -> tuple[Any, ...]:
     """What names an orientation on a track of some bank."""
-    return track.made.bowl.track.bank, row
+    return track.plain_bowl.bowl.track.bank, row
 
 
 def chain_key(track, proposal, lying) -> tuple[Any, ...]:
@@ -236,12 +477,12 @@ def chain_key(track, proposal, lying) -> tuple[Any, ...]:
         The order of what a sensor lets pass makes no difference.
     """
     wanted = "hanging" if proposal.hangs else lying[proposal.row].name
-    return track, wanted, tuple((one.kind, one.canonical_text) for one in proposal.devices)
+    return track, wanted, tuple((device.kind, device.canonical_text) for device in proposal.devices)
 
 
 def _tried_before(search, track, proposal):
     """Whether a chain was tried on that track, or one whose values differ by less than makes a difference."""
-    key = chain_key(track.made.bowl.track, proposal, track.ways.lying)
+    key = chain_key(track.plain_bowl.bowl.track, proposal, track.orientations.lying)
     return key in search.chains or any(_is_alike(key, other) for other in search.chains)
 
 
@@ -249,10 +490,10 @@ def _is_alike(key, other) -> bool:
     """Whether two chains for the same track and orientation differ by little in each of their numbers."""
     if key[:2] != other[:2] or len(key[2]) != len(other[2]):
         return False
-    texts, others = (" ".join(" ".join(device) for device in one[2]) for one in (key, other))
-    if NUMBER.sub("#", texts) != NUMBER.sub("#", others):
+    texts, other_texts = (" ".join(" ".join(device) for device in chain[2]) for chain in (key, other))
+    if NUMBER.sub("#", texts) != NUMBER.sub("#", other_texts):
         return False
-    pairs = zip(NUMBER.findall(texts), NUMBER.findall(others), strict=True)
+    pairs = zip(NUMBER.findall(texts), NUMBER.findall(other_texts), strict=True)
     values = ((float(a), float(b)) for a, b in pairs)
     return all(abs(a - b) <= max(LITTLE, LITTLE_SHARE * abs(a)) for a, b in values)
 
@@ -269,59 +510,61 @@ def _least(search):
     return target if 0.0 < best < target else LEAST_USE * best
 
 
-def _promise(search, track, row, way):
+def _promise(search, track, row, recipe):
     """Parts [1/s] that an orientation brings at the fastest drive, were all others returned."""
-    if way.outcome != "lying" and neck(track.ways.lying[row]) is not None:
+    if recipe.outcome != "lying" and neck(track.orientations.lying[row]) is not None:
         return np.inf  # what hangs comes from several headings
-    pitch = trying.GAP * float((track.weights * track.ways.lengths).sum())
-    share = 1.0 if way.turns else _share(search, track, row)
+    pitch = short_trials.GAP * float((track.weights * track.orientations.lengths).sum())
+    share = 1.0 if recipe.turns else _share(search, track, row)
     return share * track.fastest / pitch
 
 
 def _share(search, track, row) -> float:
     """Share [1] in which an orientation comes, with those that count as it."""
-    alike = proposals.alike(track.ways.lying, row, search.request.up)
-    return float(track.weights[[row, *alike]].sum())
+    equivalent = proposals.equivalent_rows(track.orientations.lying, row, search.request.up)
+    return float(track.weights[[row, *equivalent]].sum())
 
 
-def _proposed(search, track, row, way):
+def _proposed(search, track, row, recipe):
     """A chain for one orientation at the drive that its share asks for; None where there is none."""
     gain = _share(search, track, row)
-    found = _at(search, track, row, way, gain)
-    more = 0.0 if found is None else _gain(search, track, found)
+    proposal = _at(search, track, row, recipe, gain)
+    more = 0.0 if proposal is None else _gain(search, track, proposal)
     if more > SLOWER * gain:
-        return _at(search, track, row, way, more) or found
-    return found
+        return _at(search, track, row, recipe, more) or proposal
+    return proposal
 
 
-def _at(search, track, row, way, gain):
+def _at(search, track, row, recipe, gain):
     """The chain for a drive that a share [1] asks for."""
-    velocity = asked(search, track.ways, track.weights, gain)
+    velocity = required_velocity(search, track.orientations, track.weights, gain)
     step = math.ceil(math.log(velocity, ASKED_STEP) - 1e-9)  # the same drive for shares that are alike
-    bowl = calm_drive.driven(track.made, ASKED_STEP**step)
+    bowl = calm_drive.driven(track.plain_bowl, ASKED_STEP**step)
     bowl = replace(bowl, devices=search.plain.devices)
-    return proposals.proposed(search.part, bowl, search.known.aspects, row, track.ways, search.request, way)
+    return proposals.proposed(
+        search.part, bowl, search.shares.aspects, row, track.orientations, search.request, recipe
+    )
 
 
 def _gain(search, track, proposal):
     """Share of the parts that leaves as wanted, as the static rule says [1]."""
-    bowl = replace(track.made.bowl, devices=proposal.devices)
-    ways = proposals.known_through(search.part, search.known.aspects, bowl)
-    return trying.gain(ways, track.weights, proposal.states(ways))
+    bowl = replace(track.plain_bowl.bowl, devices=proposal.devices)
+    orientations = proposals.known_through(search.part, search.shares.aspects, bowl)
+    return short_trials.gain(orientations, track.weights, proposal.states(orientations))
 
 
-def asked(search, ways, weights, gain, apart=0.0):
+def required_velocity(search, orientations, weights, gain, spacing=0.0):
     """Return the velocity [m/s] that brings the target, with a reserve, at a share that leaves as wanted.
 
-    Parts come in a row, ``apart`` [m] farther than they do by themselves where devices need that.
+    Parts come in a row, ``spacing`` [m] farther than they do by themselves where devices need that.
     """
-    pitch = trying.GAP * float((weights * ways.lengths).sum()) + apart
+    pitch = short_trials.GAP * float((weights * orientations.lengths).sum()) + spacing
     return search.reserve * search.request.target * pitch / max(gain, 1e-3)
 
 
 def _banks(search, aspects):
     """Banks of the track that are tried: the steeper one first where the part rolls."""
-    if "track.bank" in search.given:
+    if "track.bank" in search.kept_keys:
         return (search.plain.track.bank,)
     chances = np.nan_to_num(aspects.chances[search.request.rule])
     rolling = float(chances[[kind != FLAT_KIND for kind in aspects.kinds]].sum())
@@ -329,8 +572,8 @@ def _banks(search, aspects):
 
 
 def _aspects(search):
-    if search.known is not None:
-        return search.known.aspects
+    if search.shares is not None:
+        return search.shares.aspects
     from feederscrew.studies.aspects import answered
 
     return answered(search.part)
@@ -348,33 +591,37 @@ def at_its_drive(search, candidate) -> tuple[Any, ...]:
     The search itself takes them from one drive; what the user says of them is kept.
     """
     if search.shares_given:
-        return search.known, candidate
-    known, bowl = arriving(search, candidate.bowl), candidate.bowl
-    ways = arrivals.oriented(proposals.known_through(search.part, known.aspects, bowl), known.measured)
-    if [one.name for one in ways.lying] != [one.name for one in candidate.ways.lying]:
-        return search.known, candidate  # the same orientations, or its rows are others
-    weights = np.nan_to_num(ways.rules[search.request.rule])
-    return known, replace(candidate, ways=ways, weights=weights / weights.sum())
+        return search.shares, candidate
+    arrivals_there, bowl = arriving(search, candidate.bowl), candidate.bowl
+    orientations = arrivals.oriented(
+        proposals.known_through(search.part, arrivals_there.aspects, bowl), arrivals_there.measured
+    )
+    if [orientation.name for orientation in orientations.lying] != [
+        orientation.name for orientation in candidate.orientations.lying
+    ]:
+        return search.shares, candidate  # the same orientations, or its rows are others
+    weights = np.nan_to_num(orientations.rules[search.request.rule])
+    return arrivals_there, replace(candidate, orientations=orientations, weights=weights / weights.sum())
 
 
 def offered(search, bowl) -> tuple[Any, ...]:
     """Return what comes along a track, Orientations, and in which shares (M,) [1]."""
-    ways = proposals.known_through(search.part, search.known.aspects, bowl)
-    ways = arrivals.oriented(ways, search.known.measured)
-    weights = np.nan_to_num(ways.rules[search.request.rule])
+    orientations = proposals.known_through(search.part, search.shares.aspects, bowl)
+    orientations = arrivals.oriented(orientations, search.shares.measured)
+    weights = np.nan_to_num(orientations.rules[search.request.rule])
     total = weights.sum()
-    return ways, weights / total if total > 0.0 else np.full(len(weights), 1.0 / len(weights))
+    return orientations, weights / total if total > 0.0 else np.full(len(weights), 1.0 / len(weights))
 
 
-def _tried_out(search, made, proposal, weights) -> Iterator[Any]:
+def _tried_out(search, plain_bowl, proposal, weights) -> Iterator[Any]:
     """Try a proposal and what mends it; the Candidate where one is clean and fast enough.
 
     One that one draw alone denies is taken where nothing mends it: the draws of its proof are more.
     """
     lost, before, nearly = 0, None, None
     for _ in range(MENDED + 1):
-        candidate = _screened(search, attempted(search, made, proposal, weights))
-        calmed = _calmed(search, made, candidate, weights)
+        candidate = _screened(search, attempted(search, plain_bowl, proposal, weights))
+        calmed = _calmed(search, plain_bowl, candidate, weights)
         if calmed.attempt.clean:
             search.passed.append(calmed)
         if calmed.attempt.clean and calmed.attempt.rate >= search.request.target:
@@ -390,15 +637,20 @@ def _tried_out(search, made, proposal, weights) -> Iterator[Any]:
         before = _showed(candidate)
         changed = None
         if not (same or lost == LOST or search.spent):
-            changed = proposals.better(proposal, candidate.tried, candidate.ways.lying, candidate.drawn)
-        if changed is None or chain_key(made.bowl.track, changed, candidate.ways.lying) in search.chains:
+            changed = proposals.better(
+                proposal, candidate.tried, candidate.orientations.lying, candidate.drawn
+            )
+        if (
+            changed is None
+            or chain_key(plain_bowl.bowl.track, changed, candidate.orientations.lying) in search.chains
+        ):
             break
         proposal = changed
-    chosen = _livened(search, made, candidate, weights) or nearly
+    chosen = _livened(search, plain_bowl, candidate, weights) or nearly
     if chosen is not None:
         yield chosen
         return
-    place = made.bowl.track.bank, proposal.row
+    place = plain_bowl.bowl.track.bank, proposal.row
     search.avoid(place, proposal, candidate.tried)
     search.note_lost(place, proposal, candidate.tried)
 
@@ -415,7 +667,7 @@ def _showed(candidate) -> tuple[Any, ...]:
     return attempt.faults, attempt.efficiency, attempt.stopped
 
 
-def _livened(search, made, candidate, weights):
+def _livened(search, plain_bowl, candidate, weights):
     """The candidate at a livelier drive, where parts stay at a blade or at rails; None where none is clean.
 
     Where one draw alone denies that, it is taken as well.
@@ -423,7 +675,7 @@ def _livened(search, made, candidate, weights):
     for _ in range(LIVELIER_TRIALS):
         if search.spent or not stays_at_steel(candidate.proposal, candidate.attempt.faults):
             return None
-        candidate = livened(search, made, candidate, weights)
+        candidate = livened(search, plain_bowl, candidate, weights)
         if candidate is None:
             return None
         if candidate.attempt.clean:
@@ -434,23 +686,25 @@ def _livened(search, made, candidate, weights):
     return None
 
 
-def livened(search, made, candidate, weights):
+def livened(search, plain_bowl, candidate, weights):
     """Return a Candidate: the same chain screened at a livelier drive; None where there is none.
 
     Parameters
     ----------
     search : Search
-    made : PlainBowl
+    plain_bowl : PlainBowl
         The bowl without devices.
     candidate : Candidate
         At the drive at which parts stay or jam.
     weights : (M,) float [1]
     """
-    bowl = calm_drive.livelier(made, candidate.bowl)
+    bowl = calm_drive.livelier(plain_bowl, candidate.bowl)
     if bowl is None:
         return None
     step = f"livelier drive, {2e3 * bowl.drive.amplitude:.3g} mm peak to peak"
-    return _screened(search, attempted(search, made, replace(candidate.proposal, step=step), weights, bowl))
+    return _screened(
+        search, attempted(search, plain_bowl, replace(candidate.proposal, step=step), weights, bowl)
+    )
 
 
 def stays_at_steel(proposal, faults) -> bool:
@@ -459,13 +713,13 @@ def stays_at_steel(proposal, faults) -> bool:
     return any(f"stopped at {name}" in fault for fault in faults for name in names)
 
 
-def _calmed(search, made, candidate, weights):
+def _calmed(search, plain_bowl, candidate, weights):
     """The candidate at a calmer drive that is clean, where the one it had turns or loses what is wanted."""
     first = candidate
     for _ in range(CALMER_TRIALS):
         if candidate.attempt.clean or search.spent or not _moved_out(candidate):
             break
-        other = calmer(search, made, candidate, weights)
+        other = calmer(search, plain_bowl, candidate, weights)
         if other is None:
             break
         search.most += 1  # no other chain is left out for it
@@ -476,28 +730,28 @@ def _calmed(search, made, candidate, weights):
 def _moved_out(candidate):
     """Whether the drive loses what is wanted: in a trial on the track, or in draws by turning it."""
     drawn = candidate.drawn
-    return bool(trying.lost_by_motion(candidate.tried)) or (
+    return bool(short_trials.lost_by_motion(candidate.tried)) or (
         drawn is not None and "is lost (" in drawn.worst and "on the track" in drawn.worst
     )
 
 
-def calmer(search, made, candidate, weights) -> Candidate | None:
+def calmer(search, plain_bowl, candidate, weights) -> Candidate | None:
     """Return a Candidate: the same chain tried at a calmer drive; None where there is none.
 
     Parameters
     ----------
     search : Search
-    made : PlainBowl
+    plain_bowl : PlainBowl
         The bowl without devices.
     candidate : Candidate
         At the drive that turned or lost what is wanted.
     weights : (M,) float [1]
     """
-    bowl = calm_drive.calmer(made, candidate.bowl)
+    bowl = calm_drive.calmer(plain_bowl, candidate.bowl)
     if bowl is None:
         return None
     step = f"calmer drive, {2e3 * bowl.drive.amplitude:.3g} mm peak to peak"
-    return attempted(search, made, replace(candidate.proposal, step=step), weights, bowl)
+    return attempted(search, plain_bowl, replace(candidate.proposal, step=step), weights, bowl)
 
 
 def _screened(search, candidate):
@@ -506,9 +760,9 @@ def _screened(search, candidate):
         return candidate
     request = search.request
     drawn = robust_run(
-        search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.rows,
+        search.part, candidate.bowl, candidate.orientations, candidate.weights, candidate.proposal.rows,
         draws=min(SCREENED, request.draws), tolerance=request.tolerance, run=request.run,
-        any_heading=candidate.proposal.any_heading, spared=trying.spared_rows(candidate.tried),
+        any_heading=candidate.proposal.any_heading, spared=short_trials.spared_rows(candidate.tried),
         enough=search.enough(candidate.attempt), allowed=1,
     )  # fmt: skip
     if drawn.partial:
@@ -520,13 +774,13 @@ def _screened(search, candidate):
     return replace(candidate, attempt=attempt, drawn=drawn)
 
 
-def attempted(search, made, proposal, weights, driven=None) -> Candidate:
+def attempted(search, plain_bowl, proposal, weights, driven=None) -> Candidate:
     """Return a Candidate: one short trial at the drive that the target asks for, or at that of a bowl.
 
     Parameters
     ----------
     search : Search
-    made : PlainBowl
+    plain_bowl : PlainBowl
     proposal : Proposal
     weights : (M,) float [1]
     driven : Bowl, optional
@@ -534,16 +788,18 @@ def attempted(search, made, proposal, weights, driven=None) -> Candidate:
     """
     part = search.part
     check_written(proposal.devices, "design.yaml")
-    made = _drawable(search, made, proposal)
-    own = driven_for(search, made, proposal, weights) if driven is None else driven
-    bowl = replace(own, track=made.bowl.track, devices=proposal.devices)
-    ways = arrivals.oriented(proposals.known_through(part, search.known.aspects, bowl), search.known.measured)
-    name = ways.lying[proposal.row].name
-    search.chains.add(chain_key(bowl.track, proposal, ways.lying))
+    plain_bowl = _drawable(search, plain_bowl, proposal)
+    own = driven_for(search, plain_bowl, proposal, weights) if driven is None else driven
+    bowl = replace(own, track=plain_bowl.bowl.track, devices=proposal.devices)
+    orientations = arrivals.oriented(
+        proposals.known_through(part, search.shares.aspects, bowl), search.shares.measured
+    )
+    name = orientations.lying[proposal.row].name
+    search.chains.add(chain_key(bowl.track, proposal, orientations.lying))
     search.begin_trial(f"{name}, {proposal.step}")
-    tried = _short(search, bowl, ways, weights, proposal)
+    tried = _short(search, bowl, orientations, weights, proposal)
     attempt = Attempt(
-        wanted=ways.states[tried.state].name,
+        wanted=orientations.states[tried.state].name,
         chain=proposal.chain,
         step=proposal.step,
         bank=bowl.track.bank,
@@ -561,64 +817,68 @@ def attempted(search, made, proposal, weights, driven=None) -> Candidate:
     )
     search.attempts.append(attempt)
     search.end_trial()
-    return Candidate(proposal, bowl, ways, weights, tried, attempt)
+    return Candidate(proposal, bowl, orientations, weights, tried, attempt)
 
 
-def _drawable(search, made, proposal):
+def _drawable(search, plain_bowl, proposal):
     """The bowl, its track as steep as a spacing section that leads down needs it: else it has no solid."""
-    if "track.climb" in search.given or not any(one.leans for one in proposal.devices):
-        return made
-    bowl = replace(made.bowl, devices=proposal.devices)
-    ways = proposals.known_through(search.part, search.known.aspects, bowl)
-    track = replace(bowl.track, climb=solidbowl.drawable_climb(bowl, search.part, ways))
-    return replace(made, bowl=replace(made.bowl, track=track))
+    if "track.climb" in search.kept_keys or not any(device.leans for device in proposal.devices):
+        return plain_bowl
+    bowl = replace(plain_bowl.bowl, devices=proposal.devices)
+    orientations = proposals.known_through(search.part, search.shares.aspects, bowl)
+    track = replace(bowl.track, climb=solidbowl.drawable_climb(bowl, search.part, orientations))
+    return replace(plain_bowl, bowl=replace(plain_bowl.bowl, track=track))
 
 
 def _cause(tried, proposal):
     """Which fault a trial shows: what loses the wanted orientation first, then what lets others leave."""
     if not list(denied(tried)):
         return ""
-    right = set(trying.wanted_rows(tried.known, tried.states))
-    if trying.lost_by_motion(tried) or not tried.velocity > 0.0:
+    right = set(short_trials.wanted_rows(tried.orientations, tried.states))
+    if short_trials.lost_by_motion(tried) or not tried.velocity > 0.0:
         return DRIVE
     lost = any(k in right and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
     return DEVICE if lost or proposal.devices else PART
 
 
-def driven_for(search, made, proposal, weights):
+def driven_for(search, plain_bowl, proposal, weights):
     """Return the bowl at the drive that brings the target, with the gaps that its devices need there.
 
     Parameters
     ----------
     search : Search
-    made : PlainBowl
+    plain_bowl : PlainBowl
     proposal : Proposal
     weights : (M,) float [1]
     """
-    bowl = replace(made.bowl, devices=proposal.devices)
-    ways = proposals.known_through(search.part, search.known.aspects, bowl)
-    gain, apart = trying.gain(ways, weights, proposal.states(ways)), 0.0
+    bowl = replace(plain_bowl.bowl, devices=proposal.devices)
+    orientations = proposals.known_through(search.part, search.shares.aspects, bowl)
+    gain, spacing = short_trials.gain(orientations, weights, proposal.states(orientations)), 0.0
     for _ in range(2):
-        velocity = max(asked(search, ways, weights, gain, apart), search.least)
-        bowl = calm_drive.driven(made, velocity, hops=not proposal.devices)
-        apart = stream.needed_spacing(proposal.devices, ways.lying, bowl)
-        if not apart > 0.0:
+        velocity = max(required_velocity(search, orientations, weights, gain, spacing), search.least)
+        bowl = calm_drive.driven(plain_bowl, velocity, hops=not proposal.devices)
+        spacing = stream.needed_spacing(proposal.devices, orientations.lying, bowl)
+        if not spacing > 0.0:
             break
     return bowl
 
 
-def _short(search, bowl, ways, weights, proposal):
+def _short(search, bowl, orientations, weights, proposal):
     """The short trial: what is wanted first; where none of it leaves, the others are not tried."""
-    request, rows = search.request, trying.often(weights, (proposal.row,))
+    request, rows = search.request, short_trials.often(weights, (proposal.row,))
     own = {"run": request.run}
-    own |= {"aspects": search.known.aspects, "any_heading": proposal.any_heading}
-    right = set(trying.wanted_rows(ways, proposal.states(ways)))
+    own |= {"aspects": search.shares.aspects, "any_heading": proposal.any_heading}
+    right = set(short_trials.wanted_rows(orientations, proposal.states(orientations)))
     first = [k for k in rows if k in right] or [proposal.row]
-    tried = trying.single(search.part, bowl, ways, weights, proposal.rows, rows=first, each=EACH, **own)
-    others = [k for k in rows if k not in first]
-    if not tried.efficiency > 0.0 or not others:
+    tried = short_trials.single(
+        search.part, bowl, orientations, weights, proposal.rows, rows=first, each=EACH, **own
+    )
+    rows_besides = [k for k in rows if k not in first]
+    if not tried.efficiency > 0.0 or not rows_besides:
         return tried
-    each = EACH if len(others) <= trying.FEW else 1
+    each = EACH if len(rows_besides) <= short_trials.FEW else 1
     return tried.joined(
-        trying.single(search.part, bowl, ways, weights, proposal.rows, rows=others, each=each, **own)
+        short_trials.single(
+            search.part, bowl, orientations, weights, proposal.rows, rows=rows_besides, each=each, **own
+        )
     )

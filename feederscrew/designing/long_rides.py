@@ -77,29 +77,29 @@ class LongRide:
     def distance(self) -> float:
         """How far the parts rode that arrived [m], the median."""
         arrived = self.ride.ended >= 0
-        return float(np.median(self.ride.ways[arrived])) if arrived.any() else 0.0
+        return float(np.median(self.ride.distances[arrived])) if arrived.any() else 0.0
 
     def rows(self) -> list[dict[str, Any]]:
         """Return a dict of each orientation that rode: parts, how many stay, become another, or left."""
-        found, counts, names = [], self.ride.counts, self.ride.names
+        lines, counts, names = [], self.ride.counts, self.ride.names
         for row in self.ride.rows:
             parts, stays = int(counts[row].sum()), int(counts[row, row])
             low, high = (float(end[0]) for end in wilson([stays], parts))
-            others = [k for k in range(len(names)) if k != row and counts[row, k]]
-            found.append(
+            further = [k for k in range(len(names)) if k != row and counts[row, k]]
+            lines.append(
                 {
                     "orientation": names[row],
                     "parts": parts,
                     "stays": stays,
                     "stays_low": low,
                     "stays_high": high,
-                    "becomes": {names[k]: int(counts[row, k]) for k in others},
+                    "becomes": {names[k]: int(counts[row, k]) for k in further},
                     "left": int(counts[row, -1]),
                     "share_entering": float(self.entering[row]),
                     "share_arriving": float(self.arriving[row]),
                 }
             )
-        return found
+        return lines
 
 
 def long_ride(
@@ -141,8 +141,8 @@ def long_ride(
     often = [k for k in np.argsort(-shares, kind="stable") if shares[k] >= OFTEN]
     rows = list(dict.fromkeys([*(int(k) for k in often), *(k for k in wanted if shares[k] > 0.0)]))
     ride = ride_of_track(part, bowl, lying, rows, each=EACH, run=RunSettings(run.seed, run.jobs))
-    again = [int(k) for k in np.flatnonzero(ride.turned)]
-    if again:
+    turned = [int(k) for k in np.flatnonzero(ride.turned)]
+    if turned:
         more = RunSettings(run.seed + 1, run.jobs)
-        ride = joined(ride, ride_of_track(part, bowl, lying, again, each=EACH, run=more))
+        ride = joined(ride, ride_of_track(part, bowl, lying, turned, each=EACH, run=more))
     return LongRide(ride, shares, ride.arriving(shares), tuple(int(k) for k in wanted))

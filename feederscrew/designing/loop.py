@@ -1,30 +1,34 @@
 """The loop: an orientation and its chain, a short trial, what the trial denies changed, and the proof."""
 
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying.hop import hop
 from feederscrew.designing import (
-    alternatives,
-    beside,
     calm_drive,
     exploring,
+    hazards,
     nearest,
     proposals,
     queues,
-    trying,
+    short_trials,
 )
-from feederscrew.designing.alternatives import merit
-from feederscrew.designing.hazards import risks
+from feederscrew.designing.exploring import Candidate, Progress, Search
 from feederscrew.designing.long_rides import LongRide, long_ride
+from feederscrew.designing.proposals import COST_CLASSES
 from feederscrew.designing.record import (
     DRAWS_HELD,
     HOLDS,
+    NONE,
+    NOT_TRIED,
     RATE_KEPT,
+    Alternative,
+    Attempt,
     DesignRequest,
     DesignStudy,
     FilledQueue,
@@ -32,17 +36,19 @@ from feederscrew.designing.record import (
     RobustRun,
 )
 from feederscrew.designing.robust import robust_run
-from feederscrew.designing.searching import Candidate, Progress, Search
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
 from feederscrew.part.record import Part
 from feederscrew.part.size_limits import refuse_many_facets
-from feederscrew.resting.aspects import find
+from feederscrew.rates.stream import Orientations
+from feederscrew.resting.aspects import Aspects, find
 from feederscrew.studies.rate import Shares
-from feederscrew.studies.tooling import may_be_left_out, may_be_up
+from feederscrew.studies.tooling import ToolingStudy, may_be_left_out, may_be_up
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.devices.orientation_names import rows
+from feederscrew.tooling.isolating import proposal as static
+from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.isolating.design import place
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial.result import TrialRun
@@ -58,11 +64,11 @@ Proofs = list[tuple[DesignStudy, Candidate]]
 def design(
     part: Part,
     plain: Bowl,
-    given: Collection[str],
+    kept_keys: Collection[str],
     request: DesignRequest,
     *,
-    known: Shares | None = None,
-    told: Callable[[str], None] | None = None,
+    shares: Shares | None = None,
+    tell: Callable[[str], None] | None = None,
     before: Callable[[], None] | None = None,
     progress: Progress | None = None,
     with_nearest: bool = True,
@@ -75,12 +81,12 @@ def design(
         From a mesh.
     plain : Bowl
         What the user gave, completed by the defaults; its devices are kept.
-    given : collection of str
+    kept_keys : collection of str
         Names of the keys the user gave.
     request : DesignRequest
-    known : Shares, optional
+    shares : Shares, optional
         What arrives, where the user says so; else what lies on the moving floor of the designed bowl.
-    told : callable, optional
+    tell : callable, optional
         Called with what is being tried, a sentence.
     before : callable, optional
         Called before anything is compiled, and before the first trial is told.
@@ -99,12 +105,12 @@ def design(
     FeederError
         If the part has no surface or very many facets, fits no bowl, or has no such aspect.
     """
-    _check_named(part, plain, request, known)
+    _check_named(part, plain, request, shares)
     search = Search(
-        part, request, plain, frozenset(given), told or (lambda text: None), known, before=before,
+        part, request, plain, frozenset(kept_keys), tell or (lambda text: None), shares, before=before,
         progress=progress,
     )  # fmt: skip
-    search.shares_given = known is not None
+    search.shares_given = shares is not None
     proofs: Proofs = []
     searched: list[int] = []
     try:
@@ -127,7 +133,7 @@ def design(
 def _listed(search: Search, proofs: Proofs, searched: list[int], best: DesignStudy) -> DesignStudy:
     """The design with every short trial, and beside the best of each cost class."""
     studies = [study for study, _ in proofs] + ([best] if best.queues else [])
-    rows = alternatives.alternatives(studies, search.attempts, searched)
+    rows = alternatives(studies, search.attempts, searched)
     return replace(best, attempts=tuple(search.attempts), alternatives=rows)
 
 
@@ -138,10 +144,10 @@ def _nearest(search: Search, proofs: Proofs) -> tuple[NearestDesign | None, Desi
     """
     if any(study.status == HOLDS or study.partial for study, _ in proofs):
         return None, None
-    slow = [one for one in proofs if nearest.only_slow(one[0]) and not nearest.whole(one[0])]
+    slow = [proof for proof in proofs if nearest.only_slow(proof[0]) and not nearest.whole(proof[0])]
     if slow:  # its queue ended as soon as it was too slow
         study, candidate = max(slow, key=lambda one: merit(one[0]))
-        proofs[:] = [one for one in proofs if one[1] is not candidate]
+        proofs[:] = [proof for proof in proofs if proof[1] is not candidate]
         proofs.append((proved(search, candidate, whole=True, drawn=study.robust), candidate))
         if proofs[-1][0].partial:
             return None, None
@@ -160,9 +166,9 @@ def _best(search: Search, proofs: Proofs) -> DesignStudy:
     if proofs:
         return max((study for study, _ in proofs), key=_cheapest)
     candidate = _likeliest(search)
-    if candidate is None or search.known is None:
+    if candidate is None or search.shares is None:
         return _without(search)
-    return _unproved(search, candidate, search.known)
+    return _unproved(search, candidate, search.shares)
 
 
 def _cheapest(study: DesignStudy) -> tuple[float, tuple[bool, bool, float, float]]:
@@ -172,7 +178,7 @@ def _cheapest(study: DesignStudy) -> tuple[float, tuple[bool, bool, float, float
 
 def _likeliest(search: Search) -> Candidate | None:
     """The best of the attempts that deliver anything: clean, then of fewer faults, then faster."""
-    order = [one for one in (*search.passed, *search.failed) if one.attempt.rate > 0.0]
+    order = [candidate for candidate in (*search.passed, *search.failed) if candidate.attempt.rate > 0.0]
     return max(
         order,
         key=lambda one: (one.attempt.clean, -len(one.attempt.faults), one.attempt.rate),
@@ -180,13 +186,13 @@ def _likeliest(search: Search) -> Candidate | None:
     )
 
 
-def _check_named(part: Part, plain: Bowl, request: DesignRequest, known: Shares | None) -> None:
+def _check_named(part: Part, plain: Bowl, request: DesignRequest, shares: Shares | None) -> None:
     """Raise FeederError for what is asked for and is not there: an aspect, its heading, a kind of device."""
     refuse_many_facets(part)
     may_be_left_out(request.without)
     if part.vertices is None:
         return
-    aspects = find(part) if known is None else known.aspects
+    aspects = find(part) if shares is None else shares.aspects
     may_be_up(part, aspects, request.up)
     if request.aspect is None:
         return
@@ -195,8 +201,8 @@ def _check_named(part: Part, plain: Bowl, request: DesignRequest, known: Shares 
         return
     wide = max(plain.track.radius, float(vectors.length(np.ptp(part.vertices, axis=0))))  # one that it fits
     track = replace(plain.track, radius=wide)
-    every = orientations(part, aspects, track)
-    place(every, request.aspect, request.heading, part.source)
+    all_orientations = orientations(part, aspects, track)
+    place(all_orientations, request.aspect, request.heading, part.source)
 
 
 def _search_class(search: Search, cost_class: int, proofs: Proofs) -> None:
@@ -236,29 +242,33 @@ def _changed(search: Search, study: DesignStudy, candidate: Candidate) -> Candid
 
     None where there is nothing to change.
     """
-    made = calm_drive.PlainBowl(replace(candidate.bowl, devices=()), search.given, None, search.request.drive)
+    plain_bowl = calm_drive.PlainBowl(
+        replace(candidate.bowl, devices=()), search.kept_keys, None, search.request.drive
+    )
     weights, worst = candidate.weights, (study.robust.worst,)
     if study.jams:
-        lively = exploring.livened(search, made, candidate, weights) if _is_calm(candidate.bowl) else None
+        lively = (
+            exploring.livened(search, plain_bowl, candidate, weights) if _is_calm(candidate.bowl) else None
+        )
         if lively is not None and lively.attempt.clean:
             return lively
-        return _with_change(search, made, candidate, proposals.relieved(candidate))
+        return _with_change(search, plain_bowl, candidate, proposals.relieved(candidate))
     if nearest.only_slow(study):
         search.reserve *= 1.1 * RATE_KEPT * search.request.target / study.delivered[1]
-        return _faster(search, made, candidate)
+        return _faster(search, plain_bowl, candidate)
     if study.robust.share < DRAWS_HELD:
         if nearest.only_lost(study):
             search.least = FASTER * calm_drive.speed(candidate.bowl)
-            other = _faster(search, made, candidate)
+            other = _faster(search, plain_bowl, candidate)
             search.least = 0.0
             if other is not None:
                 return other
         if exploring.stays_at_steel(candidate.proposal, worst):
-            return exploring.livened(search, made, candidate, weights)
-        tried, lying = candidate.tried, candidate.ways.lying
+            return exploring.livened(search, plain_bowl, candidate, weights)
+        tried, lying = candidate.tried, candidate.orientations.lying
         changed = proposals.better(candidate.proposal, tried, lying, study.robust)
-        return _with_change(search, made, candidate, changed)
-    return _with_change(search, made, candidate, proposals.purer(candidate, study.left_instead))
+        return _with_change(search, plain_bowl, candidate, changed)
+    return _with_change(search, plain_bowl, candidate, proposals.purer(candidate, study.left_instead))
 
 
 def _is_calm(bowl: Bowl) -> bool:
@@ -266,24 +276,24 @@ def _is_calm(bowl: Bowl) -> bool:
     return hop(bowl).height < LIVELY_HOP_M
 
 
-def _faster(search: Search, made: calm_drive.PlainBowl, candidate: Candidate) -> Candidate | None:
+def _faster(search: Search, plain_bowl: calm_drive.PlainBowl, candidate: Candidate) -> Candidate | None:
     """The same chain at the drive that is now asked for; None where that is the one it was proved at."""
-    bowl = exploring.driven_for(search, made, candidate.proposal, candidate.weights)
+    bowl = exploring.driven_for(search, plain_bowl, candidate.proposal, candidate.weights)
     if bowl.drive == candidate.bowl.drive:
         return None
-    return exploring.attempted(search, made, candidate.proposal, candidate.weights, bowl)
+    return exploring.attempted(search, plain_bowl, candidate.proposal, candidate.weights, bowl)
 
 
 def _with_change(
     search: Search,
-    made: calm_drive.PlainBowl,
+    plain_bowl: calm_drive.PlainBowl,
     candidate: Candidate,
     proposal: proposals.Proposal | None,
 ) -> Candidate | None:
     """A changed chain at the drive of the one it was made of; None without a change."""
     if proposal is None:
         return None
-    return exploring.attempted(search, made, proposal, candidate.weights, candidate.bowl)
+    return exploring.attempted(search, plain_bowl, proposal, candidate.weights, candidate.bowl)
 
 
 def _make_whole(search: Search, proofs: Proofs) -> None:
@@ -300,7 +310,7 @@ def _make_whole(search: Search, proofs: Proofs) -> None:
         if likeliest is None:
             return
         candidate = likeliest
-    proofs[:] = [one for one in proofs if one[1] is not candidate]
+    proofs[:] = [proof for proof in proofs if proof[1] is not candidate]
     proofs.append((proved(search, candidate, whole=True, drawn=drawn), candidate))
 
 
@@ -317,30 +327,32 @@ def proved(
     drawn : RobustRun, optional
         All draws of that candidate, where they were made: they would come out the same.
     """
-    known, candidate = exploring.at_its_drive(search, candidate)
+    shares, candidate = exploring.at_its_drive(search, candidate)
     ride, candidate = _at_the_tooling(search, candidate)
-    bowl, ways, row = candidate.bowl, candidate.ways, candidate.proposal.row
-    study = replace(_unproved(search, candidate, known), long_ride=ride)
+    bowl, oriented, row = candidate.bowl, candidate.orientations, candidate.proposal.row
+    study = replace(_unproved(search, candidate, shares), long_ride=ride)
     if drawn is None or drawn.draws < search.request.draws:
         drawn = _drawn(search, candidate, ride.either, whole=whole)
     study = replace(study, robust=drawn, partial=drawn.partial)
     if drawn.partial or not (whole or drawn.share >= DRAWS_HELD):
         return study
     try:
-        study = _in_queues(search, study, candidate, known, ride.entering, whole=whole)
+        study = _in_queues(search, study, candidate, shares, ride.entering, whole=whole)
     except KeyboardInterrupt:
         return replace(study, partial=True)
-    every = [ways.lying[k] for k in trying.often(candidate.weights)]
-    found = risks.risks(ways.lying[row], bowl, study.queues, every=every, seed=search.request.seed)
-    return replace(study, risks=found)
+    frequent = [oriented.lying[k] for k in short_trials.often(candidate.weights)]
+    named_risks = hazards.risks(
+        oriented.lying[row], bowl, study.queues, orientations=frequent, seed=search.request.seed
+    )
+    return replace(study, risks=named_risks)
 
 
 def _at_the_tooling(search: Search, candidate: Candidate) -> tuple[LongRide, Candidate]:
     """A ride along the track to the tooling, and the candidate with the mix that arrives there."""
-    search.told(f"ride along the track: {candidate.attempt.wanted}")
-    ways, weights = candidate.ways, candidate.weights
-    wanted = trying.wanted_rows(ways, candidate.tried.states)
-    ride = long_ride(search.part, candidate.bowl, ways.lying, weights, wanted, search.request.run)
+    search.tell(f"ride along the track: {candidate.attempt.wanted}")
+    oriented, weights = candidate.orientations, candidate.weights
+    wanted = short_trials.wanted_rows(oriented, candidate.tried.states)
+    ride = long_ride(search.part, candidate.bowl, oriented.lying, weights, wanted, search.request.run)
     return ride, replace(candidate, weights=ride.arriving)
 
 
@@ -350,9 +362,9 @@ def _drawn(search: Search, candidate: Candidate, shares: np.ndarray, *, whole: b
     text = f"{request.draws} of part, friction, drive and cuts"
     search.begin_proof(f"draws: {candidate.attempt.wanted}, {text}")
     return robust_run(
-        search.part, candidate.bowl, candidate.ways, shares, candidate.proposal.rows,
+        search.part, candidate.bowl, candidate.orientations, shares, candidate.proposal.rows,
         draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
-        any_heading=candidate.proposal.any_heading, spared=trying.spared_rows(candidate.tried),
+        any_heading=candidate.proposal.any_heading, spared=short_trials.spared_rows(candidate.tried),
         enough=search.enough(candidate.attempt),
         allowed=None if whole else math.floor((1.0 - DRAWS_HELD) * request.draws + 1e-9),
     )  # fmt: skip
@@ -362,7 +374,7 @@ def _in_queues(
     search: Search,
     study: DesignStudy,
     candidate: Candidate,
-    known: Shares,
+    shares: Shares,
     entering: np.ndarray,
     *,
     whole: bool,
@@ -372,23 +384,23 @@ def _in_queues(
     Parts that touch on their way come as they enter the track, in shares (M,) [1]: they ride otherwise than
     alone.
     """
-    search.told(f"queue: {candidate.attempt.wanted}, {candidate.proposal.told}")
+    search.tell(f"queue: {candidate.attempt.wanted}, {candidate.proposal.sentence}")
     line = queues.FollowedRow(
-        search.part, candidate.bowl, known.aspects, candidate.ways, candidate.weights,
-        candidate.tried.states, search.request.seed, search.told, RATE_KEPT * search.request.target,
+        search.part, candidate.bowl, shares.aspects, candidate.orientations, candidate.weights,
+        candidate.tried.states, search.request.seed, search.tell, RATE_KEPT * search.request.target,
         candidate.proposal.any_heading, search.run("queue").progress, entering, search.request.jobs,
     )  # fmt: skip
     study = _queued(study, queues.filled(line, whole=whole))
     return _queued(study, queues.longer(line, study))
 
 
-def _queued(study: DesignStudy, found: tuple[FilledQueue, ...]) -> DesignStudy:
-    return replace(study, queues=found, partial=any(one.partial for one in found))
+def _queued(study: DesignStudy, queues_seen: tuple[FilledQueue, ...]) -> DesignStudy:
+    return replace(study, queues=queues_seen, partial=any(queue.partial for queue in queues_seen))
 
 
-def _unproved(search: Search, candidate: Candidate, known: Shares) -> DesignStudy:
+def _unproved(search: Search, candidate: Candidate, shares: Shares) -> DesignStudy:
     """The design before anything of it is proved."""
-    bowl, ways, weights = candidate.bowl, candidate.ways, candidate.weights
+    bowl, oriented, weights = candidate.bowl, candidate.orientations, candidate.weights
     request, margin = search.request, proposals.MARGINS[-1]
     return DesignStudy(
         part=search.part,
@@ -399,32 +411,144 @@ def _unproved(search: Search, candidate: Candidate, known: Shares) -> DesignStud
         cuts=candidate.proposal.cuts,
         before=candidate.proposal.before,
         attempts=tuple(search.attempts),
-        source=known.aspects.source(request.rule),
+        source=shares.aspects.source(request.rule),
         static_rate=_static(search, candidate),
-        slowed=calm_drive.kept(bowl),
-        trials=tuple(TrialRun(bowl, throw_number(bowl), ways, weights, one) for one in candidate.tried.seen),
-        tooling=beside.tooled(
-            search.part, bowl, known.aspects, ways, weights, candidate.proposal, request, margin
+        slowed=calm_drive.velocity_kept(bowl),
+        trials=tuple(
+            TrialRun(bowl, throw_number(bowl), oriented, weights, course)
+            for course in candidate.tried.courses
         ),
+        tooling=tooled(
+            search.part, bowl, shares.aspects, oriented, weights, candidate.proposal, request, margin
+        ),
+    )
+
+
+def tooled(
+    part: Part,
+    bowl: Bowl,
+    aspects: Aspects,
+    oriented: Orientations,
+    weights: np.ndarray,
+    proposal: proposals.Proposal,
+    request: DesignRequest,
+    margin: float,
+) -> ToolingStudy | None:
+    """Return a chain as `feeder tooling` would have found it; None without one.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        With its devices.
+    aspects : Aspects
+    oriented : Orientations
+        Through the devices; M of them.
+    weights : (M,) float [1]
+        In which they come.
+    proposal : Proposal
+    request : DesignRequest
+    margin : float [m]
+
+    Returns
+    -------
+    ToolingStudy or None
+    """
+    if not proposal.cuts:
+        return None
+    task = static.design_task(
+        oriented.lying,
+        weights,
+        proposal.row,
+        margin,
+        1.0,
+        proposal.before,
+        constraints=DesignConstraints(up=request.up),
+    )
+    same = np.isin(oriented.leaves_as, proposal.states(oriented))
+    static_design = static.propose(task, proposal.cuts, oriented.through < 0.5, same)
+    designs = tuple(static_design if k == proposal.row else None for k in range(len(weights)))
+    return ToolingStudy(
+        part, bowl, aspects, request.rule, margin, oriented.lying, weights, designs, proposal.row, request.up
     )
 
 
 def _counting(name: str, request: DesignRequest) -> str:
     """The name of what leaves, with the aspects that count as it."""
-    others = [one for one in request.up if one.casefold() != name.partition("@")[0].casefold()]
-    return " or ".join((name, *others))
+    names = [aspect for aspect in request.up if aspect.casefold() != name.partition("@")[0].casefold()]
+    return " or ".join((name, *names))
 
 
 def _static(search: Search, candidate: Candidate) -> float:
     """Wanted parts [1/s] that the static rule promises."""
-    ways, weights = candidate.ways, candidate.weights
-    gain = trying.gain(ways, weights, candidate.tried.states)
-    return calm_drive.speed(candidate.bowl) * gain / float((weights * ways.lengths).sum())
+    oriented, weights = candidate.orientations, candidate.weights
+    gain = short_trials.gain(oriented, weights, candidate.tried.states)
+    return calm_drive.speed(candidate.bowl) * gain / float((weights * oriented.lengths).sum())
 
 
 def _without(search: Search) -> DesignStudy:
     """What is said where nothing was proved."""
-    source = "" if search.known is None else search.known.aspects.source(search.request.rule)
+    source = "" if search.shares is None else search.shares.aspects.source(search.request.rule)
     return DesignStudy(
         search.part, search.request, None, None, None, attempts=tuple(search.attempts), source=source
+    )
+
+
+def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
+    """Return what of two designs is the better one: holds, then clean, then the most parts."""
+    return study.status == HOLDS, study.jams == 0, study.robust.share, study.delivered[1]
+
+
+def alternatives(
+    studies: Sequence[DesignStudy], attempts: Sequence[Attempt], searched: Collection[int]
+) -> tuple[Alternative, ...]:
+    """Return the best of each cost class, the cheapest class first.
+
+    Parameters
+    ----------
+    studies : sequence of DesignStudy
+        That were proved, as far as they were.
+    attempts : sequence of Attempt
+        Every short trial.
+    searched : collection of int
+        Cost classes of which chains were looked for.
+    """
+    best_of: list[Alternative] = []
+    holds = any(study.status == HOLDS for study in studies)
+    for number in COST_CLASSES:
+        own = [
+            study for study in studies if study.bowl is not None and cost_class_of(study.devices) == number
+        ]
+        tried = [attempt for attempt in attempts if attempt.cost_class == number]
+        if own:
+            best_of.append(of_study(max(own, key=merit)))
+        elif tried:
+            best = max(tried, key=lambda one: (one.clean, one.efficiency, one.rate))
+            faults = ", ".join(best.faults[:2]) or "too slow in its short trial"
+            best_of.append(Alternative(number, NONE, chain=best.chain, why=f"{best.wanted}: {faults}"))
+        elif number in searched:
+            best_of.append(
+                Alternative(number, NONE, why="no chain of this class tells what is wanted from the rest")
+            )
+        else:
+            why = "a cheaper one holds: --alternatives proves this class too" if holds else "it was stopped"
+            best_of.append(Alternative(number, NOT_TRIED, why=why))
+    return tuple(best_of)
+
+
+def of_study(study: DesignStudy) -> Alternative:
+    """Return a design as the alternative of its cost class."""
+    purity, share = study.purity[0], study.efficiency
+    counts = bool(study.queues) and not study.partial  # what was stopped is no evidence
+    sensors: list[Any] = [device for device in study.devices if device.senses]
+    return Alternative(
+        cost_class=cost_class_of(study.devices),
+        status=study.status,
+        delivered=study.delivered if counts else None,
+        purity=None if np.isnan(purity) or not counts else purity,
+        efficiency=None if np.isnan(share) or not counts else share,
+        chain=tuple(f"{device.kind}: {device.text}" for device in study.devices),
+        chain_words=tuple(f"{device.full_name}: {device.value_words}" for device in study.devices),
+        sees=tuple(device.sees for device in sensors),
+        why="; ".join(study.shortfalls) if study.status != HOLDS else "",
     )

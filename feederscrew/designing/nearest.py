@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.designing import calm_drive, exploring, proposals, queues, trying
+from feederscrew.designing import calm_drive, exploring, proposals, queues, short_trials
+from feederscrew.designing.exploring import Candidate, Search
 from feederscrew.designing.record import (
     DRAWS_HELD,
     HEADING_OFF,
@@ -18,7 +19,6 @@ from feederscrew.designing.record import (
     DesignStudy,
     NearestDesign,
 )
-from feederscrew.designing.searching import Candidate, Search
 from feederscrew.dropping.plate_test import throw_number
 
 MINUTE = 60.0
@@ -39,7 +39,7 @@ class Variant:
     change: str  # what is changed for it
     candidate: Candidate
     search: Search  # what it was tried for: of another way up than the one asked for another one
-    asked: bool = True  # it leaves what was asked for
+    as_requested: bool = True  # it leaves what was asked for
 
 
 def only_slow(study: DesignStudy) -> bool:
@@ -70,7 +70,7 @@ def rate_that_holds(study: DesignStudy) -> float:
     """
     if study.partial or not study.queues:
         return 0.0
-    least = min(study.delivered[1], *(one.ends[1] for one in study.queues))
+    least = min(study.delivered[1], *(queue.ends[1] for queue in study.queues))
     rate = _rounded_down(MINUTE * least / RATE_KEPT) / MINUTE
     if not rate > 0.0:
         return 0.0
@@ -123,14 +123,14 @@ def nearest(
         return _holding(search, rate, variant, study, denied, len(proofs)), study
     done, pending = 0, [variants(search, proofs)]
     for variant in _in_turn(pending):
-        search.told(f"nearest that holds: {variant.candidate.attempt.wanted}, {variant.change}")
+        search.tell(f"nearest that holds: {variant.candidate.attempt.wanted}, {variant.change}")
         study, done = prove(variant.search, variant.candidate), done + 1
         if study.partial:
             raise KeyboardInterrupt
         rate = rate_that_holds(study)
         if rate > 0.0:
-            found = _holding(search, rate, variant, study, denied, len(proofs) + done)
-            return found, study if variant.asked else None
+            near = _holding(search, rate, variant, study, denied, len(proofs) + done)
+            return near, study if variant.as_requested else None
         denied.append(f"{variant.change} ({variant.candidate.attempt.wanted}): {_lacks(study)}")
         if done >= PROOFS:
             break
@@ -168,7 +168,7 @@ def tried_nearest(
         rate=rate,
         change=change,
         wanted=study.wanted,
-        chain=tuple(f"{one.kind}: {one.text}" for one in study.devices),
+        chain=tuple(f"{device.kind}: {device.text}" for device in study.devices),
         frequency=None if bowl is None else bowl.drive.frequency,
         peak_to_peak=None if bowl is None else 2.0 * bowl.drive.amplitude,
         throw_number=None if bowl is None else float(throw_number(bowl)),
@@ -177,8 +177,8 @@ def tried_nearest(
         draws=study.robust.draws,
         draws_held=study.robust.held,
         queue_seconds=study.queue_seconds,
-        parts_right=sum(one.right for one in study.queues),
-        parts_left=sum(one.left for one in study.queues),
+        parts_right=sum(queue.right for queue in study.queues),
+        parts_left=sum(queue.left for queue in study.queues),
     )
 
 
@@ -186,12 +186,12 @@ def _holding(
     search: Search, rate: float, variant: Variant, study: DesignStudy, denied: list[str], proofs: int
 ) -> NearestDesign:
     """The nearest that holds, with what else was tried and what else helps."""
-    found = tried_nearest(study, rate, variant.change, trials=len(search.attempts), proofs=proofs)
+    near = tried_nearest(study, rate, variant.change, trials=len(search.attempts), proofs=proofs)
     helps = [*_helps(search, study, variant.candidate)]
     bowls = math.ceil(search.request.target / rate - SLIGHT)
     if bowls > 1:
         helps.append(f"{bowls} such bowls bring the {MINUTE * search.request.target:.4g}/min asked for")
-    return replace(found, denied=tuple(denied), helps=tuple(helps))
+    return replace(near, denied=tuple(denied), helps=tuple(helps))
 
 
 def _slower(candidate: Candidate) -> str:
@@ -216,21 +216,21 @@ def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
     search : Search
     proofs : list of (DesignStudy, Candidate)
     """
-    left, seen = TRIALS, {id(candidate) for _, candidate in proofs}
+    left, proved = TRIALS, {id(candidate) for _, candidate in proofs}
     for study, candidate in proofs:
         if _by_motion(study) and left:
             other = _calmer(search, candidate)
             left -= other is not None
             if other is not None and other.attempt.clean:
                 yield Variant(f"a calmer drive, {_drive(other.bowl)}", other, search)
-    clean = [one for one in search.passed if id(one) not in seen]
-    for one in sorted(clean, key=lambda one: -one.attempt.rate):
-        calm = one.proposal.step.startswith("calmer drive")
-        change = f"a calmer drive, {_drive(one.bowl)}" if calm else _slower(one)
+    clean = [candidate for candidate in search.passed if id(candidate) not in proved]
+    for candidate in sorted(clean, key=lambda candidate: -candidate.attempt.rate):
+        calm = candidate.proposal.step.startswith("calmer drive")
+        change = f"a calmer drive, {_drive(candidate.bowl)}" if calm else _slower(candidate)
         wanted = [candidate.attempt.wanted for _, candidate in proofs]
-        if wanted and one.attempt.wanted not in wanted:
-            change = _other_way(one)
-        yield Variant(change, one, search)
+        if wanted and candidate.attempt.wanted not in wanted:
+            change = _other_way(candidate)
+        yield Variant(change, candidate, search)
     yield from _any_heading(search, proofs)
     for study, candidate in proofs:
         if left and study.queues and not study.purity[0] >= PURE:
@@ -267,24 +267,26 @@ def _calmer_variants(variant: Variant, study: DesignStudy) -> Iterator[Variant]:
 
 
 def _calmer(search: Search, candidate: Candidate) -> Candidate | None:
-    made = _made(search, candidate)
-    bowl = calm_drive.calmer(made, candidate.bowl)
+    plain_bowl = _plain_bowl(search, candidate)
+    bowl = calm_drive.calmer(plain_bowl, candidate.bowl)
     if bowl is None or _tried_at(search, candidate, bowl):
         return None
-    return exploring.calmer(search, made, candidate, candidate.weights)
+    return exploring.calmer(search, plain_bowl, candidate, candidate.weights)
 
 
 def _tried_at(search: Search, candidate: Candidate, bowl: Bowl) -> bool:
     """Whether a chain was tried at the drive of a bowl."""
     return any(
-        one.chain == candidate.attempt.chain and one.peak_to_peak == 2.0 * bowl.drive.amplitude
-        and abs(one.throw_number - throw_number(bowl)) < 1e-6
-        for one in search.attempts
+        attempt.chain == candidate.attempt.chain and attempt.peak_to_peak == 2.0 * bowl.drive.amplitude
+        and abs(attempt.throw_number - throw_number(bowl)) < 1e-6
+        for attempt in search.attempts
     )  # fmt: skip
 
 
-def _made(search: Search, candidate: Candidate) -> calm_drive.PlainBowl:
-    return calm_drive.PlainBowl(replace(candidate.bowl, devices=()), search.given, None, search.request.drive)
+def _plain_bowl(search: Search, candidate: Candidate) -> calm_drive.PlainBowl:
+    return calm_drive.PlainBowl(
+        replace(candidate.bowl, devices=()), search.kept_keys, None, search.request.drive
+    )
 
 
 def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
@@ -296,13 +298,13 @@ def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
         if aspect + HEADING_OFF not in dict(study.left_instead) or aspect in candidate.proposal.any_heading:
             continue
         request = replace(search.request, aspect=None, up=tuple(dict.fromkeys((*search.request.up, aspect))))
-        lying = candidate.ways.lying
+        lying = candidate.orientations.lying
         proposal = replace(
             candidate.proposal,
-            same=proposals.alike(lying, candidate.proposal.row, request.up),
+            same=proposals.equivalent_rows(lying, candidate.proposal.row, request.up),
             any_heading=proposals.free_headings(lying, candidate.proposal.row, request),
         )
-        states = trying.wanted_states(candidate.ways, proposal.rows)
+        states = short_trials.wanted_states(candidate.orientations, proposal.rows)
         other = replace(
             candidate, proposal=proposal, tried=replace(candidate.tried, state=states[0], states=states)
         )
@@ -313,13 +315,19 @@ def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
 def _one_device_more(search: Search, study: DesignStudy, candidate: Candidate) -> Candidate | None:
     """The chain with a drop before it for what left a queue instead of what is wanted; None without one."""
     names = {name.partition("@")[0].removesuffix(HEADING_OFF) for name, _ in study.left_instead}
-    ways, proposal = candidate.ways, candidate.proposal
-    wanted = trying.wanted_rows(ways, candidate.tried.states)
-    others = [k for k, one in enumerate(ways.lying) if one.aspect in names and k not in wanted]
-    changed = proposals.dropped_before(proposal, others, wanted, ways.lying)
+    orientations, proposal = candidate.orientations, candidate.proposal
+    wanted = short_trials.wanted_rows(orientations, candidate.tried.states)
+    rows = [
+        k
+        for k, orientation in enumerate(orientations.lying)
+        if orientation.aspect in names and k not in wanted
+    ]
+    changed = proposals.dropped_before(proposal, rows, wanted, orientations.lying)
     if changed is None:
         return None
-    return exploring.attempted(search, _made(search, candidate), changed, candidate.weights, candidate.bowl)
+    return exploring.attempted(
+        search, _plain_bowl(search, candidate), changed, candidate.weights, candidate.bowl
+    )
 
 
 def _other_search(search: Search, request: DesignRequest) -> Search:
@@ -332,17 +340,17 @@ def _other_search(search: Search, request: DesignRequest) -> Search:
 
 def _other_ways_up(search: Search) -> Iterator[Variant]:
     """Ways up that are clean in a trial, of all where only some were asked for: fast ones first."""
-    asked = search.request
-    if asked.aspect is None and not asked.up and asked.outcome == "any":
+    first_request = search.request
+    if first_request.aspect is None and not first_request.up and first_request.outcome == "any":
         return
-    request = replace(asked, aspect=None, heading=None, up=(), outcome="any")
+    request = replace(first_request, aspect=None, heading=None, up=(), outcome="any")
     free = _other_search(search, replace(request, budget=len(search.attempts) + FREE_TRIALS))
-    seen = set()
+    yielded = set()
     for candidate in exploring.candidates(free):
-        seen.add(id(candidate))
+        yielded.add(id(candidate))
         yield Variant(_other_way(candidate), candidate, free, False)
-    for candidate in sorted(free.passed, key=lambda one: -one.attempt.rate):
-        if id(candidate) not in seen:
+    for candidate in sorted(free.passed, key=lambda candidate: -candidate.attempt.rate):
+        if id(candidate) not in yielded:
             yield Variant(_other_way(candidate), candidate, free, False)
     for candidate in _calmed(free, FREE_CALMED):
         yield Variant(_other_way(candidate), candidate, free, False)
@@ -351,12 +359,17 @@ def _other_ways_up(search: Search) -> Iterator[Variant]:
 def _calmed(search: Search, most: int) -> Iterator[Candidate]:
     """Chains that failed, clean at a calmer drive: those of which most left first; so many trials at most."""
     left = most
-    for one in sorted(search.failed, key=lambda one: (-one.attempt.efficiency, len(one.attempt.faults))):
+    for candidate in sorted(
+        search.failed, key=lambda candidate: (-candidate.attempt.efficiency, len(candidate.attempt.faults))
+    ):
         if not left:
             break
-        if not one.attempt.efficiency > 0.0 and one.attempt.throw_number <= calm_drive.CALM + 1e-3:
+        if (
+            not candidate.attempt.efficiency > 0.0
+            and candidate.attempt.throw_number <= calm_drive.CALM + 1e-3
+        ):
             continue
-        other = _calmer(search, one)
+        other = _calmer(search, candidate)
         left -= other is not None
         if other is not None and other.attempt.clean:
             yield other
@@ -368,11 +381,12 @@ def _other_way(candidate: Candidate) -> str:
 
 def _helps(search: Search, study: DesignStudy, chosen: Candidate | None) -> Iterator[str]:
     """What else was clean in a short trial, or would count more parts."""
-    seen = {study.wanted}
-    for one in sorted(search.passed, key=lambda one: -one.attempt.rate):
-        if one is not chosen and one.attempt.wanted not in seen:
-            seen.add(one.attempt.wanted)
-            yield f"{one.attempt.wanted} got through its short trial at {MINUTE * one.attempt.rate:.3g}/min"
+    named = {study.wanted}
+    for candidate in sorted(search.passed, key=lambda candidate: -candidate.attempt.rate):
+        if candidate is not chosen and candidate.attempt.wanted not in named:
+            named.add(candidate.attempt.wanted)
+            rate = MINUTE * candidate.attempt.rate
+            yield f"{candidate.attempt.wanted} got through its short trial at {rate:.3g}/min"
     off = [name.removesuffix(HEADING_OFF) for name, _ in study.left_instead if name.endswith(HEADING_OFF)]
     own = (study.wanted or "").partition("@")[0]
     if own and own in off and own not in search.request.up:

@@ -1,20 +1,25 @@
 """Chains to be tried for an orientation, and how a value is moved that a trial denies."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from feederscrew.designing import pulses, trying
+from feederscrew.designing import short_trials
 from feederscrew.designing.record import RobustRun
 from feederscrew.designing.robust import CARRIED
-from feederscrew.designing.slots import STEP, widened
+from feederscrew.designing.short_trials import Tried
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import KINDS, cost_class, dearer, names
 from feederscrew.tooling.devices.orientation_names import nearest
 from feederscrew.tooling.devices.orientation_names import rows as rows_of
-from feederscrew.tooling.isolating.chain import DESIGN_KEY, in_mm, judge_cut, limits, numbered
+from feederscrew.tooling.devices.pneumatics import PULSE
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, Cut, in_mm, judge_cut, limits, numbered
+from feederscrew.tooling.isolating.design import RAIL
+from feederscrew.tooling.orientations import Orientation, neck
+from feederscrew.tooling.verdicts import DeviceEncounter
 
 ROWS = 6  # orientations for which chains are proposed, the most frequent first
 HOLES = names(searched=True)  # holes of several corners, which a shop's tolerance soon spoils
@@ -29,10 +34,15 @@ ON_THE_TRACK = names(leans=True, grooved=False)  # a bank is the bowl's own, and
 VERDICTS = 3000  # of the search for holes: values that a shop's tolerance does not lose are found early
 GUARDS = tuple(kind for kind in numbered() if kind.carries)
 LEAST_WINDOW = 1e-3  # [m] between what passes such a drop and what it rejects
+VALUE_STEP_M = 5e-5  # [m] to which a shop makes a value
+SLOT_WIDENING, WIDEST_SLOT = 0.35, 0.8  # of head less slot; of the head, that a slot may be
+PULSE_STEP_S, SHORTEST_PULSE_STEPS = 5e-3, 4  # [s] to which a pulse is set; steps of the shortest one
+PULSE_RESERVE = 6.0  # times what blows off a part before the nozzles: they do not blow at its middle
+LONGER_PULSE = 2.0  # times, where something is carried through all the same
 
 
 @dataclass(frozen=True)
-class ProposalWay:
+class Recipe:
     """A way of proposing a chain for an orientation."""
 
     cost_class: int
@@ -47,7 +57,7 @@ class ProposalWay:
         return not set(HOLES) <= set(self.without)
 
 
-def ways_of(cost_class, request):
+def recipes_of(cost_class, request):
     """Return the ways of proposing chains of a cost class, the most robust first.
 
     Parameters
@@ -57,7 +67,7 @@ def ways_of(cost_class, request):
 
     Returns
     -------
-    list of ProposalWay
+    list of Recipe
         Of a sensor alone, and of one with devices that parts meet; none of a class of which no kind of
         device may be used.
     """
@@ -65,18 +75,18 @@ def ways_of(cost_class, request):
     own = [name for name in names(cost_class=cost_class, proposed=True) if name not in left_out]
     if not own:
         return []
-    outcomes = [one for one in ("hanging", "lying") if request.outcome in ("any", one)]
+    outcomes = [outcome for outcome in ("hanging", "lying") if request.outcome in ("any", outcome)]
     kinds = [(*left_out, *HOLES), *([(*left_out, *MET, *HOLES)] if cost_class == SENSED else [])]
-    found = [
-        ProposalWay(cost_class, margin, outcome, some)
+    recipes = [
+        Recipe(cost_class, margin, outcome, some)
         for margin in MARGINS for outcome in outcomes for some in kinds
     ]  # fmt: skip
     if "lying" in outcomes:
-        lying = [way for way in found if way.outcome == "lying" and way.without == kinds[0]]
-        found += [replace(way, turns=True) for way in lying]
+        lying = [recipe for recipe in recipes if recipe.outcome == "lying" and recipe.without == kinds[0]]
+        recipes += [replace(recipe, turns=True) for recipe in lying]
     if "lying" in outcomes and cost_class == COST_CLASSES[0]:
-        found.append(ProposalWay(cost_class, MARGINS[-1], "lying", left_out))
-    return found
+        recipes.append(Recipe(cost_class, MARGINS[-1], "lying", left_out))
+    return recipes
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,9 +113,9 @@ class Proposal:
         """Every device along the track."""
         return (*self.before, *(cut.device for cut in self.cuts))
 
-    def states(self, known):
+    def states(self, orientations):
         """Return the states in which what is wanted leaves, its own first."""
-        return trying.wanted_states(known, self.rows)
+        return short_trials.wanted_states(orientations, self.rows)
 
     @property
     def rows(self) -> tuple[Any, ...]:
@@ -120,56 +130,67 @@ class Proposal:
     @property
     def chain(self) -> tuple[Any, ...]:
         """The devices as a bowl file has them."""
-        return tuple(f"{one.kind}: {one.text}" for one in self.devices)
+        return tuple(f"{device.kind}: {device.text}" for device in self.devices)
 
     @property
-    def told(self):
+    def sentence(self):
         """The devices in a sentence, headings in whole degrees."""
-        return ", ".join(f"{one.kind}: {one.short}" for one in self.devices) or "no device"
+        return ", ".join(f"{device.kind}: {device.short}" for device in self.devices) or "no device"
 
 
-def alike(lying, row, up) -> tuple[Any, ...]:
+def equivalent_rows(lying, row, up) -> tuple[Any, ...]:
     """Return the rows beside a wanted one that count as it: those of aspects that may be up too."""
     names = _folded(up)
-    return tuple(k for k, one in enumerate(lying) if k != row and one.aspect.casefold() in names)
+    return tuple(
+        k for k, orientation in enumerate(lying) if k != row and orientation.aspect.casefold() in names
+    )
 
 
 def free_headings(lying, row, request):
     """Return the aspects that count as a wanted row at any heading, by what a DesignRequest asks for."""
-    return trying.aspects_at_any_heading(lying, row, request.up, heading_given=request.heading is not None)
+    return short_trials.aspects_at_any_heading(
+        lying, row, request.up, heading_given=request.heading is not None
+    )
 
 
 def _folded(names) -> set[Any]:
     return {name.strip().casefold() for name in names}
 
 
-def promising(known, shares, request):
+def promising(orientations, shares, request):
     """Return rows (R,) of the orientations worth a try: those asked for, the most frequent first."""
-    rows = [k for k in trying.often(shares) if not known.lying[k].returned]
+    rows = [k for k in short_trials.often(shares) if not orientations.lying[k].returned]
     names = {request.aspect.strip()} if request.aspect is not None else set(request.up)
     if names:
-        asked = [k for k, one in enumerate(known.lying) if one.aspect.casefold() in _folded(names)]
-        rows = [k for k in rows if k in asked] or (asked if request.aspect is not None else [])
+        requested = [
+            k
+            for k, orientation in enumerate(orientations.lying)
+            if orientation.aspect.casefold() in _folded(names)
+        ]
+        rows = [k for k in rows if k in requested] or (requested if request.aspect is not None else [])
     if request.heading is None or request.aspect is None:
         return rows
-    rows_of(known.aspects, request.aspect, known.lying[0].posture.solid.source)
-    return [nearest(known.aspects, known.headings, request.aspect, request.heading)]
+    rows_of(orientations.aspects, request.aspect, orientations.lying[0].posture.solid.source)
+    return [nearest(orientations.aspects, orientations.headings, request.aspect, request.heading)]
 
 
-def bare(known, shares, request, devices):
+def bare(orientations, shares, request, devices):
     """Return the proposal of no further device, where nearly all that comes is one way up; else None."""
-    rows = promising(known, shares, request)
+    rows = promising(orientations, shares, request)
     if not rows or request.outcome == "hanging":
         return None
-    leaving = (shares[:, None] * known.leaving).sum(axis=0)
-    best = max(rows, key=lambda k: leaving[known.leaves_as[k]])
-    same, free = alike(known.lying, best, request.up), free_headings(known.lying, best, request)
-    made = Proposal(best, (), tuple(devices), "no device", same, free)
-    pure = trying.gain(known, shares, made.states(known)) / max(leaving.sum(), 1e-300)
-    return made if pure >= ENOUGH else None
+    leaving = (shares[:, None] * orientations.leaving).sum(axis=0)
+    best = max(rows, key=lambda k: leaving[orientations.leaves_as[k]])
+    same, free = (
+        equivalent_rows(orientations.lying, best, request.up),
+        free_headings(orientations.lying, best, request),
+    )
+    proposal = Proposal(best, (), tuple(devices), "no device", same, free)
+    pure = short_trials.gain(orientations, shares, proposal.states(orientations)) / max(leaving.sum(), 1e-300)
+    return proposal if pure >= ENOUGH else None
 
 
-def proposed(part, bowl, aspects, row, known, request, way):
+def proposed(part, bowl, aspects, row, orientations, request, recipe):
     """Return the static rule's chain for a row, or None where it isolates nothing or is not what was asked.
 
     Parameters
@@ -179,62 +200,71 @@ def proposed(part, bowl, aspects, row, known, request, way):
         With the devices of the user.
     aspects : Aspects
     row : int
-    known : Orientations
+    orientations : Orientations
     request : DesignRequest
-    way : ProposalWay
+    recipe : Recipe
 
     Returns
     -------
     Proposal or None
         What would stand at a device is returned before it by a drop.
     """
-    one = known.lying[row]
-    without = tuple(dict.fromkeys((*request.without, *way.without, *ON_THE_TRACK)))
-    found = tooling(
-        part, bowl, one.aspect, heading=one.heading, rule=request.rule, margin=way.margin, known=aspects,
-        seed=request.seed, verdicts=VERDICTS, outcome=way.outcome, without=without, turn=way.turns,
-        air=way.cost_class > COST_CLASSES[0],
+    orientation = orientations.lying[row]
+    without = tuple(dict.fromkeys((*request.without, *recipe.without, *ON_THE_TRACK)))
+    static_design = tooling(
+        part, bowl, orientation.aspect, heading=orientation.heading, rule=request.rule, margin=recipe.margin,
+        aspect_shares=aspects, seed=request.seed, verdicts=VERDICTS, outcome=recipe.outcome, without=without,
+        turn=recipe.turns, air=recipe.cost_class > COST_CLASSES[0],
         purity=ENOUGH, up=request.up, play=0.0, tolerance=0.0, vary=False,  # draws and the loop have them
     ).design  # fmt: skip
-    if found is None or not found.efficiency > 0.0 or not (found.cuts or found.before):
+    if (
+        static_design is None
+        or not static_design.efficiency > 0.0
+        or not (static_design.cuts or static_design.before)
+    ):
         return None
-    cuts = tuple(pulses.quickened(rounded(cut, known.lying, row), known.lying) for cut in found.cuts)
-    step = f"proposed with margins of {in_mm(way.margin)}"
-    same, free = alike(known.lying, row, request.up), free_headings(known.lying, row, request)
-    hopeful = found.hopeful or 0.0
-    pure = 0.5 * (float(np.nan_to_num(found.purity)) + hopeful)
-    made = Proposal(row, cuts, tuple(found.before), step, same, free, pure, found.margin)
-    if found.isolated:
-        return made
-    through = known_through(part, aspects, replace(bowl, devices=made.devices))
-    return _guarded_stops(made, through, request.rule) if hopeful >= ENOUGH else None
+    cuts = tuple(
+        quickened(rounded(cut, orientations.lying, row), orientations.lying) for cut in static_design.cuts
+    )
+    step = f"proposed with margins of {in_mm(recipe.margin)}"
+    same, free = (
+        equivalent_rows(orientations.lying, row, request.up),
+        free_headings(orientations.lying, row, request),
+    )
+    hopeful = static_design.hopeful or 0.0
+    pure = 0.5 * (float(np.nan_to_num(static_design.purity)) + hopeful)
+    proposal = Proposal(row, cuts, tuple(static_design.before), step, same, free, pure, static_design.margin)
+    if static_design.isolated:
+        return proposal
+    through = known_through(part, aspects, replace(bowl, devices=proposal.devices))
+    return _guarded_stops(proposal, through, request.rule) if hopeful >= ENOUGH else None
 
 
 def _guarded_stops(proposal, through, rule):
     """The proposal with a drop before what stops some orientations; None where none tells them."""
-    stops = (through.stops.sum(axis=1) > 0.0) & (np.nan_to_num(through.rules[rule]) >= trying.SELDOM)
+    stops = (through.stops.sum(axis=1) > 0.0) & (np.nan_to_num(through.rules[rule]) >= short_trials.SELDOM)
     if not stops.any():
         return proposal
-    wanted = trying.wanted_rows(through, proposal.states(through))
+    wanted = short_trials.wanted_rows(through, proposal.states(through))
     return dropped_before(proposal, list(np.flatnonzero(stops)), wanted, through.lying)
 
 
-def rounded(cut, every, row):
+def rounded(cut, lying, row):
     """Return a cut whose value a shop can make, where that keeps what it returns."""
     if not np.isfinite(cut.device.limit):
         return cut
-    return moved(cut, float(np.round(cut.device.limit / STEP) * STEP), every, row)
+    return moved(cut, float(np.round(cut.device.limit / VALUE_STEP_M) * VALUE_STEP_M), lying, row)
 
 
-def moved(cut, limit, every, row):
+def moved(cut, limit, lying, row):
     """Return a cut of one number at another value, with its margins there."""
-    limit = float(np.round(limit / STEP) * STEP)
+    limit = float(np.round(limit / VALUE_STEP_M) * VALUE_STEP_M)
     device = cut.device.valued(limit)
-    must = np.array([one.name in cut.returns for one in every])
-    return judge_cut(every, row, device, must, cut.smallest, cut.largest)
+    must = np.array([orientation.name in cut.returns for orientation in lying])
+    return judge_cut(lying, row, device, must, cut.smallest, cut.largest)
 
 
-def mended(proposal, tried, every):
+def mended(proposal, tried, lying):
     """Return the proposal with the value moved that its trial denies; None where none can be moved.
 
     What is lost though wanted moves its device towards the least cut; what leaves though rejected moves the
@@ -245,14 +275,14 @@ def mended(proposal, tried, every):
             continue
         kind = cut.device.kind
         lost = lost_at(tried, kind)
-        slipped = [k for n, k in enumerate(tried.rows) if tried.wrong[n] and every[k].name in cut.returns]
+        slipped = [k for n, k in enumerate(tried.rows) if tried.wrong[n] and lying[k].name in cut.returns]
         if lost == bool(slipped):
             continue
         end = cut.smallest.limit if lost else cut.largest.limit
         limit = 0.5 * (cut.device.limit + end)
-        if not np.isfinite(limit) or abs(limit - cut.device.limit) < STEP:
+        if not np.isfinite(limit) or abs(limit - cut.device.limit) < VALUE_STEP_M:
             continue
-        other = moved(cut, limit, every, proposal.row)
+        other = moved(cut, limit, lying, proposal.row)
         if other.device.limit == cut.device.limit or not other.margin_pass > 0.0:
             continue
         cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
@@ -260,14 +290,14 @@ def mended(proposal, tried, every):
     return None
 
 
-def swept(proposal, tried, every):
+def swept(proposal, tried, lying):
     """Return the proposal with another sweep of a blade at which parts stay; None where none is left.
 
     Parameters
     ----------
     proposal : Proposal
     tried : Tried
-    every : sequence of Orientation
+    lying : sequence of Orientation
     """
     stays = {end for n in range(len(tried.rows)) if tried.held[n] for end in tried.places[n]}
     for place, cut in enumerate(proposal.cuts):
@@ -275,16 +305,18 @@ def swept(proposal, tried, every):
         if not device.overhead or not device.face or not any(end.endswith(device.name) for end in stays):
             continue
         used = proposal.sweeps or (round(np.degrees(device.sweep)),)
-        grip = every[proposal.row].grip
-        ways = [replace(device, sweep=np.radians(one)).rewritten() for one in SWEEPS if one not in used]
-        other = next((one for one in ways if one.clear_of(grip)), None)
+        grip = lying[proposal.row].grip
+        blades = [
+            replace(device, sweep=np.radians(angle)).rewritten() for angle in SWEEPS if angle not in used
+        ]
+        other = next((blade for blade in blades if blade.clear_of(grip)), None)
         if other is None:
             continue
-        must = np.array([one.name in cut.returns for one in every])
-        ends = [replace(one, sweep=other.sweep).rewritten() for one in (cut.smallest, cut.largest)]
+        must = np.array([orientation.name in cut.returns for orientation in lying])
+        ends = [replace(end, sweep=other.sweep).rewritten() for end in (cut.smallest, cut.largest)]
         cuts = (
             *proposal.cuts[:place],
-            judge_cut(every, proposal.row, other, must, *ends),
+            judge_cut(lying, proposal.row, other, must, *ends),
             *proposal.cuts[place + 1 :],
         )
         sweep = round(np.degrees(other.sweep))
@@ -292,28 +324,28 @@ def swept(proposal, tried, every):
     return None
 
 
-def better(proposal, tried, every, drawn=None):
+def better(proposal, tried, lying, drawn=None):
     """Return the proposal changed where its trial denies it; None where nothing is left to change.
 
     Parameters
     ----------
     proposal : Proposal
     tried : Tried
-    every : sequence of Orientation
+    lying : sequence of Orientation
     drawn : RobustRun, optional
         Draws that deny what the trial itself does not.
     """
-    right = set(trying.wanted_rows(tried.known, tried.states))
+    right = set(short_trials.wanted_rows(tried.orientations, tried.states))
     lost = any(k in right and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
     if drawn is not None:
-        return widened(proposal, every) if "lost" in drawn.worst else cut_more(proposal, tried, drawn, every)
-    wider = widened(proposal, every) if lost else None
-    moved_one = wider or swept(proposal, tried, every) or mended(proposal, tried, every)
-    moved_one = moved_one or pulses.longer(proposal, tried, every)
-    return moved_one or guarded(proposal, tried, every)
+        return widened(proposal, lying) if "lost" in drawn.worst else cut_more(proposal, tried, drawn, lying)
+    wider = widened(proposal, lying) if lost else None
+    moved_one = wider or swept(proposal, tried, lying) or mended(proposal, tried, lying)
+    moved_one = moved_one or longer(proposal, tried, lying)
+    return moved_one or guarded(proposal, tried, lying)
 
 
-def cut_more(proposal, tried, drawn, every):
+def cut_more(proposal, tried, drawn, lying):
     """Return the proposal that cuts more of what draws carry through; None where no value or drop does.
 
     Parameters
@@ -322,7 +354,7 @@ def cut_more(proposal, tried, drawn, every):
     tried : Tried
     drawn : RobustRun
         Its worst fault names what is carried through.
-    every : sequence of Orientation
+    lying : sequence of Orientation
     """
     name, carried, _ = drawn.worst.partition(CARRIED)
     if not carried:
@@ -330,13 +362,13 @@ def cut_more(proposal, tried, drawn, every):
     for place, cut in enumerate(proposal.cuts):
         if not cut.device.bound or name not in cut.returns or not np.isfinite(cut.largest.limit):
             continue
-        other = moved(cut, 0.5 * (cut.device.limit + cut.largest.limit), every, proposal.row)
-        if abs(other.device.limit - cut.device.limit) >= STEP and other.margin_pass > 0.0:
+        other = moved(cut, 0.5 * (cut.device.limit + cut.largest.limit), lying, proposal.row)
+        if abs(other.device.limit - cut.device.limit) >= VALUE_STEP_M and other.margin_pass > 0.0:
             cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
             return replace(proposal, cuts=cuts, step=f"{cut.device.kind} moved to {other.device.text}")
-    wanted = trying.wanted_rows(tried.known, tried.states)
-    rows = [k for k, one in enumerate(every) if one.name == name and k not in wanted]
-    return dropped_before(proposal, rows, wanted, every)
+    wanted = short_trials.wanted_rows(tried.orientations, tried.states)
+    rows = [k for k, orientation in enumerate(lying) if orientation.name == name and k not in wanted]
+    return dropped_before(proposal, rows, wanted, lying)
 
 
 def purer(candidate, left_instead):
@@ -351,7 +383,7 @@ def purer(candidate, left_instead):
     """
     for name, _ in left_instead:
         drawn = RobustRun(1, 0, f"{name}{CARRIED}")
-        changed = cut_more(candidate.proposal, candidate.tried, drawn, candidate.ways.lying)
+        changed = cut_more(candidate.proposal, candidate.tried, drawn, candidate.orientations.lying)
         if changed is not None:
             return changed
     return None
@@ -370,70 +402,70 @@ def relieved(candidate):
     Proposal or None
         None where it has one, or a wanted orientation does not reach over any.
     """
-    proposal, every = candidate.proposal, candidate.ways.lying
+    proposal, lying = candidate.proposal, candidate.orientations.lying
     if any(device.relieves for device in proposal.devices):
         return None
-    wanted = [every[k] for k in trying.wanted_rows(candidate.ways, candidate.tried.states)]
+    wanted = [lying[k] for k in short_trials.wanted_rows(candidate.orientations, candidate.tried.states)]
     makers = [KINDS[kind] for kind in names(relieves=True)]
-    found = [kind.relieving(wanted, MARGINS[-1], DESIGN_KEY) for kind in makers] if wanted else []
-    device = next((one for one in found if one is not None), None)
+    breaks = [kind.relieving(wanted, MARGINS[-1], DESIGN_KEY) for kind in makers] if wanted else []
+    device = next((device for device in breaks if device is not None), None)
     if device is None:
         return None
-    cut = judge_cut(every, proposal.row, device, np.zeros(len(every), bool), device, device)
+    cut = judge_cut(lying, proposal.row, device, np.zeros(len(lying), bool), device, device)
     step = f"{device.name} of {device.text} before it, for what backs up"
     return replace(proposal, cuts=(cut, *proposal.cuts), step=step)
 
 
-def guarded(proposal, tried, every):
+def guarded(proposal, tried, lying):
     """Return the proposal with a drop before it for what is carried through or stays; None without one.
 
     Only devices through which what they reject falls are taken: a queue hardly notices them.
     """
-    wanted = trying.wanted_rows(tried.known, tried.states)
+    wanted = short_trials.wanted_rows(tried.orientations, tried.states)
     wrong = [k for n, k in enumerate(tried.rows) if tried.wrong[n] or tried.held[n]]
-    return dropped_before(proposal, [k for k in wrong if k not in wanted], wanted, every)
+    return dropped_before(proposal, [k for k in wrong if k not in wanted], wanted, lying)
 
 
-def dropped_before(proposal, others, wanted, every):
+def dropped_before(proposal, rejected, wanted, lying):
     """Return the proposal with a drop before it, the one that tells most others from what is wanted.
 
     Parameters
     ----------
     proposal : Proposal
-    others, wanted : sequence of int
+    rejected, wanted : sequence of int
         Rows that are to be dropped, and those that are to stay.
-    every : sequence of Orientation
+    lying : sequence of Orientation
 
     Returns
     -------
     Proposal or None
         None where no drop tells any of them; what no drop tells is left to the trial.
     """
-    if not others or not wanted:
+    if not rejected or not wanted:
         return None
     best, chosen, own = (0, 0.0), None, {cut.device.kind for cut in proposal.cuts}
     for kind in GUARDS:
         sign = 1.0 if kind.bound == "lower" else -1.0
-        values = sign * limits(kind, every)
+        values = sign * limits(kind, lying)
         least = values[wanted].min()
-        listed = [k for k in others if least - values[k] > LEAST_WINDOW]
+        listed = [k for k in rejected if least - values[k] > LEAST_WINDOW]
         room = least - max((values[k] for k in listed), default=np.inf)
         if listed and np.isfinite(room) and (len(listed), room) > best and kind.kind not in own:
             best, chosen = (len(listed), room), (kind, sign * (least - 0.5 * room), listed)
     if chosen is None:
         return None
     (kind, middle, listed), room = chosen, best[1]
-    limit = float(np.round(middle / STEP) * STEP)
+    limit = float(np.round(middle / VALUE_STEP_M) * VALUE_STEP_M)
     device = kind.proposal(DESIGN_KEY, limit).rewritten()
-    must = np.array([k in listed for k in range(len(every))])
-    ends = [device.valued(limit + way) for way in (-0.5 * room, 0.5 * room)]
-    cut = judge_cut(every, proposal.row, device, must, *ends)
+    must = np.array([k in listed for k in range(len(lying))])
+    ends = [device.valued(limit + half) for half in (-0.5 * room, 0.5 * room)]
+    cut = judge_cut(lying, proposal.row, device, must, *ends)
     return replace(proposal, cuts=(cut, *proposal.cuts), step=f"{kind.kind} of {device.text} before it")
 
 
 def lost_at(tried, kind) -> bool:
     """Return whether the wanted orientation ends at a device of a kind."""
-    right = set(trying.wanted_rows(tried.known, tried.states))
+    right = set(short_trials.wanted_rows(tried.orientations, tried.states))
     ends = [tried.places[n] for n, k in enumerate(tried.rows) if k in right]
     own = KINDS[kind]
     name = own.trade or own.kind.replace("_", " ")  # as a trial names the device
@@ -443,3 +475,94 @@ def lost_at(tried, kind) -> bool:
 def known_through(part, aspects, bowl):
     """Return what becomes of every orientation on the track and through the devices of a bowl."""
     return stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
+
+
+def quickened(cut: Cut, lying: Sequence[Orientation]) -> Cut:
+    """Return a cut whose pulse is the shortest that blows off what it returns, with a reserve.
+
+    Source: own; docs/design.md, "The loop".
+
+    Parameters
+    ----------
+    cut : Cut
+    lying : sequence of Orientation
+        Of the part.
+
+    Returns
+    -------
+    Cut
+        Itself where its pulse is as short, or it has none.
+    """
+    device: Any = cut.device  # a sorter, where it senses
+    if not device.senses:
+        return cut
+    encounters = [
+        DeviceEncounter(orientation, lying) for orientation in lying if orientation.name in cut.returns
+    ]
+    pushes = [device.jet.push(encounter.orientation, lying) for encounter in encounters]
+    for steps in range(SHORTEST_PULSE_STEPS, round(device.time / PULSE_STEP_S)):
+        time = steps * PULSE_STEP_S
+        if all(
+            encounter.blown(out, down, time / PULSE_RESERVE) > 0.0
+            for encounter, (out, down) in zip(encounters, pushes)
+        ):
+            return replace(cut, device=_timed(device, time))
+    return cut
+
+
+def longer(proposal: Any, tried: Tried, lying: Sequence[Orientation]) -> Any:
+    """Return a proposal with a longer pulse where something is carried through that it should blow off.
+
+    Parameters
+    ----------
+    proposal : Proposal
+    tried : Tried
+    lying : sequence of Orientation
+
+    Returns
+    -------
+    Proposal or None
+        None where nothing is, or the pulse is as long as it was proposed.
+    """
+    for place, cut in enumerate(proposal.cuts):
+        device: Any = cut.device
+        slipped = any(tried.wrong[n] and lying[k].name in cut.returns for n, k in enumerate(tried.rows))
+        if not device.senses or not slipped or device.time >= PULSE:
+            continue
+        other = _timed(device, min(LONGER_PULSE * device.time, PULSE))
+        cuts = (*proposal.cuts[:place], replace(cut, device=other), *proposal.cuts[place + 1 :])
+        return replace(proposal, cuts=cuts, step=f"pulse of {_milliseconds(other.time)}")
+    return None
+
+
+def _timed(device: Any, time: float) -> Any:
+    return device.with_pulse(time)
+
+
+def _milliseconds(time: float) -> str:
+    return f"{1e3 * time:.0f} ms"
+
+
+def widened(proposal: Any, lying: Sequence[Orientation]) -> Any:
+    """Return the proposal with a wider slot between its rails; None without rails that can be wider.
+
+    A part lies askew along the wall: it comes to rails narrowed to its shank beside them, and slides on. The
+    slot grows towards the head, about its middle, as long as the head is held by the rails.
+    """
+    for place, cut in enumerate(proposal.cuts):
+        shank = neck(lying[proposal.row]) if cut.device.hangs else None
+        if shank is None:
+            continue
+        first, last = cut.device.span
+        more = float(
+            np.round(0.5 * SLOT_WIDENING * (shank.head - (last - first)) / VALUE_STEP_M) * VALUE_STEP_M
+        )
+        span = max(first - more, RAIL), last + more
+        if more < VALUE_STEP_M or span == cut.device.span or last - first > WIDEST_SLOT * shank.head:
+            continue
+        device = cut.device.with_span(span)
+        must = np.array([orientation.name in cut.returns for orientation in lying])
+        other = judge_cut(lying, proposal.row, device, must, cut.smallest, cut.largest)
+        cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
+        return replace(proposal, cuts=cuts, step=f"slot widened to {in_mm(span[1] - span[0])}")
+    return None

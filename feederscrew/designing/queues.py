@@ -12,7 +12,7 @@ import numpy as np
 from scipy.stats import binom
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.designing import trying
+from feederscrew.designing import short_trials
 from feederscrew.designing.record import (
     HEADING_OFF,
     PURE,
@@ -26,9 +26,13 @@ from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.tooling.orientations import Hanging
-from feederscrew.trial.queue import GAPS, PartsQueue, QueuedParts, QueuePlan
+from feederscrew.trial.queue import MEAN_GAP_SHARE, PartsQueue, QueuedParts, QueuePlan
 
-FILLS = (("low", trying.LOW), ("normal", GAPS), ("high", 0.0))  # free way between parts over their length
+FILLS = (
+    ("low", short_trials.LOW),
+    ("normal", MEAN_GAP_SHARE),
+    ("high", 0.0),
+)  # free way between parts over their length
 PARTS, SECONDS = 12, 60.0  # in a queue at a time; for so long at the most
 FIRST = 20.0  # [s] of each fill before anything is said to hold, and in which the track has filled
 LOOK = 10.0  # [s] of each fill after which all of them are looked at
@@ -44,11 +48,11 @@ class FollowedRow:
     part: Part
     bowl: Bowl  # with its devices
     aspects: Aspects
-    known: Orientations  # M of them
+    orientations: Orientations  # M of them
     shares: np.ndarray  # (M,) [1] in which they come
     states: tuple[int, ...]  # in which parts are wanted to leave
     seed: int
-    told: Callable | None = None  # called with what is being followed, a sentence
+    tell: Callable | None = None  # called with what is being followed, a sentence
     least: float = 0.0  # wanted parts [1/s] below which a fill does not hold
     any_heading: tuple[str, ...] = ()  # aspects on which parts are wanted, whatever their heading
     progress: Callable[[int, int], None] | None = None  # told how many periods are done, of how many
@@ -58,11 +62,11 @@ class FollowedRow:
 
     def queue(self, gaps: float, seed: int) -> PartsQueue:
         """Return a queue of PARTS that come with a mean free way of so many lengths between them."""
-        poses = trying.counted(self.known, self.states, self.any_heading)
+        poses = short_trials.counted(self.orientations, self.states, self.any_heading)
         shares = self.shares if gaps > 0.0 or self.touching is None else self.touching
         plan = QueuePlan(PARTS, SECONDS, gaps)
         return PartsQueue(
-            self.part, self.bowl, self.aspects, (self.known.lying, shares), poses, plan, seed
+            self.part, self.bowl, self.aspects, (self.orientations.lying, shares), poses, plan, seed
         )  # fmt: skip
 
     def followed(self, fill: str, gaps: float, seed: int) -> FilledQueue:
@@ -74,13 +78,13 @@ class FollowedRow:
         except KeyboardInterrupt:
             if not queue.periods:
                 raise
-            return self.count(fill, gaps, queue.seen(partial=True))
-        return self.count(fill, gaps, queue.seen())
+            return self.count(fill, gaps, queue.result(partial=True))
+        return self.count(fill, gaps, queue.result())
 
     def say(self, fill: str, seconds: float) -> None:
         """Tell which fill is followed, and until when [s]."""
-        if self.told:
-            self.told(f"queue of {PARTS} at {fill} fill, to {seconds:g} s")
+        if self.tell:
+            self.tell(f"queue of {PARTS} at {fill} fill, to {seconds:g} s")
 
     def progressed(self, before: int) -> Callable[[int, int], None]:
         """Return what is told how many periods of a queue are done; ``before`` of other fills are."""
@@ -91,55 +95,55 @@ class FollowedRow:
 
         return tell
 
-    def wanted_parts(self, seen: QueuedParts) -> int:
+    def wanted_parts(self, queued: QueuedParts) -> int:
         """Return how many whole parts left a queue as it was asked for.
 
         On an aspect that counts at any heading a part counts by the face below it, as at the outlet, whether
         or not its heading is one of the known. Any other counts in the orientations that are wanted.
         """
-        lying, names = self.known.states, list(self.aspects.names)
+        lying, names = self.orientations.states, list(self.aspects.names)
         free = () if isinstance(lying[self.states[0]], Hanging) else self.any_heading
-        right = np.zeros(seen.whole.shape, bool)  # a part of such a heading on such an aspect counts once
+        right = np.zeros(queued.whole.shape, bool)  # a part of such a heading on such an aspect counts once
         right[:, [names.index(name) for name in free]] = True
         right[[k for k in self.states if lying[k].aspect not in free], :] = True
-        return int(seen.whole[right].sum())
+        return int(queued.whole[right].sum())
 
-    def left_instead(self, seen: QueuedParts) -> tuple[tuple[str, int], ...]:
+    def left_instead(self, queued: QueuedParts) -> tuple[tuple[str, int], ...]:
         """Return what whole parts left otherwise than wanted, and how many, the most first.
 
         What lies on an aspect at a heading that is none of the known is 'C, heading off'.
         """
-        lying, names = self.known.states, list(self.aspects.names)
+        lying, names = self.orientations.states, list(self.aspects.names)
         free = () if isinstance(lying[self.states[0]], Hanging) else self.any_heading
-        counts, known = Counter[str](), Counter[str]()
-        for k, one in enumerate(lying):
-            hangs = isinstance(one, Hanging)
-            known["" if hangs else one.aspect] += int(seen.leaving[k])
-            if k not in self.states and (hangs or one.aspect not in free):
-                counts[one.name] += int(seen.leaving[k])
+        counts, counted_headings = Counter[str](), Counter[str]()
+        for k, orientation in enumerate(lying):
+            hangs = isinstance(orientation, Hanging)
+            counted_headings["" if hangs else orientation.aspect] += int(queued.leaving[k])
+            if k not in self.states and (hangs or orientation.aspect not in free):
+                counts[orientation.name] += int(queued.leaving[k])
         for k, name in enumerate(names):
             if name not in free:
-                counts[f"{name}{HEADING_OFF}"] += max(int(seen.aspects[k]) - known[name], 0)
-        rest = int(seen.leaving.sum()) - self.wanted_parts(seen) - counts.total()
+                counts[f"{name}{HEADING_OFF}"] += max(int(queued.aspects[k]) - counted_headings[name], 0)
+        rest = int(queued.leaving.sum()) - self.wanted_parts(queued) - counts.total()
         counts["in no known pose"] += max(rest, 0)
         return tuple((name, number) for name, number in counts.most_common() if number)
 
-    def count(self, fill: str, gaps: float, seen: QueuedParts) -> FilledQueue:
+    def count(self, fill: str, gaps: float, queued: QueuedParts) -> FilledQueue:
         """Return what a queue did as a FilledQueue."""
         return FilledQueue(
             fill=fill,
             gaps=gaps,
-            parts=seen.parts,
-            seconds=seen.seconds,
-            counted=seen.counted,
-            delivered=seen.delivered,
-            right=self.wanted_parts(seen),
-            left=int(seen.leaving.sum()),
-            returned=seen.returned,
-            jams=seen.jams,
-            climbs=seen.climbs,
-            partial=seen.partial,
-            left_instead=self.left_instead(seen),
+            parts=queued.parts,
+            seconds=queued.seconds,
+            counted=queued.counted,
+            delivered=queued.delivered,
+            right=self.wanted_parts(queued),
+            left=int(queued.leaving.sum()),
+            returned=queued.returned,
+            jams=queued.jams,
+            climbs=queued.climbs,
+            partial=queued.partial,
+            left_instead=self.left_instead(queued),
         )
 
 
@@ -166,7 +170,7 @@ def filled(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, ...]:
         If the user stops it before anything was seen.
     """
     running: dict[str, PartsQueue] = {}
-    seen: dict[str, FilledQueue] = {}
+    queue_of_fill: dict[str, FilledQueue] = {}
     for seconds in rounds():
         follower = _FillsSideBySide if row.jobs > 1 else _FillsInTurn
         with follower(row, running, seconds) as fills:
@@ -174,15 +178,17 @@ def filled(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, ...]:
                 try:
                     row.say(name, seconds)
                     for until in fills.looks(name):
-                        seen[name] = fills.follow(name, gaps, until)
-                        if not whole and is_denied(tuple(seen.values()), seen[name], row.least):
-                            return tuple(seen.values())
+                        queue_of_fill[name] = fills.follow(name, gaps, until)
+                        if not whole and is_denied(
+                            tuple(queue_of_fill.values()), queue_of_fill[name], row.least
+                        ):
+                            return tuple(queue_of_fill.values())
                 except KeyboardInterrupt:
                     fills.stop()
-                    return _stopped(row, name, gaps, running, seen)
-        if not whole and is_sure(tuple(seen.values()), row.least):
+                    return _stopped(row, name, gaps, running, queue_of_fill)
+        if not whole and is_sure(tuple(queue_of_fill.values()), row.least):
             break
-    return tuple(seen.values())
+    return tuple(queue_of_fill.values())
 
 
 class _FillsInTurn:
@@ -204,9 +210,9 @@ class _FillsInTurn:
     def follow(self, name: str, gaps: float, until: float) -> FilledQueue:
         """Return what a fill did until a time [s]."""
         queue = self.queue(name, gaps)
-        others = sum(one.periods for one in self.running.values() if one is not queue)
-        queue.follow(until, self.row.progressed(others))
-        return self.row.count(name, gaps, queue.seen())
+        periods_elsewhere = sum(other.periods for other in self.running.values() if other is not queue)
+        queue.follow(until, self.row.progressed(periods_elsewhere))
+        return self.row.count(name, gaps, queue.result())
 
     def queue(self, name: str, gaps: float) -> PartsQueue:
         """Return the queue of a fill."""
@@ -237,7 +243,7 @@ class _FillsSideBySide(_FillsInTurn):
         outcome = self.counted[name].get()
         if outcome is None:
             self.tasks[name].result()  # raises what ended it
-        self.row.progressed(0)(sum(one.periods for one in list(self.running.values())), 0)
+        self.row.progressed(0)(sum(queue.periods for queue in list(self.running.values())), 0)
         return outcome
 
     def stop(self) -> None:
@@ -256,7 +262,7 @@ class _FillsSideBySide(_FillsInTurn):
             queue = self.queue(name, gaps)
             for until in self.times[name]:
                 queue.follow(until, end_where_stopped)
-                self.counted[name].put(self.row.count(name, gaps, queue.seen()))
+                self.counted[name].put(self.row.count(name, gaps, queue.result()))
         finally:
             self.counted[name].put(None)  # nothing more comes: who waits learns what ended it
 
@@ -274,16 +280,20 @@ def _bits(begin: float, end: float) -> tuple[float, ...]:
 
 
 def _stopped(
-    row: FollowedRow, name: str, gaps: float, running: dict[str, PartsQueue], seen: dict[str, FilledQueue]
+    row: FollowedRow,
+    name: str,
+    gaps: float,
+    running: dict[str, PartsQueue],
+    queue_of_fill: dict[str, FilledQueue],
 ) -> tuple[FilledQueue, ...]:
     """What was seen until the user stopped it at a fill; raises KeyboardInterrupt where that is nothing."""
     if name in running and running[name].periods:
-        seen[name] = row.count(name, gaps, running[name].seen(partial=True))
-    if not seen:
+        queue_of_fill[name] = row.count(name, gaps, running[name].result(partial=True))
+    if not queue_of_fill:
         raise KeyboardInterrupt
-    last = name if name in seen else next(reversed(seen))
-    seen[last] = replace(seen[last], partial=True)
-    return tuple(seen.values())
+    last = name if name in queue_of_fill else next(reversed(queue_of_fill))
+    queue_of_fill[last] = replace(queue_of_fill[last], partial=True)
+    return tuple(queue_of_fill.values())
 
 
 def longer(row: FollowedRow, study: DesignStudy) -> tuple[FilledQueue, ...]:
@@ -302,15 +312,15 @@ def longer(row: FollowedRow, study: DesignStudy) -> tuple[FilledQueue, ...]:
     tuple of FilledQueue
         Those of the study, that one with what was seen since.
     """
-    found, count = study.queues, minutes(study)
-    place = found.index(study.slowest) if count else 0
+    queues, count = study.queues, minutes(study)
+    place = queues.index(study.slowest) if count else 0
     for k in range(1, count + 1):
-        least = found[place]
+        least = queues[place]
         joined = _joined(least, row.followed(least.fill, least.gaps, row.seed + k))
-        found = (*found[:place], joined, *found[place + 1 :])
+        queues = (*queues[:place], joined, *queues[place + 1 :])
         if joined.partial:
             break
-    return found
+    return queues
 
 
 def minutes(study: DesignStudy) -> int:
@@ -319,16 +329,18 @@ def minutes(study: DesignStudy) -> int:
     The rate is undecided where it would hold with the same shares of more parts; purity, where what is
     asked for lies in its interval.
     """
-    found, need = study.queues, RATE_KEPT * study.request.target
-    if len(found) < len(FILLS) or study.jams or study.partial:
+    queues, need = study.queues, RATE_KEPT * study.request.target
+    if len(queues) < len(FILLS) or study.jams or study.partial:
         return 0
-    right, left, back = (sum(getattr(one, name) for one in found) for name in ("right", "left", "returned"))
+    right, left, returned = (
+        sum(getattr(queue, name) for queue in queues) for name in ("right", "left", "returned")
+    )
     own, rate = study.slowest, study.delivered[0]
     if not right or own is None:
         return 0
-    kept = [1.0 + k * own.seconds / study.queue_seconds for k in range(MORE + 1)]  # times as many parts
-    lows = [float(wilson([right * more], (left + back) * more)[0][0]) for more in kept]
-    share = right / (left + back)
+    growth = [1.0 + k * own.seconds / study.queue_seconds for k in range(MORE + 1)]  # times as many parts
+    lows = [float(wilson([right * more], (left + returned) * more)[0][0]) for more in growth]
+    share = right / (left + returned)
     enough = [k for k, low in enumerate(lows) if rate * low / share >= need]
     if not enough or float(wilson([right], left)[1][0]) < PURE:
         return 0
@@ -346,8 +358,8 @@ def is_complete(fills: Sequence[FilledQueue]) -> bool:
     """Return whether queues were followed to their end: SECONDS at each fill, or until they were sure."""
     if len(fills) < len(FILLS):
         return False
-    return all(one.seconds > 0.99 * SECONDS for one in fills) or (
-        all(one.seconds > 0.99 * FIRST for one in fills) and is_sure(fills, 0.0)
+    return all(queue.seconds > 0.99 * SECONDS for queue in fills) or (
+        all(queue.seconds > 0.99 * FIRST for queue in fills) and is_sure(fills, 0.0)
     )
 
 
@@ -384,17 +396,17 @@ def is_sure(fills: Sequence[FilledQueue], least: float) -> bool:
     K. K. G. Lan, R. Simon, M. Halperin, "Stochastically curtailed tests in long-term clinical trials",
     Sequential Analysis 1, 207-219, 1982.
     """
-    right, left, back, jams = (
-        sum(getattr(one, name) for one in fills) for name in ("right", "left", "returned", "jams")
+    right, left, returned, jams = (
+        sum(getattr(queue, name) for queue in fills) for name in ("right", "left", "returned", "jams")
     )
     target, planned = least / RATE_KEPT, len(FILLS) * SECONDS
     if len(fills) < len(FILLS) or jams or not right or right < target * planned:
         return False
-    pace = min(one.pace for one in fills)
-    low = float(wilson([right], left + back)[0][0])
-    if pace * low < target or any(one.ends[1] < least for one in fills):
+    pace = min(queue.pace for queue in fills)
+    low = float(wilson([right], left + returned)[0][0])
+    if pace * low < target or any(queue.ends[1] < least for queue in fills):
         return False
-    coming = math.ceil(left * max(planned / sum(one.seconds for one in fills) - 1.0, 0.0))
+    coming = math.ceil(left * max(planned / sum(queue.seconds for queue in fills) - 1.0, 0.0))
     allowed = math.floor((1.0 - PURE) * (left + coming) + 1e-9) - (left - right)
     return float(binom.sf(allowed, coming, 1.0 - PURE)) <= DOUBT
 
@@ -405,7 +417,9 @@ def is_denied(fills: Sequence[FilledQueue], last: FilledQueue, least: float) -> 
     One has jammed, more of another orientation have left than all of them may have at this pace, or the
     upper end of the last one's rate is below the least [1/s].
     """
-    left, right, seconds = (sum(getattr(one, name) for one in fills) for name in ("left", "right", "seconds"))
+    left, right, seconds = (
+        sum(getattr(queue, name) for queue in fills) for name in ("left", "right", "seconds")
+    )
     whole = left * max(len(FILLS) * SECONDS / seconds, 1.0)
     slow = last.seconds > 0.99 * FIRST and last.ends[1] < least
     return bool(last.jams or left - right > (1.0 - PURE) * whole or slow)

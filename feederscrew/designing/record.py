@@ -10,7 +10,7 @@ from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import DRAWS_HELD, FALLS_SHORT, HOLDS, PURE, RATE_KEPT
 from feederscrew.designing.calm_drive import DRIVES, LEAF_SPRING
-from feederscrew.designing.hazards.risks import Risk
+from feederscrew.designing.hazards import Risk
 from feederscrew.designing.long_rides import LongRide
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import ArgumentError
@@ -22,7 +22,7 @@ from feederscrew.resting.rules.registry import require_rule
 from feederscrew.running import RunSettings
 from feederscrew.studies.tooling import ToolingStudy, listed
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.isolating.design import MARGIN_M
+from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
 from feederscrew.trial.result import TrialRun
 from feederscrew.units import counted
 
@@ -193,10 +193,10 @@ class NearestDesign:
     @property
     def text(self) -> str:
         """The same in a sentence."""
-        also = "".join(f"; {one}" for one in self.helps)
+        also = "".join(f"; {sentence}" for sentence in self.helps)
         if self.rate is None:
             counts = f"{counted(self.trials, 'short trial')}, {counted(self.proofs, 'design')} through draws"
-            denied = "".join(f"; {one}" for one in self.denied)
+            denied = "".join(f"; {sentence}" for sentence in self.denied)
             return f"nothing near it holds of what was tried ({counts} and queues){denied}{also}"
         figures = (
             f"tried: {self.draws_held} of {counted(self.draws, 'draw')} sort, {self.parts_right} of "
@@ -242,13 +242,13 @@ class DesignStudy(ReadableRecord):
     @property
     def outcome(self) -> str:
         """Whether what leaves lies on the track or hangs by its head."""
-        hangs = any(one.hangs for one in self.devices)
+        hangs = any(device.hangs for device in self.devices)
         return self.request.outcome if self.bowl is None else "hanging" if hangs else "lying"
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
-        allowances = {"margin": MARGIN_M, "tolerance": self.request.tolerance}
+        allowances = {"margin": DESIGN_MARGIN_M, "tolerance": self.request.tolerance}
         width = None if self.bowl is None else self.bowl.track.width
         remarks = small_part_remarks(self.part, allowances, width)
         turning = () if self.long_ride is None or not self.long_ride.warning else (self.long_ride.warning,)
@@ -278,7 +278,7 @@ class DesignStudy(ReadableRecord):
         """
         if self.slowest is None or not self.slowest.pace > 0.0:
             return 0.0, 0.0, 0.0
-        right, offered = (sum(getattr(one, k) for one in self.queues) for k in ("right", "offered"))
+        right, offered = (sum(getattr(queue, k) for queue in self.queues) for k in ("right", "offered"))
         low, high = (float(end[0]) for end in wilson([right], offered))
         pace = self.slowest.pace
         return pace * (right / offered), pace * low, pace * high
@@ -291,7 +291,7 @@ class DesignStudy(ReadableRecord):
     @property
     def purity(self) -> tuple[float, float]:
         """Share of the wanted orientation in what left all queues [1], and its lower end; NaN of nothing."""
-        right, left = (sum(getattr(one, name) for one in self.queues) for name in ("right", "left"))
+        right, left = (sum(getattr(queue, name) for queue in self.queues) for name in ("right", "left"))
         if not left:
             return np.nan, 0.0
         return right / left, float(wilson([right], left)[0][0])
@@ -299,18 +299,18 @@ class DesignStudy(ReadableRecord):
     @property
     def efficiency(self) -> float:
         """Share [1] of the parts offered in its queues that left as wanted; NaN of none."""
-        right, offered = (sum(getattr(one, name) for one in self.queues) for name in ("right", "offered"))
+        right, offered = (sum(getattr(queue, name) for queue in self.queues) for name in ("right", "offered"))
         return right / offered if offered else np.nan
 
     @property
     def jams(self) -> int:
         """Parts that had to be taken out of the queues."""
-        return sum(one.jams for one in self.queues)
+        return sum(queue.jams for queue in self.queues)
 
     @property
     def queue_seconds(self) -> float:
         """Time that queues were followed [s]."""
-        return float(sum(one.seconds for one in self.queues))
+        return float(sum(queue.seconds for queue in self.queues))
 
     @property
     def jams_per_hour_high(self) -> float:
@@ -320,7 +320,7 @@ class DesignStudy(ReadableRecord):
     @property
     def trial_parts(self) -> int:
         """How many parts were tried one at a time."""
-        return sum(one.parts for one in self.attempts)
+        return sum(attempt.parts for attempt in self.attempts)
 
     @property
     def status(self) -> str:
@@ -377,25 +377,25 @@ class DesignStudy(ReadableRecord):
     @property
     def left_instead(self) -> tuple[tuple[str, int], ...]:
         """What left all queues otherwise than wanted, and how many, the most first."""
-        return joined_counts(*(one.left_instead for one in self.queues))
+        return joined_counts(*(queue.left_instead for queue in self.queues))
 
 
 def joined_counts(*counts: tuple[tuple[str, int], ...]) -> tuple[tuple[str, int], ...]:
     """Return names with their numbers added up, the most first."""
     total = Counter[str]()
-    for one in counts:
-        total.update(dict(one))
+    for count in counts:
+        total.update(dict(count))
     return tuple(total.most_common())
 
 
 def _instead(study: DesignStudy) -> str:
     """What left instead of what is wanted, and the option that counts it where its heading alone is off."""
-    listed, left = study.left_instead, sum(one.left for one in study.queues)
+    listed, left = study.left_instead, sum(queue.left for queue in study.queues)
     if not listed:
         return ""
     text = ", ".join(f"{name}: {count} of {left}{_came_through(study, name)}" for name, count in listed[:3])
     aspects = [name.removesuffix(HEADING_OFF) for name, _ in listed if name.endswith(HEADING_OFF)]
-    own = [one for one in aspects if (study.wanted or "").partition("@")[0] == one]
+    own = [aspect for aspect in aspects if (study.wanted or "").partition("@")[0] == aspect]
     offer = f" (--up {own[0]} counts {own[0]} at any heading)" if own else ""
     return f"; what left instead: {text}{offer}"
 
@@ -416,7 +416,7 @@ def _cause_of(study: DesignStudy) -> tuple[str, str]:
     if study.jams:
         return DEVICE, f"parts stand at {_chain(study)} and have to be taken out"
     purity, _ = study.purity
-    if not study.delivered[0] > 0.0 and not any(one.left for one in study.queues):
+    if not study.delivered[0] > 0.0 and not any(queue.left for queue in study.queues):
         return DRIVE, "no part came to the outlet in its queues"
     if not purity >= PURE:
         own = (study.wanted or "").partition("@")[0]
@@ -431,7 +431,7 @@ def _cause_of(study: DesignStudy) -> tuple[str, str]:
     queue = study.slowest
     if queue is None or not queue.right:
         return ARRIVAL, "too little of what is wanted leaves its queues"
-    right, offered = (sum(getattr(one, k) for one in study.queues) for k in ("right", "offered"))
+    right, offered = (sum(getattr(queue, k) for queue in study.queues) for k in ("right", "offered"))
     share, need = right / offered, study.request.target / queue.pace
     return ARRIVAL, (
         f"{60.0 * queue.pace:.3g} parts a minute come along, and {100.0 * share:.3g} % of them "
@@ -455,8 +455,8 @@ def _cause_of_trials(study: DesignStudy) -> tuple[str, str]:
 
 def _asked_for(study: DesignStudy) -> tuple[Attempt, ...]:
     """The trials of what was asked for; where other ways up were tried beside it, those are left out."""
-    names = {one.casefold() for one in (*study.request.up, study.request.aspect or "") if one}
-    own = [one for one in study.attempts if one.wanted.partition("@")[0].casefold() in names]
+    names = {name.casefold() for name in (*study.request.up, study.request.aspect or "") if name}
+    own = [attempt for attempt in study.attempts if attempt.wanted.partition("@")[0].casefold() in names]
     return tuple(own) or study.attempts
 
 
@@ -471,24 +471,28 @@ def _cause_in_words(fault: str, devices: bool) -> tuple[str, str]:
 
 def _chain(study: DesignStudy) -> str:
     """Its devices in words: 'gap, sorter'."""
-    return ", ".join(one.kind for one in study.devices) or "the track"
+    return ", ".join(device.kind for device in study.devices) or "the track"
 
 
 def _followed(queues: tuple[FilledQueue, ...]) -> Iterator[str]:
     """What each queue has shown so far."""
     if not queues:
         yield "no queue was followed"
-    for one in queues:
-        end = "was stopped after" if one.partial else "was followed for"
-        parts = f"{one.right} of {counted(one.left, 'part')} left as wanted"
-        yield f"the queue at {one.fill} fill {end} {one.seconds:.3g} s: {parts}, {counted(one.jams, 'jam')}"
+    for queue in queues:
+        end = "was stopped after" if queue.partial else "was followed for"
+        parts = f"{queue.right} of {counted(queue.left, 'part')} left as wanted"
+        jams = counted(queue.jams, "jam")
+        yield f"the queue at {queue.fill} fill {end} {queue.seconds:.3g} s: {parts}, {jams}"
 
 
 def _shortfalls(study: DesignStudy) -> Iterator[str]:
     minute, (purity, _) = 60.0, study.purity
     low = study.delivered[1]
     if study.bowl is None:
-        lines = [f"{one.wanted}: {', '.join(one.faults[:3]) or 'too slow'}" for one in _asked_for(study)]
+        lines = [
+            f"{attempt.wanted}: {', '.join(attempt.faults[:3]) or 'too slow'}"
+            for attempt in _asked_for(study)
+        ]
         yield from tuple(dict.fromkeys(lines))[:3]
         return
     if low < RATE_KEPT * study.request.target:

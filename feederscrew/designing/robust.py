@@ -11,7 +11,7 @@ import shapely
 
 from feederscrew import check
 from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
-from feederscrew.designing import trying
+from feederscrew.designing import short_trials
 from feederscrew.designing.record import RobustRun
 from feederscrew.dropping.pool import gather
 from feederscrew.dropping.toss_runs import scattered
@@ -32,13 +32,13 @@ HALF = 0.5  # [1] of what is wanted that has to leave in a draw, where some of i
 OTHERS = 3  # parts tried in each draw beside the wanted one, as they come
 
 
-def drawn_bowl(bowl, every, rng):
+def drawn_bowl(bowl, lying, rng):
     """Return a bowl with other friction, restitution, drive and cuts.
 
     Parameters
     ----------
     bowl : Bowl
-    every : sequence of Orientation
+    lying : sequence of Orientation
         Of the part as drawn, which a profile may name: its opening is that of the nominal part.
     rng : numpy Generator
 
@@ -51,7 +51,7 @@ def drawn_bowl(bowl, every, rng):
     values = {name: getattr(friction, name) for name in vars(friction)}
     friction = replace(friction, **{k: None if v is None else v * rubbed for k, v in values.items()})
     drive = replace(bowl.drive, amplitude=bowl.drive.amplitude * driven)
-    devices = tuple(_drawn_device(one, every, rng) for one in bowl.devices)
+    devices = tuple(_drawn_device(device, lying, rng) for device in bowl.devices)
     (own,) = rng.spawn(1)
     bounce = scattered((bowl.restitution, bowl.restitution), RESTITUTION_DOUBT, own.standard_normal(1))
     return replace(
@@ -59,11 +59,11 @@ def drawn_bowl(bowl, every, rng):
     )
 
 
-def _drawn_device(device, every, rng):
+def _drawn_device(device, lying, rng):
     """A device whose every length is off by up to CUT."""
     more: dict[str, Any] = {}
     if device.like and not device.senses:  # an opening
-        device = replace(device, corners=opening(device, every), like=())
+        device = replace(device, corners=opening(device, lying), like=())
     elif device.like:  # a sensor: by how much a part may differ that it takes for the wanted one
         aspect, heading, play = device.like
         more["like"] = aspect, heading, max(play + rng.uniform(-CUT, CUT), 0.5 * play)
@@ -78,28 +78,30 @@ def _drawn_device(device, every, rng):
     return replace(device, **more)
 
 
-def _named(devices, every, drawn) -> tuple[Any, ...]:
+def _named(devices, lying, drawn) -> tuple[Any, ...]:
     """Devices with the orientation that they name as the drawn part has it: its aspects may change places."""
-    made = []
+    devices_named = []
     for device in devices:
         if device.like:
-            meant = [_meant(device, one, every) for one in (device.like[:2], *device.also)]
-            found = [drawn[matched(one, drawn)] for one in meant]
-            first, *others = ((one.aspect, one.heading) for one in found)
-            device = replace(device, like=(*first, *device.like[2:]), also=tuple(others))
-        made.append(device)
-    return tuple(made)
+            orientations = [
+                _named_orientation(device, named, lying) for named in (device.like[:2], *device.also)
+            ]
+            matches = [drawn[matched(orientation, drawn)] for orientation in orientations]
+            first, *further = ((match.aspect, match.heading) for match in matches)
+            device = replace(device, like=(*first, *device.like[2:]), also=tuple(further))
+        devices_named.append(device)
+    return tuple(devices_named)
 
 
-def _meant(device, named, every):
+def _named_orientation(device, named, lying):
     """The orientation of an aspect and heading [rad] that a device names."""
     aspect, heading = named
-    return every[place_of(every, aspect, heading, device.where, f"{device.kind} names")]
+    return lying[place_of(lying, aspect, heading, device.where, f"{device.kind} names")]
 
 
-def opening(device, every) -> tuple[Any, ...]:
+def opening(device, lying) -> tuple[Any, ...]:
     """Return the corners (K, 2) [m] of a gate that is given by an orientation and its play."""
-    grown = _meant(device, device.like[:2], every).view_ahead.buffer(device.like[2])
+    grown = _named_orientation(device, device.like[:2], lying).view_ahead.buffer(device.like[2])
     return tuple(map(tuple, shapely.get_coordinates(grown.exterior)[:-1].tolist()))
 
 
@@ -139,8 +141,8 @@ def _scaled(part, axes, scales):
     vertices = part.centre_of_mass + np.stack([_along(moved, row) for row in stretch], axis=1)
     grown = float(np.prod(scales))
     moments = [float(vectors.dot(_along(part.inertia, axis), axis)) for axis in axes]
-    second = [0.5 * sum(moments) - one for one in moments]  # integral of the square along each axis
-    second = [s * s * one * grown for s, one in zip(scales, second)]
+    second = [0.5 * sum(moments) - moment for moment in moments]  # integral of the square along each axis
+    second = [s * s * moment * grown for s, moment in zip(scales, second)]
     inertia = sum((sum(second) - own) * np.outer(axis, axis) for own, axis in zip(second, axes))
     return replace(
         part,
@@ -153,23 +155,26 @@ def _scaled(part, axes, scales):
     )
 
 
-def matched(one, every):
+def matched(orientation, lying):
     """Return the place of the orientation of a part that is nearest to one of a part a little different."""
-    size = max(one.length, one.height)
+    size = max(orientation.length, orientation.height)
 
     def away(other):
         values = (
-            (getattr(one, name), getattr(other, name)) for name in ("length", "width", "height", "distance")
+            (getattr(orientation, name), getattr(other, name))
+            for name in ("length", "width", "height", "distance")
         )
-        turned = sum(vectors.dot(a, b) for a, b in zip(one.axes, other.axes))  # 3 where nothing is turned
+        turned = sum(
+            vectors.dot(a, b) for a, b in zip(orientation.axes, other.axes)
+        )  # 3 where nothing is turned
         return sum(abs(a - b) for a, b in values) / size + 0.02 * (3.0 - float(turned))
 
-    return min(range(len(every)), key=lambda k: away(every[k]))
+    return min(range(len(lying)), key=lambda k: away(lying[k]))
 
 
 def robust_run(
-    part, bowl, known, shares, wanted, *, draws, tolerance, run, any_heading=(), spared=(), enough=HALF,
-    allowed=None,
+    part, bowl, orientations, shares, wanted, *, draws, tolerance, run, any_heading=(), spared=(),
+    enough=HALF, allowed=None,
 ) -> RobustRun:  # fmt: skip
     """Try draws of part, friction, drive and cuts.
 
@@ -178,7 +183,7 @@ def robust_run(
     part : Part
     bowl : Bowl
         With its devices.
-    known : Orientations
+    orientations : Orientations
         Of the nominal part in that bowl; M of them.
     shares : (M,) float [1]
     wanted : int or sequence of int
@@ -207,7 +212,7 @@ def robust_run(
 
     def draw_one(draw) -> tuple[Any, ...]:
         return _draw(
-            part, bowl, known, shares, np.atleast_1d(wanted), tolerance, (run.seed, draw),
+            part, bowl, orientations, shares, np.atleast_1d(wanted), tolerance, (run.seed, draw),
             any_heading, spared, enough,
         )  # fmt: skip
 
@@ -236,49 +241,55 @@ def robust_run(
     return RobustRun(done, held, worst, float(min(speeds, default=0.0)), partial=stopped)
 
 
-def _draw(part, bowl, known, shares, wanted, tolerance, seed, any_heading, spared, enough) -> tuple[Any, ...]:
+def _draw(
+    part, bowl, orientations, shares, wanted, tolerance, seed, any_heading, spared, enough
+) -> tuple[Any, ...]:
     """What goes wrong in one draw, and the velocity there."""
     rng = np.random.default_rng(seed)
     other = drawn_part(part, tolerance, rng)
-    driven = drawn_bowl(bowl, known.lying, rng)
-    chosen = drawn_rows(known, shares, wanted, rng, spared)
+    driven = drawn_bowl(bowl, orientations.lying, rng)
+    chosen = drawn_rows(orientations, shares, wanted, rng, spared)
     try:
         aspects = find(other)
         bare = stream.follow_orientations(other, aspects, bowl.track, (), bowl=driven)
-        driven = replace(driven, devices=_named(driven.devices, known.lying, bare.lying))
+        driven = replace(driven, devices=_named(driven.devices, orientations.lying, bare.lying))
         lying = at_entry(bare.lying, driven.devices)
-        rows = [matched(known.lying[k], lying) for k in chosen]
-        alike = [matched(known.lying[k], lying) for k in wanted] if len(wanted) > 1 else []
-        free = {lying[matched(one, lying)].aspect for one in known.lying if one.aspect in any_heading}
-        ways = stream.along(bare.lying, aspects, driven.devices, bowl=driven, rows={*rows, *alike})
-        even = np.full(len(ways.lying), 1.0 / len(ways.lying))
+        rows = [matched(orientations.lying[k], lying) for k in chosen]
+        equivalent = [matched(orientations.lying[k], lying) for k in wanted] if len(wanted) > 1 else []
+        free = {
+            lying[matched(orientation, lying)].aspect
+            for orientation in orientations.lying
+            if orientation.aspect in any_heading
+        }
+        oriented = stream.along(bare.lying, aspects, driven.devices, bowl=driven, rows={*rows, *equivalent})
+        even = np.full(len(oriented.lying), 1.0 / len(oriented.lying))
         own: dict[str, Any] = {"aspects": aspects, "any_heading": tuple(sorted(free))}
-        wanted_rows = [rows[0], *alike]
-        tried = trying.single(
-            other, driven, ways, even, wanted_rows, rows=list(dict.fromkeys(rows)), each=1,
+        wanted_rows = [rows[0], *equivalent]
+        tried = short_trials.single(
+            other, driven, oriented, even, wanted_rows, rows=list(dict.fromkeys(rows)), each=1,
             run=RunSettings(sum(seed)), **own,
         )  # fmt: skip
-        counting = trying.wanted_rows(ways, tried.states[:1])
+        counting = short_trials.wanted_rows(oriented, tried.states[:1])
         if any(came_back(tried, row) for row in tried.rows if row in counting):
-            again = wanted_of(known, shares, wanted, spared)
-            places = [matched(known.lying[k], lying) for k in again]
-            more = trying.single(
-                other, driven, ways, even, wanted_rows, rows=list(dict.fromkeys(places)), each=AGAIN,
+            returned = wanted_of(orientations, shares, wanted, spared)
+            places = [matched(orientations.lying[k], lying) for k in returned]
+            more = short_trials.single(
+                other, driven, oriented, even, wanted_rows, rows=list(dict.fromkeys(places)), each=AGAIN,
                 run=RunSettings(sum(seed) + 1), **own,
             )  # fmt: skip
-            weights = {place: float(shares[k]) for k, place in zip(again, places)}
-            spared = (*spared, *again) if comes_through(more, weights, enough) else spared
+            weights = {place: float(shares[k]) for k, place in zip(returned, places)}
+            spared = (*spared, *returned) if comes_through(more, weights, enough) else spared
     except FeederError as fault:  # the drawn bowl does not convey, or the part does not fit
         return [fault.what], 0.0
-    return faults(tried, {matched(known.lying[k], lying) for k in spared}), tried.velocity
+    return faults(tried, {matched(orientations.lying[k], lying) for k in spared}), tried.velocity
 
 
-def drawn_rows(known, shares, rows, rng, spared=()) -> list[Any]:
+def drawn_rows(orientations, shares, rows, rng, spared=()) -> list[Any]:
     """Return the orientations that one draw tries: a wanted one, then OTHERS parts as they come.
 
     Parameters
     ----------
-    known : Orientations
+    orientations : Orientations
         M of them.
     shares : (M,) float [1]
     rows : sequence of int
@@ -292,7 +303,9 @@ def drawn_rows(known, shares, rows, rng, spared=()) -> list[Any]:
     list of int
         No orientation twice.
     """
-    wanted = trying.wanted_rows(known, trying.wanted_states(known, rows)[:1]) or [rows[0]]
+    wanted = short_trials.wanted_rows(orientations, short_trials.wanted_states(orientations, rows)[:1]) or [
+        rows[0]
+    ]
     wanted = [k for k in wanted if k not in spared] or wanted
     likely = np.where([k in wanted for k in range(len(shares))], shares + 1e-12, 0.0)
     first = int(rng.choice(len(shares), p=likely / likely.sum()))
@@ -307,18 +320,20 @@ def came_back(tried, row):
     return not tried.right[place] and bool(ends) and all(end.startswith("returned") for end in ends)
 
 
-def wanted_of(known, shares, rows, spared=()):
+def wanted_of(orientations, shares, rows, spared=()):
     """Return the rows that leave as wanted, but those that are spared and those that hardly come.
 
     Parameters
     ----------
-    known : Orientations
+    orientations : Orientations
         M of them.
     shares : (M,) float [1]
     rows, spared : sequence of int
     """
-    own = trying.wanted_rows(known, trying.wanted_states(known, rows)[:1]) or [rows[0]]
-    some = [k for k in own if k not in spared and shares[k] >= trying.SELDOM]
+    own = short_trials.wanted_rows(orientations, short_trials.wanted_states(orientations, rows)[:1]) or [
+        rows[0]
+    ]
+    some = [k for k in own if k not in spared and shares[k] >= short_trials.SELDOM]
     return some or [rows[0]]
 
 
@@ -344,31 +359,34 @@ def faults(tried, spared=()):
     What counts as the wanted one and comes back is a loss of parts a minute only; so is that of orientations
     that are ``spared``, rows.
     """
-    found, right = [], set(trying.wanted_rows(tried.known, tried.states[:1])) - set(spared)
+    sentences, right = [], set(short_trials.wanted_rows(tried.orientations, tried.states[:1])) - set(spared)
     for place, k in enumerate(tried.rows):
-        name = tried.known.lying[k].name
+        name = tried.orientations.lying[k].name
         if k in right:
             if tried.right[place] < tried.parts[place]:
                 turns = tried.turns[place] if tried.turns else {}
                 where = ", ".join((*tried.places[place], *turns)) or "turned"
-                found.append(f"{name} is lost ({where})")
+                sentences.append(f"{name} is lost ({where})")
         elif tried.wrong[place]:
-            found.append(f"{name}{CARRIED}")
+            sentences.append(f"{name}{CARRIED}")
         if tried.held[place] and k not in right:
-            found.append(f"{name} stays ({', '.join(tried.places[place])})")
-    return found
+            sentences.append(f"{name} stays ({', '.join(tried.places[place])})")
+    return sentences
 
 
 def denied(tried) -> Iterator[Any]:
     """Say what a short trial denies: what leaves or stays though rejected, and what is lost in the main."""
     if not tried.efficiency > 0.0:
         yield "nothing leaves as wanted"
-    right, spared = set(trying.wanted_rows(tried.known, tried.states)), trying.spared_rows(tried)
-    for one in faults(tried, spared):
-        name = one.split(" ", 1)[0]
-        place = next(n for n, k in enumerate(tried.rows) if tried.known.lying[k].name == name)
-        if one.endswith(CARRIED) and tried.purity >= CLEAN:
+    right, spared = (
+        set(short_trials.wanted_rows(tried.orientations, tried.states)),
+        short_trials.spared_rows(tried),
+    )
+    for fault in faults(tried, spared):
+        name = fault.split(" ", 1)[0]
+        place = next(n for n, k in enumerate(tried.rows) if tried.orientations.lying[k].name == name)
+        if fault.endswith(CARRIED) and tried.purity >= CLEAN:
             continue
         mostly = tried.rows[place] in right and 2 * tried.right[place] > tried.parts[place]
         if not (mostly and not tried.held[place]):
-            yield one
+            yield fault

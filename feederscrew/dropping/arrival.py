@@ -87,45 +87,45 @@ def arrival(part, aspects, bowl, *, drops=None, seed=1, jobs=1, progress=None) -
     KeyboardInterrupt
         If the user stops it before anything is known.
     """
-    found, last, run = None, 0.0, RunSettings(seed, jobs, progress)
+    arrived, last, run = None, 0.0, RunSettings(seed, jobs, progress)
     for count, seconds, pace in _runs(bowl, drops):
-        if found is not None and seconds == last:
-            count = count or enough(found)
-            pace = replace(pace, done=found.shaken.rides)
-        if found is not None and not _wanted(found, last, count, seconds):
+        if arrived is not None and seconds == last:
+            count = count or enough(arrived)
+            pace = replace(pace, done=arrived.shaken.rides)
+        if arrived is not None and not _wanted(arrived, last, count, seconds):
             continue
         own = {"drops": count, "pace": replace(pace, seconds=seconds), "run": run}
         try:
             shaken = plate_test.test(part, aspects, [bowl], ARRIVAL_LAUNCH, {}, **own)[0]
         except KeyboardInterrupt:
-            if found is None:
+            if arrived is None:
                 raise
-            return _without_rides(replace(found, shaken=replace(found.shaken, partial=True)))
-        found, last = judged(shaken), seconds
+            return _without_rides(replace(arrived, shaken=replace(arrived.shaken, partial=True)))
+        arrived, last = judged(shaken), seconds
         if shaken.partial:
             break
-    return _without_rides(found)
+    return _without_rides(arrived)
 
 
-def _without_rides(found) -> Any:
-    return replace(found, shaken=replace(found.shaken, rides=None))
+def _without_rides(arrived) -> Any:
+    return replace(arrived, shaken=replace(arrived.shaken, rides=None))
 
 
-def to_arrays(found) -> Any:
+def to_arrays(arrived) -> Any:
     """Return what was seen of the parts on the floor as plain arrays, for ``from_arrays``.
 
     Source: own.
 
     Parameters
     ----------
-    found : Arrival
+    arrived : Arrival
         Of a run that was not stopped.
 
     Returns
     -------
     dict of str to array
     """
-    shaken = found.shaken
+    shaken = arrived.shaken
     counted = {
         "parts": np.array(shaken.parts),
         "lost": np.array(shaken.lost),
@@ -167,9 +167,9 @@ def from_arrays(part, aspects, bowl, drops, arrays) -> Arrival:
     seconds = float(check.ranged("seconds", arrays["seconds"], (), 0.0, 2.0 * max(FLOOR_TIMES_S)))
     if parts < 1 or parts + lost > most or (drops is not None and parts + lost != drops):
         raise ValueError(f"{parts} parts and {lost} that were lost, of {most}")
-    seen = occupancy.from_arrays(arrays, len(aspects.names), parts)
+    looks = occupancy.from_arrays(arrays, len(aspects.names), parts)
     return judged(
-        plate_test.shaken_of(part, aspects, bowl, ARRIVAL_LAUNCH, ARRIVAL_PACE, (parts, lost, seconds), seen)
+        plate_test.shaken_of(part, aspects, bowl, ARRIVAL_LAUNCH, ARRIVAL_PACE, (parts, lost, seconds), looks)
     )
 
 
@@ -197,19 +197,19 @@ def steps_needed(hull, bowl) -> float:
     return (max(FLOOR_TIMES_S) / unit + ARRIVAL_PACE.settling) / longest
 
 
-def enough(found) -> int:
+def enough(arrived) -> int:
     """Return how many parts make every share known to ARRIVAL_HALF_WIDTH, by how they differed.
 
     Parameters
     ----------
-    found : Arrival
+    arrived : Arrival
 
     Returns
     -------
     int
         At most MAX_ARRIVALS.
     """
-    width, parts = NORMAL_95 * found.shaken.occupancy.error.max(), found.shaken.parts
+    width, parts = NORMAL_95 * arrived.shaken.occupancy.error.max(), arrived.shaken.parts
     rounds = np.ceil(parts * (width / ARRIVAL_HALF_WIDTH) ** 2 / plate_test.PARTS_A_LOOK)
     return int(min(MAX_ARRIVALS, rounds * plate_test.PARTS_A_LOOK))
 
@@ -232,11 +232,11 @@ def _runs(bowl, drops) -> list[Any]:
     ]
 
 
-def _wanted(found, last, count, seconds) -> bool:
+def _wanted(arrived, last, count, seconds) -> bool:
     """Whether another run is needed after what was found in the last one: of more parts, or for longer."""
     if seconds > last:
-        return not found.settled
-    return found.settled and not found.sure and count > found.shaken.parts
+        return not arrived.settled
+    return arrived.settled and not arrived.sure and count > arrived.shaken.parts
 
 
 def judged(shaken) -> Arrival:
@@ -254,30 +254,30 @@ def judged(shaken) -> Arrival:
         shares have
         come ARRIVED_SHARE_GAP to it.
     """
-    seen = shaken.occupancy
-    lying = seen.plate.sum()
-    p = seen.plate / lying if lying > 0.0 else np.full(len(seen.plate), np.nan)
-    reason = _reason(shaken, seen, p, lying)
-    low, high = _span(seen, p, settled=not reason)
+    looks = shaken.occupancy
+    lying = looks.plate.sum()
+    p = looks.plate / lying if lying > 0.0 else np.full(len(looks.plate), np.nan)
+    reason = _reason(shaken, looks, p, lying)
+    low, high = _span(looks, p, settled=not reason)
     return Arrival(check.frozen(p), check.frozen(low), check.frozen(high), not reason, reason, shaken)
 
 
-def _reason(shaken, seen: Occupancy, p, lying) -> Any:
+def _reason(shaken, looks: Occupancy, p, lying) -> Any:
     """Why the shares are not settled; empty where they are."""
     if not lying >= 1.0 - MAX_LOST_SHARE:
         return UNSEEN_REMARK.format(round((1.0 - lying) * shaken.parts), shaken.parts)
-    away = np.abs(np.nan_to_num(seen.limit, nan=0.0) - p) > ARRIVED_SHARE_GAP
-    outside = (seen.limit < seen.plate_low) | (seen.limit > seen.plate_high)
+    away = np.abs(np.nan_to_num(looks.limit, nan=0.0) - p) > ARRIVED_SHARE_GAP
+    outside = (looks.limit < looks.plate_low) | (looks.limit > looks.plate_high)
     some = shaken.transitions * FLOOR_TIMES_S[1] > ARRIVAL_HALF_WIDTH * shaken.parts * shaken.seconds
-    led = some and (away & outside & np.isfinite(seen.limit)).any()
-    return MOVING_REMARK.format(shaken.seconds) if led or seen.changing.any() else ""
+    led = some and (away & outside & np.isfinite(looks.limit)).any()
+    return MOVING_REMARK.format(shaken.seconds) if led or looks.changing.any() else ""
 
 
-def _span(seen, p, settled) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _span(looks, p, settled) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(A,) ends of the interval: of the time on the plate, or from the first shares to where they lead."""
-    ends = [seen.plate_low, seen.plate_high, p]
+    ends = [looks.plate_low, looks.plate_high, p]
     if not settled:
-        ends += [seen.start, seen.limit_low, seen.limit_high]
-    every, nothing = np.stack(ends), ~np.isfinite(p)
-    low, high = np.nanmin(every, axis=0), np.nanmax(every, axis=0)
+        ends += [looks.start, looks.limit_low, looks.limit_high]
+    spread, nothing = np.stack(ends), ~np.isfinite(p)
+    low, high = np.nanmin(spread, axis=0), np.nanmax(spread, axis=0)
     return np.where(nothing, 0.0, low), np.where(nothing, 1.0, high)

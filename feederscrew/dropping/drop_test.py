@@ -14,7 +14,7 @@ from feederscrew.dropping.rounded_hull import principal_axes, shape_of_part
 from feederscrew.dropping.traces import DropTrace, follow
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.exact_tumbling import Ground, ground
+from feederscrew.resting.exact_tumbling import Ground, require_ground
 from feederscrew.running import USUAL_RUN
 
 DEFAULT_DROPS = 10_000  # drops, where the user names neither a number nor a width
@@ -75,8 +75,8 @@ def test(
         If the user stops it before there is anything to count; later, the result is partial.
     """
     width = None if until is None else launch_conditions.share(until, "until")
-    found = ground(part, aspects)
-    shape, length = shape_of_part(part, found)
+    faces = require_ground(part, aspects)
+    shape, length = shape_of_part(part, faces)
     launch, single = (
         launch_conditions.launch_of(preset, length, own),
         launch_conditions.single(own.get("restitution")),
@@ -90,18 +90,18 @@ def test(
             launch,
             np.random.default_rng(run.seed),
             count=DEFAULT_DROPS if drops is None and until is None else drops,
-            aim=None if width is None else Aim(width, found.rows, count),
+            aim=None if width is None else Aim(width, faces.rows, count),
             jobs=run.jobs,
             progress=run.progress,
         )
-    elif len(dropped.faces) and dropped.faces.max() >= len(found.rows):
+    elif len(dropped.faces) and dropped.faces.max() >= len(faces.rows):
         raise ValueError("a drop rests on a face that the part has not")
-    counted = ensemble.tally(dropped, found.rows, count, surface=own.get("restitution") is not None)
+    counted = ensemble.tally(dropped, faces.rows, count, surface=own.get("restitution") is not None)
     starts = sample(launch, shape, min(traced, len(dropped.faces)), np.random.default_rng(run.seed))
-    traces = follow(shape, length, principal_axes(part.inertia)[1], starts, dropped, found.rows)
+    traces = follow(shape, length, principal_axes(part.inertia)[1], starts, dropped, faces.rows)
     described = launch_conditions.described(launch, length)
-    heights = check.frozen(_heights(shape, length, found.rows, aspects.heights))
-    return Result(described, run.seed, found, dropped, counted, heights, width, traces, single)
+    heights = check.frozen(_heights(shape, length, faces.rows, aspects.heights))
+    return Result(described, run.seed, faces, dropped, counted, heights, width, traces, single)
 
 
 def _heights(shape, length, rows, heights) -> NDArray[np.float64]:

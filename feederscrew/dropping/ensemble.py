@@ -169,16 +169,16 @@ def tally(drops, rows, count, *, surface=False) -> Any:
     ends, p = [np.nan_to_num(end) for end in ends], shares(counts)
     possible = np.bincount(rows, minlength=count) > 0
     moved = _moved_by(drops.restitutions, drops.faces, rows, count)
-    asked = moved if surface else 0.0
-    ends_known = (_wider(counts, low, -1.0, asked), _wider(counts, high, 1.0, asked))
-    known = launched(p, *ends_known, possible & bool(settled))
+    surface_moved = moved if surface else 0.0
+    ends_known = (_wider(counts, low, -1.0, surface_moved), _wider(counts, high, 1.0, surface_moved))
+    launch_known = launched(p, *ends_known, possible & bool(settled))
     return Tally(
         counts=check.frozen(counts),
         unsettled=total - settled,
         unsettled_share=(total - settled) / max(total, 1),
         p=check.frozen(p),
-        low=check.frozen(known[0] if settled else low),
-        high=check.frozen(known[1] if settled else high),
+        low=check.frozen(launch_known[0] if settled else low),
+        high=check.frozen(launch_known[1] if settled else high),
         widest=half_width(low, high),
         gentle=check.frozen(ends[0]),
         violent=check.frozen(ends[1]),
@@ -213,18 +213,18 @@ def _moved_by(values, faces, rows, count) -> NDArray[np.float64]:
     settled = counts.sum(axis=1, keepdims=True)
     if not settled.all() or np.ptp(values) == 0.0:
         return np.zeros(count)
-    found, p = counts / settled, counts.sum(axis=0) / settled.sum()
+    run_shares, p = counts / settled, counts.sum(axis=0) / settled.sum()
     sampled = (1.0 - 1.0 / RESTITUTION_GROUPS) * p * (1.0 - p) * (1.0 / settled).mean()
-    return NORMAL_95 * np.sqrt(np.maximum(((found - p) ** 2).mean(axis=0) - sampled, 0.0))
+    return NORMAL_95 * np.sqrt(np.maximum(((run_shares - p) ** 2).mean(axis=0) - sampled, 0.0))
 
 
-def _wider(counts, end, way, moved) -> NDArray[np.float64]:
+def _wider(counts, end, sign, moved) -> NDArray[np.float64]:
     """(A,) end of Wilson's interval moved out by numerical error and restitution, as independent errors."""
     p = shares(counts)
     if not counts.any():
         return end
     numerical = 4.0 * NUMERICAL_SHARE_ERROR * p * (1.0 - p)
-    return np.clip(p + way * np.hypot(np.hypot(end - p, numerical), moved), 0.0, 1.0)
+    return np.clip(p + sign * np.hypot(np.hypot(end - p, numerical), moved), 0.0, 1.0)
 
 
 def wilson(counts, total) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -37,8 +37,8 @@ class Launch:
 
     def but(self, **ranges) -> Any:
         """Return the launch with some ranges replaced; named 'own' once one is."""
-        given = {name: given for name, given in ranges.items() if given is not None}
-        return replace(self, name="own", **given) if given else self
+        changes = {name: changes for name, changes in ranges.items() if changes is not None}
+        return replace(self, name="own", **changes) if changes else self
 
     def scattering(self) -> Any:
         """Return the launch with one value of restitution as ``sensitivity.even_range`` round it."""
@@ -148,10 +148,10 @@ def _held_level(axis, u) -> Any:
     level = np.cos(rise)
     there = np.stack([level * np.cos(ahead), level * np.sin(ahead), np.sin(rise)], axis=1)
     axis = np.where((axis * there).sum(axis=1)[:, None] < 0.0, -axis, axis)
-    brought = np.column_stack([1.0 + (axis * there).sum(axis=1), np.cross(axis, there)])
-    brought /= np.sqrt((brought**2).sum(axis=1))[:, None]
+    quaternions = np.column_stack([1.0 + (axis * there).sum(axis=1), np.cross(axis, there)])
+    quaternions /= np.sqrt((quaternions**2).sum(axis=1))[:, None]
     half = np.pi * u[:, 2]
-    return _after(brought, np.column_stack([np.cos(half), np.sin(half)[:, None] * axis])), axis
+    return _after(quaternions, np.column_stack([np.cos(half), np.sin(half)[:, None] * axis])), axis
 
 
 def _after(p, q) -> Any:

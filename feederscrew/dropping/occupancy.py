@@ -89,22 +89,22 @@ def occupancy(faces, places, rows, count, period, rng) -> Occupancy:
     half = each.mean(axis=0)
     low, high = wilson(half * len(held), len(held))
     limit, ends = _limits(counts, times, inside[:, -1].mean(axis=0), rng)
-    found = {
+    arrays = {
         "start": _first(classes, count), "plate": half, "plate_low": low, "plate_high": high,
         "error": each.std(axis=0) / np.sqrt(len(each)),
         "limit": limit, "limit_low": ends[0], "limit_high": ends[1], "changing": _changing(inside),
         "counts": counts, "times": times, "course": inside.mean(axis=0),
         **_rates(counts, times), **_velocities(places, inside, period),
     }  # fmt: skip
-    return Occupancy(**{name: check.frozen(np.asarray(value)) for name, value in found.items()})
+    return Occupancy(**{name: check.frozen(np.asarray(value)) for name, value in arrays.items()})
 
 
-def to_arrays(seen) -> Any:
+def to_arrays(looks) -> Any:
     """Return an Occupancy as plain arrays, without those that follow from others.
 
     Source: own.
     """
-    return {name: value for name, value in vars(seen).items() if name not in DERIVED_FIELDS}
+    return {name: value for name, value in vars(looks).items() if name not in DERIVED_FIELDS}
 
 
 def from_arrays(arrays, count, parts) -> Occupancy:
@@ -144,7 +144,7 @@ def from_arrays(arrays, count, parts) -> Occupancy:
     if len(course) < 1 or any((shares.sum(axis=-1) > most).any() for shares in (start, plate, course)):
         raise ValueError("shares add up to more than 1, or there are none")
     low, high = wilson(plate * parts, parts)
-    found = {
+    fields = {
         "start": start, "plate": plate, "plate_low": low, "plate_high": high,
         "error": read("error", row, 0.0, 1.0),
         **{name: read(name, row, 0.0, most, gaps=True) for name in ("limit", "limit_low", "limit_high")},
@@ -152,7 +152,7 @@ def from_arrays(arrays, count, parts) -> Occupancy:
         "velocity": read("velocity", (3,), gaps=True),
         "velocities": read("velocities", (count, 3), gaps=True),
     }  # fmt: skip
-    return Occupancy(**{name: check.frozen(np.asarray(value)) for name, value in found.items()})
+    return Occupancy(**{name: check.frozen(np.asarray(value)) for name, value in fields.items()})
 
 
 def _ranged(arrays, name, *bounds, **kind):
@@ -220,8 +220,8 @@ def _rates(counts, times) -> dict[str, NDArray[np.float64]]:
 
 def _limits(counts, times, last, rng) -> Any:
     """Where the rates lead, and the ends of its interval."""
-    seen = counts.sum() - np.trace(counts)
-    if seen < MIN_TRANSITIONS:
+    moves = counts.sum() - np.trace(counts)
+    if moves < MIN_TRANSITIONS:
         nothing = np.full(len(last), np.nan)
         return nothing, (nothing, nothing)
     spent = times > 0.0
@@ -246,18 +246,18 @@ def _velocities(places, inside, period) -> Any:
     half = places.shape[1] // 2
     whole = (places[:, -1] - places[:, half]) / (period * (places.shape[1] - 1 - half))
     within = inside[:, half:-1]
-    ways = np.einsum("nk,nka->na", np.diff(places[:, half:], axis=1), within)
+    distances = np.einsum("nk,nka->na", np.diff(places[:, half:], axis=1), within)
     return {
         "velocity": _ratio(whole[:, None], np.ones((len(whole), 1)))[0],
-        "velocities": _ratio(ways, period * within.sum(axis=1)),
+        "velocities": _ratio(distances, period * within.sum(axis=1)),
     }
 
 
-def _ratio(ways, times) -> NDArray[np.float64]:
+def _ratio(distances, times) -> NDArray[np.float64]:
     """(A, 3) sum of (N, A) ways over sum of (N, A) times, and its interval over the parts: NaN of one."""
     total = np.where(times.sum(axis=0) > 0.0, times.sum(axis=0), np.nan)
-    mean = ways.sum(axis=0) / total
+    mean = distances.sum(axis=0) / total
     parts = (times > 0.0).sum(axis=0)
     wider = np.sqrt(parts / np.where(parts > 1, parts - 1.0, np.nan))  # as the mean is of the same parts
-    error = NORMAL_95 * wider * np.sqrt(((ways - mean * times) ** 2).sum(axis=0)) / total
+    error = NORMAL_95 * wider * np.sqrt(((distances - mean * times) ** 2).sum(axis=0)) / total
     return np.stack([mean, mean - error, mean + error], axis=-1)

@@ -27,7 +27,7 @@ from feederscrew.dropping.rounded_hull import Shape, shape_of_part
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.exact_tumbling import ground
+from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.running import USUAL_RUN, RunSettings
 
 STEPS_A_PERIOD = (
@@ -56,12 +56,15 @@ def floor_of(bowl, length, coarse=1.0) -> Floor:
     """
     drive, time = bowl.drive, math.sqrt(length / bowl.gravity)
     rate = 2.0 * math.pi * drive.frequency * time
+    second_angle = drive.vibration_angle + drive.second_harmonic_turn
+    second = drive.amplitude * drive.second_harmonic / length
     return Floor(
         rate=rate,
         along=drive.amplitude * math.cos(drive.vibration_angle) / length,
         up=drive.amplitude * math.sin(drive.vibration_angle) / length,
         lead=-drive.phase,
-        second=drive.second_harmonic,
+        second_along=second * math.cos(second_angle),
+        second_up=second * math.sin(second_angle),
         second_phase=drive.second_harmonic_phase,
         step=coarse * 2.0 * math.pi / rate / STEPS_A_PERIOD,
     )
@@ -75,7 +78,9 @@ def steps_of(floor, coarse=1.0) -> Any:
         contact=coarse * usual.contact / PLATE_STEP_REFINEMENT**2,
         swing=once * usual.swing / PLATE_STEP_REFINEMENT,
         tolerance=once * usual.tolerance / PLATE_STEP_REFINEMENT,
-        threshold=min(usual.threshold, max(SLOW_CONTACT_SHARE * floor.up * floor.rate, 1e-4)),
+        threshold=min(
+            usual.threshold, max(SLOW_CONTACT_SHARE * (floor.up + 2.0 * floor.second_up) * floor.rate, 1e-4)
+        ),
     )
 
 
@@ -94,7 +99,8 @@ def kick_of(floor, times) -> float:
 
     Source: docs/resting.md, "On the vibrating plate".
     """
-    quickest = floor.rate * math.hypot(floor.along, floor.up) * (1.0 + 2.0 * abs(floor.second))
+    first, second = math.hypot(floor.along, floor.up), math.hypot(floor.second_along, floor.second_up)
+    quickest = floor.rate * (first + 2.0 * second)
     return times * 0.5 * quickest**2
 
 
@@ -154,10 +160,10 @@ def ride(shape, floor, starts, looks, steps, *, kick=math.inf, jobs=1, progress=
 def joined(rides) -> Rides:
     """Return several rides, one after the other, as one."""
     return Rides(
-        faces=check.frozen(np.concatenate([one.faces for one in rides])),
-        places=check.frozen(np.concatenate([one.places for one in rides])),
-        lost=sum(one.lost for one in rides),
-        partial=any(one.partial for one in rides),
+        faces=check.frozen(np.concatenate([own.faces for own in rides])),
+        places=check.frozen(np.concatenate([own.places for own in rides])),
+        lost=sum(own.lost for own in rides),
+        partial=any(own.partial for own in rides),
     )
 
 
@@ -171,9 +177,9 @@ def _batch(
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_]]:
     """Faces and places of some parts, and whether every look was taken."""
     launched = starts.launched(part)
-    seen = shaken.unseen(len(launched.states), looks)
-    shaken.ride_all(shape, falling.scratch(shape), floor, launched, steps, seen, kick)
-    return seen.faces, seen.places, seen.taken == len(looks)
+    record = shaken.empty_looks(len(launched.states), looks)
+    shaken.ride_all(shape, falling.scratch(shape), floor, launched, steps, record, kick)
+    return record.faces, record.places, record.taken == len(looks)
 
 
 DEFAULT_PLATE_PARTS = 400  # parts, where the user names no number
@@ -262,17 +268,17 @@ def test(part, aspects, bowls, preset, own, *, drops=None, pace=EXACT_PACE, run=
     KeyboardInterrupt
         If nothing was finished.
     """
-    found = ground(part, aspects)
-    shape, length = shape_of_part(part, found)
+    faces = require_ground(part, aspects)
+    shape, length = shape_of_part(part, faces)
     count, results = DEFAULT_PLATE_PARTS if drops is None else drops, []
-    way = _Way(found.rows, len(aspects.names), shape, length, pace, run)
+    setup = _PlateSetup(faces.rows, len(aspects.names), shape, length, pace, run)
     came = (launch_conditions.launch_of(preset, length, own, bowl.gravity) for bowl in bowls)
     launches = [_surfaced(launch, bowl, own, pace) for launch, bowl in zip(came, bowls)]
     run.begin()
     for k, bowl in enumerate(bowls):
         try:
             tell = _after(k * count, len(bowls) * count, run.progress)
-            results.append(_plate(way, bowl, launches[k], count, tell))
+            results.append(_plate(setup, bowl, launches[k], count, tell))
         except KeyboardInterrupt:
             if not results:
                 raise
@@ -282,7 +288,7 @@ def test(part, aspects, bowls, preset, own, *, drops=None, pace=EXACT_PACE, run=
     return results
 
 
-def shaken_of(part, aspects, bowl, preset, pace, counted, seen) -> PlateResult:
+def shaken_of(part, aspects, bowl, preset, pace, counted, looks) -> PlateResult:
     """Return what parts did on one plate, from what was seen of them in an earlier run that was not stopped.
 
     Source: docs/resting.md, "On the vibrating plate".
@@ -300,13 +306,13 @@ def shaken_of(part, aspects, bowl, preset, pace, counted, seen) -> PlateResult:
         Of that run.
     counted : (int, int, float [s])
         Parts, those that were lost, and the time counted for each.
-    seen : Occupancy
+    looks : Occupancy
 
     Returns
     -------
     PlateResult
     """
-    _, length = shape_of_part(part, ground(part, aspects))
+    _, length = shape_of_part(part, require_ground(part, aspects))
     launch = _surfaced(launch_conditions.launch_of(preset, length, {}, bowl.gravity), bowl, {}, pace)
     parts, lost, seconds = counted
     return PlateResult(
@@ -315,7 +321,7 @@ def shaken_of(part, aspects, bowl, preset, pace, counted, seen) -> PlateResult:
         throw_number=throw_number(bowl),
         parts=parts,
         seconds=seconds,
-        occupancy=seen,
+        occupancy=looks,
         lost=lost,
         partial=False,
     )
@@ -332,14 +338,14 @@ def _surfaced(launch, bowl, own, pace):
     launch = replace(
         launch, **{key: (value, value) for key, value in surface.items() if own.get(key) is None}
     )
-    given = own.get("restitution")
-    single = given is None or launch_conditions.single(given) is not None
+    restitution = own.get("restitution")
+    single = restitution is None or launch_conditions.single(restitution) is not None
     thrown = throw_number(bowl) > 1.0
     return launch.scattering() if pace.scatters and single and thrown else launch
 
 
 @dataclass(frozen=True, eq=False)
-class _Way:
+class _PlateSetup:
     """A part, and the way in which it is followed on every plate."""
 
     rows: np.ndarray  # (F,) int, class of each of its faces
@@ -350,27 +356,27 @@ class _Way:
     run: RunSettings
 
 
-def _plate(way, bowl, launch, count, progress) -> PlateResult:
+def _plate(setup, bowl, launch, count, progress) -> PlateResult:
     """The test on one plate."""
-    shape, length, pace = way.shape, way.length, way.pace
+    shape, length, pace = setup.shape, setup.length, setup.pace
     floor, unit = floor_of(bowl, length, pace.coarse), np.sqrt(length / bowl.gravity)
     period = looks_apart(bowl.drive.frequency, pace.seconds)
     number = max(round(pace.seconds / period), MIN_LOOKS)
     looks = (np.ceil(pace.settling * unit / period) + np.arange(number + 1)) * period / unit
-    starts = sample(launch, shape, count, np.random.default_rng(way.run.seed))
+    starts = sample(launch, shape, count, np.random.default_rng(setup.run.seed))
     steps, kick = steps_of(floor, pace.coarse), kick_of(floor, pace.kick)
     _must_end(looks[-1] / min(steps.contact, floor.step))
-    follow = partial(ride, shape, floor, looks=looks, steps=steps, kick=kick, jobs=way.run.jobs)
-    rides = _enough(follow, starts, pace, way.rows, way.classes, progress)
-    rng = np.random.default_rng((way.run.seed, len(rides.faces)))
-    seen = occupancy(rides.faces, length * rides.places[:, :, 0], way.rows, way.classes, period, rng)
+    follow = partial(ride, shape, floor, looks=looks, steps=steps, kick=kick, jobs=setup.run.jobs)
+    rides = _enough(follow, starts, pace, setup.rows, setup.classes, progress)
+    rng = np.random.default_rng((setup.run.seed, len(rides.faces)))
+    record = occupancy(rides.faces, length * rides.places[:, :, 0], setup.rows, setup.classes, period, rng)
     return PlateResult(
         bowl=bowl,
         launch=launch_conditions.described(launch, length, bowl.gravity),
         throw_number=throw_number(bowl),
         parts=len(rides.faces),
         seconds=number * period,
-        occupancy=seen,
+        occupancy=record,
         lost=rides.lost,
         partial=rides.partial,
         rides=rides if pace.keep else None,

@@ -55,15 +55,15 @@ def rims_of(edges, radius, axes=()) -> Rims:
     that parts a bar of flats from a round one elsewhere. A full turn is a circle.
     """
     count = len(edges.vertices)
-    found = []
+    rims = []
     for axis in _axes(edges, axes):
         for corners in _planes(edges.vertices, axis, RIM_PLANE_SHARE * radius):
-            found += [(corners, rim) for rim in _runs(edges.vertices, corners, axis)]
-    table = np.array([row for _, (row, *_) in found]).reshape(-1, RIM)
-    members = np.zeros((len(found), count), bool)
+            rims += [(corners, rim) for rim in _runs(edges.vertices, corners, axis)]
+    table = np.array([row for _, (row, *_) in rims]).reshape(-1, RIM)
+    members = np.zeros((len(rims), count), bool)
     inner = np.zeros(count, bool)
     ends = np.zeros(count, bool)
-    for k, (plane, (row, corners, closed)) in enumerate(found):
+    for k, (plane, (row, corners, closed)) in enumerate(rims):
         members[k, corners] = True
         inner[plane[_under(row, edges.vertices[plane])]] = True
         ends[[] if closed else corners[[0, -1]]] = True
@@ -84,11 +84,11 @@ def _under(row, points) -> NDArray[np.bool_]:
 def _axes(edges, more):
     """Unit axes worth looking along, one of each pair of opposite ones."""
     borders = np.bincount(edges.facets[np.flatnonzero(edges.borders) // 3], minlength=len(edges.normals))
-    found: list[np.ndarray] = []
+    axes: list[np.ndarray] = []
     for axis in (*edges.normals[borders > MIN_ARC_EDGES], *more):
-        if np.isfinite(axis).all() and all(np.abs(np.cross(axis, other)).max() > 1e-4 for other in found):
-            found.append(np.asarray(axis))
-    return found
+        if np.isfinite(axis).all() and all(np.abs(np.cross(axis, other)).max() > 1e-4 for other in axes):
+            axes.append(np.asarray(axis))
+    return axes
 
 
 def _planes(vertices, axis, tolerance) -> list[NDArray[np.int64]]:
@@ -114,19 +114,15 @@ def _runs(vertices, corners, axis) -> list[Any]:
     if len(points) <= MIN_ARC_EDGES:
         return []
     lengths = np.hypot(*steps.T)
-    found = [_rim(vertices, corners[run], axis, closed) for run, closed in _even(lengths, _turns(points))]
-    return [rim for rim in found if rim is not None]
+    rims = [_rim(vertices, corners[run], axis, closed) for run, closed in _even(lengths, _turns(points))]
+    return [rim for rim in rims if rim is not None]
 
 
 def _turns(points) -> NDArray[np.float64]:
     """(K,) by how much a polygon turns at each of its (K, 2) corners."""
     after = np.roll(points, -1, axis=0) - points
     before = np.roll(after, 1, axis=0)
-    return np.arctan2(_cross(before, after), (before * after).sum(axis=1))
-
-
-def _cross(u, v) -> NDArray[np.float64]:
-    return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    return np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], (before * after).sum(axis=1))
 
 
 def _even(lengths, turns) -> list[Any]:
@@ -144,7 +140,7 @@ def _even(lengths, turns) -> list[Any]:
     if smooth.all():
         return [(np.arange(count), True)]
     start = int(np.argmin(smooth))  # a corner that ends a run
-    found, run = [], list[int]()
+    runs, run = [], list[int]()
     for k in range(1, count + 1):
         corner = (start + k) % count
         if smooth[corner] and (
@@ -152,11 +148,11 @@ def _even(lengths, turns) -> list[Any]:
         ):
             run.append(corner)
             continue
-        found.append(run)
+        runs.append(run)
         run = [corner] if smooth[corner] else []
     return [
         (np.array([(run[0] - 1) % count, *run, (run[-1] + 1) % count]), False)
-        for run in found
+        for run in runs
         if len(run) + 1 >= MIN_ARC_EDGES
     ]
 
@@ -214,15 +210,15 @@ def true_heights(rims, edges, sinks, heights, radius) -> NDArray[np.float64]:
     -------
     (S,) float [m]
     """
-    found = np.array(heights)
+    corrected = np.array(heights)
     triangles = np.split(np.argsort(edges.facets, kind="stable"), np.cumsum(np.bincount(edges.facets))[:-1])
     for k, facet in enumerate(sinks if len(rims.table) else ()):
         halves = (3 * triangles[facet][:, None] + np.arange(3)).ravel()
         corners = np.unique(edges.origins[halves[edges.borders[halves]]])
         side = _side(rims, edges.vertices, corners, radius)
         if side is not None:
-            found[k] = _tangent_height(side[0], side[1], radius)
-    return found
+            corrected[k] = _tangent_height(side[0], side[1], radius)
+    return corrected
 
 
 def _side(rims, vertices, corners, radius) -> Any:
@@ -283,14 +279,14 @@ def true_tops(rims, edges, saddles, tops, radius) -> NDArray[np.float64]:
     -------
     (E,) float [m]
     """
-    found = np.array(tops)
+    corrected = np.array(tops)
     for rim, members in zip(rims.table, rims.members):
         chords = members[edges.origins[saddles]] & members[edges.targets[saddles]]
         level = (rim[CENTRE] * rim[AXIS]).sum()
         offset = rim[CENTRE] - level * rim[AXIS]
         if chords.any() and _size(offset) < rim[RADIUS] and _reaches(rim, -offset, radius):
-            found[chords] = np.hypot(level, rim[RADIUS] - _size(offset))
-    return found
+            corrected[chords] = np.hypot(level, rim[RADIUS] - _size(offset))
+    return corrected
 
 
 def lowest_on(shape, up) -> Any:
@@ -442,21 +438,21 @@ def _greatest(edges, areas) -> NDArray[np.float64]:
     return edges.normals[np.argmax(sizes > (1.0 - 1e-6) * sizes.max())].copy()
 
 
-def shape_of_part(part, found) -> tuple[Shape, float]:
+def shape_of_part(part, faces) -> tuple[Shape, float]:
     """Return the shape of a part and its length [m], from its faces.
 
     Parameters
     ----------
     part : Part
-    found : Ground
+    faces : Ground
 
     Returns
     -------
     shape, length
         As `shape_of`.
     """
-    axes = np.array([face.axis for face in found.faces])
-    return shape_of(found.hull, found.labels, part.mass, part.inertia, axes)
+    axes = np.array([face.axis for face in faces.faces])
+    return shape_of(faces.hull, faces.labels, part.mass, part.inertia, axes)
 
 
 def principal_axes(inertia) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

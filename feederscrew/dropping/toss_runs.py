@@ -197,14 +197,16 @@ class Tosses:
     partial: bool  # stopped by the user before all were done
 
 
-def follow(part, found, launches, surface, rng, *, runs=DEFAULT_RUNS, jobs=1, progress=None) -> Tosses:
+def follow(
+    part, resting_faces, launches, surface, rng, *, runs=DEFAULT_RUNS, jobs=1, progress=None
+) -> Tosses:
     """Follow each launch of a file until the part lies still, again and again with small changes.
 
     Parameters
     ----------
     part : Part
         From a mesh.
-    found : Ground
+    resting_faces : Ground
         Of that part.
     launches : LaunchFile
     surface : SurfaceRanges
@@ -235,13 +237,25 @@ def follow(part, found, launches, surface, rng, *, runs=DEFAULT_RUNS, jobs=1, pr
     corners and one coefficient are not what happens: MODEL_DOUBT times as much makes the mean ``p`` of every
     other filmed toss the share that comes true (source: docs/validation.md, "Filmed tosses of a cube").
     """
-    shape, length = shape_of_part(part, found)
+    shape, length = shape_of_part(part, resting_faces)
     principal = principal_axes(part.inertia)[1]
     states = _states(launches, length, principal)
-    _above_the_plane(shape, length, launches, states)
+    # Raise a fault for the first launch that begins in the plane.
+    lowest = states[:, body.Z] + lowest_points(shape, states[:, body.Q : body.W])
+    below = np.flatnonzero(lowest < -MAX_SUNK_SHARE)
+    if len(below):
+        where = f"{launches.source}:{launches.lines[below[0]]}"
+        what = f"the launch begins {-1e3 * length * lowest[below[0]]:.3g} mm below the plane"
+        raise FeederError(where, what, "give x0_m, y0_m, z0_m of the centre of mass over the plane z = 0")
     draws = rng.standard_normal((len(states), runs, DRAWS_A_RUN))
     draws[:, 0] = 0.0  # as given
-    uncertain = _uncertain(launches, length)
+    # (N, 3) standard deviations, without dimensions: of velocities, spins and the attitude [rad].
+    quick = MODEL_DOUBT * launches.frame / np.sqrt(12.0)
+    velocity = GRAVITY * quick / np.sqrt(GRAVITY * length)
+    turning = quick * np.sqrt((launches.spins**2).sum(axis=1))
+    uncertain = np.stack(
+        [np.full_like(turning, velocity), np.full_like(turning, 2.0 * velocity), turning], axis=1
+    )
 
     def batch(cut) -> Any:
         work = one_drop.scratch(shape)
@@ -253,7 +267,7 @@ def follow(part, found, launches, surface, rng, *, runs=DEFAULT_RUNS, jobs=1, pr
 
     tell = None if progress is None else lambda done: progress(done, len(states))
     (ends, faces, times), partial = in_batches(batch, len(states), TOSSES_A_BATCH, jobs, tell)
-    return _summed(launches, length, principal, found.rows, runs, (ends, faces, times), partial)
+    return _summed(launches, length, principal, resting_faces.rows, runs, (ends, faces, times), partial)
 
 
 def _states(launches, length, principal) -> NDArray[np.float64]:
@@ -270,24 +284,6 @@ def _states(launches, length, principal) -> NDArray[np.float64]:
 def _rotations(quaternions) -> Rotation:
     """Rotations from the part's axes to the plane's, of (N, 4) quaternions w x y z."""
     return Rotation.from_quat(np.roll(quaternions, -1, axis=-1))
-
-
-def _above_the_plane(shape, length, launches, states) -> None:
-    """Raise a fault for the first launch that begins in the plane."""
-    lowest = states[:, body.Z] + lowest_points(shape, states[:, body.Q : body.W])
-    below = np.flatnonzero(lowest < -MAX_SUNK_SHARE)
-    if len(below):
-        where = f"{launches.source}:{launches.lines[below[0]]}"
-        what = f"the launch begins {-1e3 * length * lowest[below[0]]:.3g} mm below the plane"
-        raise FeederError(where, what, "give x0_m, y0_m, z0_m of the centre of mass over the plane z = 0")
-
-
-def _uncertain(launches, length) -> NDArray[np.float64]:
-    """(N, 3) standard deviations, without dimensions: of velocities, spins and the attitude [rad]."""
-    quick = MODEL_DOUBT * launches.frame / np.sqrt(12.0)
-    velocity = GRAVITY * quick / np.sqrt(GRAVITY * length)
-    turning = quick * np.sqrt((launches.spins**2).sum(axis=1))
-    return np.stack([np.full_like(turning, velocity), np.full_like(turning, 2.0 * velocity), turning], axis=1)
 
 
 def _varied(

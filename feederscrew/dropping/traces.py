@@ -98,8 +98,8 @@ def follow(shape, length, principal, starts, drops, rows) -> tuple[Any, ...]:
         states = _filled(shape, states)
         energies = _energies(shape, states)
         impacts = _strongest(_impacts(shape, states, one_drop.Steps()), energies)
-        kept = _kept(states[:, 0], impacts, drops.times[k])
-        states, energies, impacts = states[kept], energies[kept], impacts[kept]
+        strongest = _which_rows(states[:, 0], impacts, drops.times[k])
+        states, energies, impacts = states[strongest], energies[strongest], impacts[strongest]
         turns = Rotation.from_quat(states[:, 1 + body.Q + np.array([1, 2, 3, 0])]) * to_body
         traces.append(
             DropTrace(
@@ -188,18 +188,18 @@ def _strongest(impacts, energies) -> NDArray[np.bool_]:
     """(N,) bool, of the rows of impacts the MAX_IMPACTS that take most energy."""
     rows = np.flatnonzero(impacts)
     losses = energies[rows] - np.append(energies, energies[-1])[rows + 1]
-    kept = np.zeros(len(impacts), bool)
-    kept[rows[np.argsort(-losses, kind="stable")[:MAX_IMPACTS]]] = True
-    return kept
+    strongest = np.zeros(len(impacts), bool)
+    strongest[rows[np.argsort(-losses, kind="stable")[:MAX_IMPACTS]]] = True
+    return strongest
 
 
-def _kept(times, impacts, decided) -> NDArray[np.bool_]:
+def _which_rows(times, impacts, decided) -> NDArray[np.bool_]:
     """(N,) bool, the rows of a trace that are kept."""
     steps = np.floor(times / max(ROW_INTERVAL, times[-1] / MAX_TRACE_ROWS))
-    kept = np.diff(steps, prepend=-1.0) > 0.0
-    kept[-1] = True
-    kept[np.searchsorted(times, decided).clip(max=len(times) - 1)] = True
-    return kept | impacts | np.roll(impacts, 1)
+    chosen_rows = np.diff(steps, prepend=-1.0) > 0.0
+    chosen_rows[-1] = True
+    chosen_rows[np.searchsorted(times, decided).clip(max=len(times) - 1)] = True
+    return chosen_rows | impacts | np.roll(impacts, 1)
 
 
 def _energies(shape, states) -> NDArray[np.float64]:
@@ -228,12 +228,12 @@ def chosen(trace, count) -> NDArray[np.int64]:
     turned = (trace.turns[first + 1 :] * trace.turns[first:-1].inv()).magnitude()
     lost = -np.diff(np.log(trace.energies[first:])).clip(max=0.0)
     lost = lost.clip(max=0.5 * lost.sum() / count)  # one hard hit is one still
-    way = sum(
+    distance = sum(
         share * np.cumsum(steps) / max(steps.sum(), 1e-9)
         for share, steps in ((0.5, turned), (0.5, lost), (0.25, np.diff(trace.times[first:])))
     )
-    way = np.append(0.0, way)
-    rows = first + np.searchsorted(way, np.linspace(0.0, way[-1], count) - 1e-9)
+    distance = np.append(0.0, distance)
+    rows = first + np.searchsorted(distance, np.linspace(0.0, distance[-1], count) - 1e-9)
     rows = rows.clip(max=len(trace.times) - 1)
     rows[1:-1] -= trace.impacts[rows[1:-1] - 1]  # the hit, not the step after it
     return rows

@@ -3,24 +3,42 @@
 import functools
 import hashlib
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 # functions that compiled ones may call, not yet registered, and how each is compiled
 PENDING: list[tuple[Callable[..., Any], dict[str, Any]]] = []
-NOWHERE = "/dev/null"  # where no folder is: what is not kept is not found
+NO_FOLDER = "/dev/null"  # where no folder is: what is not kept is not found
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
-SOURCES = (
-    "geometry/compiled.py",
-    "conveying/*.py",
-    "resting/landscape.py",
-    "resting/half_edges.py",
-    "resting/walks.py",
-    "dropping/kernel/*.py",
-    "tooling/kernel/*.py",
-    "trial/kernel/*.py",
-)
+# by the room of an entry: the sources that are compiled into it, beside this one
+SOURCES = {
+    "conveying": ("conveying/*.py",),
+    "resting": ("resting/landscape.py", "resting/half_edges.py", "resting/walks.py"),
+    "dropping": ("dropping/kernel/*.py", "resting/half_edges.py", "resting/walks.py"),
+    "tooling": ("tooling/kernel/*.py",),
+    "trial": ("trial/kernel/*.py", "dropping/kernel/*.py"),
+}
+
+
+def record_type(*names: str, whole: tuple[str, ...] = (), flags: tuple[str, ...] = ()) -> np.dtype:
+    """Return a record of numbers by name; some of them are whole, some are yes or no."""
+    kinds = dict.fromkeys(whole, np.int64) | dict.fromkeys(flags, np.bool_)
+    return np.dtype([(name, kinds.get(name, np.float64)) for name in names], align=True)
+
+
+def zero_rows(shape: int | tuple[int, ...], kind: np.dtype) -> np.recarray:
+    """Return an array of zeros, of that shape, of a kind of record."""
+    return np.zeros(shape, kind).view(np.recarray)
+
+
+def frozen_rows(values: Sequence[Sequence[float]], kind: np.dtype) -> np.recarray:
+    """Return records of a kind with some values, a sequence each, closed to writing."""
+    records = np.array([tuple(row) for row in values], kind).view(np.recarray)
+    records.setflags(write=False)
+    return records
 
 
 def compiled(function, arrays=False):
@@ -33,7 +51,7 @@ def compiled(function, arrays=False):
     return _marked(function, arrays=arrays)
 
 
-def apart(function, arrays=False):
+def outlined(function, arrays=False):
     """Mark a large function of few arguments that is called in several places: compiled once for all."""
     return _marked(function, arrays=arrays, forceinline=False)
 
@@ -65,7 +83,9 @@ def fitting(function, half_edges, plain=None):
 def on_disk(function):
     """Whether a compiled function is in the cache already, or numba is set not to compile."""
     return not hasattr(function, "stats") or any(
-        Path(function.stats.cache_path or NOWHERE).glob(f"*{function.__name__}_{_fingerprint()}*.nbi")
+        Path(function.stats.cache_path or NO_FOLDER).glob(
+            f"*{function.__name__}_{_fingerprint(function.__module__)}*.nbi"
+        )
     )
 
 
@@ -103,7 +123,7 @@ def _marked(function, **how):
 
 def _named(function):
     """Name the files that a function has in the cache."""
-    function.__qualname__ = f"{function.__name__}_{_fingerprint()}"
+    function.__qualname__ = f"{function.__name__}_{_fingerprint(function.__module__)}"
     return function
 
 
@@ -113,8 +133,8 @@ def _register() -> None:
 
     while PENDING:
         function, how = PENDING.pop()
-        kept = {"cache": _can_keep()} if how.get("cache") else {}
-        register_jitable(**{"forceinline": True} | _options(**how) | kept)(function)
+        caching = {"cache": _can_keep()} if how.get("cache") else {}
+        register_jitable(**{"forceinline": True} | _options(**how) | caching)(function)
 
 
 def _options(arrays=False, **others) -> dict[Any, Any]:
@@ -126,16 +146,20 @@ def _options(arrays=False, **others) -> dict[Any, Any]:
 
 
 @functools.cache
-def _fingerprint():
-    """Digest of the compiled sources and of the names of all modules.
+def _fingerprint(module):
+    """Digest of the sources compiled into a module's entries, and of the names of their rooms' modules.
 
     A changed source must not find what an older one left on disk, and what lies there names the modules of
     the records that it is handed: one that has moved since could not be loaded.
     """
     library = Path(__file__).parents[1]
-    files = sorted(path for pattern in SOURCES for path in library.glob(pattern))
-    names = sorted(path.relative_to(library).as_posix() for path in library.rglob("*.py"))
+    room = module.split(".")[1] if module.startswith("feederscrew.") else ""
+    patterns = SOURCES.get(room, tuple(pattern for own in SOURCES.values() for pattern in own))
+    rooms = sorted({pattern.split("/")[0] for pattern in patterns})
+    names = sorted(
+        path.relative_to(library).as_posix() for own in rooms for path in (library / own).rglob("*.py")
+    )
     digest = hashlib.sha256("\n".join(names).encode())
-    for path in files:
+    for path in [Path(__file__), *sorted(path for pattern in patterns for path in library.glob(pattern))]:
         digest.update(path.read_bytes())
     return digest.hexdigest()[:12]

@@ -17,7 +17,7 @@ class GridAxis:
     unit: float = 1.0  # SI units in one unit of the column
 
     @property
-    def shown(self):
+    def in_unit(self):
         """Return the values in the column's unit, (N,)."""
         return self.values / self.unit
 
@@ -34,7 +34,7 @@ class Grid:
 
     def columns(self) -> dict[Any, Any]:
         """Return the cells as columns of a table, the second axis running fastest."""
-        first, second = np.meshgrid(self.first.shown, self.second.shown, indexing="ij")
+        first, second = np.meshgrid(self.first.in_unit, self.second.in_unit, indexing="ij")
         return {
             self.first.column: first.ravel(),
             self.second.column: second.ravel(),
@@ -77,8 +77,8 @@ def evaluate(first, second, function, names=(), rows=None) -> Any:
     Grid
     """
     shape = (len(first.values), len(second.values))
-    found = _by_rows(first.values, second.values, function, rows or len(first.values))
-    full = {name: check.frozen(np.broadcast_to(array, shape)) for name, array in found.items()}
+    values = _by_rows(first.values, second.values, function, rows or len(first.values))
+    full = {name: check.frozen(np.broadcast_to(array, shape)) for name, array in values.items()}
     codes = full.pop("regime", np.zeros(shape, dtype=int))
     return Grid(first, second, full, codes, tuple(names) or ("",))
 

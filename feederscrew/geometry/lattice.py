@@ -32,8 +32,8 @@ class Cells:
 
     def places(self, points):
         """Return in which cells points (..., 3) lie, (..., 3) int; those beside the lattice in its rim."""
-        found = np.rint((points - self.origin) / self.size).astype(int)
-        return np.clip(found, 0, np.array(self.solid.shape) - 1)
+        places = np.rint((points - self.origin) / self.size).astype(int)
+        return np.clip(places, 0, np.array(self.solid.shape) - 1)
 
     def at(self, points) -> tuple[Any, ...]:
         """Return the cells of points (N, 3) as an index of its arrays."""
@@ -74,7 +74,7 @@ def cells(corners, triangles, count) -> Cells:
 
 def _filled(triangles, origin, size, shape):
     """Cells (I, J, K) whose middles lie in the surface: those an odd number of facets lies under."""
-    column, height, _ = _met((triangles - origin) / size - [*COLUMN_OFFSETS, 0.0], shape)
+    column, height, _ = _crossed_columns((triangles - origin) / size - [*COLUMN_OFFSETS, 0.0], shape)
     above = np.clip(np.ceil(height).astype(int), 0, shape[2])
     turns = np.zeros((*shape[:2], shape[2] + 1), int)
     np.add.at(turns, (*column.T, above), 1)
@@ -101,7 +101,7 @@ def chords(corners, triangles, count) -> tuple[Any, ...]:
     size = float((most - least).max()) / count
     shape = np.ceil((most - least) / size).astype(int) + 1
     placed = (corners[triangles] - [*least, 0.0]) / size - [*COLUMN_OFFSETS, 0.0]
-    column, height, facet = _met(placed, shape)
+    column, height, facet = _crossed_columns(placed, shape)
     order = np.lexsort((height, column[:, 1], column[:, 0]))
     column, height, facet = column[order], height[order], facet[order]
     first = np.flatnonzero(np.append(True, (column[1:] != column[:-1]).any(axis=1)))
@@ -109,7 +109,7 @@ def chords(corners, triangles, count) -> tuple[Any, ...]:
     return size * (height[last] - height[first]), facet[first], facet[last]
 
 
-def _met(triangles, shape) -> tuple[Any, ...]:
+def _crossed_columns(triangles, shape) -> tuple[Any, ...]:
     """Where upright lines at whole numbers meet triangles (T, 3, 3): which line, how high, which one."""
     least = np.ceil(triangles[:, :, :2].min(axis=1)).astype(int).clip(0)
     most = np.floor(triangles[:, :, :2].max(axis=1)).astype(int).clip(None, shape[:2] - 1)
@@ -138,10 +138,10 @@ def handles(some):
     total = 0
     for mask in range(8):
         axes = [k for k in range(3) if mask >> k & 1]
-        found = full
+        components = full
         for k in axes:  # a corner, edge or face is there where any cube beside it is
             head = tuple(slice(None, -1) if m == k else slice(None) for m in range(3))
             tail = tuple(slice(1, None) if m == k else slice(None) for m in range(3))
-            found = found[head] | found[tail]
-        total += (-1) ** (3 - len(axes)) * int(found.sum())
+            components = components[head] | components[tail]
+        total += (-1) ** (3 - len(axes)) * int(components.sum())
     return 1 - total

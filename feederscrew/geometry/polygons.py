@@ -27,19 +27,14 @@ def outline(points) -> NDArray[np.float64]:
     corners = points[ConvexHull(points).vertices]
     least = FLAT_CORNER_SHARE * np.ptp(corners, axis=0).max()
     while len(corners) > 3:  # one at a time: of two corners in one place one must stay
-        standing_out = _standing_out(corners)
+        before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
+        chord = after - before
+        standing_out = cross(corners - before, chord) / np.hypot(*chord.T)
         k = int(np.argmin(standing_out))
         if standing_out[k] > least:
             break
         corners = np.delete(corners, k, axis=0)
     return corners
-
-
-def _standing_out(corners) -> NDArray[np.float64]:
-    """Distance of each corner from the line through its neighbours."""
-    before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
-    chord = after - before
-    return cross(corners - before, chord) / np.hypot(*chord.T)
 
 
 def centroid(polygon) -> Any:

@@ -84,7 +84,8 @@ def below(sides, least):
         _strip(least * begin[own], least * end[own], first[own], last[own])
         for own in _runs(over.any(axis=0) & (first + last > 0.0))
     ]
-    return shapely.union_all(pieces).simplify(least)
+    whole = shapely.multipolygons(pieces) if len(pieces) > 1 else pieces[0] if pieces else shapely.Polygon()
+    return (whole if whole.is_valid else shapely.union_all(pieces)).simplify(least)
 
 
 def _runs(covered) -> list[Any]:
@@ -96,4 +97,4 @@ def _runs(covered) -> list[Any]:
 def _strip(begin, end, first, last):
     """The area below sides that follow each other, from the first begin to the last end."""
     top = np.stack([begin, first, end, last], axis=1).reshape(-1, 2)
-    return shapely.Polygon([(begin[0], 0.0), *top.tolist(), (end[-1], 0.0)])
+    return shapely.polygons(np.concatenate([[(begin[0], 0.0)], top, [(end[-1], 0.0)]]))

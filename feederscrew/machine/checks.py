@@ -10,8 +10,7 @@ from feederscrew.bowl.record import Sizing
 from feederscrew.conveying import hop
 from feederscrew.errors import FeederError
 from feederscrew.machine.stroke import greatest_amplitude
-
-MM_S = 1e-3  # [m/s]
+from feederscrew.units import MM, MM_S
 
 
 def speed_remark(velocity: float, rules: Sizing | None) -> list[str]:
@@ -40,7 +39,7 @@ def speed_remark(velocity: float, rules: Sizing | None) -> list[str]:
     ]
 
 
-MM, MPA = 1e-3, 1e6
+MPA = 1e6
 VISIBLE_STROKE_SPREAD = 0.05  # of the stroke round a bowl, that parts show
 
 
@@ -142,7 +141,7 @@ def _throw(sheet: Any) -> Iterator[FeederError]:
 def _lowest(sheet: Any) -> Iterator[FeederError]:
     low, wanted = sheet.lowest, sheet.order.target
     if low.rate < wanted * (1.0 - 1e-6):
-        there = f"{60.0 * low.rate:.3g}/min at {100.0 * low.level:.3g} % of the fill, {low.way}"
+        there = f"{60.0 * low.rate:.3g}/min at {100.0 * low.level:.3g} % of the fill, {low.control}"
         what = f"{60.0 * wanted:.3g}/min are not kept as the bowl empties: {there}"
         yield FeederError("target", what, "hold the level with a hopper, or lower the target")
 

@@ -12,7 +12,16 @@ from typing import Any
 import numpy as np
 
 from feederscrew.bowl import schema
-from feederscrew.bowl.record import BALANCED, Bowl, Drive, Machine, Sizing, Unbalance, shares, vibration_angle
+from feederscrew.bowl.record import (
+    UNBALANCE_UNKNOWN,
+    Bowl,
+    Drive,
+    Machine,
+    Sizing,
+    Unbalance,
+    shares,
+    vibration_angle,
+)
 from feederscrew.bowl.schema import BY_NAME
 from feederscrew.bowl.settings import Setting, default
 from feederscrew.conveying import answer
@@ -20,7 +29,7 @@ from feederscrew.machine import sizing, springs
 from feederscrew.machine.sizing import Size
 from feederscrew.machine.springs import analyse_springs, gain, leaf_stress, tuned_leaf_sets, upright_pull
 from feederscrew.machine.stroke import stroke
-from feederscrew.units import factor
+from feederscrew.units import MM_S
 
 RADIUS_STEP_M = 1e-4  # of a springs' circle that is chosen
 
@@ -114,7 +123,7 @@ def _bowl_mass(radius: float, size: Size, rules: Sizing) -> Any:
 def _unbalance(size: Size, machine: Machine) -> Unbalance:
     """How the mass of the solid lies, in the measure of a mass and an inertia that the user gave."""
     if size.mass is None or size.inertia is None:
-        return BALANCED
+        return UNBALANCE_UNKNOWN
     heavy, own = machine.bowl_mass / size.mass, size.unbalance
     x, y, z = own.moment
     inert = machine.bowl_inertia / size.inertia
@@ -186,7 +195,6 @@ SAME_ANGLE = np.radians(0.5)  # angles at the track that are nearer than this co
 SAME_PHASE = np.radians(0.05)
 LEAF_SPRING, TWO_AXIS = "leaf-spring drive", "two-axis drive"
 TWO_MAGNETS = "needs two magnets and a two-channel controller: one set of leaf springs cannot make it"
-MM_S = factor("mm/s", "velocity")
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,16 @@ from typing import Any
 import numpy as np
 
 from feederscrew import check, units
-from feederscrew.bowl.record import BALANCED, RIGHT_ANGLE_RAD, Bowl, Machine, Sizing, Track, Unbalance, shares
+from feederscrew.bowl.record import (
+    RIGHT_ANGLE_RAD,
+    UNBALANCE_UNKNOWN,
+    Bowl,
+    Machine,
+    Sizing,
+    Track,
+    Unbalance,
+    shares,
+)
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.geometry.polygons import turned
@@ -55,7 +64,7 @@ class Size:
     pitch: float  # [m] rise of one turn
     mass: float | None = None  # [kg] of the bowl, where it is known from its solid
     inertia: float | None = None  # [kg m2] of the same about its axis
-    unbalance: Unbalance = BALANCED  # of the same
+    unbalance: Unbalance = UNBALANCE_UNKNOWN  # of the same
     room: float | None = None  # [m] radius of its inside at the bottom, where its solid steps outwards
 
 

@@ -144,16 +144,16 @@ class _Ride:
     def over(self, speed) -> tuple[Any, ...]:
         """Return velocities at the samples and at the end of a period that begins with one, and the mean."""
         grid = [PERIOD_PHASE * k / self.samples for k in range(self.samples + 1)]
-        found, way = [speed], 0.0
+        speeds, travel = [speed], 0.0
         for start, end in itertools.pairwise(grid):
             speed, more = self._between(speed, start, end)
-            way += more
-            found.append(speed)
-        return np.array(found), way / PERIOD_PHASE
+            travel += more
+            speeds.append(speed)
+        return np.array(speeds), travel / PERIOD_PHASE
 
     def _between(self, speed, start, end) -> tuple[Any, ...]:
         """Velocity at the end of a stretch, and the way made in it, times the pace of the phase."""
-        way, now = 0.0, start
+        travel, now = 0.0, start
         while now < end:
             if speed == 0.0:
                 now, until, sense = self._loose(now, end)
@@ -162,8 +162,8 @@ class _Ride:
             if now >= end:
                 break
             speed, more, now = self._slip(speed, now, end, until, sense)
-            way += more
-        return speed, way
+            travel += more
+        return speed, travel
 
     def _loose(self, now, end) -> tuple[float, float, float]:
         """Where a part at rest breaks loose within a stretch, how long it is loose there, and its sense."""
@@ -175,12 +175,12 @@ class _Ride:
     def _slip(self, speed, now, end, until, sense) -> tuple[float, float, float]:
         """Velocity, way and phase where a slip stops or the stretch ends."""
         span = end - now
-        after, way = self._step(now, span, speed, sense)
+        after, travel = self._step(now, span, speed, sense)
         low = until - now
         if sense * after > 0.0:
             low = self._slowest(now, span, speed, sense) if speed != 0.0 else span
             if low >= span or sense * self._step(now, low, speed, sense)[0] > 0.0:
-                return after, way, end
+                return after, travel, end
             low, span = 0.0, low
         elif speed == 0.0 and sense * self._step(now, low, 0.0, sense)[0] <= 0.0:
             return 0.0, 0.0, end  # it breaks loose another way than along the line

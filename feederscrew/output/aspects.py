@@ -11,56 +11,53 @@ from feederscrew.output import columns, style, tables, tipping_graph
 from feederscrew.output import offers as offer
 from feederscrew.output.columns import G_MM2, MM2, UJ
 from feederscrew.output.heavy import heavy
+from feederscrew.output.tables import Frame
+from feederscrew.part.record import Part
 from feederscrew.resting import names_file
 from feederscrew.resting.aspects import postures
+from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.units import DEG, MM, quantity_text
 
 shading = heavy("feederscrew.output.shading")
 
 MOST_DRAWN_ASPECTS = 24  # rows that a picture shows
 NORMALS = ("normal_x", "normal_y", "normal_z")
-RECOMMENDED = ("p_recommended", "p_recommended_low", "p_recommended_high")
+RECOMMENDED_COLUMNS = ("p_recommended", "p_recommended_low", "p_recommended_high")
 PRINTED = (  # the table for people, unless they ask for more
-    "aspect", "lies", "stable", "height_mm", *RECOMMENDED,
+    "aspect", "lies", "stable", "height_mm", *RECOMMENDED_COLUMNS,
     "p_pmi", "p_csa", "p_stability", "surface", "tumbling",
 )  # fmt: skip
 
 
-def aspects(study):
-    """Return the classes of resting aspects, one row each.
+def aspects(study: AspectsStudy) -> Frame:
+    """Return the classes of resting aspects, one row each: the columns of ``aspects.csv``.
 
-    Parameters
-    ----------
-    study : AspectsStudy
-        An open surface is labelled in every row, and tumbling that fails a self-check.
-
-    Returns
-    -------
-    Frame
-        The columns of ``aspects.csv``.
+    An open surface is labelled in every row, and tumbling that fails a self-check.
     """
-    found = study.aspects
+    resting = study.aspects
     return tables.frame(
         {
-            "aspect": found.names,
-            "kind": found.kinds,
-            "faces": found.faces,
-            "stable": found.stable,
-            **dict(zip(NORMALS, found.normals.T)),
-            "height_mm": found.heights / MM,
-            "contact_area_mm2": found.contact_areas / MM2,
-            "solid_angle_sr": found.solid_angles,
-            "polar_inertia_g_mm2": found.polar_inertias / G_MM2,
-            **{f"p_{rule}": chance for rule, chance in found.probabilities.items()},
-            **_barriers(found),
-            "form": found.forms,
+            "aspect": resting.names,
+            "kind": resting.kinds,
+            "faces": resting.faces,
+            "stable": resting.stable,
+            **dict(zip(NORMALS, resting.normals.T)),
+            "height_mm": resting.heights / MM,
+            "contact_area_mm2": resting.contact_areas / MM2,
+            "solid_angle_sr": resting.solid_angles,
+            "polar_inertia_g_mm2": resting.polar_inertias / G_MM2,
+            **{f"p_{rule}": chance for rule, chance in resting.probabilities.items()},
+            **_barriers(resting),
+            "form": resting.forms,
             **_lies(study),
-            "rolling_circle_mm": np.where(np.isfinite(found.rolling_circles), found.rolling_circles, np.nan)
+            "rolling_circle_mm": np.where(
+                np.isfinite(resting.rolling_circles), resting.rolling_circles, np.nan
+            )
             / MM,
             **_interval("p_drop", study.tally),
             **_interval("p_recommended", study.recommended),
-            **_labels("surface", "open", study.part.open_surface, len(found.names)),
-            **_labels("tumbling", "doubtful", study.doubtful, len(found.names)),
+            **_labels("surface", "open", study.part.open_surface, len(resting.names)),
+            **_labels("tumbling", "doubtful", study.doubtful, len(resting.names)),
         }
     )
 
@@ -106,29 +103,29 @@ def _by_heading(frame) -> dict[Any, Any]:
 
 def by_share(frame):
     """Return a table of aspects with the likeliest answer first; as it is where there is no answer."""
-    if RECOMMENDED[0] not in frame:
+    if RECOMMENDED_COLUMNS[0] not in frame:
         return frame
     order = np.argsort(
-        -np.nan_to_num(np.asarray(frame[RECOMMENDED[0]], dtype=float), nan=-1.0), kind="stable"
+        -np.nan_to_num(np.asarray(frame[RECOMMENDED_COLUMNS[0]], dtype=float), nan=-1.0), kind="stable"
     )
     return tables.frame({name: [column[row] for row in order] for name, column in frame.items()})
 
 
 def _lies(study) -> dict[Any, Any]:
     """How the part lies, in words; nothing of a card, which has no shape."""
-    hull, found = study.part.hull, study.aspects
+    hull, resting = study.part.hull, study.aspects
     if hull is None:
         return {}
-    return {"lies": postures(found.normals, found.contact_areas, found.kinds, hull)}
+    return {"lies": postures(resting.normals, resting.contact_areas, resting.kinds, hull)}
 
 
-def _barriers(found) -> dict[Any, Any]:
-    if found.barriers is None:
+def _barriers(resting) -> dict[Any, Any]:
+    if resting.barriers is None:
         return {}
     return {
-        "barrier_mm": found.barriers / MM,
-        "barrier_uJ": found.barrier_energies / UJ,
-        "tip_angle_deg": found.tip_angles / DEG,
+        "barrier_mm": resting.barriers / MM,
+        "barrier_uJ": resting.barrier_energies / UJ,
+        "tip_angle_deg": resting.tip_angles / DEG,
     }
 
 
@@ -142,18 +139,11 @@ def _labels(name, text, wanted, count) -> dict[Any, Any]:
     return {name: [text] * count} if wanted else {}
 
 
-def document(study):
+def document(study: AspectsStudy) -> dict[str, Any]:
     """Return all that is known of a part and its aspects.
 
-    Parameters
-    ----------
-    study : AspectsStudy
-
-    Returns
-    -------
-    dict
-        That of `columns.part`; ``recommended``, the rule of the columns ``p_recommended...``, None for a
-        card; ``aspects``, the table.
+    That of `columns.part`; ``recommended``, the rule of the columns ``p_recommended...``, None for a card;
+    ``aspects``, the table.
     """
     answer = study.recommended
     rule = None if answer is None else answer.rule
@@ -166,30 +156,22 @@ def names(study):
     return names_file.text(study.part, study.aspects)
 
 
-def profiles(study) -> tuple[Any, ...]:
-    """Return the names of the stable aspects that a chart shows, and their probabilities by rule.
-
-    Parameters
-    ----------
-    study : AspectsStudy
-
-    Returns
-    -------
-    names : list of str
-    profiles : dict of str to (A,) float [1]
-    """
-    found = study.aspects
-    stable = np.flatnonzero(found.stable)[:MOST_DRAWN_ASPECTS]
-    return [found.names[row] for row in stable], {rule: p[stable] for rule, p in found.probabilities.items()}
+def profiles(study: AspectsStudy) -> tuple[Any, ...]:
+    """Return the names of the stable aspects that a chart shows, and their (A,) probabilities [1] by rule."""
+    resting = study.aspects
+    stable = np.flatnonzero(resting.stable)[:MOST_DRAWN_ASPECTS]
+    return [resting.names[row] for row in stable], {
+        rule: p[stable] for rule, p in resting.probabilities.items()
+    }
 
 
 def answer(study) -> np.ndarray | None:
     """Return the recommended answer for `profiles`, (3, A): share, low, high; None of a card."""
-    known = study.recommended
-    if known is None:
+    recommended = study.recommended
+    if recommended is None:
         return None
     stable = np.flatnonzero(study.aspects.stable)[:MOST_DRAWN_ASPECTS]
-    return np.array([known.p[stable], known.low[stable], known.high[stable]])
+    return np.array([recommended.p[stable], recommended.low[stable], recommended.high[stable]])
 
 
 def remarks(study) -> list[Any]:
@@ -204,19 +186,10 @@ def remarks(study) -> list[Any]:
     )
 
 
-def offers(study, *, tipping=False):
-    """Offer the table of aspects and its pictures.
+def offers(study: AspectsStudy, *, tipping=False) -> list[offer.Offer]:
+    """Offer the table of aspects, its pictures and, with ``tipping``, the tipping graph.
 
-    Parameters
-    ----------
-    study : AspectsStudy
-    tipping : bool
-        Offer the tipping graph as well.
-
-    Returns
-    -------
-    list of Offer
-        ``names.yaml`` and ``aspects.png`` only of a part that has a shape.
+    ``names.yaml`` and ``aspects.png`` only of a part that has a shape.
     """
     offered = [
         offer.table("aspects.csv", aspects, study),
@@ -233,17 +206,8 @@ def offers(study, *, tipping=False):
     return offered + (tipping_graph.offers(study) if tipping else [])
 
 
-def probability_chart(study):
-    """Draw the probability of each stable aspect: the recommended answer first, then every rule.
-
-    Parameters
-    ----------
-    study : AspectsStudy
-
-    Returns
-    -------
-    Figure
-    """
+def probability_chart(study: AspectsStudy):
+    """Draw the probability of each stable aspect: the recommended answer first, then every rule."""
     part = study.part
     title = f"{part.name} (open surface)" if part.open_surface else part.name
     names, by_rule = profiles(study)
@@ -253,18 +217,8 @@ def probability_chart(study):
     return answer_bars(names, shares, by_rule, title=title)
 
 
-def aspect_sheet(study):
-    """Draw the part as it rests on each of its first aspects.
-
-    Parameters
-    ----------
-    study : AspectsStudy
-        Of a part with a mesh.
-
-    Returns
-    -------
-    Figure
-    """
+def aspect_sheet(study: AspectsStudy):
+    """Draw the part, which has a mesh, as it rests on each of its first aspects."""
     rows = range(min(len(study.aspects.names), MOST_DRAWN_ASPECTS))
     return aspect_views(study.part, study.aspects, rows, study.recommended)
 
@@ -280,21 +234,10 @@ BROAD, FEW, MANY = 6.0, 3, 5  # [in] width from which a legend has many columns,
 UPRIGHT_IN = 0.31  # [in] below this width of a bar its number stands on end
 
 
-def profile_bars(names, profiles, title=""):
-    """Draw the chart of several profiles side by side, grouped by aspect.
+def profile_bars(names, profiles, title: str = ""):
+    """Draw the chart of several profiles side by side, grouped by the A aspects that ``names`` lists.
 
-    Parameters
-    ----------
-    names : sequence of str
-        The A aspects.
-    profiles : dict of str to (A,) float [1]
-        Probability by aspect, by rule or by the name of an experiment; NaN draws no bar.
-    title : str
-        Over the chart.
-
-    Returns
-    -------
-    Figure
+    ``profiles`` are (A,) probabilities [1] by rule or by the name of an experiment; NaN draws no bar.
     """
     width = float(np.clip(len(names) * (len(profiles) + 1.0) * BAR_IN + 1.0, NARROW_IN, WIDE_IN))
     figure = style.figure(width, 3.4)
@@ -304,23 +247,11 @@ def profile_bars(names, profiles, title=""):
     return figure
 
 
-def answer_bars(names, answer, profiles, title=""):
+def answer_bars(names, answer, profiles, title: str = ""):
     """Draw the recommended answer with its interval as a bar, and every rule as a small mark beside it.
 
-    Parameters
-    ----------
-    names : sequence of str
-        The A aspects.
-    answer : (3, A) array_like [1]
-        Probability, and the lower and upper end of its interval.
-    profiles : dict of str to (A,) float [1]
-        Probability by rule.
-    title : str
-        Over the chart.
-
-    Returns
-    -------
-    Figure
+    ``answer`` is (3, A) [1], the probability of each aspect and the ends of its interval; ``profiles`` are
+    (A,) probabilities [1] by rule.
     """
     width = float(np.clip(len(names) * GROUP_IN + 1.0, NARROW_IN, WIDE_IN))
     figure = style.figure(width, 3.4)
@@ -339,8 +270,8 @@ def answer_bars(names, answer, profiles, title=""):
     style.named_ticks(axes, places, names)
     axes.tick_params(axis="x", length=0)
     axes.set_xlim(-0.55, len(names) - 0.45)
-    every = [high, *(100.0 * np.asarray(values) for values in profiles.values())]
-    axes.set_ylim(0.0, 1.12 * np.nanmax(every))
+    values_drawn = [high, *(100.0 * np.asarray(values) for values in profiles.values())]
+    axes.set_ylim(0.0, 1.12 * np.nanmax(values_drawn))
     _first_in_legend(figure, axes, MANY if width >= BROAD else FEW)
     return figure
 
@@ -355,16 +286,9 @@ def _first_in_legend(figure, axes, columns) -> None:
 
 
 def grouped_bars(axes, names, profiles, room=UPRIGHT_IN) -> None:
-    """Draw the bars of several profiles on an Axes, each with its value over it.
+    """Draw the bars of several profiles, as for ``profile_bars``, on an Axes, each with its value over it.
 
-    Parameters
-    ----------
-    axes : Axes
-        To draw on.
-    names, profiles
-        As in `probabilities`.
-    room : float [in]
-        Width of paper a bar has; decides whether its number is written across or on end.
+    ``room`` [in], the width of paper that a bar has, decides whether its number is written across or on end.
     """
     places = np.arange(len(names))
     width = 1.0 / (len(profiles) + 1.0)
@@ -383,11 +307,11 @@ def grouped_bars(axes, names, profiles, room=UPRIGHT_IN) -> None:
     axes.set_ylim(0.0, highest * 1.14)
 
 
-def _numbers(axes, x, percent, known, upright, texts=None) -> None:
+def _numbers(axes, x, percent, finite, upright, texts=None) -> None:
     """Write the percentages, or ``texts`` in their place, over the ends of bars."""
     look = {} if texts is None else {"fontweight": "bold"}
     texts = percent if texts is None else texts
-    for at, value, text in zip(x[known], percent[known], texts[known]):
+    for at, value, text in zip(x[finite], percent[finite], texts[finite]):
         axes.annotate(
             f"{text:.1f}",
             (at, value),
@@ -438,42 +362,31 @@ class Sheet:
         return column * width, top - height
 
 
-def aspect_views(part, found, rows, answer=None):
-    """Draw the part on each of its aspects.
+def aspect_views(part: Part, resting, rows, answer=None):
+    """Draw a part with a mesh on those of its aspects whose ``rows`` are given, in this order.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    found : Aspects
-        Its classes.
-    rows : sequence of int
-        Which of them are drawn, in this order.
-    answer : Recommended, optional
-        Told first, with its interval.
-
-    Returns
-    -------
-    Figure
+    The recommended ``answer``, where there is one, stands first below each, with its interval.
     """
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     points = shading.outermost(solid.points)
-    stances = [shading.stance(points, found.normals[row], found.heights[row] / solid.size) for row in rows]
-    sheet = _layout(stances, len(found.probabilities), answer is not None)
+    stances = [
+        shading.stance(points, resting.normals[row], resting.heights[row] / solid.size) for row in rows
+    ]
+    sheet = _layout(stances, len(resting.probabilities), answer is not None)
     figure = style.page(*sheet.page)
     for panel, (row, standing) in enumerate(zip(rows, stances)):
         frame = _frame(sheet, standing)
-        colour = shading.STEEL if found.stable[row] else shading.PALE
+        colour = shading.STEEL_COLOUR if resting.stable[row] else shading.PALE_COLOUR
         axes = _axes(figure, sheet, panel)
         axes.imshow(
             shading.picture(solid, standing, frame, colour), extent=frame.extent, interpolation="nearest"
         )
-        shading.contact(axes, solid, standing, found.polygons[row] / solid.size)
-        shading.rolling_axis(axes, solid, standing, found.axes[row])
+        shading.contact(axes, solid, standing, resting.polygons[row] / solid.size)
+        shading.rolling_axis(axes, solid, standing, resting.axes[row])
         shading.centre_of_mass(axes, 11.0 * sheet.pixel)
-        _caption(figure, sheet, panel, found, row, answer)
+        _caption(figure, sheet, panel, resting, row, answer)
     page = _head_and_foot(figure, sheet, part, solid)
-    shading.marks_legend(page, 30, 30, rolling=bool(np.isfinite(found.axes[list(rows)]).any()))
+    shading.marks_legend(page, 30, 30, rolling=bool(np.isfinite(resting.axes[list(rows)]).any()))
     return figure
 
 
@@ -509,24 +422,24 @@ def _share(sheet, left, bottom, width, height) -> tuple[Any, ...]:
     return left / page[0], bottom / page[1], width / page[0], height / page[1]
 
 
-def _caption(figure, sheet, panel, found, row, answer) -> None:
+def _caption(figure, sheet, panel, resting, row, answer) -> None:
     """Name, kind and count of a class; the recommended answer with its interval, then every rule, smaller."""
     left, bottom = sheet.place(panel)
     axes = figure.add_axes(_share(sheet, left, bottom - sheet.caption, sheet.image[0], sheet.caption))
     axes.set_axis_off()
     axes.set(xlim=(0, sheet.image[0]), ylim=(-sheet.caption, 0))
-    what = f"{found.kinds[row]} ×{found.faces[row]}" if found.stable[row] else "not stable"
+    what = f"{resting.kinds[row]} ×{resting.faces[row]}" if resting.stable[row] else "not stable"
     look = {"color": style.INK, "va": "center"}
-    name = axes.text(30, -0.6 * LINE_PX, found.names[row], fontsize=11, fontweight="bold", **look)
-    beside = {"xycoords": name, "xytext": (6, 0), "textcoords": "offset points"}
-    axes.annotate(what, (1.0, 0.5), fontsize=8, **beside, **look)
-    if not found.stable[row]:
+    name = axes.text(30, -0.6 * LINE_PX, resting.names[row], fontsize=11, fontweight="bold", **look)
+    after_name = {"xycoords": name, "xytext": (6, 0), "textcoords": "offset points"}
+    axes.annotate(what, (1.0, 0.5), fontsize=8, **after_name, **look)
+    if not resting.stable[row]:
         return
     top = -1.55 * LINE_PX
     if answer is not None:
         _answer(axes, top, *(float(ends[row]) for ends in (answer.p, answer.low, answer.high)))
         top -= LINE_PX
-    for place, (rule, values) in enumerate(found.probabilities.items()):
+    for place, (rule, values) in enumerate(resting.probabilities.items()):
         label, colour = style.method(rule, place)
         y = top - place * SMALL_LINE_PX
         axes.text(30, y, label, fontsize=6, color=style.INK, va="center")

@@ -6,51 +6,36 @@ from typing import Any
 
 from feederscrew.output import style
 from feederscrew.output.heavy import heavy
+from feederscrew.part.record import Part
 
 mpl_image = heavy("matplotlib.image")
 shading = heavy("feederscrew.output.shading")
 
-SHEET = "contact_sheet{}.png"  # as many as the parts need: nothing, then _2, _3 ...
+SHEET_NAME = "contact_sheet{}.png"  # as many as the parts need: nothing, then _2, _3 ...
 ACROSS, DOWN = 5, 8  # thumbnails on a sheet
 WIDTH, HEIGHT = 240, 180  # [px] of a thumbnail
 TEXT, EDGE = 72, 20  # [px] under each thumbnail, round the sheet
-LETTERS = 26  # of a line of text
+NAME_LETTERS = 26  # of a line of text
 LINES, BELOW = 8, 3  # of the reason why a part failed, and of what stands below a picture
 
 
-def thumbnail(part, found, aspect=None):
-    """Draw a small picture of a part on one of its aspects.
+def thumbnail(part: Part, record, aspect=None) -> bytes:
+    """Draw a part with a mesh on one of its aspects, without a name on the likeliest.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    found : Aspects
-    aspect : str, optional
-        Its name; without one, the likeliest.
-
-    Returns
-    -------
-    bytes
-        A PNG of ``WIDTH`` by ``HEIGHT`` pixels, the same for the same part.
+    Returns a PNG of ``WIDTH`` by ``HEIGHT`` pixels, the same for the same part.
     """
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
-    row = found.names.index(aspect or found.likeliest)
-    return _png(shading.thumbnail(solid, found, row, (WIDTH, HEIGHT)))
+    row = record.names.index(aspect or record.likeliest)
+    pixels = shading.thumbnail(solid, record, row, (WIDTH, HEIGHT))
+    buffer, metadata = io.BytesIO(), dict[str, Any](Software=None)  # None: no such entry
+    mpl_image.imsave(buffer, pixels, format="png", metadata=metadata)
+    return buffer.getvalue()
 
 
-def sheet(tiles):
-    """Draw a contact sheet of parts, ``ACROSS`` in a row.
+def sheet(tiles) -> bytes:
+    """Draw a contact sheet of parts, ``ACROSS`` in a row, as a PNG.
 
-    Parameters
-    ----------
-    tiles : sequence of (bytes or None, str, str)
-        A thumbnail, or None where the part failed, its name, and its rate or the reason.
-
-    Returns
-    -------
-    bytes
-        A PNG.
+    A tile is a thumbnail, or None where the part failed, its name, and its rate or the reason.
     """
     return style.png(_sheet(tiles))
 
@@ -70,32 +55,28 @@ def _sheet(tiles):
 
 def _tile(figure, axes, left, bottom, tile) -> None:
     """One thumbnail and its text, ``bottom`` being that of the text."""
-    picture, name, said = tile
+    picture, name, lines = tile
     if picture is not None:
         figure.figimage(mpl_image.imread(io.BytesIO(picture)), left, bottom + TEXT)
     failed = picture is None
     middle, colour = left + WIDTH / 2, style.ACCENT if failed else style.INK
     look = {"fontsize": 7, "color": colour, "ha": "center"}
-    axes.text(middle, bottom + TEXT - 14, _shortened(name, LETTERS), fontweight="bold", va="center", **look)
+    axes.text(
+        middle, bottom + TEXT - 14, _shortened(name, NAME_LETTERS), fontweight="bold", va="center", **look
+    )
     if failed:  # the reason has the place of the picture
-        axes.text(middle, bottom + TEXT + HEIGHT / 2, _wrapped(said, LINES), va="center", **look)
+        axes.text(middle, bottom + TEXT + HEIGHT / 2, _wrapped(lines, LINES), va="center", **look)
     else:
-        axes.text(middle, bottom + TEXT - 24, _wrapped(said, BELOW), va="top", **look)
+        axes.text(middle, bottom + TEXT - 24, _wrapped(lines, BELOW), va="top", **look)
 
 
 def _wrapped(text, most) -> str:
     """The text in as many lines as there is room for."""
-    lines = textwrap.wrap(text, LETTERS + 2)
+    lines = textwrap.wrap(text, NAME_LETTERS + 2)
     if len(lines) > most:
-        lines = [*lines[: most - 1], _shortened(lines[most - 1] + " ...", LETTERS)]
+        lines = [*lines[: most - 1], _shortened(lines[most - 1] + " ...", NAME_LETTERS)]
     return "\n".join(lines)
 
 
 def _shortened(text, most):
     return text if len(text) <= most else f"{text[: most - 3]}..."
-
-
-def _png(pixels):
-    buffer, metadata = io.BytesIO(), dict[str, Any](Software=None)  # None: no such entry
-    mpl_image.imsave(buffer, pixels, format="png", metadata=metadata)
-    return buffer.getvalue()

@@ -10,7 +10,7 @@ from feederscrew.output.tables import Frame
 from feederscrew.studies.bowl_fit import QUANTITIES, BowlFit
 from feederscrew.units import MM_S
 
-UNKNOWN = "not decided by these velocities"
+UNDECIDED = "not decided by these velocities"
 
 
 def quantities(study: BowlFit) -> Frame:
@@ -22,7 +22,7 @@ def quantities(study: BowlFit) -> Frame:
             "fitted": study.values.tolist(),
             "low": study.low.tolist(),
             "high": study.high.tolist(),
-            "decided": [UNKNOWN if open_end else "yes" for open_end in study.open_ended],
+            "decided": [UNDECIDED if open_end else "yes" for open_end in study.open_ended],
         }
     )
 
@@ -44,7 +44,8 @@ def velocities(study: BowlFit) -> Frame:
 def remark(study: BowlFit) -> str:
     """Return whether the fit explains the velocities."""
     before, after = (
-        float(np.sqrt(np.mean((one - study.measured) ** 2))) / MM_S for one in (study.file, study.fitted)
+        float(np.sqrt(np.mean((velocities_of - study.measured) ** 2))) / MM_S
+        for velocities_of in (study.file, study.fitted)
     )
     text = (
         f"remains {after:.3g} mm/s in the root of the mean square, {before:.3g} by the bowl file as it stands"

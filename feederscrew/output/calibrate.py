@@ -4,49 +4,32 @@ from typing import Any
 
 from feederscrew.output import offers as offer
 from feederscrew.output import tables
+from feederscrew.output.tables import Frame
+from feederscrew.studies.calibrate import CalibrateStudy
 
 UNLIKELY = 0.01  # p-value below which no exponent explains the counts
 
 
-def exponents(study):
-    """Return the exponents, one row a column of counts.
-
-    Parameters
-    ----------
-    study : CalibrateStudy
-
-    Returns
-    -------
-    Frame
-        The columns of ``calibrate.csv``.
-    """
+def exponents(study: CalibrateStudy) -> Frame:
+    """Return the exponents, one row a column of counts: the columns of ``calibrate.csv``."""
     fits = study.fits
-    found = [fit.calibration for fit in fits]
+    calibrations = [fit.calibration for fit in fits]
     return tables.frame(
         {
             "counts": [fit.name for fit in fits],
             "parts": [fit.parts for fit in fits],
-            "exponent": [each.exponent for each in found],
-            "exponent_low": [each.low for each in found],
-            "exponent_high": [each.high for each in found],
-            "chi_square": [each.chi_square.statistic for each in found],
-            "degrees_of_freedom": [each.chi_square.degrees_of_freedom or None for each in found],
-            "p_value": [each.chi_square.p_value for each in found],
+            "exponent": [each.exponent for each in calibrations],
+            "exponent_low": [each.low for each in calibrations],
+            "exponent_high": [each.high for each in calibrations],
+            "chi_square": [each.chi_square.statistic for each in calibrations],
+            "degrees_of_freedom": [each.chi_square.degrees_of_freedom or None for each in calibrations],
+            "p_value": [each.chi_square.p_value for each in calibrations],
         }
     )
 
 
-def document(study) -> dict[Any, Any]:
-    """Return the calibration as one JSON document.
-
-    Parameters
-    ----------
-    study : CalibrateStudy
-
-    Returns
-    -------
-    dict
-    """
+def document(study: CalibrateStudy) -> dict[str, Any]:
+    """Return the calibration as one JSON document."""
     fitted = {fit.name: dict(zip(study.aspects.names, fit.calibration.shares)) for fit in study.fits}
     return {"part": study.part.name, "calibrations": exponents(study), "p_surface": fitted}
 
@@ -62,17 +45,8 @@ def remarks(study):
     return listed
 
 
-def offers(study) -> list[Any]:
-    """Offer the table and the document of a calibration.
-
-    Parameters
-    ----------
-    study : CalibrateStudy
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: CalibrateStudy) -> list[offer.Offer]:
+    """Offer the table and the document of a calibration."""
     return [
         offer.table("calibrate.csv", exponents, study),
         offer.document("calibrate.json", document, study),

@@ -16,7 +16,7 @@ AXES_MARGIN_IN = 0.08  # [in] round the axes
 MOST_OF_PAGE = 0.95  # [1] of it that one line may take
 LONG_WORD = re.compile(r"(\S{24})\S{24,}(\S{20})")  # a name of more than 67 letters, its middle left out
 HALO = [withStroke(linewidth=2.5, foreground="white")]  # of letters over hatching or colours
-RIM = [withStroke(linewidth=1.1, foreground="#22303c")]  # of white letters over light colours
+LETTER_RIM = [withStroke(linewidth=1.1, foreground="#22303c")]  # of white letters over light colours
 
 
 class _Writer(RendererAgg):

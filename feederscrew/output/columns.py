@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.part.record import Part
 from feederscrew.units import MM, factor
 
 MM2, MM3 = factor("mm2", "area"), factor("mm3", "volume")
@@ -11,19 +12,8 @@ UJ = factor("uJ", "energy")
 GRAM, G_MM2, G_CM3 = factor("g", "mass"), factor("g mm2", "inertia"), factor("g/cm3", "density")
 
 
-def part(solid, warnings=()) -> dict[Any, Any]:
-    """Return what every document says of its part.
-
-    Parameters
-    ----------
-    solid : Part
-    warnings : sequence of str
-        Told since it was read.
-
-    Returns
-    -------
-    dict
-    """
+def part(solid: Part, warnings=()) -> dict[str, Any]:
+    """Return what every document says of its part; ``warnings`` are those since it was read."""
     return {
         "part": solid.name,
         "units": solid.units,
@@ -38,20 +28,11 @@ def part(solid, warnings=()) -> dict[Any, Any]:
     }
 
 
-def conditions(solid) -> dict[Any, Any]:
-    """Return what was assumed of a part, for ``run.json``.
-
-    Parameters
-    ----------
-    solid : Part
-
-    Returns
-    -------
-    dict
-    """
-    known = part(solid)
+def conditions(solid: Part) -> dict[str, Any]:
+    """Return what was assumed of a part, for ``run.json``."""
+    facts = part(solid)
     names = ("units", "material", "density_g_cm3", "centre_of_mass_mm", "open_surface")
-    return {name: known[name] for name in names}
+    return {name: facts[name] for name in names}
 
 
 def _in(value, unit):

@@ -9,7 +9,9 @@ import numpy as np
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.heavy import heavy
+from feederscrew.output.tables import Frame
 from feederscrew.resting.rules import registry
+from feederscrew.studies.compare import CompareStudy, SetsStudy
 from feederscrew.studies.passages import FeedingStudy
 
 mpl_patches = heavy("matplotlib.patches")
@@ -17,41 +19,26 @@ mpl_patches = heavy("matplotlib.patches")
 TESTS = ("chi_square", "degrees_of_freedom", "p_value")  # columns of the test, which needs counts
 
 
-def comparisons(study):
-    """Return every pair of profiles, a row each.
+def comparisons(study: CompareStudy) -> Frame:
+    """Return every pair of profiles, a row each: the columns of ``compare.csv``.
 
-    Parameters
-    ----------
-    study : CompareStudy
-
-    Returns
-    -------
-    Frame
-        The columns of ``compare.csv``; those of the test are empty where neither profile holds counts.
+    Those of the test are empty where neither profile holds counts.
     """
     return _frame(study.comparisons)
 
 
-def printed(study, format):
+def printed(study: CompareStudy, format: str) -> Frame:
     """Return what is printed: for people each measured profile with the rules, the nearest one first.
 
-    Parameters
-    ----------
-    study : CompareStudy
-    format : str
-        Of what is printed; the table leaves out how far rules are from each other, which the files hold.
-
-    Returns
-    -------
-    Frame
+    The table leaves out how far rules are from each other, which the files hold.
     """
     if format != "table":
         return comparisons(study)
-    order = [one.name for one in study.measured.profiles]
+    order = [profile.name for profile in study.measured.profiles]
     own = [each for each in study.comparisons if each.first.name in order]
-    beside = [each for each in own if each.second.name not in order]
-    beside.sort(key=lambda each: (order.index(each.first.name), each.total_variation))
-    return _frame([*beside, *(each for each in own if each.second.name in order)])
+    against_rules = [each for each in own if each.second.name not in order]
+    against_rules.sort(key=lambda each: (order.index(each.first.name), each.total_variation))
+    return _frame([*against_rules, *(each for each in own if each.second.name in order)])
 
 
 def _frame(compared):
@@ -74,17 +61,8 @@ def hidden(study):
     return () if any(each.chi_square.degrees_of_freedom for each in study.comparisons) else TESTS
 
 
-def document(study) -> dict[Any, Any]:
-    """Return the comparison as one JSON document.
-
-    Parameters
-    ----------
-    study : CompareStudy
-
-    Returns
-    -------
-    dict
-    """
+def document(study: CompareStudy) -> dict[str, Any]:
+    """Return the comparison as one JSON document."""
     listed = [
         {"name": p.name, "kind": p.kind, "values": p.values, "fractions": p.fractions} for p in study.profiles
     ]
@@ -104,17 +82,10 @@ def feeding_offers(study) -> list[Any]:
     return [offer.table(FEEDING_FILE, device_comparisons, study)]
 
 
-def device_comparisons(study):
-    """Return what passed each device, measured and predicted, a row a device.
+def device_comparisons(study: FeedingStudy) -> Frame:
+    """Return what passed each device, measured and predicted, a row a device: the columns of ``devices.csv``.
 
-    Parameters
-    ----------
-    study : FeedingStudy
-
-    Returns
-    -------
-    Frame
-        The columns of ``devices.csv``: shares of the parts that came to the device.
+    They are shares of the parts that came to the device.
     """
     return feeding_frame([study])
 
@@ -133,13 +104,13 @@ def feeding_frame(studies):
 
 def feeding_table(studies):
     """Return the table for people: without the rules, each share with its interval, files without folders."""
-    found = feeding_frame(studies)
-    columns = found.only(("set", "device", "passed", "rejected"))
-    columns["set"] = [Path(name).name for name in found["set"]]
+    rows = feeding_frame(studies)
+    columns = rows.only(("set", "device", "passed", "rejected"))
+    columns["set"] = [Path(name).name for name in rows["set"]]
     for name in ("measured", "predicted"):
-        ends = zip(found[name], found[f"{name}_low"], found[f"{name}_high"])
+        ends = zip(rows[name], rows[f"{name}_low"], rows[f"{name}_high"])
         columns[name] = ["{:.3f} ({:.3f} to {:.3f})".format(*three) for three in ends]
-    return tables.frame(columns | {"agrees": found["agrees"]})
+    return tables.frame(columns | {"agrees": rows["agrees"]})
 
 
 def feeding_hidden(study) -> tuple[Any, ...]:
@@ -147,17 +118,8 @@ def feeding_hidden(study) -> tuple[Any, ...]:
     return ("set", *_rules([study]))
 
 
-def feeding_document(study) -> dict[Any, Any]:
-    """Return one feeding test as a JSON document.
-
-    Parameters
-    ----------
-    study : FeedingStudy
-
-    Returns
-    -------
-    dict
-    """
+def feeding_document(study: FeedingStudy) -> dict[str, Any]:
+    """Return one feeding test as a JSON document."""
     head = study.measured.head
     return {
         "part": study.part.name,
@@ -169,7 +131,7 @@ def feeding_document(study) -> dict[Any, Any]:
 
 
 def _rules(studies) -> tuple[Any, ...]:
-    return tuple(dict.fromkeys(f"p_{rule}" for one in studies for rule in _own(one)))
+    return tuple(dict.fromkeys(f"p_{rule}" for study in studies for rule in _own(study)))
 
 
 def _own(study) -> list[Any]:
@@ -226,27 +188,26 @@ def sets_printed(study, form):
     return ([sets_table(study)] if study.sets else []) + tested
 
 
-def sets_frame(study):
+def sets_frame(study: SetsStudy) -> Frame:
     """Return the total variation of every set from every answer, a row a set, then a row a series.
 
-    Parameters
-    ----------
-    study : SetsStudy
-
-    Returns
-    -------
-    Frame
-        The columns of ``compare.csv``; an answer that a set does not have is empty.
+    The columns of ``compare.csv``; an answer that a set does not have is empty.
     """
-    apart = [one.apart for one in study.sets]
+    distances = [set_study.distances for set_study in study.sets]
     rows = [
-        (set_label(one), _series(study, one), one.measured.head.launch or None, *_counted(one), away)
-        for one, away in zip(study.sets, apart)
+        (
+            set_label(set_study),
+            _series(study, set_study),
+            set_study.measured.head.launch or None,
+            *_counted(set_study),
+            away,
+        )
+        for set_study, away in zip(study.sets, distances)
     ]
     rows += [_mean(name, sets) for name, sets in study.series.items() if len(sets) > 1]
     names = ("set", "series", "launch", "parts", "rule", "aspects", "inside")
-    made = dict(zip(names, zip(*(row[:-1] for row in rows))))
-    return tables.frame(made | {name: [row[-1].get(name) for row in rows] for name in study.answers})
+    columns = dict(zip(names, zip(*(row[:-1] for row in rows))))
+    return tables.frame(columns | {name: [row[-1].get(name) for row in rows] for name in study.answers})
 
 
 def sets_table(study):
@@ -254,11 +215,11 @@ def sets_table(study):
 
     Of the rules those in ``SPARE`` are left out where a line would have more letters than a page.
     """
-    made = sets_frame(study)
-    columns = {"set": made["set"], "launch": made["launch"], "parts": _whole(made["parts"])}
-    known = zip(_whole(made["inside"]), made["aspects"])
-    columns["inside"] = [None if some is None else f"{some} of {all}" for some, all in known]
-    return tables.frame(columns | {name: _three(made[name]) for name in study.answers})
+    whole = sets_frame(study)
+    columns = {"set": whole["set"], "launch": whole["launch"], "parts": _whole(whole["parts"])}
+    inside = zip(_whole(whole["inside"]), whole["aspects"])
+    columns["inside"] = [None if some is None else f"{some} of {all}" for some, all in inside]
+    return tables.frame(columns | {name: _three(whole[name]) for name in study.answers})
 
 
 def _three(values) -> list[Any]:
@@ -270,94 +231,83 @@ def _whole(values) -> list[Any]:
     return [None if value is None or value != value else f"{value:.0f}" for value in values]
 
 
-def set_label(one):
+def set_label(set_study):
     """Return how a SetStudy is called: its file, and its column where there are several."""
-    stem = Path(one.measured.source).stem
-    return stem if len(one.measured.profiles) == 1 else f"{stem}, {one.profile.name}"
+    stem = Path(set_study.measured.source).stem
+    return stem if len(set_study.measured.profiles) == 1 else f"{stem}, {set_study.profile.name}"
 
 
-def _series(study, one):
-    return next(name for name, sets in study.series.items() if one in sets)
+def _series(study, set_study):
+    return next(name for name, sets in study.series.items() if set_study in sets)
 
 
-def _counted(one) -> tuple[Any, ...]:
+def _counted(set_study) -> tuple[Any, ...]:
     """Parts counted, rule of the recommended answer, aspects, and how many of them it holds."""
-    parts = int(one.profile.values.sum()) if one.profile.counted else None
-    rule = None if one.recommended is None else one.recommended.rule
-    return parts, rule, len(one.aspects.names), one.inside
+    parts = int(set_study.profile.values.sum()) if set_study.profile.counted else None
+    rule = None if set_study.recommended is None else set_study.recommended.rule
+    return parts, rule, len(set_study.aspects.names), set_study.inside
 
 
 def _mean(name, sets) -> tuple[Any, ...]:
     """The row of a series: the mean over its sets."""
-    apart, known = [one.apart for one in sets], [one.inside for one in sets if one.inside is not None]
-    answers = dict.fromkeys(answer for away in apart for answer in away)
-    means = {k: float(np.mean([away[k] for away in apart if k in away])) for k in answers}
-    launches = {one.measured.head.launch or None for one in sets}
-    parts = [int(one.profile.values.sum()) for one in sets if one.profile.counted]
+    distances, inside = (
+        [set_study.distances for set_study in sets],
+        [set_study.inside for set_study in sets if set_study.inside is not None],
+    )
+    answers = dict.fromkeys(answer for away in distances for answer in away)
+    means = {k: float(np.mean([away[k] for away in distances if k in away])) for k in answers}
+    launches = {set_study.measured.head.launch or None for set_study in sets}
+    parts = [int(set_study.profile.values.sum()) for set_study in sets if set_study.profile.counted]
     return (
         f"{name}, mean of {len(sets)}",
         name,
         launches.pop() if len(launches) == 1 else None,
         sum(parts) if len(parts) == len(sets) else None,
         None,
-        sum(len(one.aspects.names) for one in sets),
-        sum(known) if known else None,
+        sum(len(set_study.aspects.names) for set_study in sets),
+        sum(inside) if inside else None,
         means,
     )
 
 
-def sets_document(study) -> dict[Any, Any]:
-    """Return many measured sets and every answer for them as one JSON document.
-
-    Parameters
-    ----------
-    study : SetsStudy
-
-    Returns
-    -------
-    dict
-    """
+def sets_document(study: SetsStudy) -> dict[str, Any]:
+    """Return many measured sets and every answer for them as one JSON document."""
     return {
-        "sets": [_set_document(one) for one in study.sets],
+        "sets": [_set_document(set_study) for set_study in study.sets],
         "total_variation": sets_frame(study),
-        "feeding_tests": [feeding_document(one) for one in study.feedings],
+        "feeding_tests": [feeding_document(set_study) for set_study in study.feedings],
     }
 
 
-def _set_document(one) -> dict[Any, Any]:
-    head = one.measured.head
-    known = one.recommended
+def _set_document(set_study) -> dict[Any, Any]:
+    head = set_study.measured.head
+    recommended = set_study.recommended
     return {
-        "file": one.measured.source,
-        "name": one.profile.name,
+        "file": set_study.measured.source,
+        "name": set_study.profile.name,
         **{key: value for key, value in vars(head).items() if value},
-        "kind": one.profile.kind,
-        "aspects": list(one.aspects.names),
-        "values": one.profile.values,
-        "fractions": one.profile.fractions,
-        "answers": {name: answer.fractions for name, answer in one.answers.items()},
-        "recommended": None if known is None else {"rule": known.rule, "low": known.low, "high": known.high},
-        "total_variation": one.apart,
+        "kind": set_study.profile.kind,
+        "aspects": list(set_study.aspects.names),
+        "values": set_study.profile.values,
+        "fractions": set_study.profile.fractions,
+        "answers": {name: answer.fractions for name, answer in set_study.answers.items()},
+        "recommended": None
+        if recommended is None
+        else {"rule": recommended.rule, "low": recommended.low, "high": recommended.high},
+        "total_variation": set_study.distances,
     }
 
 
-def sets_figure(study):
-    """Draw the total variation of every set from every answer as a table of shades.
-
-    Parameters
-    ----------
-    study : SetsStudy
-
-    Returns
-    -------
-    Figure
-    """
+def sets_figure(study: SetsStudy):
+    """Draw the total variation of every set from every answer as a table of shades."""
     from feederscrew.output import style
 
     answers = study.answers
-    values = np.array([[one.apart.get(name, np.nan) for name in answers] for one in study.sets])
-    made = style.figure(COLUMN_IN * len(answers) + 2.6, ROW_IN * len(study.sets) + 1.4)
-    axes = made.add_subplot()
+    values = np.array(
+        [[set_study.distances.get(name, np.nan) for name in answers] for set_study in study.sets]
+    )
+    figure = style.figure(COLUMN_IN * len(answers) + 2.6, ROW_IN * len(study.sets) + 1.4)
+    axes = figure.add_subplot()
     axes.imshow(values, cmap="Blues", vmin=0.0, vmax=DARKEST_VARIATION, aspect="auto")
     for (row, column), value in np.ndenumerate(values):
         if np.isfinite(value):
@@ -365,28 +315,19 @@ def sets_figure(study):
             axes.text(column, row, f"{value:.3f}", ha="center", va="center", fontsize=7, color=colour)
     style.tidy(axes, title="Total variation between what was measured and each answer", grid="none")
     axes.set_xticks(range(len(answers)), [look(name)[0] for name in answers], rotation=30, ha="right")
-    axes.set_yticks(range(len(study.sets)), [_set_and_launch(one) for one in study.sets])
+    axes.set_yticks(range(len(study.sets)), [_set_and_launch(set_study) for set_study in study.sets])
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
-    return made
+    return figure
 
 
-def _set_and_launch(one):
-    launch = one.measured.head.launch
-    return f"{set_label(one)} ({launch})" if launch else set_label(one)
+def _set_and_launch(set_study):
+    launch = set_study.measured.head.launch
+    return f"{set_label(set_study)} ({launch})" if launch else set_label(set_study)
 
 
-def offers(study) -> list[Any]:
-    """Offer the table of comparisons and their picture.
-
-    Parameters
-    ----------
-    study : CompareStudy
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: CompareStudy) -> list[offer.Offer]:
+    """Offer the table of comparisons and their picture."""
     alt = "What was measured beside each rule, and how far every two profiles are apart"
     return [
         offer.table("compare.csv", comparisons, study),
@@ -411,26 +352,25 @@ FIXED = {
     "experiment": ("experiment", "#545f6b"),
     "recommended": ("recommended", style.ANSWER),
 }
-OWN = ("#545f6b", "#cc79a7", "#a9b3bd", "#8f4a71", "#7d6b5d", "#5b3a8e")  # a user's profiles, in turn
-BAR = 0.20  # [in] of paper a bar gets
-WIDEST = 13.0  # [in] of all charts side by side
-UPRIGHT = 0.3  # [in] of a bar below which its number stands upright
+USER_COLOURS = (
+    "#545f6b",
+    "#cc79a7",
+    "#a9b3bd",
+    "#8f4a71",
+    "#7d6b5d",
+    "#5b3a8e",
+)  # a user's profiles, in turn
+BAR_WIDTH_IN = 0.20  # [in] of paper a bar gets
+MAX_CHARTS_IN = 13.0  # [in] of all charts side by side
+UPRIGHT_BAR_IN = 0.3  # [in] of a bar below which its number stands upright
 LEAST_ROOM = 0.17  # [in] of a bar below which its number is left out
 
 
-def look(name, place=0):
+def look(name: str, place=0):
     """Return label and colour of a profile, the same in every chart.
 
-    Parameters
-    ----------
-    name : str
-        A rule in any case, 'MDBT_80', or a user's own.
-    place : int
-        Of a user's own profile among others of its kind.
-
-    Returns
-    -------
-    label, colour : str
+    ``name`` is a rule in any case, 'MDBT_80', or a user's own; ``place`` is that of a user's own profile
+    among others of its kind.
     """
     series, _, amplitude = name.rpartition("_")
     if series in RAMPS and amplitude in ("78", "80", "82"):
@@ -439,24 +379,14 @@ def look(name, place=0):
         return FIXED[name]
     if name.lower() in registry.RULE_OF:
         return style.method(name.lower())
-    return name.replace("_", " "), OWN[place % len(OWN)]
+    return name.replace("_", " "), USER_COLOURS[place % len(USER_COLOURS)]
 
 
-def bars(axes, names, profiles, printed=None, room=BAR) -> None:
-    """Draw the grouped bars on an Axes, with a tick where print has the number.
+def bars(axes, names, profiles, printed=None, room=BAR_WIDTH_IN) -> None:
+    """Draw grouped bars on an Axes, with a tick where print has the number.
 
-    Parameters
-    ----------
-    axes : Axes
-        To draw on.
-    names : sequence of str
-        The A aspects.
-    profiles : dict of str to (A,) float [1]
-        By profile name.
-    printed : dict of str to (A,) float [1]
-        Published numbers of some of them.
-    room : float [in]
-        Width of paper a bar has.
+    ``names`` are the A aspects, ``profiles`` (A,) shares [1] by name, ``printed`` the published ones of some;
+    ``room`` [in] is the width of paper that a bar has.
     """
     places, width = np.arange(len(names)), 1.0 / (len(profiles) + 0.9)
     for place, (name, values) in enumerate(profiles.items()):
@@ -464,38 +394,27 @@ def bars(axes, names, profiles, printed=None, room=BAR) -> None:
         x = places + (place - 0.5 * (len(profiles) - 1)) * width
         axes.bar(x, 100.0 * values, 0.92 * width, color=colour, label=label)
         if room >= LEAST_ROOM:
-            _numbers(axes, x, 100.0 * values, upright=room < UPRIGHT)
+            _numbers(axes, x, 100.0 * values, upright=room < UPRIGHT_BAR_IN)
         if name in (printed or {}):
             _ticks(axes, x, 100.0 * printed[name], width)
     style.named_ticks(axes, places, names)
     axes.tick_params(axis="x", length=0)
     axes.set_xlim(-0.55, len(names) - 0.45)
     above = (
-        132.0 if LEAST_ROOM <= room < UPRIGHT else 114.0
+        132.0 if LEAST_ROOM <= room < UPRIGHT_BAR_IN else 114.0
     )  # numbers that stand upright are kept off the title
     axes.set_ylim(0.0, above * max(values.max() for values in profiles.values()))
 
 
-def comparison(title, names, measured, rules, compared):
+def comparison(title: str, names, measured, rules, compared):
     """Draw one chart a rule against everything measured, and how far each profile is from what was measured.
 
-    Parameters
-    ----------
-    title : str
-        The part's name.
-    names : sequence of str
-        The A aspects.
-    measured, rules : dict of str to (A,) float [1]
-    compared : dict of (str, str) to float [1]
-        Deviation of each pair of profiles.
-
-    Returns
-    -------
-    Figure
+    ``names`` are the A aspects, ``measured`` and ``rules`` (A,) shares [1] by name, ``compared`` the
+    deviation [1] of each pair of profiles.
     """
-    width = float(np.clip(len(names) * (len(measured) + 1.9) * BAR + 1.0, 4.2, 12.0))
+    width = float(np.clip(len(names) * (len(measured) + 1.9) * BAR_WIDTH_IN + 1.0, 4.2, 12.0))
     side, tall = max(3.1, 0.42 * len(measured) + 1.5), 0.42 * (len(measured) + len(rules)) + 1.3
-    across = max(1, min(len(rules), int(WIDEST / width)))
+    across = max(1, min(len(rules), int(MAX_CHARTS_IN / width)))
     rows = -(-max(len(rules), 1) // across)
     figure = style.figure(across * width + side, max(2.2 * rows, tall))
     grid = figure.add_gridspec(rows, across + 1, width_ratios=(*[width] * across, side))
@@ -527,10 +446,10 @@ def _legend(figure, measured, rules) -> None:
 
 def _matrix(axes, measured, rules, compared) -> None:
     """Deviations of every profile from those that were measured, as a table of shades."""
-    names, known = [*measured, *rules], {frozenset(pair): value for pair, value in compared.items()}
+    names, deviations = [*measured, *rules], {frozenset(pair): value for pair, value in compared.items()}
     values = np.full((len(names), len(measured)), np.nan)
     for j, i in zip(*np.tril_indices(len(names), -1, len(measured))):
-        values[j, i] = known.get(frozenset((names[j], names[i])), np.nan)
+        values[j, i] = deviations.get(frozenset((names[j], names[i])), np.nan)
     rows = slice(1, None)  # the first has nothing before it
     top = max(np.nanmax(values, initial=0.0), 0.1)
     axes.imshow(values[rows], cmap="Blues", vmin=0.0, vmax=1.25 * top, aspect="equal")

@@ -12,6 +12,7 @@ from feederscrew.output import style, tables
 from feederscrew.output.heavy import heavy
 from feederscrew.output.tables import heading
 from feederscrew.output.words import PHASE_WORDS, regime_words
+from feederscrew.studies.convey import ConveyStudy
 from feederscrew.units import MM_S, factor
 
 matplotlib = heavy("matplotlib")
@@ -26,33 +27,33 @@ RUNS_AWAY = (
     "this velocity is reached from rest; a part that once slides down fast enough does not stop again: "
     "the climb is steeper than kinetic friction"
 )
-LIMITS = {"forward": "slip up the track", "backward": "slip down the track"}
+SLIP_DIRECTIONS = {"forward": "slip up the track", "backward": "slip down the track"}
 
 
 def document(study) -> dict[Any, Any]:
     """Return a ConveyStudy as the JSON document, without the bowl's values."""
-    found, change = study.answer, sensitivity.SENSITIVITY_CHANGE
+    conveying, change = study.answer, sensitivity.SENSITIVITY_CHANGE
     return {
-        "status": found.status,
-        "period": found.period,
-        **{column: getattr(found, name) / MM_S for name, column in VELOCITIES.items()},
-        "velocity_slowest_period_mm_s": found.slowest / MM_S,
-        "velocity_fastest_period_mm_s": found.fastest / MM_S,
-        "regime": found.regime,
-        "runs_away": found.runs_away,
-        "acceleration_ratio": found.setting.ratio,
-        "throw_number": found.throw_number,
-        "mu_effective": found.setting.static,
-        "mu_effective_kinetic": found.setting.kinetic,
-        "mu_forward": found.mu_forward,
-        "mu_backward": found.mu_backward,
-        "margins": found.margins,
-        "fractions": found.fractions,
-        "longest_flight_periods": found.longest_flight,
-        "hardest_impact_mm_s": found.hardest_impact / MM_S,
-        "flights_per_period": found.flights,
-        "sensitivity": {name: _changed(found, pair, change) for name, pair in study.nearby.items()},
-        "friction_doubt": _changed(found, study.doubt, sensitivity.FRICTION_DOUBT),
+        "status": conveying.status,
+        "period": conveying.period,
+        **{column: getattr(conveying, name) / MM_S for name, column in VELOCITIES.items()},
+        "velocity_slowest_period_mm_s": conveying.slowest / MM_S,
+        "velocity_fastest_period_mm_s": conveying.fastest / MM_S,
+        "regime": conveying.regime,
+        "runs_away": conveying.runs_away,
+        "acceleration_ratio": conveying.setting.ratio,
+        "throw_number": conveying.throw_number,
+        "mu_effective": conveying.setting.static,
+        "mu_effective_kinetic": conveying.setting.kinetic,
+        "mu_forward": conveying.mu_forward,
+        "mu_backward": conveying.mu_backward,
+        "margins": conveying.margins,
+        "fractions": conveying.fractions,
+        "longest_flight_periods": conveying.longest_flight,
+        "hardest_impact_mm_s": conveying.hardest_impact / MM_S,
+        "flights_per_period": conveying.flights,
+        "sensitivity": {name: _changed(conveying, pair, change) for name, pair in study.nearby.items()},
+        "friction_doubt": _changed(conveying, study.doubt, sensitivity.FRICTION_DOUBT),
         "restitution_doubt": rebound(study.bowl, study.rebound),
         "validity": study.validity,
     }
@@ -69,8 +70,8 @@ def summary(document):
         ("acceleration ratio A w2/g", number(document["acceleration_ratio"])),
         ("throw number", _margin(document["throw_number"], document["margins"]["hop"])),
     ]
-    for way, meaning in LIMITS.items():
-        limit, margin = document[f"mu_{way}"], document["margins"][way]
+    for direction, meaning in SLIP_DIRECTIONS.items():
+        limit, margin = document[f"mu_{direction}"], document["margins"][direction]
         rows.append((f"friction that stops {meaning}", _margin(limit, margin)))
     times = document["fractions"].items()
     rows += [(f"time it {PHASE_WORDS[name]} [%]", number(100.0 * share)) for name, share in times]
@@ -85,33 +86,24 @@ def summary(document):
     return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
 
 
-def remarks(document):
-    """Return what a reader of one operating point must not overlook.
-
-    Parameters
-    ----------
-    document : dict
-
-    Returns
-    -------
-    list of str
-    """
-    said = []
+def remarks(document) -> list[str]:
+    """Return what a reader of the document of one operating point must not overlook, a sentence each."""
+    lines = []
     low, high = document["velocity_low_mm_s"], document["velocity_high_mm_s"]
     if document["status"] == "no steady state":
         return [NO_STEADY_STATE]
     if document["runs_away"]:
-        said.append(RUNS_AWAY)
+        lines.append(RUNS_AWAY)
     if document["status"] == "averaged":
-        said.append(
+        lines.append(
             f"not periodic: an average; means over {steady.AVERAGED_PERIODS} periods span "
             f"{between(low, high)} mm/s, single periods {_slowest_to_fastest(document)}"
         )
     elif high - low > answer.COEXISTING_VELOCITY_GAP * abs(high):
-        said.append(
+        lines.append(
             f"several steady velocities, {between(low, high)} mm/s, depending on how the part arrives"
         )
-    return said
+    return lines
 
 
 def cells(study):
@@ -126,13 +118,13 @@ def cells(study):
 
 def points(study):
     """Return the points of a ConveyCurve as a frame."""
-    found = _in_mm_s(study.cells)
+    columns = _in_mm_s(study.cells)
     return tables.frame(
         {
-            **{axis.column: axis.shown for axis in study.axes},
-            **{column: found[column] for column in VELOCITIES.values()},
-            "regime": np.asarray(answer.SWEEP_REGIMES)[found["regime"]],
-            "throw_number": found["throw_number"],
+            **{axis.column: axis.in_unit for axis in study.axes},
+            **{column: columns[column] for column in VELOCITIES.values()},
+            "regime": np.asarray(answer.SWEEP_REGIMES)[columns["regime"]],
+            "throw_number": columns["throw_number"],
             "status": study.statuses,
         }
     )
@@ -157,49 +149,41 @@ def _remarks(status, several) -> list[Any]:
     return [f"{count} of {status.size} cells: {what}" for what, count in counts.items() if count]
 
 
-def _in_mm_s(found) -> dict[Any, Any]:
-    return {VELOCITIES.get(name, name): a / MM_S if name in VELOCITIES else a for name, a in found.items()}
+def _in_mm_s(columns) -> dict[Any, Any]:
+    return {VELOCITIES.get(name, name): a / MM_S if name in VELOCITIES else a for name, a in columns.items()}
 
 
-def _changed(found, pair, change) -> dict[Any, Any]:
+def _changed(point, pair, change) -> dict[Any, Any]:
     return {
         "change_percent": 100.0 * change,
         "velocity_less_mm_s": pair.less / MM_S,
         "velocity_more_mm_s": pair.more / MM_S,
-        "percent_per_percent": pair.elasticity(found.velocity, change),
+        "percent_per_percent": pair.elasticity(point.velocity, change),
     }
 
 
-def rebound(bowl, found) -> dict[Any, Any] | None:
-    """Return a document's entry on the spread of restitution.
+def rebound(bowl, neighbours) -> dict[Any, Any] | None:
+    """Return a document's entry on the spread of restitution; None where nothing is thrown up.
 
-    Parameters
-    ----------
-    bowl : Bowl
-    found : Neighbours or None
-        From ``sensitivity.restitution_doubt``; None where nothing is thrown up.
-
-    Returns
-    -------
-    dict or None
+    ``neighbours`` are those of ``sensitivity.restitution_doubt``.
     """
-    if found is None:
+    if neighbours is None:
         return None
     low, high = sensitivity.rebounds(bowl)
     return {
         "restitution_low": low,
         "restitution_high": high,
-        "velocity_less_mm_s": found.less / MM_S,
-        "velocity_more_mm_s": found.more / MM_S,
+        "velocity_less_mm_s": neighbours.less / MM_S,
+        "velocity_more_mm_s": neighbours.more / MM_S,
     }
 
 
-def _bounced(found) -> list[Any]:
+def _bounced(spread) -> list[Any]:
     """A row of what the spread of restitution does, where the document has one."""
-    if found is None:
+    if spread is None:
         return []
-    ends = (number(found[f"restitution_{end}"]) for end in ("low", "high"))
-    speeds = (number(found[f"velocity_{end}_mm_s"]) for end in ("less", "more"))
+    ends = (number(spread[f"restitution_{end}"]) for end in ("low", "high"))
+    speeds = (number(spread[f"velocity_{end}_mm_s"]) for end in ("less", "more"))
     return [(f"velocity for restitution {' / '.join(ends)} [mm/s]", " / ".join(speeds))]
 
 
@@ -237,16 +221,16 @@ def number(value) -> str:
     return "none" if np.isnan(value) else f"{value:.4g}"
 
 
-def phase_document(found) -> dict[Any, Any]:
+def phase_document(phase) -> dict[Any, Any]:
     """Return a BestPhase for the JSON document."""
-    over = zip(found.frictions, found.best_over_friction, found.straight_over_friction)
+    over = zip(phase.frictions, phase.best_over_friction, phase.straight_over_friction)
     return {
-        "phase_deg": float(np.degrees(found.phase)),
-        "velocity_mm_s": found.velocity / MM_S,
-        "straight_mm_s": found.straight / MM_S,
-        "gain": found.velocity / found.straight if found.straight > 0.0 else np.nan,
-        "nine_tenths_from_deg": float(np.degrees(found.lowest)),
-        "nine_tenths_to_deg": float(np.degrees(found.highest)),
+        "phase_deg": float(np.degrees(phase.phase)),
+        "velocity_mm_s": phase.velocity / MM_S,
+        "straight_mm_s": phase.straight / MM_S,
+        "gain": phase.velocity / phase.straight if phase.straight > 0.0 else np.nan,
+        "nine_tenths_from_deg": float(np.degrees(phase.lowest)),
+        "nine_tenths_to_deg": float(np.degrees(phase.highest)),
         "over_friction": [
             {"friction": share, "velocity_mm_s": best / MM_S, "straight_mm_s": straight / MM_S}
             for share, best, straight in over
@@ -274,19 +258,8 @@ def phase_summary(best):
     return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
 
 
-def offers(study, settings) -> list[Any]:
-    """Offer the files of a ConveyStudy.
-
-    Parameters
-    ----------
-    study : ConveyStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: ConveyStudy, settings) -> list[offer.Offer]:
+    """Offer the files of a ConveyStudy."""
     return [
         offer.document("convey.json", lambda: document(study) | {"bowl": settings}),
         offer.picture("convey.png", "Plate and part over one steady cycle", _cycle, study),
@@ -314,7 +287,9 @@ def phase_offers(study, settings) -> list[Any]:
 
 def map_offers(study) -> list[Any]:
     """Offer the files of a ConveyMap, as a list of Offer."""
-    names = " and ".join(one.key.name.rpartition(".")[2].replace("_", " ") for one in study.ranges)
+    names = " and ".join(
+        key_range.key.name.rpartition(".")[2].replace("_", " ") for key_range in study.ranges
+    )
     return [
         offer.table("convey_map.csv", cells, study),
         offer.picture("convey_map.png", f"Velocity and regimes over {names}", _map, study),
@@ -337,39 +312,26 @@ def _map(study):
 PHASE_COLOURS = {"stick": "#5c6b78", "forward": "#009e73", "backward": "#d55e00", "flight": "#0072b2"}
 PLATE = "#aab4bd"
 PHASE_LINES = {"stick": "-", "forward": "-", "backward": "--", "flight": ":"}
-REGIMES = {  # colour and label; what a designer wants is the strongest
-    "stick": ("#eef2f5", "sticks"),
-    "forward": ("#79bfa4", "slips forward only"),
-    "backward": ("#e3a08a", "slips back only"),
-    "both": ("#f3dfae", "slips both ways"),
-    "hop": ("#c9dcea", "hops"),
-    "no steady state": ("#8c8c8c", "no steady state"),
-}
+CONVEY_COLOURS = {  # what a designer wants is the strongest
+    "stick": "#eef2f5", "forward": "#79bfa4", "backward": "#e3a08a", "both": "#f3dfae", "hop": "#c9dcea",
+    "no steady state": "#8c8c8c",
+}  # fmt: skip
 FIRST_PEAK = 3.0  # [1] near here the velocity per stroke has its first peak, without rebound
-THROWS = {1.0: "hop", FIRST_PEAK: "first peak", round(throw_of_flight(1.0), 4): "one period"}
-HATCH = "////"
-LEAST = 1e-9  # [mm/s] a scale of velocities is at least this wide
-NOWHERE = "no steady velocity anywhere"
+THROW_NAMES = {1.0: "hop", FIRST_PEAK: "first peak", round(throw_of_flight(1.0), 4): "one period"}
+SEVERAL_HATCH = "////"
+MIN_SCALE_MM_S = 1e-9  # [mm/s] a scale of velocities is at least this wide
+NO_VELOCITY = "no steady velocity anywhere"
 WAY = "[mm]"
 
 
-def cycle(trace, amplitude, found):
+def cycle(trace, amplitude, solved):
     """Draw plate and part over one steady cycle, along the track and along its normal.
 
-    Parameters
-    ----------
-    trace : CycleTrace
-    amplitude : float [m]
-    found : Answer
-        To the same setting.
-
-    Returns
-    -------
-    Figure
+    ``amplitude`` [m] is the plate's, ``solved`` the Answer to the setting of the CycleTrace ``trace``.
     """
     figure = style.figure(6.4, 5.2)
     top, bottom = figure.subplots(2, 1, sharex=True)
-    style.tidy(top, title=cycle_title(trace, found), y=f"along the track {WAY}")
+    style.tidy(top, title=cycle_title(trace, solved), y=f"along the track {WAY}")
     style.tidy(bottom, x="time [periods of the drive]", y=f"along its normal {WAY}")
     scale = amplitude * 1e3
     for axes, plate, part in (
@@ -382,32 +344,23 @@ def cycle(trace, amplitude, found):
     return figure
 
 
-def cycle_title(trace, found) -> str:
+def cycle_title(trace, solved) -> str:
     """Return what of a motion a trace shows, and how fast it is."""
-    shown, velocity = round(trace.time[-1]), f"{found.velocity * 1e3:.4g} mm/s"
-    if found.status == "no steady state":
-        return f"No steady state: {shown} periods of a slide that does not stop"
-    if found.status == "averaged":
-        return f"{shown} periods of a motion that does not repeat: {velocity} on average"
-    if shown < found.period:
-        return f"{shown} of the {found.period} periods of a steady cycle: {velocity}"
-    return f"One steady cycle: {velocity}" if shown == found.period else f"Steady motion: {velocity}"
+    periods, velocity = round(trace.time[-1]), f"{solved.velocity * 1e3:.4g} mm/s"
+    if solved.status == "no steady state":
+        return f"No steady state: {periods} periods of a slide that does not stop"
+    if solved.status == "averaged":
+        return f"{periods} periods of a motion that does not repeat: {velocity} on average"
+    if periods < solved.period:
+        return f"{periods} of the {solved.period} periods of a steady cycle: {velocity}"
+    return f"One steady cycle: {velocity}" if periods == solved.period else f"Steady motion: {velocity}"
 
 
 def velocity_map(grid, curve=None):
-    """Draw velocity and regimes over two keys of the bowl.
+    """Draw velocity and regimes over two keys of the bowl; hatched where several velocities coexist.
 
-    Parameters
-    ----------
-    grid : Grid
-        Of a ConveyMap.
-    curve : two (N,) float, optional
-        The operating points of one bowl over its radius, in the units of the axes.
-
-    Returns
-    -------
-    Figure
-        Hatched where several velocities coexist.
+    ``grid`` is that of a ConveyMap; ``curve``, two (N,) arrays in the units of the axes, has the operating
+    points of one bowl over its radius.
     """
     figure = style.figure(11.0, 4.6)
     left, right = figure.subplots(1, 2, sharey=True)
@@ -422,19 +375,8 @@ def velocity_map(grid, curve=None):
     return figure
 
 
-def curve(frame, title):
-    """Draw velocity over the first column, with its range where several coexist.
-
-    Parameters
-    ----------
-    frame : Frame
-        Of ``tables.points``.
-    title : str
-
-    Returns
-    -------
-    Figure
-    """
+def curve(frame, title: str):
+    """Draw the velocity of ``points`` over the first column, with its range where several coexist."""
     figure = style.figure()
     column = next(iter(frame))
     label = " ".join(heading(column))
@@ -448,18 +390,10 @@ def curve(frame, title):
 
 
 def on_axes(spans, bowl) -> tuple[Any, ...] | None:
-    """Return operating points of a bowl in the units of a map's axes.
+    """Return operating points of a bowl, two (N,) arrays in the units of a map's axes, of two KeyRange.
 
-    Parameters
-    ----------
-    spans : two KeyRange
-    bowl : Bowl
-        One operating point, or arrays of them as of ``radius.at_radius``.
-
-    Returns
-    -------
-    two (N,) float, or None
-        None where the axes are not vibration angle and stroke.
+    The bowl has one operating point, or arrays of them as of ``radius.at_radius``. None where the axes
+    are not vibration angle and stroke.
     """
     values = {"drive.vibration_angle": bowl.drive.vibration_angle, "drive.amplitude": bowl.drive.amplitude}
     if {span.key.field for span in spans} != set(values):
@@ -471,55 +405,57 @@ def _unit(key):
     return factor(key.unit, key.dimension)
 
 
-def _by_phase(axes, trace, way) -> None:
+def _by_phase(axes, trace, positions) -> None:
     """The part's line, each phase in its colour; drawn once a phase, with gaps."""
     for place, name in enumerate(PHASES):
         inside = trace.phase == place
         if inside.any():
-            shown = np.where(inside, way, np.nan)
+            in_phase = np.where(inside, positions, np.nan)
             look = {"color": PHASE_COLOURS[name], "linestyle": PHASE_LINES[name], "linewidth": 1.6}
-            axes.plot(trace.time, shown, label=f"part {PHASE_WORDS[name]}", **look)
+            axes.plot(trace.time, in_phase, label=f"part {PHASE_WORDS[name]}", **look)
 
 
 def _velocity(figure, axes, grid) -> None:
     style.tidy(axes, title="Velocity [mm/s], from rest", grid="none")
     axes.set(xlabel=_label(grid.first), ylabel=_label(grid.second))
     velocity = grid.values["velocity"].T / MM_S
-    known = velocity[np.isfinite(velocity)]
-    lowest, highest = known.min(initial=0.0), known.max(initial=LEAST)
+    finite = velocity[np.isfinite(velocity)]
+    lowest, highest = finite.min(initial=0.0), finite.max(initial=MIN_SCALE_MM_S)
     largest = max(highest, -lowest)
     shades = matplotlib.colormaps["PuOr_r"].with_extremes(bad="#8c8c8c")
     norm = mpl_colors.TwoSlopeNorm(0.0, -largest, largest)
-    x, y = grid.first.shown, grid.second.shown
+    x, y = grid.first.in_unit, grid.second.in_unit
     mesh = axes.pcolormesh(x, y, velocity, cmap=shades, norm=norm, shading="nearest", rasterized=True)
-    if not known.size:
-        axes.text(0.97, 0.93, NOWHERE, transform=axes.transAxes, ha="right", color="white")
+    if not finite.size:
+        axes.text(0.97, 0.93, NO_VELOCITY, transform=axes.transAxes, ha="right", color="white")
         return
     bar = figure.colorbar(mesh, ax=axes, fraction=0.05, pad=0.02).ax
     bar.tick_params(labelsize=8)
     bar.set_ylim(lowest, highest)
-    if known.min() < 0.0 < known.max():
+    if finite.min() < 0.0 < finite.max():
         axes.contour(x, y, velocity, [0.0], colors=style.INK, linewidths=1.2)
         style.tidy(axes, title="Velocity [mm/s], from rest; line: 0", grid="none")  # a legend hides cells
         axes.set(xlabel=_label(grid.first), ylabel=_label(grid.second))
     several = grid.values["several"].T.astype(float)
     if several.any():
         with matplotlib.rc_context({"hatch.linewidth": 0.5}):
-            axes.contourf(x, y, several, [0.5, 1.5], colors="none", hatches=[HATCH])
+            axes.contourf(x, y, several, [0.5, 1.5], colors="none", hatches=[SEVERAL_HATCH])
 
 
 def _regimes(axes, grid) -> None:
     style.tidy(axes, title="Regimes", x=_label(grid.first), grid="none")
-    colours = mpl_colors.ListedColormap([REGIMES[name][0] for name in grid.names])
+    colours = mpl_colors.ListedColormap([CONVEY_COLOURS[name] for name in grid.names])
     axes.pcolormesh(
-        *(grid.first.shown, grid.second.shown, grid.codes.T),
+        *(grid.first.in_unit, grid.second.in_unit, grid.codes.T),
         **{"cmap": colours, "vmin": -0.5, "vmax": len(grid.names) - 0.5, "shading": "nearest"},
     )
     present = [name for code, name in enumerate(grid.names) if (grid.codes == code).any()]
-    handles = [mpl_patches.Patch(facecolor=REGIMES[name][0], label=REGIMES[name][1]) for name in present]
+    handles = [
+        mpl_patches.Patch(facecolor=CONVEY_COLOURS[name], label=regime_words(name)) for name in present
+    ]
     if grid.values["several"].any():
         handles.append(
-            mpl_patches.Patch(fill=False, linewidth=0, hatch=HATCH, label="several velocities (left)")
+            mpl_patches.Patch(fill=False, linewidth=0, hatch=SEVERAL_HATCH, label="several velocities (left)")
         )
     axes.legend(
         handles=handles,
@@ -534,9 +470,9 @@ def _regimes(axes, grid) -> None:
 def _throws(axes, grid) -> None:
     """Lines of equal throw number: the hop, the first peak of the velocity, a flight of one period."""
     throw = grid.values["throw_number"].T
-    levels = [level for level in sorted(THROWS) if throw.min() < level < throw.max()]
+    levels = [level for level in sorted(THROW_NAMES) if throw.min() < level < throw.max()]
     if levels:
-        x, y = grid.first.shown, grid.second.shown
+        x, y = grid.first.in_unit, grid.second.in_unit
         lines = axes.contour(x, y, throw, levels, colors=style.INK, linewidths=0.8, linestyles="--")
         texts = axes.clabel(lines, fmt=lambda level: f"k = {level:.2g} ({_throw_name(level)})", fontsize=7)
         for text in texts:
@@ -544,7 +480,7 @@ def _throws(axes, grid) -> None:
 
 
 def _throw_name(level):
-    return THROWS[min(THROWS, key=lambda known: abs(known - level))]
+    return THROW_NAMES[min(THROW_NAMES, key=lambda known: abs(known - level))]
 
 
 def _label(axis) -> str:
@@ -552,4 +488,4 @@ def _label(axis) -> str:
 
 
 def _ends(axis) -> tuple[Any, ...]:
-    return axis.shown[0], axis.shown[-1]
+    return axis.in_unit[0], axis.in_unit[-1]

@@ -36,8 +36,11 @@ def write(path, targets, inputs) -> None:
 
 def rule(targets, inputs) -> str:
     """Return the text of the rule."""
-    made, needed = ([_escaped(path) for path in paths] for paths in (targets, inputs))
-    lines = [" ".join(made) + ": " + " \\\n  ".join(needed), *(f"{path}:" for path in needed)]
+    target_words, input_words = ([_escaped(path) for path in paths] for paths in (targets, inputs))
+    lines = [
+        " ".join(target_words) + ": " + " \\\n  ".join(input_words),
+        *(f"{path}:" for path in input_words),
+    ]
     return "".join(f"{line.rstrip()}\n" for line in lines)
 
 

@@ -11,6 +11,9 @@ from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.aspects import MARKS
 from feederscrew.output.heavy import heavy
+from feederscrew.output.tables import Frame
+from feederscrew.part.record import Part
+from feederscrew.studies.drop import DropStudy
 from feederscrew.units import MM
 
 mpl_ticker = heavy("matplotlib.ticker")
@@ -18,18 +21,10 @@ ndimage = heavy("scipy.ndimage")
 shading = heavy("feederscrew.output.shading")
 
 
-def counts(study):
-    """Return how many drops rest on each aspect, one row an aspect.
+def counts(study: DropStudy) -> Frame:
+    """Return how many drops rest on each aspect, one row an aspect: the columns of ``drop.csv``.
 
-    Parameters
-    ----------
-    study : DropStudy
-        One that the user stopped is labelled in every row.
-
-    Returns
-    -------
-    Frame
-        The columns of ``drop.csv``.
+    A test that the user stopped is labelled in every row.
     """
     aspects, tally = study.aspects, study.result.tally
     partial = {"partial": [True] * len(aspects.names)} if study.result.drops.partial else {}
@@ -50,17 +45,8 @@ def counts(study):
     )
 
 
-def document(study) -> dict[Any, Any]:
-    """Return the drop test as one JSON document.
-
-    Parameters
-    ----------
-    study : DropStudy
-
-    Returns
-    -------
-    dict
-    """
+def document(study: DropStudy) -> dict[str, Any]:
+    """Return the drop test as one JSON document."""
     result = study.result
     return {
         "part": study.part.name,
@@ -116,19 +102,11 @@ def title(study):
 NONE = "none"  # the class of a drop that never settles
 
 
-def traces(study):
-    """Return one row a moment of each followed drop.
+def traces(study: DropStudy) -> Frame:
+    """Return one row a moment of each followed drop: the columns of ``drop_traces.csv``.
 
-    Parameters
-    ----------
-    study : DropStudy
-        With at least one trace.
-
-    Returns
-    -------
-    Frame
-        The columns of ``drop_traces.csv``: the centre of mass over the plane, the quaternion from the
-        file's axes to the plane's, total energy over m g, what happens, and the aspect the drop ends on.
+    They are the centre of mass over the plane, the quaternion from the file's axes to the plane's, total
+    energy over m g, what happens, and the aspect the drop ends on.
     """
     followed = study.result.traces
     positions = np.concatenate([trace.positions for trace in followed]) / MM
@@ -173,17 +151,8 @@ def _events(trace):
     return events
 
 
-def offers(study):
-    """Offer the counts of a drop test and, where drops were followed, their motion.
-
-    Parameters
-    ----------
-    study : DropStudy
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: DropStudy) -> list[offer.Offer]:
+    """Offer the counts of a drop test and, where drops were followed, their motion."""
     offered = [
         offer.table("drop.csv", counts, study),
         offer.document("drop.json", document, study),
@@ -207,33 +176,20 @@ def _strip(study):
     return strip(study.part, study.aspects, trace, title)
 
 
-STEP = 0.09  # of a group: from the whisker to the mark of a rule, and from there to the next
+MARK_STEP = 0.09  # of a group: from the whisker to the mark of a rule, and from there to the next
 
 
-def counts_figure(title, aspects, tally, rules):
-    """Draw the chart of a drop test with its intervals, beside what the rules say.
-
-    Parameters
-    ----------
-    title : str
-    aspects : Aspects
-    tally : Tally
-    rules : dict of str to (A,) float [1]
-        Drawn as marks over each bar.
-
-    Returns
-    -------
-    Figure
-    """
+def counts_figure(title: str, aspects, tally, rules):
+    """Draw the chart of a drop test with its intervals; ``rules``, (A,) [1] by name, are marks."""
     places = np.arange(len(aspects.names))
     figure = style.figure(float(np.clip(0.9 * len(places) + 2.0, 5.2, 12.0)), 3.4)
     axes = style.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
     bars(axes, places, tally)
     for place, (name, values) in enumerate(rules.items()):
         label, colour = style.method(name, place)
-        beside = places + STEP * (place + 1)  # of the whisker, which stands in the middle
+        mark_places = places + MARK_STEP * (place + 1)  # of the whisker, which stands in the middle
         look = {"marker": MARKS[place % len(MARKS)], "ms": 5, "mec": "white", "mew": 0.6, "color": colour}
-        axes.plot(beside, 100.0 * values, ls="none", label=label, **look)
+        axes.plot(mark_places, 100.0 * values, ls="none", label=label, **look)
     style.named_ticks(axes, places, aspects.names)
     figure.legend(loc="outside lower center", ncols=min(len(rules) + 2, 6), frameon=False, fontsize=8)
     return figure
@@ -250,22 +206,15 @@ def bars(axes, places, tally) -> None:
 
 
 HEIGHT = "#0072b2"  # colour of the height of the centre of mass
-APART = 0.075  # of the axis: labels closer than this would touch
-ABOVE = 0.4  # room over the highest reference line, of that below it, on the logarithmic axis
+LABEL_SPACING = 0.075  # of the axis: labels closer than this would touch
+HEADROOM_SHARE = 0.4  # room over the highest reference line, of that below it, on the logarithmic axis
 LEGEND = (0.96, 0.87)  # places of its lines, of the axis
 
 
 def curve(axes, trace, aspects, rows) -> None:
-    """Draw the energy and height of the centre of mass over time, with the stills' numbers.
+    """Draw the energy and height of the centre of mass over time on an Axes.
 
-    Parameters
-    ----------
-    axes : Axes
-        To draw on.
-    trace : DropTrace
-    aspects : Aspects
-    rows : (S,) int
-        Rows of the stills.
+    The numbers of the stills stand at the (S,) ``rows`` of the trace.
     """
     times, energies, heights = 1e3 * trace.times, trace.energies / MM, trace.positions[:, 2] / MM
     style.tidy(axes, x="time [ms]", y="energy as height [mm]", grid="none")
@@ -275,7 +224,7 @@ def curve(axes, trace, aspects, rows) -> None:
     lowest = 0.88 * min(heights.min(), *(height for height, _, _ in lines))
     highest = max(height for height, _, _ in lines)
     axes.set_yscale("log")
-    axes.set_ylim(lowest, max(highest * (highest / lowest) ** ABOVE, 1.25 * energies.max()))
+    axes.set_ylim(lowest, max(highest * (highest / lowest) ** HEADROOM_SHARE, 1.25 * energies.max()))
     axes.set_xlim(0.0, 1.015 * times[-1])
     axes.yaxis.set_major_locator(mpl_ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter(mpl_ticker.FuncFormatter(lambda value, _: f"{value:g}"))
@@ -292,17 +241,7 @@ def curve(axes, trace, aspects, rows) -> None:
 
 
 def references(trace, aspects):
-    """Return heights to compare with: (mm, text, style), of every aspect and of the way out of the last.
-
-    Parameters
-    ----------
-    trace : DropTrace
-    aspects : Aspects
-
-    Returns
-    -------
-    list of (float, str, dict)
-    """
+    """Return heights to compare with: (mm, text, style), of every aspect and of the way out of the last."""
     plain = {"color": style.FAINT, "linewidth": 0.9, "zorder": 0}
     strong = {"color": style.INK, "linewidth": 0.9, "zorder": 1}
     lines = []
@@ -333,7 +272,7 @@ def _named(axes, lines) -> None:
     for height, text, look in lines:
         axes.axhline(height, **look)
         place = (np.log(height) - low) / (high - low)
-        if all(abs(place - other) >= APART for other in taken):
+        if all(abs(place - other) >= LABEL_SPACING for other in taken):
             taken.append(place)
             axes.text(1.01, place, f"{text} {height:.3g}", transform=axes.transAxes, fontsize=7, va="center",
                       color=style.INK)  # fmt: skip
@@ -342,13 +281,15 @@ def _named(axes, lines) -> None:
 ACROSS, DOWN = 6, 2  # stills
 WIDTH, TALLEST, GAP = 262, 430, 12  # [px] of a still; its greatest height; to the next
 EDGE, HEAD, CAPTION, CURVE = 30, 92, 44, 350  # [px]
-ROOM = 1.12  # of a still over the part in it
-FARTHEST = 1.7  # a part that flies high is drawn so much smaller, at most; higher still, its floor is cut off
+STILL_MARGIN = 1.12  # of a still over the part in it
+MAX_ZOOM_OUT = (
+    1.7  # a part that flies high is drawn so much smaller, at most; higher still, its floor is cut off
+)
 UP = 0.1  # of the lowest height of the centre of mass: a gap that is worth telling
-CELLS = 4.0  # of the floor's grid across a still, at least
-DEEP = 1.25  # [size] how far behind and before the part the grid is drawn
+CELLS_ACROSS = 4.0  # of the floor's grid across a still, at least
+GRID_REACH = 1.25  # [size] how far behind and before the part the grid is drawn
 PIECES = 160  # points of a line, to see which are hidden
-BEHIND = 40.0  # [size] how far behind the solid a point may lie
+HIDDEN_DISTANCE = 40.0  # [size] how far behind the solid a point may lie
 GRID = {"color": style.FAINT, "linewidth": 0.8, "zorder": 2}
 PAST = {"color": style.ACCENT, "linewidth": 1.1, "zorder": 4}
 AHEAD = {"color": style.ACCENT, "linewidth": 0.9, "linestyle": (0, (1, 2.2)), "zorder": 4}
@@ -375,7 +316,7 @@ class Strip:
     @property
     def step(self):
         """[m] of the grid on the plane."""
-        return grid_step(self.pixel * WIDTH / CELLS * self.solid.size)
+        return grid_step(self.pixel * WIDTH / CELLS_ACROSS * self.solid.size)
 
     def place(self, panel) -> tuple[Any, ...]:
         """Return the left, bottom, width and height of a still on the page."""
@@ -384,34 +325,20 @@ class Strip:
         return EDGE + column * (WIDTH + GAP), self.page[1] - above, WIDTH, self.heights[row]
 
 
-def strip(part, aspects, trace, title):
-    """Draw one drop.
-
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    aspects : Aspects
-        Of that part.
-    trace : DropTrace
-    title : str
-
-    Returns
-    -------
-    Figure
-    """
+def strip(part: Part, aspects, trace, title: str):
+    """Draw one drop of a part with a mesh in stills, and its energy below."""
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     rows = chosen(trace, ACROSS * DOWN)
-    laid, stances = _layout(solid, trace, rows)
-    figure = style.page(*laid.page)
-    page = _page(figure, laid, title)
+    layout, stances = _layout(solid, trace, rows)
+    figure = style.page(*layout.page)
+    page = _page(figure, layout, title)
     for panel, (row, standing) in enumerate(zip(rows, stances)):
-        place = laid.place(panel)
-        axes = figure.add_axes(_share(laid, *place), xticks=[], yticks=[])
+        place = layout.place(panel)
+        axes = figure.add_axes(_share(layout, *place), xticks=[], yticks=[])
         axes.spines[:].set_color(style.FAINT)
-        _still(axes, laid, standing, panel, row)
+        _still(axes, layout, standing, panel, row)
         _caption(page, place, panel + 1, still_caption(trace, row, aspects.names, _gap(solid, standing)))
-    axes = figure.add_axes(_share(laid, EDGE + 60, 66, laid.page[0] - 2 * EDGE - 240, CURVE - 116))
+    axes = figure.add_axes(_share(layout, EDGE + 60, 66, layout.page[0] - 2 * EDGE - 240, CURVE - 116))
     curve(axes, trace, aspects, rows)
     return figure
 
@@ -435,9 +362,9 @@ def _gap(solid, standing):
 def _layout(solid, trace, rows) -> tuple[Any, ...]:
     """The layout in which every still fits, all in one scale, and how the part stands in each."""
     places, points = trace.positions / solid.size, shading.outermost(solid.points)
-    way = places[rows[-1], :2] - places[rows[0], :2]
-    angle = np.arctan2(way[1], way[0])
-    along = np.array([np.cos(angle - shading.TURN), np.sin(angle - shading.TURN), 0.0])
+    displacement = places[rows[-1], :2] - places[rows[0], :2]
+    angle = np.arctan2(displacement[1], displacement[0])
+    along = np.array([np.cos(angle - shading.STANCE_TURN_RAD), np.sin(angle - shading.STANCE_TURN_RAD), 0.0])
     stances = [
         shading.placed(points, turn.inv().apply([0.0, 0.0, -1.0]), place[2], turn.inv().apply(along))
         for turn, place in zip(trace.turns[rows], places[rows])
@@ -446,9 +373,9 @@ def _layout(solid, trace, rows) -> tuple[Any, ...]:
     ends = np.array([[standing.framed[0, 1], standing.bounds[1, 1]] for standing in stances])
     ends += lifts[:, None]  # from the foot of the centre of mass
     widest = 2.0 * max(np.abs(standing.framed[:, 0]).max() for standing in stances)
-    close = ROOM * widest / WIDTH
-    pixel = float(np.clip(ROOM * np.ptp(ends) / TALLEST, close, FARTHEST * close))
-    ends += 0.5 * (ROOM - 1.0) * widest * np.array([-1.0, 1.0])
+    close = STILL_MARGIN * widest / WIDTH
+    pixel = float(np.clip(STILL_MARGIN * np.ptp(ends) / TALLEST, close, MAX_ZOOM_OUT * close))
+    ends += 0.5 * (STILL_MARGIN - 1.0) * widest * np.array([-1.0, 1.0])
     by_row = ends.reshape(DOWN, ACROSS, 2)
     low, high = by_row[..., 0].min(axis=1), by_row[..., 1].max(axis=1)
     heights = np.minimum(np.ceil((high - low) / pixel), TALLEST).astype(int)
@@ -457,21 +384,21 @@ def _layout(solid, trace, rows) -> tuple[Any, ...]:
     return Strip(solid, trace, places, heading, pixel, tuple(heights.tolist()), bottoms), stances
 
 
-def _still(axes, laid, standing, panel, row) -> None:
+def _still(axes, layout, standing, panel, row) -> None:
     """The part on its way, on a floor with a grid that stays where it is."""
-    _, _, width, height = laid.place(panel)
-    frame = shading.Shot(-0.5 * width * laid.pixel, laid.bottoms[panel], laid.pixel, width, height)
-    axes.imshow(_clear(laid.solid, standing, frame), extent=frame.extent, interpolation="nearest", zorder=3)
-    place, to_file = laid.places[row], laid.trace.turns[row].inv()
+    _, _, width, height = layout.place(panel)
+    frame = shading.Shot(-0.5 * width * layout.pixel, layout.bottoms[panel], layout.pixel, width, height)
+    axes.imshow(_clear(layout.solid, standing, frame), extent=frame.extent, interpolation="nearest", zorder=3)
+    place, to_file = layout.places[row], layout.trace.turns[row].inv()
     foot = np.linspace(place * [1.0, 1.0, 0.0], place, PIECES)
     for look, lines in (
-        (GRID, _grid(laid, place)),
-        (PAST, [laid.places[: row + 1]]),
-        (AHEAD, [laid.places[row:]]),
+        (GRID, _grid(layout, place)),
+        (PAST, [layout.places[: row + 1]]),
+        (AHEAD, [layout.places[row:]]),
         (FOOT, [foot]),
     ):
         for line in lines:
-            _draw(axes, laid.solid, standing.camera, to_file.apply(line - place), look)
+            _draw(axes, layout.solid, standing.camera, to_file.apply(line - place), look)
     axes.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
 
 
@@ -486,20 +413,20 @@ def _clear(solid, standing, frame):
 
 def _draw(axes, solid, camera, line, look) -> None:
     """Where a line (N, 3) about the centre of mass is not hidden by the solid."""
-    image, seen = camera.project(line), camera.sees(solid, line, away=BEHIND)
-    axes.plot(*np.where(seen[:, None], image, np.nan).T, **look)
+    image, visible = camera.project(line), camera.sees(solid, line, away=HIDDEN_DISTANCE)
+    axes.plot(*np.where(visible[:, None], image, np.nan).T, **look)
 
 
-def _grid(laid, place) -> Iterator[Any]:
+def _grid(layout, place) -> Iterator[Any]:
     """Lines on the plane about a still, along and across the way, a round number of millimetres apart."""
-    step = laid.step / laid.solid.size
-    ways = np.array([laid.heading, np.cross([0.0, 0.0, 1.0], laid.heading)])  # along, across
-    reaches, centre = (0.5 * WIDTH * laid.pixel, DEEP), ways @ place
-    for one, other in ((0, 1), (1, 0)):
+    step = layout.step / layout.solid.size
+    axes = np.array([layout.heading, np.cross([0.0, 0.0, 1.0], layout.heading)])  # along, across
+    reaches, centre = (0.5 * WIDTH * layout.pixel, GRID_REACH), axes @ place
+    for across, other in ((0, 1), (1, 0)):
         run = centre[other] + np.linspace(-reaches[other], reaches[other], PIECES)
-        first, last = (centre[one] + sign * reaches[one] for sign in (-1.0, 1.0))
+        first, last = (centre[across] + sign * reaches[across] for sign in (-1.0, 1.0))
         for value in step * np.arange(np.ceil(first / step), last / step):
-            yield value * ways[one] + run[:, None] * ways[other]
+            yield value * axes[across] + run[:, None] * axes[other]
 
 
 def grid_step(longest):
@@ -508,21 +435,21 @@ def grid_step(longest):
     return MM * decade * max(step for step in (1.0, 2.0, 5.0) if step * decade * MM <= longest * (1.0 + 1e-9))
 
 
-def _share(laid, left, bottom, width, height) -> tuple[Any, ...]:
-    page = laid.page
+def _share(layout, left, bottom, width, height) -> tuple[Any, ...]:
+    page = layout.page
     return left / page[0], bottom / page[1], width / page[0], height / page[1]
 
 
-def _page(figure, laid, title):
+def _page(figure, layout, title):
     """Title and scale; the Axes over the whole page, in pixels."""
-    width, height = laid.page
+    width, height = layout.page
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set_axis_off()
     axes.set(xlim=(0, width), ylim=(0, height))
     axes.text(EDGE, height - 34, title, fontsize=13, fontweight="bold", color=style.INK, va="center")
-    text = f"grid on the plane: {laid.step / MM:g} mm; line: path of the centre of mass"
+    text = f"grid on the plane: {layout.step / MM:g} mm; line: path of the centre of mass"
     axes.text(EDGE, height - 66, text, fontsize=8, color=style.INK, va="center")
-    shading.scale_bar(axes, width - EDGE, height - 66, laid.pixel * laid.solid.size)
+    shading.scale_bar(axes, width - EDGE, height - 66, layout.pixel * layout.solid.size)
     return axes
 
 

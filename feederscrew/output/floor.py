@@ -11,6 +11,7 @@ from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, ON_THE_LINE,
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.heavy import heavy
+from feederscrew.output.tables import Frame
 from feederscrew.studies.floor import FloorStudy
 from feederscrew.units import MM, factor
 
@@ -20,15 +21,15 @@ shading = heavy("feederscrew.output.shading")
 matplotlib = heavy("matplotlib")
 mpl_ticker = heavy("matplotlib.ticker")
 
-COARSE = 46  # values of each quantity of a map in a table
+TABLE_CELLS = 46  # values of each quantity of a map in a table
 MAPS = {  # by the end of their file's name
     "beta_friction": FloorStudy.over_angle_and_friction,
     "frequency_amplitude": FloorStudy.over_frequency_and_amplitude,
 }
 OUTSIDE = "line of action of N outside the contact"  # at that instant; over the strokes it may only rock
 STATE_WORDS = {"tip": "line of action outside the contact", "stick": "held by friction"}  # else as it is
-EVERY = 5  # of the samples of a cycle, in tables and documents
-LABELS = {  # what people read
+SAMPLE_STEP = 5  # of the samples of a cycle, in tables and documents
+FLOOR_LABELS = {  # what people read
     "normal_force_N": "normal force N",
     "alignment_acceleration_rad_s2": "alignment acceleration theta''",
     "stable_heading_deg": "stable heading",
@@ -43,100 +44,67 @@ LABELS = {  # what people read
 }
 
 
-def instant(found, posture, bowl) -> dict[Any, Any]:
-    """Return the upper reversal under the names of the JSON contract.
-
-    Parameters
-    ----------
-    found : FloorMotion or PrintedFloor
-        At one instant.
-    posture : Posture
-    bowl : Bowl
-
-    Returns
-    -------
-    dict
-    """
-    size = np.hypot(*found.acceleration)
+def instant(motion, posture, bowl) -> dict[str, Any]:
+    """Return the upper reversal under the names of the JSON contract, of a FloorMotion or PrintedFloor."""
+    size = np.hypot(*motion.acceleration)
     return {
-        "normal_force_N": float(found.normal_force),
-        "alignment_acceleration_rad_s2": float(found.turning) + 0.0,
+        "normal_force_N": float(motion.normal_force),
+        "alignment_acceleration_rad_s2": float(motion.turning) + 0.0,
         "stable_heading_deg": float(np.degrees(stable_heading(posture, bowl))),
-        "limiting_friction": float(found.limiting_friction),
-        "acceleration_y_m_s2": noiseless(found.acceleration[1], size),
-        "acceleration_z_m_s2": noiseless(found.acceleration[0], size),
-        **_offsets(found),
-        **_friction(found, bowl),
-        "tips": tips(getattr(found, "inside", np.nan)),
-        "state": MOTION_STATES[int(found.state)],
+        "limiting_friction": float(motion.limiting_friction),
+        "acceleration_y_m_s2": noiseless(motion.acceleration[1], size),
+        "acceleration_z_m_s2": noiseless(motion.acceleration[0], size),
+        **_offsets(motion),
+        **_friction(motion, bowl),
+        "tips": tips(getattr(motion, "inside", np.nan)),
+        "state": MOTION_STATES[int(motion.state)],
     }
 
 
-def over_cycle(found, course) -> dict[Any, Any]:
-    """One period as columns.
-
-    Parameters
-    ----------
-    found : FloorMotion of shape (N,)
-    course : Cycle
-
-    Returns
-    -------
-    dict of str to sequence
-    """
-    shown = slice(None, None, EVERY)
+def over_cycle(motion, course) -> dict[Any, Any]:
+    """Return one period as columns; ``motion`` is a FloorMotion of shape (N,), ``course`` its Cycle."""
+    samples = slice(None, None, SAMPLE_STEP)
     return {
-        "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[shown],
-        "state": [MOTION_STATES[code] for code in found.state[shown]],
-        "normal_force_N": found.normal_force[shown],
-        "friction_z_N": found.friction[shown, 0],
-        "friction_y_N": found.friction[shown, 1],
-        "limiting_friction": found.limiting_friction[shown],
-        "acceleration_z_m_s2": found.acceleration[shown, 0],
-        "acceleration_y_m_s2": found.acceleration[shown, 1],
-        "alignment_acceleration_rad_s2": found.turning[shown] + 0.0,
-        "velocity_m_s": course.velocity[shown],
-        "normal_line_offset_mm": found.offset[shown, 0] / MM,
-        "normal_line_offset_y_mm": found.offset[shown, 1] / MM,
-        "tips": [tips(inside) for inside in found.inside[shown]],
+        "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[samples],
+        "state": [MOTION_STATES[code] for code in motion.state[samples]],
+        "normal_force_N": motion.normal_force[samples],
+        "friction_z_N": motion.friction[samples, 0],
+        "friction_y_N": motion.friction[samples, 1],
+        "limiting_friction": motion.limiting_friction[samples],
+        "acceleration_z_m_s2": motion.acceleration[samples, 0],
+        "acceleration_y_m_s2": motion.acceleration[samples, 1],
+        "alignment_acceleration_rad_s2": motion.turning[samples] + 0.0,
+        "velocity_m_s": course.velocity[samples],
+        "normal_line_offset_mm": motion.offset[samples, 0] / MM,
+        "normal_line_offset_y_mm": motion.offset[samples, 1] / MM,
+        "tips": [tips(inside) for inside in motion.inside[samples]],
     }
 
 
-def document(found, settings) -> dict[Any, Any]:
-    """Return all of one FloorStudy, for JSON; of one as published, the upper reversal by print.
-
-    Parameters
-    ----------
-    found : FloorStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-
-    Returns
-    -------
-    dict
-    """
-    posture, bowl = found.posture, found.bowl
-    now, values = instant(found.now, posture, bowl), {}
-    if found.printed is not None:
-        values = {"instant": instant(found.printed, posture, bowl)}
-        values["difference"] = difference(values["instant"], now, found.terms)
+def document(study, settings) -> dict[str, Any]:
+    """Return all of one FloorStudy, for JSON; of one as published, the upper reversal by print."""
+    posture, bowl = study.posture, study.bowl
+    now, values = instant(study.now, posture, bowl), {}
+    if study.printed is not None:
+        values = {"instant": instant(study.printed, posture, bowl)}
+        values["difference"] = difference(values["instant"], now, study.terms)
     return {
-        "part": found.part.name,
+        "part": study.part.name,
         "aspect": posture.name,
         "kind": posture.kind,
         "form": posture.form,
-        "heading_deg": float(np.degrees(found.heading)),
+        "heading_deg": float(np.degrees(study.heading)),
         "height_mm": posture.height / MM,
         "drive_offset_mm": posture.offset / MM,
         "rolling_circle_mm": posture.rolling_circle / MM if np.isfinite(posture.rolling_circle) else None,
         "turning_inertia_g_mm2": posture.turning_inertia / factor("g mm2", "inertia"),
-        "as_published": found.printed is not None,
-        "regime": regime(found.cycle.state),
+        "as_published": study.printed is not None,
+        "regime": regime(study.cycle.state),
         "instant": now,
         **values,
-        "mean_velocity_m_s": mean_velocity(found),
-        "settled": found.course.settled,
-        "cycle": over_cycle(found.cycle, found.course),
+        "mean_velocity_m_s": mean_velocity(study),
+        "settled": study.course.settled,
+        "cycle": over_cycle(study.cycle, study.course),
         "bowl": settings,
     }
 
@@ -151,7 +119,7 @@ def printed(document, format):
 def summary(document):
     """Return the upper reversal, a row a quantity, for people."""
     now = document["instant"]
-    rows = {label(name, text): now[name] for name, text in LABELS.items() if name in now}
+    rows = {label(name, text): now[name] for name, text in FLOOR_LABELS.items() if name in now}
     for name, state in (
         ("state at the upper reversal", now["state"]),
         ("regime over the cycle", document["regime"]),
@@ -160,25 +128,13 @@ def summary(document):
     return tables.frame({"quantity": list(rows), "value": [shown_value(value) for value in rows.values()]})
 
 
-def difference(printed, complete, terms):
-    """Return printed against complete values, with the omitted term named.
-
-    Parameters
-    ----------
-    printed, complete : dict of str to float
-        Under the names of ``terms``.
-    terms : dict of str to str
-        Omitted term by quantity.
-
-    Returns
-    -------
-    Frame
-    """
+def difference(printed, complete, terms) -> Frame:
+    """Return printed against complete values by quantity, with the omitted term of each."""
     rows = [(name, printed[name], complete[name], term) for name, term in terms.items()]
     names, first, second, omitted = zip(*rows)
     gap = np.array(first, dtype=float) - np.array(second, dtype=float)
-    alike = np.abs(gap) <= 1e-9 * np.maximum(np.abs(first), np.abs(second))
-    listed = ["-" if same else term for same, term in zip(alike, omitted)]
+    is_equal = np.abs(gap) <= 1e-9 * np.maximum(np.abs(first), np.abs(second))
+    listed = ["-" if same else term for same, term in zip(is_equal, omitted)]
     return tables.frame(
         {
             "quantity": names,
@@ -190,13 +146,13 @@ def difference(printed, complete, terms):
     )
 
 
-def remarks(found):
+def remarks(study):
     """Return what a reader of a FloorStudy should know, a sentence each."""
-    posture, lines = found.posture, chosen(found)
+    posture, lines = study.posture, chosen(study)
     if len(posture.contact) == 0:
         lines.append("a part card has no contact polygon: whether it tips is not known")
     if rolls(posture):
-        limit = float(found.now.limiting_friction)
+        limit = float(study.now.limiting_friction)
         lines.append(
             f"rolling aspect, {posture.form}: it rolls, and slips as well where static friction is below"
             f" {limit:.3g}"
@@ -206,7 +162,7 @@ def remarks(found):
             f"it rolls in a circle: its centre of mass stays {posture.rolling_circle / MM:.4g} mm from the"
             " point where its axis meets the floor; the straight line of these numbers is not its path"
         )
-    if HOP in found.cycle.state:
+    if HOP in study.cycle.state:
         lines.append(
             "the part loses contact within the cycle: its flight is not followed here, but by feeder convey"
         )
@@ -217,12 +173,12 @@ def remarks(found):
 
 def map_cells(study, kind):
     """Return a map of ``MAPS`` as columns."""
-    return MAPS[kind](study, COARSE).columns()
+    return MAPS[kind](study, TABLE_CELLS).columns()
 
 
 def map_remarks(study) -> list[Any]:
     """Return what a reader of the maps should know, a sentence each."""
-    return [line for kind, make in MAPS.items() for line in map_notes(kind, make(study, COARSE))]
+    return [line for kind, make in MAPS.items() for line in map_notes(kind, make(study, TABLE_CELLS))]
 
 
 def map_notes(kind, grid) -> list[Any]:
@@ -236,12 +192,12 @@ def none_slides(grid) -> str:
     """Say what a map shows on which nothing slides: of which instant it is, and what happens there."""
     shares = {name: share for name, share in grid.shares().items() if share > 0.0}
     words = {"stick": "is held", "tip": "has its line of action outside the contact", "hop": "is in the air"}
-    said = ", ".join(
+    outcomes = ", ".join(
         f"{words[name]} in {100 * share:.3g} %" for name, share in shares.items() if name in words
     )
     return (
-        f"at the upper reversal the part slides in no cell of the map, it {said} of them; the map is of that"
-        " instant, the velocity of the whole cycle"
+        f"at the upper reversal the part slides in no cell of the map, it {outcomes} of them; the map is "
+        "of that instant, the velocity of the whole cycle"
     )
 
 
@@ -252,19 +208,19 @@ def alignment(study) -> dict[Any, Any]:
     return {"heading_deg": np.degrees(headings), **{name: cells[name] for name in names if name in cells}}
 
 
-def mean_velocity(found):
+def mean_velocity(study):
     """Of the cycle [m/s]; None where the part hops, or gets faster with every period."""
-    return None if HOP in found.cycle.state or not found.course.settled else found.course.mean
+    return None if HOP in study.cycle.state or not study.course.settled else study.course.mean
 
 
-def chosen(found) -> list[Any]:
+def chosen(study) -> list[Any]:
     """Return which aspect was taken, in one line, where none was asked for."""
-    return [f"Aspect {found.posture.name}, {found.why}"] if found.why else []
+    return [f"Aspect {study.posture.name}, {study.why}"] if study.why else []
 
 
 def label(name, text):
     """Return a quantity for people, its unit behind it."""
-    return text + next((f" [{unit}]" for end, unit in tables.UNITS.items() if name.endswith(end)), "")
+    return text + next((f" [{unit}]" for end, unit in tables.COLUMN_UNITS.items() if name.endswith(end)), "")
 
 
 def shown_value(value):
@@ -286,16 +242,16 @@ def tips(inside) -> bool | None:
     return None if np.isnan(inside) else bool(inside < -ON_THE_LINE)
 
 
-def _friction(found, bowl) -> dict[Any, Any]:
+def _friction(motion, bowl) -> dict[Any, Any]:
     """Friction of the complete equations and the most that the floor gives; the print has no such vector."""
-    if not hasattr(found, "friction"):
+    if not hasattr(motion, "friction"):
         return {}
-    limit = float(bowl.friction.static * found.normal_force)
-    return {"friction_N": float(np.hypot(*found.friction)), "greatest_friction_N": limit}
+    limit = float(bowl.friction.static * motion.normal_force)
+    return {"friction_N": float(np.hypot(*motion.friction)), "greatest_friction_N": limit}
 
 
-def _offsets(found) -> dict[Any, Any]:
-    pair = np.broadcast_to(found.offset, (2,)) if np.ndim(found.offset) else (found.offset, np.nan)
+def _offsets(motion) -> dict[Any, Any]:
+    pair = np.broadcast_to(motion.offset, (2,)) if np.ndim(motion.offset) else (motion.offset, np.nan)
     return {
         "normal_line_offset_mm": float(pair[0]) / MM,
         "normal_line_offset_y_mm": float(pair[1]) / MM + 0.0,
@@ -304,39 +260,28 @@ def _offsets(found) -> dict[Any, Any]:
 
 PART, CONTACT = "#dfe6ec", style.ACCENT
 DRIVE, FRICTION, MOTION, NORMAL = "#0072b2", "#b5482a", "#2f7d5b", "#5b3a8e"
-LONGEST = 0.62  # of the part's size: the longest arrow
+FORCE_ARROW_SHARE = 0.62  # of the part's size: the longest arrow
 
 
-def plan(posture, heading, found):
+def plan(posture, heading, motion):
     """Draw the part from above at the upper reversal, with what acts on it along the floor.
 
-    Parameters
-    ----------
-    posture : Posture
-        With an outline.
-    heading : float [rad]
-        theta.
-    found : FloorMotion
-        At that instant.
-
-    Returns
-    -------
-    Figure
+    The posture has an outline; ``heading`` [rad] is theta, ``motion`` the FloorMotion at that instant.
     """
     spread = np.ptp(turned(posture.outline, heading), axis=0)
     figure = style.figure(6.4, 1.5 + 5.0 * float(np.clip(1.3 * spread[1] / spread[0], 0.5, 1.0)))
     axes = style.tidy(figure.add_subplot(), x="x in the floor [mm]", y="y in the floor [mm]", grid="both")
     size = np.ptp(posture.outline, axis=0).max() / MM
     _part(axes, posture, heading, size)
-    pushed = turned(found.acceleration * posture.mass - found.friction, heading)
-    forces = [("drive", pushed, DRIVE), ("friction", turned(found.friction, heading), FRICTION)]
+    pushed = turned(motion.acceleration * posture.mass - motion.friction, heading)
+    forces = [("drive", pushed, DRIVE), ("friction", turned(motion.friction, heading), FRICTION)]
     _arrows(axes, forces, size)
-    pressed = bool(np.isfinite(found.offset).all() and found.normal_force > 0.0)
+    pressed = bool(np.isfinite(motion.offset).all() and motion.normal_force > 0.0)
     if pressed:
-        place = turned(found.offset, heading) / MM
+        place = turned(motion.offset, heading) / MM
         axes.plot(*place, "x", color=NORMAL, markersize=8, markeredgewidth=2, zorder=7)
-        _note(axes, place, f"N = {newtons(found.normal_force)}", NORMAL, (8, -12))
-    state = MOTION_STATES[int(found.state)]
+        _note(axes, place, f"N = {newtons(motion.normal_force)}", NORMAL, (8, -12))
+    state = MOTION_STATES[int(motion.state)]
     axes.set_title(
         f"{_aspect(posture)}, heading {np.degrees(heading):.4g}° at the upper reversal: {state}",
         loc="left", fontsize=10, color=style.INK, fontweight="bold",
@@ -347,27 +292,16 @@ def plan(posture, heading, found):
     return figure
 
 
-def cycle(found, course, title):
-    """Draw forces, acceleration and velocity over one settled period.
-
-    Parameters
-    ----------
-    found : FloorMotion of shape (N,)
-    course : Cycle
-    title : str
-
-    Returns
-    -------
-    Figure
-    """
+def cycle(motion, course, title: str):
+    """Draw forces, acceleration and velocity over one settled period; arguments as of ``over_cycle``."""
     figure = style.figure(6.8, 5.6)
     upper, lower = figure.subplots(2, 1, sharex=True)
     phase = np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)
     style.tidy(upper, title=title, y="force [N]")
-    upper.plot(phase, found.normal_force, color=NORMAL, label="normal force N")
-    upper.plot(phase, np.hypot(*found.friction.T), color=FRICTION, label="friction")
+    upper.plot(phase, motion.normal_force, color=NORMAL, label="normal force N")
+    upper.plot(phase, np.hypot(*motion.friction.T), color=FRICTION, label="friction")
     upper.axhline(0, color=style.INK, linewidth=0.8)
-    upper.set_ylim(top=1.28 * max(found.normal_force.max(), 1e-12))
+    upper.set_ylim(top=1.28 * max(motion.normal_force.max(), 1e-12))
     upper.legend(
         fontsize=8, frameon=False, loc="upper right", bbox_to_anchor=(1, 0.96), ncols=2, labelcolor=style.INK
     )
@@ -381,25 +315,15 @@ def cycle(found, course, title):
     )  # fmt: skip
     for axes in (upper, lower):
         phase_axis(axes)
-    state_band(upper, phase, found.state, MOTION_STATES)
-    state_legend(figure, found.state, MOTION_STATES)
+    state_band(upper, phase, motion.state, MOTION_STATES)
+    state_legend(figure, motion.state, MOTION_STATES)
     return figure
 
 
-def alignment_figure(grid, direction, title):
+def alignment_figure(grid, direction, title: str):
     """Draw the alignment acceleration over the heading, where known by print, with the stable heading.
 
-    Parameters
-    ----------
-    grid : dict of str to array
-        ``heading_deg``, ``alignment_acceleration_rad_s2`` and, where known, ``published_alignment_rad_s2``.
-    direction : float [deg]
-        Stable heading, NaN for none.
-    title : str
-
-    Returns
-    -------
-    Figure
+    ``grid`` has the columns of ``alignment``; ``direction`` [deg] is the stable heading, NaN for none.
     """
     figure = style.figure(6.4, 3.8)
     axes = style.tidy(
@@ -407,7 +331,7 @@ def alignment_figure(grid, direction, title):
     )
     if (printed := grid.get("published_alignment_rad_s2")) is not None:
         label = "as published [4.17], sliding or not"
-        axes.plot(grid["heading_deg"], printed, color=style.SPARE[3], linestyle="--", label=label)
+        axes.plot(grid["heading_deg"], printed, color=style.SPARE_COLOURS[3], linestyle="--", label=label)
     axes.plot(
         grid["heading_deg"],
         grid["alignment_acceleration_rad_s2"],
@@ -425,10 +349,10 @@ def alignment_figure(grid, direction, title):
     return figure
 
 
-def arrow(axes, start, step, text, color, *, pushing=False, beside=0) -> None:
+def arrow(axes, start, step, text, color, *, pushing=False, side=0) -> None:
     """A force arrow with its value: from ``start`` on or, ``pushing``, towards it from outside.
 
-    ``beside`` writes the value to the left (-1) or right (1) of the middle instead of beyond the head.
+    ``side`` writes the value to the left (-1) or right (1) of the middle instead of beyond the head.
     """
     tail = np.asarray(start) - step if pushing else np.asarray(start)
     head = tail + step
@@ -436,8 +360,8 @@ def arrow(axes, start, step, text, color, *, pushing=False, beside=0) -> None:
     axes.annotate("", head, tail, arrowprops=style, zorder=6)
     axes.plot(*(tail if pushing else head), alpha=0)
     shift = (-9.0 if pushing else 9.0) * np.asarray(step) / max(float(np.hypot(*step)), 1e-12)
-    if beside:
-        _note(axes, 0.4 * tail + 0.6 * head, text, color, (8.0 * beside, 0.0))
+    if side:
+        _note(axes, 0.4 * tail + 0.6 * head, text, color, (8.0 * side, 0.0))
     else:
         _note(axes, tail if pushing else head, text, color, shift, centred=True)
 
@@ -461,19 +385,14 @@ def _part(axes, posture, heading, size) -> None:
     )
     axes.plot(*outline.T, alpha=0)
     shading.centre_of_mass(axes, 0.022 * size, (0.0, 0.0))
-    _heading_line(axes, heading, size)
+    end = 0.72 * size * np.array([np.cos(heading), np.sin(heading)])  # x', the thesis's Z'
+    axes.plot([0, end[0]], [0, end[1]], color=style.INK, linewidth=0.8, linestyle=(0, (6, 3)), zorder=4)
+    axes.annotate("x'", end, (3, 10), textcoords="offset points", fontsize=9, color=style.INK, style="italic")
     middle = centroid(contact)
     axes.plot(*middle, "+", color=CONTACT, markersize=9, markeredgewidth=1.6, zorder=5)
     if posture.axis is not None:
         along = turned(posture.axis, heading) * 0.6 * size
-        axes.plot([-along[0], along[0]], [-along[1], along[1]], zorder=4, **shading.AXIS)
-
-
-def _heading_line(axes, heading, size) -> None:
-    """The body's own direction, x' (the thesis's Z')."""
-    end = 0.72 * size * np.array([np.cos(heading), np.sin(heading)])
-    axes.plot([0, end[0]], [0, end[1]], color=style.INK, linewidth=0.8, linestyle=(0, (6, 3)), zorder=4)
-    axes.annotate("x'", end, (3, 10), textcoords="offset points", fontsize=9, color=style.INK, style="italic")
+        axes.plot([-along[0], along[0]], [-along[1], along[1]], zorder=4, **shading.ROLLING_AXIS_LINE)
 
 
 def _legend(figure, posture, pressed) -> None:
@@ -489,7 +408,7 @@ def _legend(figure, posture, pressed) -> None:
             mpl_lines.Line2D([], [], marker="x", linestyle="", color=NORMAL, markeredgewidth=2, label=label)
         )
     if posture.axis is not None:
-        handles.append(mpl_lines.Line2D([], [], label="rolling axis", **shading.AXIS))
+        handles.append(mpl_lines.Line2D([], [], label="rolling axis", **shading.ROLLING_AXIS_LINE))
     figure.legend(
         handles=handles,
         fontsize=8,
@@ -505,7 +424,11 @@ def _arrows(axes, forces, size) -> None:
     for name, force, color in forces:
         if longest > 0.0 and np.hypot(*force) > 1e-6 * longest:
             arrow(
-                axes, (0, 0), LONGEST * size * force / longest, f"{name} {newtons(np.hypot(*force))}", color
+                axes,
+                (0, 0),
+                FORCE_ARROW_SHARE * size * force / longest,
+                f"{name} {newtons(np.hypot(*force))}",
+                color,
             )
 
 
@@ -529,64 +452,47 @@ HATCHES = {  # regime: hatch, colour of the face, what it says
     "leaves the wall": ("\\\\\\\\", "#dfe9d2", "leaves the wall"),
     "does not fit": ("xxx", "#d9d2e3", "does not fit: falls off the track"),
 }
-SOLID = ("hop", "stick", "does not fit")  # regimes whose values mean nothing, or are zero
+COVERED_REGIMES = ("hop", "stick", "does not fit")  # regimes whose values mean nothing, or are zero
 STATES = {"stick": "#9fb3c4", "slide": "#4f9d7f", "hop": "#c9ced3", "tip": style.ACCENT}
-HATCH = "#8d979f"
-SHADES = "cividis"
-HALF = 0.5
-THROWS = (1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0, 100.0)  # that a line may be drawn for
-LETTERS = 100  # of a line under a title
+REGION_HATCH_COLOUR = "#8d979f"
+VALUE_COLOURS = "cividis"
+CODE_HALF_STEP = 0.5
+THROW_LEVELS = (1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0, 100.0)  # that a line may be drawn for
+NOTE_LETTERS = 100  # of a line under a title
 
 
-def regime_map(grid, column, *, title, labels, value, own=None, note=()):
-    """Draw values in colour with contour lines, and every region where they mean something else.
+def regime_map(grid, column: str, *, title: str, labels, value: str, own=None, note=()):
+    """Draw a column of a Grid in colour with contour lines, and every region where it means something else.
 
-    Parameters
-    ----------
-    grid : Grid
-        Of maps.evaluate.
-    column : str
-        Whose values are shown.
-    title : str
-    labels : pair of str
-        Of the two axes.
-    value : str
-        What the colour bar shows.
-    own : pair of float, optional
-        The bowl's own point, in the axes' units.
-    note : sequence of str
-        Told under the title, a line each.
-
-    Returns
-    -------
-    Figure
+    ``labels`` are those of the two axes, ``value`` that of the colour bar. ``own`` is the bowl's own
+    point in the axes' units. Each ``note`` is a line under the title.
     """
     figure = style.figure(6.8, 4.8)
     axes = style.tidy(figure.add_subplot(), title=title, x=labels[0], y=labels[1], grid="none")
-    x, y, shown = grid.first.shown, grid.second.shown, np.asarray(grid.values[column]).T
-    if np.isfinite(shown).any():
-        _values(figure, axes, (x, y, shown), value, np.isin(grid.codes.T, _places(grid, SOLID)))
-    found = [name for name in HATCHES if _region(axes, grid, name)]
+    x, y, values = grid.first.in_unit, grid.second.in_unit, np.asarray(grid.values[column]).T
+    if np.isfinite(values).any():
+        _values(figure, axes, (x, y, values), value, np.isin(grid.codes.T, _places(grid, COVERED_REGIMES)))
+    regions = [name for name in HATCHES if _region(axes, grid, name)]
     _throws(axes, grid)
     if own is not None:
         _own_point(axes, own)
     if note:
-        _map_note(axes, note)
+        # sentences under the title, each from a line of its own
+        listed = [piece for line in note for piece in textwrap.wrap(line, NOTE_LETTERS)]
+        axes.text(
+            0.0, 1.01, "\n".join(listed), transform=axes.transAxes, fontsize=7.5, color=style.INK, va="bottom"
+        )
+        axes.set_title(
+            axes.get_title(loc="left"),
+            loc="left",
+            fontsize=10,
+            color=style.INK,
+            fontweight="bold",
+            pad=6 + 10 * len(listed),
+        )
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
-    _map_legend(figure, found)
+    _map_legend(figure, regions)
     return figure
-
-
-def _map_note(axes, lines) -> None:
-    """Sentences under the title, each from a line of its own."""
-    listed = [piece for line in lines for piece in textwrap.wrap(line, LETTERS)]
-    axes.text(
-        0.0, 1.01, "\n".join(listed), transform=axes.transAxes, fontsize=7.5, color=style.INK, va="bottom"
-    )
-    axes.set_title(
-        axes.get_title(loc="left"), loc="left", fontsize=10, color=style.INK, fontweight="bold",
-        pad=6 + 10 * len(listed),
-    )  # fmt: skip
 
 
 def state_band(axes, phase, states, names) -> None:
@@ -595,7 +501,7 @@ def state_band(axes, phase, states, names) -> None:
     for code, name in enumerate(names):
         for run in _runs(np.asarray(states) == code):
             axes.axvspan(
-                phase[run[0]] - HALF * step, phase[run[-1]] + HALF * step,
+                phase[run[0]] - CODE_HALF_STEP * step, phase[run[-1]] + CODE_HALF_STEP * step,
                 ymin=0.965, color=STATES[name], linewidth=0,
             )  # fmt: skip
 
@@ -620,17 +526,17 @@ def _places(grid, names) -> list[Any]:
 
 
 def _values(figure, axes, data, label, covered) -> None:
-    x, y, shown = data
-    finite = shown[np.isfinite(shown)]
+    x, y, values = data
+    finite = values[np.isfinite(values)]
     low, high = finite.min(), finite.max()
     high = high if high - low > 1e-12 * max(abs(high), 1e-300) else low + 1.0
-    mesh = axes.pcolormesh(x, y, shown, cmap=SHADES, vmin=low, vmax=high, shading="nearest", zorder=1)
+    mesh = axes.pcolormesh(x, y, values, cmap=VALUE_COLOURS, vmin=low, vmax=high, shading="nearest", zorder=1)
     bar = figure.colorbar(mesh, ax=axes, pad=0.02)
     bar.set_label(label, fontsize=9, color=style.INK)
     bar.ax.tick_params(labelsize=8, colors=style.INK)
     bar.outline.set_visible(False)
-    open_to_view = np.ma.masked_invalid(np.where(covered, np.nan, shown))
-    if min(shown.shape) > 1 and open_to_view.count() and np.ptp(open_to_view.compressed()) > 0.0:
+    open_to_view = np.ma.masked_invalid(np.where(covered, np.nan, values))
+    if min(values.shape) > 1 and open_to_view.count() and np.ptp(open_to_view.compressed()) > 0.0:
         lines = axes.contour(x, y, open_to_view, 8, colors="white", linewidths=0.6, zorder=2)
         for text in axes.clabel(lines, fmt="%g", fontsize=6.5):
             text.set_path_effects(style.rim())
@@ -644,15 +550,21 @@ def _region(axes, grid, name) -> bool:
     if not inside.any():
         return False
     hatch, colour, _ = HATCHES[name]
-    with matplotlib.rc_context({"hatch.color": HATCH, "hatch.linewidth": 0.6}):
+    with matplotlib.rc_context({"hatch.color": REGION_HATCH_COLOUR, "hatch.linewidth": 0.6}):
         cover = np.where(inside, 1.0, 0.0)
         axes.contourf(
-            grid.first.shown, grid.second.shown, cover, [HALF, 1.5], colors=[colour],
-            alpha=1.0 if name in SOLID else 0.55, hatches=[hatch or None], zorder=3,
+            grid.first.in_unit, grid.second.in_unit, cover, [CODE_HALF_STEP, 1.5], colors=[colour],
+            alpha=1.0 if name in COVERED_REGIMES else 0.55, hatches=[hatch or None], zorder=3,
         )  # fmt: skip
     if not inside.all():
         axes.contour(
-            grid.first.shown, grid.second.shown, cover, [HALF], colors=style.INK, linewidths=0.9, zorder=4
+            grid.first.in_unit,
+            grid.second.in_unit,
+            cover,
+            [CODE_HALF_STEP],
+            colors=style.INK,
+            linewidths=0.9,
+            zorder=4,
         )
     return True
 
@@ -662,15 +574,17 @@ def _throws(axes, grid) -> None:
     if "hop" not in grid.names or "throw_number" not in grid.values or min(grid.codes.shape) < 2:
         return
     throw = np.where(grid.names.index("hop") == grid.codes, grid.values["throw_number"], np.nan).T
-    known = throw[np.isfinite(throw)]
-    if not known.size or known.min() == known.max():
+    finite = throw[np.isfinite(throw)]
+    if not finite.size or finite.min() == finite.max():
         return
-    levels: Sequence[float] = [level for level in THROWS if known.min() < level < known.max()]
+    levels: Sequence[float] = [level for level in THROW_LEVELS if finite.min() < level < finite.max()]
     if len(levels) < 2:
-        levels = mpl_ticker.MaxNLocator(5).tick_values(known.min(), known.max())
+        levels = mpl_ticker.MaxNLocator(5).tick_values(finite.min(), finite.max())
     if len(levels):
-        x, y, shown = grid.first.shown, grid.second.shown, np.ma.masked_invalid(throw)
-        lines = axes.contour(x, y, shown, levels, colors=style.INK, linewidths=0.8, linestyles="--", zorder=5)
+        x, y, masked = grid.first.in_unit, grid.second.in_unit, np.ma.masked_invalid(throw)
+        lines = axes.contour(
+            x, y, masked, levels, colors=style.INK, linewidths=0.8, linestyles="--", zorder=5
+        )
         for text in axes.clabel(lines, fmt=lambda level: f"k = {level:g}", fontsize=7):
             text.set_path_effects(style.halo())
 
@@ -686,13 +600,13 @@ def _own_point(axes, own) -> None:
 def _map_legend(figure, names) -> None:
     if not names:
         return
-    with matplotlib.rc_context({"hatch.color": HATCH, "hatch.linewidth": 0.6}):
+    with matplotlib.rc_context({"hatch.color": REGION_HATCH_COLOUR, "hatch.linewidth": 0.6}):
         handles = [
             mpl_patches.Patch(
                 facecolor=HATCHES[n][1],
                 hatch=HATCHES[n][0],
                 label=HATCHES[n][2],
-                edgecolor=HATCH,
+                edgecolor=REGION_HATCH_COLOUR,
                 linewidth=0.4,
             )
             for n in names
@@ -707,38 +621,27 @@ def _runs(flags) -> list[Any]:
     return [run for run in np.split(indices, np.flatnonzero(np.diff(indices) > 1) + 1) if len(run)]
 
 
-FINE = 181  # values of each quantity of a map in a picture
+PICTURE_CELLS = 181  # values of each quantity of a map in a picture
 AXIS_LABELS = {
     "beta_friction": ("vibration angle β [deg]", "friction μ [1]"),
     "frequency_amplitude": ("frequency f [Hz]", "amplitude A [mm]"),
 }
 ACCELERATION = "acceleration V'_z [m/s²]"
-ALTS = {
+MAP_ALTS = {
     "beta_friction": "Acceleration along the heading over vibration angle and friction",
     "frequency_amplitude": "Acceleration along the heading over frequency and amplitude",
 }
 
 
-def offers(study, settings) -> list[Any]:
-    """Offer the files of a FloorStudy.
-
-    Parameters
-    ----------
-    study : FloorStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: FloorStudy, settings) -> list[offer.Offer]:
+    """Offer the files of a FloorStudy."""
     plan = offer.picture("floor_plan.png", "The part from above, with the forces on it", _plan, study)
     return [
         offer.document("floor.json", document, study, settings),
         offer.table("floor_cycle.csv", over_cycle, study.cycle, study.course),
         *(offer.table(f"floor_{kind}.csv", map_cells, study, kind) for kind in MAPS),
         offer.table("floor_heading.csv", alignment, study),
-        *(offer.picture(f"floor_{kind}.png", ALTS[kind], _map, study, kind) for kind in MAPS),
+        *(offer.picture(f"floor_{kind}.png", MAP_ALTS[kind], _map, study, kind) for kind in MAPS),
         offer.picture("floor_heading.png", "Alignment acceleration over the heading", _alignment, study),
         offer.picture("floor_cycle.png", "Forces and velocity over one cycle", _cycle, study),
         *([plan] if len(study.posture.outline) else []),
@@ -751,7 +654,7 @@ def _map(study, kind):
         "beta_friction": (np.degrees(drive.vibration_angle), study.bowl.friction.kinetic),
         "frequency_amplitude": (drive.frequency, 1e3 * drive.amplitude),
     }
-    grid = MAPS[kind](study, FINE)
+    grid = MAPS[kind](study, PICTURE_CELLS)
     return regime_map(
         grid, "acceleration_z_m_s2", title=_title(study), labels=AXIS_LABELS[kind], value=ACCELERATION,
         own=own[kind], note=map_notes(kind, grid),

@@ -104,7 +104,7 @@ class ResultFolder:
             "libraries": {"python": platform.python_version(), **{n: metadata.version(n) for n in LIBRARIES}},
             "files": sorted(self.staged),
         }
-        made = _missing(self.path)
+        new_folders = _missing(self.path)
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             with _locked(self.path):
@@ -114,7 +114,7 @@ class ResultFolder:
                 self.path, f"cannot be written ({error.strerror})", "give another folder to `directory`"
             ) from error
         finally:
-            for folder in made:
+            for folder in new_folders:
                 with contextlib.suppress(OSError):
                     folder.rmdir()  # goes only if nothing came into it
 
@@ -181,10 +181,10 @@ class ResultFolder:
 
 def safe_name(name):
     """Return a name that any file system takes as one folder."""
-    kept = "".join("_" if c in '<>:"/\\|?*' or ord(c) < 32 or c in NO_LETTERS else c for c in name).rstrip(
+    letters = "".join("_" if c in '<>:"/\\|?*' or ord(c) < 32 or c in NO_LETTERS else c for c in name).rstrip(
         ". "
     )
-    return f"{kept}_" if kept.split(".")[0].upper() in RESERVED or not kept else kept
+    return f"{letters}_" if letters.split(".")[0].upper() in RESERVED or not letters else letters
 
 
 def _inside(name):

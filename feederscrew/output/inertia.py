@@ -7,28 +7,20 @@ import numpy as np
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.columns import G_CM3, G_MM2, MM3
+from feederscrew.output.tables import Frame
 from feederscrew.part.density import MATERIALS
+from feederscrew.studies.inertia import InertiaStudy
 from feederscrew.units import MM
 
-AXES = "xyz"
-NOISE = 1e-8  # of the largest of a vector or matrix: rounding of the file, 0 in the table
+AXIS_LETTERS = "xyz"
+TENSOR_NOISE = 1e-8  # of the largest of a vector or matrix: rounding of the file, 0 in the table
 
 
-def document(study):
-    """Return everything ``feeder inertia`` tells, under names that carry their units.
-
-    Parameters
-    ----------
-    study : InertiaStudy
-
-    Returns
-    -------
-    dict
-        None where a part card is silent.
-    """
-    shown, balance = columns.part(study.part), study.balance
-    warnings = shown.pop("warnings")
-    return shown | {
+def document(study: InertiaStudy) -> dict[str, Any]:
+    """Return everything ``feeder inertia`` says, by names with units; None where a card is silent."""
+    facts, balance = columns.part(study.part), study.balance
+    warnings = facts.pop("warnings")
+    return facts | {
         "inertia_at_origin_g_mm2": balance.inertia_at_origin / G_MM2,
         "principal_moments_g_mm2": balance.moments / G_MM2,
         "principal_axes": balance.axes,
@@ -39,14 +31,8 @@ def document(study):
     }
 
 
-def materials():
-    """Return the materials that a part may be of.
-
-    Returns
-    -------
-    Frame
-        Columns ``material``, ``density_g_cm3``, ``aliases`` and ``source``.
-    """
+def materials() -> Frame:
+    """Return the materials of parts: ``material``, ``density_g_cm3``, ``aliases``, ``source``."""
     return tables.frame(
         {
             "material": [material.name for material in MATERIALS],
@@ -57,30 +43,20 @@ def materials():
     )
 
 
-def rows(study):
-    """Return the numbers of a part, one a row.
-
-    Parameters
-    ----------
-    study : InertiaStudy
-
-    Returns
-    -------
-    Frame
-        Columns ``quantity`` and ``value``; NaN where a part card is silent.
-    """
-    shown = document(study)
+def rows(study: InertiaStudy) -> Frame:
+    """Return the numbers of a part, one a row: ``quantity`` and ``value``; NaN where a card is silent."""
+    facts = document(study)
     scalars = ("density_g_cm3", "mass_g", "volume_mm3", "hull_volume_mm3")
     listed = [
-        *((name, shown[name]) for name in scalars),
-        *_vector(shown["bounding_box_mm"], "bounding_box_{}_mm"),
-        *_vector(shown["bounding_box_corner_mm"], "bounding_box_corner_{}_mm"),
-        *_vector(shown["centre_of_mass_mm"], "centre_of_mass_{}_mm"),
-        *_matrix(shown["inertia_g_mm2"], "inertia_{}_g_mm2"),
-        *_matrix(shown["inertia_at_origin_g_mm2"], "inertia_at_origin_{}_g_mm2"),
-        *_vector(shown["principal_moments_g_mm2"], "principal_moment_{}_g_mm2", "123"),
+        *((name, facts[name]) for name in scalars),
+        *_vector(facts["bounding_box_mm"], "bounding_box_{}_mm"),
+        *_vector(facts["bounding_box_corner_mm"], "bounding_box_corner_{}_mm"),
+        *_vector(facts["centre_of_mass_mm"], "centre_of_mass_{}_mm"),
+        *_matrix(facts["inertia_g_mm2"], "inertia_{}_g_mm2"),
+        *_matrix(facts["inertia_at_origin_g_mm2"], "inertia_at_origin_{}_g_mm2"),
+        *_vector(facts["principal_moments_g_mm2"], "principal_moment_{}_g_mm2", "123"),
     ]
-    for number, axis in zip("123", shown["principal_axes"]):
+    for number, axis in zip("123", facts["principal_axes"]):
         listed += _vector(axis, f"principal_axis_{number}_{{}}")
     quantities, values = zip(*listed)
     return tables.frame({"quantity": quantities, "value": [np.nan if v is None else v for v in values]})
@@ -90,33 +66,24 @@ def _in(value, unit):
     return None if value is None else value / unit
 
 
-def _vector(values, name, letters=AXES) -> list[Any]:
+def _vector(values, name, letters=AXIS_LETTERS) -> list[Any]:
     values = [None] * len(letters) if values is None else _clean(values)
     return [(name.format(letter), value) for letter, value in zip(letters, values)]
 
 
 def _matrix(values, name) -> list[Any]:
     values = _clean(values)
-    return [(name.format(AXES[i] + AXES[j]), values[i][j]) for i in range(3) for j in range(i, 3)]
+    return [
+        (name.format(AXIS_LETTERS[i] + AXIS_LETTERS[j]), values[i][j]) for i in range(3) for j in range(i, 3)
+    ]
 
 
 def _clean(values):
-    return np.where(np.abs(values) <= NOISE * np.abs(values).max(), 0.0, values)
+    return np.where(np.abs(values) <= TENSOR_NOISE * np.abs(values).max(), 0.0, values)
 
 
-def offers(study, format="csv") -> list[Any]:
-    """Offer the mass properties of a part.
-
-    Parameters
-    ----------
-    study : InertiaStudy
-    format : str
-        'json' for a document, else a table.
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: InertiaStudy, format: str = "csv") -> list[offer.Offer]:
+    """Offer the mass properties of a part: a document for the format 'json', else a table."""
     if format == "json":
         return [offer.document("inertia.json", document, study)]
     return [offer.table("inertia.csv", rows, study)]

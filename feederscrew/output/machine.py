@@ -141,7 +141,7 @@ def order(study) -> dict[Any, Any]:
         "target_per_minute": wish.target / PER_MINUTE,
         "parts_per_minute": study.lowest.rate / PER_MINUTE,
         "lowest_at_fill_percent": 100.0 * study.lowest.level,
-        "lowest_with": study.lowest.way,
+        "lowest_with": study.lowest.control,
         "rate_at_this_stroke": float(study.rates(study.answer.velocity)) / PER_MINUTE,
         "rate_lowest_left_alone": rates.min(),
         "rate_lowest_controlled": held.min(),

@@ -137,7 +137,7 @@ def _rates(study) -> Iterator[Any]:
     rates = study.rates(study.velocities) / PER_MINUTE
     yield "rate asked for [1/min]", f"{order.target / PER_MINUTE:.6g}"
     low = study.lowest
-    at = f"at {100 * low.level:.3g} % of the fill, {low.way}"
+    at = f"at {100 * low.level:.3g} % of the fill, {low.control}"
     yield "lowest rate, full to empty [1/min]", f"{low.rate / PER_MINUTE:.4g} {at}"
     at_this = study.rates(study.answer.velocity) / PER_MINUTE
     yield "rate at this stroke [1/min]", f"{at_this:.4g}; {rates[0]:.4g} of a full bowl left alone"

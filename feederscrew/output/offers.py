@@ -117,5 +117,5 @@ def by_name(offered) -> dict[Any, Any]:
     return {offer.name: offer for offer in offered}
 
 
-def _framed(found):
-    return tables.frame(found) if isinstance(found, dict) else found
+def _framed(content):
+    return tables.frame(content) if isinstance(content, dict) else content

@@ -9,27 +9,22 @@ from feederscrew.dropping.occupancy import MIN_TRANSITIONS
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.heavy import heavy
+from feederscrew.output.tables import Frame
 from feederscrew.resting.rules import registry
+from feederscrew.studies.plate import PlateStudy
 from feederscrew.units import MM, MM_S, counted
 
 matplotlib = heavy("matplotlib")
 
 SURFACE = ("restitution", "friction")  # of a launch: the plate's own
-HIDDEN = ("velocity_low_mm_s", "velocity_high_mm_s")  # in a table for people
+HIDDEN_PLATE_COLUMNS = ("velocity_low_mm_s", "velocity_high_mm_s")  # in a table for people
 TIMES = 101  # rows an aspect in the course over time, at most
 
 
-def plates(study):
+def plates(study: PlateStudy) -> Frame:
     """Return how often parts lie on each aspect of each plate, and how fast they travel there.
 
-    Parameters
-    ----------
-    study : PlateStudy
-
-    Returns
-    -------
-    Frame
-        The columns of ``plate.csv``, one row a plate and aspect.
+    The columns of ``plate.csv``, one row a plate and aspect.
     """
     return _labelled(study, _plate)
 
@@ -71,17 +66,8 @@ def travels(result, digits) -> str:
     return f"travels at {speed} mm/s" + f" ({low} to {high})" * (result.parts > 1)
 
 
-def document(study) -> dict[Any, Any]:
-    """Return the test as one JSON document.
-
-    Parameters
-    ----------
-    study : PlateStudy
-
-    Returns
-    -------
-    dict
-    """
+def document(study: PlateStudy) -> dict[str, Any]:
+    """Return the test as one JSON document."""
     return {
         "part": study.part.name,
         "seed": study.seed,
@@ -160,35 +146,36 @@ def _drive(aspects, result, name) -> dict[Any, Any]:
 
 
 def _plate(aspects, result, name) -> dict[Any, Any]:
-    seen = result.occupancy
+    occupancy = result.occupancy
     return {
         **_head(result, name, len(aspects.names)),
         "aspect": aspects.names,
         "height_mm": aspects.heights / MM,
-        "p_start": seen.start,
-        "p_plate": seen.plate,
-        "p_plate_low": seen.plate_low,
-        "p_plate_high": seen.plate_high,
-        "p_limit": seen.limit,
-        "p_limit_low": seen.limit_low,
-        "p_limit_high": seen.limit_high,
+        "p_start": occupancy.start,
+        "p_plate": occupancy.plate,
+        "p_plate_low": occupancy.plate_low,
+        "p_plate_high": occupancy.plate_high,
+        "p_limit": occupancy.limit,
+        "p_limit_low": occupancy.limit_low,
+        "p_limit_high": occupancy.limit_high,
         **{
-            f"velocity{end}_mm_s": seen.velocities[:, k] / MM_S for k, end in enumerate(("", "_low", "_high"))
+            f"velocity{end}_mm_s": occupancy.velocities[:, k] / MM_S
+            for k, end in enumerate(("", "_low", "_high"))
         },
     }
 
 
 def _rates(aspects, result, name) -> dict[Any, Any]:
-    seen, names = result.occupancy, np.array(aspects.names)
-    before, after = np.nonzero(np.ones(seen.counts.shape, bool) & (seen.times > 0.0)[:, None])
+    occupancy, names = result.occupancy, np.array(aspects.names)
+    before, after = np.nonzero(np.ones(occupancy.counts.shape, bool) & (occupancy.times > 0.0)[:, None])
     return {
         **_head(result, name, len(before)),
         "from": names[before],
         "to": names[after],
-        "count": seen.counts[before, after],
-        "rate_per_s": seen.rates[before, after],
-        "rate_low_per_s": seen.rates_low[before, after],
-        "rate_high_per_s": seen.rates_high[before, after],
+        "count": occupancy.counts[before, after],
+        "rate_per_s": occupancy.rates[before, after],
+        "rate_low_per_s": occupancy.rates_low[before, after],
+        "rate_high_per_s": occupancy.rates_high[before, after],
     }
 
 
@@ -206,8 +193,10 @@ def _course(aspects, result, name) -> dict[Any, Any]:
 
 def _plate_document(aspects, result, name) -> dict[Any, Any]:
     """One plate of the document."""
-    drive, seen = result.bowl.drive, result.occupancy
-    velocity = dict(zip(("velocity_mm_s", "velocity_low_mm_s", "velocity_high_mm_s"), seen.velocity / MM_S))
+    drive, occupancy = result.bowl.drive, result.occupancy
+    velocity = dict(
+        zip(("velocity_mm_s", "velocity_low_mm_s", "velocity_high_mm_s"), occupancy.velocity / MM_S)
+    )
     head = ("bowl", "amplitude_mm", "throw_number")
     return {
         "bowl": name,
@@ -220,7 +209,7 @@ def _plate_document(aspects, result, name) -> dict[Any, Any]:
         "lost": result.lost,
         "unsettled": result.unsettled,
         "seconds": result.seconds,
-        "steady": not seen.changing.any(),
+        "steady": not occupancy.changing.any(),
         "changing": _changing(aspects, result),
         "transitions_seen": result.transitions,
         **velocity,
@@ -229,24 +218,14 @@ def _plate_document(aspects, result, name) -> dict[Any, Any]:
     }
 
 
-COLOURS = [rule.colour for rule in registry.RULES] + list(style.SPARE)
+COLOURS = [rule.colour for rule in registry.RULES] + list(style.SPARE_COLOURS)
 LABELLED = 0.02  # share of the parts from which an aspect carries its name, or a line in a trend
-APART = 0.012  # of the range of throw numbers: from one aspect's points to the next one's
+ASPECT_OFFSET = 0.012  # of the range of throw numbers: from one aspect's points to the next one's
 GREY = "#aab4bd"
 
 
-def plate_figure(study):
-    """Draw shares over time on one plate, and beside them how parts lay at first, later and in the end.
-
-    Parameters
-    ----------
-    study : PlateStudy
-        Its first plate is drawn.
-
-    Returns
-    -------
-    Figure
-    """
+def plate_figure(study: PlateStudy):
+    """Draw shares over time on the first plate, and how parts lay at first, later and in the end."""
     aspects, result = study.aspects, study.plates[0]
     title = f"{study.part.name}: {counted(result.parts, 'part')}, throw number {result.throw_number:.3g}"
     figure = style.figure(8.2, 3.8)
@@ -277,33 +256,27 @@ def over_time(axes, aspects, result) -> None:
     axes.set_ylim(0.0, 100.0)
 
 
-def shares(axes, aspects, seen) -> None:
+def shares(axes, aspects, occupancy) -> None:
     """Draw how parts lay at first and in the second half, with its interval, and where the rates lead."""
     places = np.arange(len(aspects.names))
-    axes.bar(places - 0.2, 100.0 * seen.start, 0.36, color=GREY, label="at first")
-    axes.bar(places + 0.2, 100.0 * seen.plate, 0.36, color=style.INK, alpha=0.8, label="second half")
-    error = 100.0 * np.stack([seen.plate - seen.plate_low, seen.plate_high - seen.plate])
-    axes.errorbar(places + 0.2, 100.0 * seen.plate, error, fmt="none", ecolor=style.INK, capsize=3, lw=1.0)
-    spread = 100.0 * np.stack([seen.limit - seen.limit_low, seen.limit_high - seen.limit])
+    axes.bar(places - 0.2, 100.0 * occupancy.start, 0.36, color=GREY, label="at first")
+    axes.bar(places + 0.2, 100.0 * occupancy.plate, 0.36, color=style.INK, alpha=0.8, label="second half")
+    error = 100.0 * np.stack([occupancy.plate - occupancy.plate_low, occupancy.plate_high - occupancy.plate])
     axes.errorbar(
-        places + 0.3, 100.0 * seen.limit, spread, fmt="_", ms=9, mew=2, color=style.ACCENT, capsize=3, lw=1.0,
-        label=None if np.isnan(seen.limit).all() else "where the rates lead",
+        places + 0.2, 100.0 * occupancy.plate, error, fmt="none", ecolor=style.INK, capsize=3, lw=1.0
+    )
+    spread = 100.0 * np.stack([occupancy.limit - occupancy.limit_low, occupancy.limit_high - occupancy.limit])
+    axes.errorbar(
+        places + 0.3, 100.0 * occupancy.limit, spread, fmt="_", ms=9, mew=2, color=style.ACCENT, capsize=3,
+        lw=1.0,
+        label=None if np.isnan(occupancy.limit).all() else "where the rates lead",
     )  # fmt: skip
     style.named_ticks(axes, places, aspects.names)
     axes.tick_params(axis="x", length=0)
 
 
-def trend(study):
-    """Draw shares and velocity over the throw number, a line an aspect.
-
-    Parameters
-    ----------
-    study : PlateStudy
-
-    Returns
-    -------
-    Figure
-    """
+def trend(study: PlateStudy):
+    """Draw shares and velocity over the throw number, a line an aspect."""
     aspects = study.aspects
     title = f"{study.part.name} on {len(study.plates)} plates" + ", partial" * study.plates[-1].partial
     figure = style.figure(8.2, 3.8)
@@ -313,36 +286,42 @@ def trend(study):
     order = np.argsort([result.throw_number for result in study.plates], kind="stable")
     results, names = [study.plates[k] for k in order], [study.names[k] for k in order]
     x = np.array([result.throw_number for result in results])
-    seen = [result.occupancy for result in results]
-    shown = [k for k in range(len(aspects.names)) if max(one.plate[k] for one in seen) > LABELLED]
-    over_throw(left, x, seen, {k: aspects.names[k] for k in shown})
-    velocity = np.array([one.velocity for one in seen]) / MM_S
+    occupancies = [result.occupancy for result in results]
+    drawn = [
+        k
+        for k in range(len(aspects.names))
+        if max(occupancy.plate[k] for occupancy in occupancies) > LABELLED
+    ]
+    over_throw(left, x, occupancies, {k: aspects.names[k] for k in drawn})
+    velocity = np.array([occupancy.velocity for occupancy in occupancies]) / MM_S
     ends = np.abs(velocity[:, 1:] - velocity[:, :1]).T
     right.errorbar(x, velocity[:, 0], ends, color=style.INK, marker="o", ms=4, capsize=2)
     named(right, x, results, names)
     figure.legend(
         *left.get_legend_handles_labels(), loc="outside lower center", ncols=12, fontsize=8, frameon=False,
-        labelcolor=style.INK, title="dotted: at first" + _left_out(aspects, shown), title_fontsize=8,
+        labelcolor=style.INK, title="dotted: at first" + _left_out(aspects, drawn), title_fontsize=8,
     )  # fmt: skip
     return figure
 
 
-def over_throw(axes, x, seen, names) -> None:
+def over_throw(axes, x, occupancies, names) -> None:
     """Draw the share of each named aspect over the (N,) throw numbers ``x``, set a little apart."""
     for place, (k, name) in enumerate(names.items()):
-        at = x + APART * np.ptp(x) * (place - 0.5 * (len(names) - 1))
+        at = x + ASPECT_OFFSET * np.ptp(x) * (place - 0.5 * (len(names) - 1))
         middle, low, high = (
-            100.0 * np.array([getattr(one, end)[k] for one in seen])
+            100.0 * np.array([getattr(occupancy, end)[k] for occupancy in occupancies])
             for end in ("plate", "plate_low", "plate_high")
         )
         spread = [middle - low, high - middle]
         axes.errorbar(at, middle, spread, color=colour(k), marker="o", ms=4, capsize=2, label=name)
-        axes.plot(at, [100.0 * one.start[k] for one in seen], ls=":", lw=1.0, color=colour(k))
+        axes.plot(
+            at, [100.0 * occupancy.start[k] for occupancy in occupancies], ls=":", lw=1.0, color=colour(k)
+        )
 
 
-def _left_out(aspects, shown) -> str:
+def _left_out(aspects, drawn) -> str:
     """What the picture does not show, as a clause."""
-    count = len(aspects.names) - len(shown)
+    count = len(aspects.names) - len(drawn)
     return f"; {count} aspects never above {100.0 * LABELLED:g} % left out" if count else ""
 
 
@@ -364,17 +343,8 @@ def colour(k):
     return COLOURS[k] if k < len(COLOURS) else matplotlib.colormaps["viridis"]((0.37 * k) % 1.0)
 
 
-def offers(study) -> list[Any]:
-    """Offer the tables of a dynamic bowl test, its document and its chart.
-
-    Parameters
-    ----------
-    study : PlateStudy
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: PlateStudy) -> list[offer.Offer]:
+    """Offer the tables of a dynamic bowl test, its document and its chart."""
     return [
         offer.table("plate.csv", plates, study),
         offer.table("plate_rates.csv", rates, study),

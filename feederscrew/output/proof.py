@@ -37,7 +37,7 @@ def leads(document):
     return bool(tried) and document["parts_per_minute"] == tried["parts_per_minute"]
 
 
-def beside(document, verified, part, bowl, wanted=None):
+def with_trial(document, verified, part, bowl, wanted=None):
     """Return a document with the trial's figures beside its own; the lower rate leads.
 
     A trial that counted several aspects as one leads in any case: the rule counts one orientation.

@@ -17,66 +17,66 @@ SCARCE = 0.25  # share of the parts at the entry that stay on the track, below w
 
 def document(study) -> dict[Any, Any]:
     """Return a RateStudy as the JSON document: the part, the rate and every factor of its chain."""
-    found, rule = study.rate, study.rule
-    known, row = found.orientations, found.row
+    chain, rule = study.rate, study.rule
+    coming, row = chain.orientations, chain.row
     return {
         **columns.part(
             study.part, (*study.aspects.warnings, *study.of_size, *stopping(study), *spaced(study))
         ),
-        **_range("parts_per_minute", found.parts, PER_MINUTE),
-        "aspect": known.aspects[row],
-        "heading_deg": known.headings[row] / DEG,
-        **_range("offered_per_minute", found.offered, PER_MINUTE),
-        "efficiency": found.efficiency,
-        "purity": found.purity,
-        **_range("velocity_mm_s", found.velocity, MM_S),
-        "length_mm": known.lengths[row] / MM,
-        "gap_mm": found.gap / MM,
-        "pitch_mm": found.pitch / MM,
+        **_range("parts_per_minute", chain.parts, PER_MINUTE),
+        "aspect": coming.aspects[row],
+        "heading_deg": coming.headings[row] / DEG,
+        **_range("offered_per_minute", chain.offered, PER_MINUTE),
+        "efficiency": chain.efficiency,
+        "purity": chain.purity,
+        **_range("velocity_mm_s", chain.velocity, MM_S),
+        "length_mm": coming.lengths[row] / MM,
+        "gap_mm": chain.gap / MM,
+        "pitch_mm": chain.pitch / MM,
         "rule": rule,
         "answer": study.answer,
-        **_range("p_orientation", found.probability, 1.0),
-        "p_aspect": found.probability.value / known.heading_shares[row],
-        "p_heading": known.heading_shares[row],
-        "passes_devices": found.through,
-        "fill": found.fill,
-        "well_oriented_of_leaving": found.purity,
-        "jams_per_hour": 3600.0 * found.jams,
-        "clearing_s": found.clearing,
+        **_range("p_orientation", chain.probability, 1.0),
+        "p_aspect": chain.probability.value / coming.heading_shares[row],
+        "p_heading": coming.heading_shares[row],
+        "passes_devices": chain.through,
+        "fill": chain.fill,
+        "well_oriented_of_leaving": chain.purity,
+        "jams_per_hour": 3600.0 * chain.jams,
+        "clearing_s": chain.clearing,
         "quasi_static": [device.kind for device in study.devices if device.turns],
-        "rolls_back": [one.name for one in known.lying if one.may_roll_back],
-        "orientations": orientations(known, rule),
+        "rolls_back": [orientation.name for orientation in coming.lying if orientation.may_roll_back],
+        "orientations": orientations(coming, rule),
     }
 
 
-def orientations(known, rule):
+def orientations(coming, rule):
     """Return what each station does with each orientation, as a frame: the matrix of the chain.
 
     Parameters
     ----------
-    known : Orientations
+    coming : Orientations
     rule : str
     """
-    stations = dict(zip(known.names, known.passes.T))
+    stations = dict(zip(coming.names, coming.passes.T))
     return tables.frame(
         {
-            "aspect": known.aspects,
-            "heading_deg": known.headings / DEG,
-            "length_mm": known.lengths / MM,
-            "width_mm": known.widths / MM,
-            f"p_{rule}": known.rules[rule],
-            "margin_mm": known.margin / MM,
-            "fate": known.fates,
-            "leaves_as": [_becomes(known, row) for row in range(len(known.aspects))],
+            "aspect": coming.aspects,
+            "heading_deg": coming.headings / DEG,
+            "length_mm": coming.lengths / MM,
+            "width_mm": coming.widths / MM,
+            f"p_{rule}": coming.rules[rule],
+            "margin_mm": coming.margin / MM,
+            "fate": coming.fates,
+            "leaves_as": [_becomes(coming, row) for row in range(len(coming.aspects))],
             **stations,
-            "passes": known.through,
+            "passes": coming.through,
         }
     )
 
 
-def _becomes(known, row):
+def _becomes(coming, row):
     """Name of the state in which most of an orientation leaves; None where it is returned."""
-    return known.states[int(known.leaving[row].argmax())].name if known.leaving[row].any() else None
+    return coming.states[int(coming.leaving[row].argmax())].name if coming.leaving[row].any() else None
 
 
 def summary(document):
@@ -113,26 +113,26 @@ def _both(document) -> Iterator[Any]:
 
 def remarks(study):
     """Return what a reader of a RateStudy must not overlook, a sentence each."""
-    found = study.rate
-    if found.velocity.value <= 0.0:
+    chain = study.rate
+    if chain.velocity.value <= 0.0:
         return ["the part does not travel up the track: see feeder convey"]
     turned = [
         *stopping(study),
         *spaced(study),
-        *_tipping(found),
-        *_rolling(found),
+        *_tipping(chain),
+        *_rolling(chain),
         *_scarce(study),
         *_turned(study.devices),
     ]
-    if found.orientations.lying[found.row].turns_over:
+    if chain.orientations.lying[chain.row].turns_over:
         return turned
-    if found.through == 0.0 and found.efficiency > 0.0:
+    if chain.through == 0.0 and chain.efficiency > 0.0:
         return [
             *turned,
             "what lands in the wanted orientation is turned or returned; what leaves in it was turned",
         ]
-    if found.through == 0.0:
-        stations = zip(("the track", *map(_named, study.devices)), found.orientations.passes[found.row])
+    if chain.through == 0.0:
+        stations = zip(("the track", *map(_named, study.devices)), chain.orientations.passes[chain.row])
         names = [name for name, share in stations if share == 0.0]
         verb = "reject" if len(names) > 1 else "rejects"
         return [f"{' and '.join(names)} {verb} the orientation you want; rate is 0"]
@@ -141,17 +141,17 @@ def remarks(study):
 
 def stopping(study):
     """Return what comes to stand before which device, a sentence each."""
-    found, said = study.rate, []
-    known = found.orientations
-    for place, name in enumerate(("the track", *(f"the {one.name}" for one in study.devices))):
-        stands = [one.name for one, share in zip(known.lying, known.stops[:, place]) if share > 0.0]
-        if stands and found.jams > 0.0:
+    chain, lines = study.rate, []
+    coming = chain.orientations
+    for place, name in enumerate(("the track", *(f"the {device.name}" for device in study.devices))):
+        stands = [device.name for device, share in zip(coming.lying, coming.stops[:, place]) if share > 0.0]
+        if stands and chain.jams > 0.0:
             verb = "stops" if len(stands) == 1 else "stop"
-            said.append(
+            lines.append(
                 f"{units.listed(stands)} {verb} before {name} and nothing behind gets through: a jam; "
                 "efficiency and rate hold between jams only"
             )
-    return said
+    return lines
 
 
 def spaced(study) -> list[Any]:
@@ -160,7 +160,7 @@ def spaced(study) -> list[Any]:
     if study.rate.gap > free or not free > 0.0:
         return []
     kinds = units.listed(
-        [one.name for one in study.devices if one.gap(study.rate.orientations.lying[0], 0.0) > 0.0]
+        [device.name for device in study.devices if device.gap(study.rate.orientations.lying[0], 0.0) > 0.0]
     )
     return [
         f"{kinds} looks at one part at a time: the rate is that of parts that come {free / MM:.3g} mm apart "
@@ -168,42 +168,41 @@ def spaced(study) -> list[Any]:
     ]
 
 
-def _tipping(found):
+def _tipping(chain):
     """What tips on the track at this drive, and what becomes of it."""
-    known = found.orientations
-    if known.tipping is None:
+    coming = chain.orientations
+    if coming.tipping is None:
         return []
-    rocks = known.tipping.tips & ~known.tipping.over
-    lost = "; rate is 0" if known.lying[found.row].turns_over else ""
-    said = [f"{line}{lost}" for line in remark(known.lying)]
-    if rocks[found.row]:
-        tilt, lean = (np.degrees(angle[found.row]) for angle in (known.tipping.tilt, known.tipping.balance))
-        said.append(
-            f"{known.lying[found.row].name} rocks on the track: a stroke tilts it by {tilt:.2g} deg at most, "
-            f"and from {lean:.3g} deg it would tip over"
+    rocks = coming.tipping.tips & ~coming.tipping.over
+    lost = "; rate is 0" if coming.lying[chain.row].turns_over else ""
+    lines = [f"{line}{lost}" for line in remark(coming.lying)]
+    if rocks[chain.row]:
+        tilt, lean = (np.degrees(angle[chain.row]) for angle in (coming.tipping.tilt, coming.tipping.balance))
+        lines.append(
+            f"{coming.lying[chain.row].name} rocks on the track: a stroke tilts it by {tilt:.2g} deg at "
+            f"most, and from {lean:.3g} deg it would tip over"
         )
-    return said
+    return lines
 
 
-def _rolling(found):
+def _rolling(chain):
     """What lies on its round side and may roll back."""
-    known = found.orientations.lying
-    along = [one.name for one in known if one.along_a_bank]
+    lying = chain.orientations.lying
+    along = [orientation.name for orientation in lying if orientation.along_a_bank]
     why = (
         "no bank brings to the wall what rolls along the track: no verdict on it is sure, and the purity "
         "counts it as leaving where the track carries it; see feeder trial"
     )
     loose = [f"{units.listed(along)}: {why}"] if along else []
-    back = [one.name for one in known if one.may_roll_back]
-    if not back:
+    rolls_back = [orientation.name for orientation in lying if orientation.may_roll_back]
+    if not rolls_back:
         return loose
-    lies, rolls, counts = ("lies", "rolls", "counts") if len(back) == 1 else ("lie", "roll", "count")
-    said = (
-        f"{units.listed(back)} {lies} on the round side, not along the track, and {rolls} back down the climb"
-    )
-    lost = "; rate is 0" if known[found.row].may_roll_back else ""
+    lies, rolls, counts = ("lies", "rolls", "counts") if len(rolls_back) == 1 else ("lie", "roll", "count")
+    where = f"{lies} on the round side, not along the track, and {rolls} back down the climb"
+    sentence = f"{units.listed(rolls_back)} {where}"
+    lost = "; rate is 0" if lying[chain.row].may_roll_back else ""
     return [
-        f"{said}: {counts} as returned, but as carried in the highest rate{lost}; see feeder trial",
+        f"{sentence}: {counts} as returned, but as carried in the highest rate{lost}; see feeder trial",
         *loose,
     ]
 
@@ -231,8 +230,8 @@ def _named(device):
     return f"{device.name} ({device.text})" if np.isfinite(device.limit) else device.name
 
 
-def _range(name, found, unit) -> dict[Any, Any]:
-    return {name: found.value / unit, f"{name}_low": found.low / unit, f"{name}_high": found.high / unit}
+def _range(name, ends, unit) -> dict[Any, Any]:
+    return {name: ends.value / unit, f"{name}_low": ends.low / unit, f"{name}_high": ends.high / unit}
 
 
 def _with_range(document, name, scale=1.0) -> str:

@@ -85,33 +85,33 @@ def _convey(answer: Any) -> str:
 
 
 def _rate(rate: Any) -> str:
-    one, parts = rate.orientations.lying[rate.row], rate.parts
+    orientation, parts = rate.orientations.lying[rate.row], rate.parts
     low, value, high = (number(end * MINUTE) for end in (parts.low, parts.value, parts.high))
     return (
-        f"{_orientation(one)}: {value} parts/min ({low} to {high}), "
+        f"{_orientation(orientation)}: {value} parts/min ({low} to {high}), "
         f"efficiency {number(rate.efficiency, PERCENT)} %, purity {number(rate.purity, PERCENT)} %"
     )
 
 
-def _orientation(one: Any) -> str:
+def _orientation(orientation: Any) -> str:
     """An orientation in words: 'A at heading 90 deg', 'A hanging'."""
-    lying = f"at heading {number(one.heading, DEGREE)} deg"
-    return f"{one.aspect} {'hanging' if one.kind == 'hanging' else lying}"
+    lying = f"at heading {number(orientation.heading, DEGREE)} deg"
+    return f"{orientation.aspect} {'hanging' if orientation.kind == 'hanging' else lying}"
 
 
 def _tune(study: Any) -> str:
     settings = [
-        f"{one.solution.key.name} {one.solution.number:.4g} {one.solution.key.unit}".rstrip()
-        for one in study.settings
+        f"{tuned.solution.key.name} {tuned.solution.number:.4g} {tuned.solution.key.unit}".rstrip()
+        for tuned in study.settings
     ]
     return f"{study.part.name}: {number(study.target * MINUTE)} parts/min with {' or '.join(settings)}"
 
 
 def _slide(study: Any) -> str:
     lines = [
-        f"at {number(one.beta, DEGREE)} deg regime {one.regime}, "
-        f"limiting friction {number(one.at_bowl['mu_limit'])}"
-        for one in study.maps[:4]
+        f"at {number(slide_map.beta, DEGREE)} deg regime {slide_map.regime}, "
+        f"limiting friction {number(slide_map.at_bowl['mu_limit'])}"
+        for slide_map in study.maps[:4]
     ]
     return "; ".join(lines)
 
@@ -134,8 +134,8 @@ def _states(codes: Any) -> str:
 
 def _headings(study: Any) -> str:
     lines = [
-        f"{one.aspect} at {', '.join(number(angle, DEGREE) for angle in one.headings[:3])} deg"
-        for one in study.headings[:MOST_SHARES]
+        f"{stable.aspect} at {', '.join(number(angle, DEGREE) for angle in stable.headings[:3])} deg"
+        for stable in study.headings[:MOST_SHARES]
     ]
     return f"{study.part.name}: {'; '.join(lines)}"
 
@@ -151,7 +151,7 @@ def _machine(sheet: Any) -> str:
 
 
 def _tooling(study: Any) -> str:
-    designs = [_isolated(study.orientations, one) for one in study.designs if one is not None]
+    designs = [_isolated(study.orientations, design) for design in study.designs if design is not None]
     more = f"; {len(designs) - 4} more" if len(designs) > 4 else ""
     return f"{study.part.name}: {'; '.join(designs[:4])}{more}"
 
@@ -191,7 +191,7 @@ def _why(study: Any) -> str:
 
 
 def _family(study: Any) -> str:
-    members = ", ".join(f"{one.part.name} {one.status}" for one in study.members)
+    members = ", ".join(f"{member.part.name} {member.status}" for member in study.members)
     return f"{study.status}, {'one bowl for all' if study.shared else 'a bowl for each'}: {members}"
 
 
@@ -201,9 +201,9 @@ def _compare(study: Any) -> str:
 
 def _calibrate(study: Any) -> str:
     fits = [
-        f"{one.name} exponent {number(one.calibration.exponent)} "
-        f"({number(one.calibration.low)} to {number(one.calibration.high)})"
-        for one in study.fits[:4]
+        f"{fit.name} exponent {number(fit.calibration.exponent)} "
+        f"({number(fit.calibration.low)} to {number(fit.calibration.high)})"
+        for fit in study.fits[:4]
     ]
     return f"{study.part.name}: {'; '.join(fits)}"
 
@@ -214,8 +214,8 @@ def _drop(study: Any) -> str:
 
 def _plate(study: Any) -> str:
     plates = [
-        f"throw number {number(one.throw_number)}: {_shares(study.aspects.names, one.occupancy.plate)}"
-        for one in study.plates[:3]
+        f"throw number {number(plate.throw_number)}: {_shares(study.aspects.names, plate.occupancy.plate)}"
+        for plate in study.plates[:3]
     ]
     return f"{study.part.name}: {'; '.join(plates)}"
 
@@ -257,7 +257,7 @@ LINES: dict[str, Callable[[Any], str]] = {
 
 
 MOST_ROWS = 60  # of a table in a notebook
-VIEW = 360, 280  # [px] of a part
+VIEW_PX = 360, 280  # [px] of a part
 # record: module and function that offer the files of its command, and what else that is handed
 OF: dict[str, tuple[Any, ...]] = {
     "AspectsStudy": ("aspects", "offers"),
@@ -279,7 +279,7 @@ OF: dict[str, tuple[Any, ...]] = {
     "PlateStudy": ("plate", "offers"),
     "RateStudy": ("rate", "offers"),
     "SlideStudy": ("slide", "offers"),
-    "ToolingStudy": ("tooling.files", "offers", ()),
+    "ToolingStudy": ("tooling", "offers", ()),
     "TrackStudy": ("track", "at_one_point"),
     "TrialStudy": ("trial.files", "offers"),
     "TuneStudy": ("tune", "offers"),
@@ -299,9 +299,9 @@ def frame(record, name=None):
     DataFrame
         Of a record that is no study: a row of its numbers in SI units, or a row for each entry of its arrays.
     """
-    found = _named(record, ".csv")
-    if name is not None or found:
-        return tables.data_frame(_chosen(record, found, name, "table").view())
+    offered = _named(record, ".csv")
+    if name is not None or offered:
+        return tables.data_frame(_chosen(record, offered, name, "table").view())
     numbers = _document(record) or _numbers(record)
     return tables.data_frame(_columns(numbers))
 
@@ -336,9 +336,8 @@ def html(record):
     line = f"<p>{escape(repr(record))}</p>"
     names = {kind.__name__ for kind in type(record).__mro__}
     if "Part" in names and record.vertices is not None:
-        return (
-            f'{line}<img width="{VIEW[0]}" alt="{escape(printable(record.name))}" src="{_view_uri(record)}">'
-        )
+        name = escape(printable(record.name))
+        return f'{line}<img width="{VIEW_PX[0]}" alt="{name}" src="{_view_uri(record)}">'
     frame_of = _settings if "Bowl" in names and record.settings else frame
     cells = frame_of(record).map(lambda cell: printable(cell) if isinstance(cell, str) else cell)
     return line + cells.to_html(index=False, max_rows=MOST_ROWS, na_rep="", border=0)
@@ -349,20 +348,20 @@ def _view_uri(part) -> str:
     from feederscrew.output import shading, style
 
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
-    image = style.pixels(np.round(255.0 * shading.on_its_lowest(solid, VIEW)[..., :3]).astype(np.uint8))
+    image = style.pixels(np.round(255.0 * shading.on_its_lowest(solid, VIEW_PX)[..., :3]).astype(np.uint8))
     return f"data:image/png;base64,{base64.b64encode(style.png(image)).decode()}"
 
 
 def _settings(bowl):
     """The keys of a bowl that somebody gave, with where they come from; all of them where none was."""
-    given = [setting for setting in bowl.settings if setting.is_own] or bowl.settings
-    columns = {"key": [s.key.name for s in given], "value": [s.text for s in given]}
-    return tables.data_frame(tables.frame(columns | {"from": [s.origin for s in given]}))
+    own = [setting for setting in bowl.settings if setting.is_own] or bowl.settings
+    columns = {"key": [s.key.name for s in own], "value": [s.text for s in own]}
+    return tables.data_frame(tables.frame(columns | {"from": [s.origin for s in own]}))
 
 
 def _named(record, end) -> dict[Any, Any]:
     """What the command of a record offers with files of one kind, by the names without it."""
-    return {one.name.removesuffix(end): one for one in _offered(record) if one.name.endswith(end)}
+    return {offer.name.removesuffix(end): offer for offer in _offered(record) if offer.name.endswith(end)}
 
 
 def _offered(record):
@@ -374,35 +373,35 @@ def _offered(record):
     return [] if resting is None else _offered(resting)
 
 
-def _chosen(record, found, name, what):
+def _chosen(record, offered, name, what):
     """The offer of a name, or the first."""
-    if name is None and found:
-        return next(iter(found.values()))
-    if name in found:
-        return found[name]
-    mend = f"give one of {listed(list(found))}" if found else "ask the record that a command gives"
+    if name is None and offered:
+        return next(iter(offered.values()))
+    if name in offered:
+        return offered[name]
+    mend = f"give one of {listed(list(offered))}" if offered else "ask the record that a command gives"
     kind = type(record).__name__
     raise ArgumentError("name", f"{kind} has no {what}{f' {name!r}' if name else ''}", mend)
 
 
 def _document(record) -> dict[Any, Any]:
     """Numbers and words of the document that a command writes where it writes no table."""
-    for one in _offered(record):
-        if isinstance(one, offers.Offer) and one.name.endswith(".json") and one.view is not None:
-            return {key: value for key, value in one.view().items() if _single(value)}
+    for offer in _offered(record):
+        if isinstance(offer, offers.Offer) and offer.name.endswith(".json") and offer.view is not None:
+            return {key: value for key, value in offer.view().items() if _single(value)}
     return {}
 
 
 def _numbers(record, before=""):
     """Fields of a record and of those in it by their names: single ones, and arrays."""
-    found: dict[str, Any] = {}
+    numbers: dict[str, Any] = {}
     for field in fields(record):
         value = getattr(record, field.name)
         if is_dataclass(value):
-            found |= _numbers(value, f"{before}{field.name}.")
+            numbers |= _numbers(value, f"{before}{field.name}.")
         elif _single(value) or _row(value):
-            found[f"{before}{field.name}"] = value
-    return found
+            numbers[f"{before}{field.name}"] = value
+    return numbers
 
 
 def _row(value):

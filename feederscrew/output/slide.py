@@ -9,19 +9,24 @@ from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.heavy import heavy
 from feederscrew.output.words import regime_words
+from feederscrew.studies.slide import SlideMap, SlideStudy
 
 matplotlib = heavy("matplotlib")
 mpl_colors = heavy("matplotlib.colors")
 mpl_patches = heavy("matplotlib.patches")
 ndimage = heavy("scipy.ndimage")
 
-LIMITS = {  # what a summary says of each map, in this order
+LIMIT_LABELS = {  # what a summary says of each map, in this order
     "mu_limit": "limiting friction, level floor [4.27]",
-    "mu_forward": "friction that stops forward slip",
-    "mu_backward": "friction that stops backward slip",
+    "mu_forward": "friction that stops slipping forward",
+    "mu_backward": "friction that stops slipping back",
     "throw_number": "throw number (hops above 1)",
 }
-ONSETS = {"forward": "G of forward slip", "backward": "G of backward slip", "hop": "G of the hop"}
+ONSETS = {
+    "forward": "G at which it slips forward",
+    "backward": "G at which it slips back",
+    "hop": "G at which it hops",
+}
 
 
 def printed(study, format):
@@ -32,53 +37,47 @@ def printed(study, format):
 def cells(slides):
     """Return every cell of every SlideMap, as a frame."""
     parts = []
-    for one in slides:
-        columns = one.grid.columns()
+    for slide_map in slides:
+        columns = slide_map.grid.columns()
         count = len(columns["regime"])
-        parts.append({"beta_deg": np.full(count, np.degrees(one.beta)), **columns})
+        parts.append({"beta_deg": np.full(count, np.degrees(slide_map.beta)), **columns})
     return tables.frame({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
 def summary(slides):
     """Return what holds at the bowl's own point, a column a map, as a frame for people."""
     first = slides[0]
-    names = ["acceleration ratio G = A w2/g", "alpha - theta [deg]", "static friction", *LIMITS.values()]
+    names = [
+        "acceleration ratio G = A w2/g",
+        "alpha - theta [deg]",
+        "static friction",
+        *LIMIT_LABELS.values(),
+    ]
     names += [
         *ONSETS.values(),
         "regime",
         *(f"share of the map: {regime_words(name)}" for name in first.grid.names),
     ]
-    columns = {f"beta = {np.degrees(one.beta):.6g} deg": _column(one) for one in slides}
+    columns = {f"beta = {np.degrees(slide_map.beta):.6g} deg": _column(slide_map) for slide_map in slides}
     return tables.frame({"at the bowl's own point": names, **columns})
 
 
-def document(study, settings) -> dict[Any, Any]:
-    """Return a SlideStudy as the JSON document.
-
-    Parameters
-    ----------
-    study : SlideStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-
-    Returns
-    -------
-    dict
-    """
-    maps = [_map(one) for one in study.maps]
+def document(study: SlideStudy, settings) -> dict[str, Any]:
+    """Return a SlideStudy as the JSON document."""
+    maps = [_map(slide_map) for slide_map in study.maps]
     return {"bowl": settings, "as_published": study.as_published, "maps": maps}
 
 
 def remarks(study):
     """Return what a reader of a SlideStudy should know, a sentence each."""
     lines = []
-    for one in study.maps:
-        shares, beta = one.grid.shares(), f"beta = {np.degrees(one.beta):.6g} deg"
-        empty, cells = one.grid.unanswered("mu_limit"), one.grid.codes.size
+    for slide_map in study.maps:
+        shares, beta = slide_map.grid.shares(), f"beta = {np.degrees(slide_map.beta):.6g} deg"
+        empty, cells = slide_map.grid.unanswered("mu_limit"), slide_map.grid.codes.size
         if shares["hop"] == 0.0:
             lines.append(f"{beta}: the drive does not lift the part, so no cell hops.")
         if shares["stick"] + shares["hop"] == 1.0:
-            lines.append(f"{beta}: nothing slips before it hops at static friction {one.friction:g}.")
+            lines.append(f"{beta}: nothing slips before it hops at static friction {slide_map.friction:g}.")
         if empty:
             lines.append(
                 f"{beta}: mu_limit is empty in {empty} of {cells} cells, "
@@ -87,40 +86,42 @@ def remarks(study):
     return lines
 
 
-def settings(found):
+def settings(bowl_settings):
     """Return the bowl settings and where each came from, as a frame."""
     columns = {
-        "key": [s.key.name for s in found],
-        "value": [s.text for s in found],
-        "from": [s.origin for s in found],
-        "lowest": [s.key.lowest for s in found],
-        "highest": [s.key.highest for s in found],
-        "meaning": [s.key.meaning for s in found],
+        "key": [s.key.name for s in bowl_settings],
+        "value": [s.text for s in bowl_settings],
+        "from": [s.origin for s in bowl_settings],
+        "lowest": [s.key.lowest for s in bowl_settings],
+        "highest": [s.key.highest for s in bowl_settings],
+        "meaning": [s.key.meaning for s in bowl_settings],
     }
     return tables.frame(columns)
 
 
-def _map(one) -> dict[Any, Any]:
+def _map(slide_map) -> dict[Any, Any]:
     return {
-        "beta_deg": np.degrees(one.beta),
+        "beta_deg": np.degrees(slide_map.beta),
         "operating_point": {
-            "acceleration_ratio": one.ratio,
-            "alpha_minus_theta_deg": np.degrees(one.alpha_minus_theta),
-            "static_friction": one.friction,
-            **one.at_bowl,
-            "regime": one.regime,
+            "acceleration_ratio": slide_map.ratio,
+            "alpha_minus_theta_deg": np.degrees(slide_map.alpha_minus_theta),
+            "static_friction": slide_map.friction,
+            **slide_map.at_bowl,
+            "regime": slide_map.regime,
         },
-        "onset_ratios": one.onsets,
-        "shares": one.grid.shares(),
-        "cells": one.grid.columns(),
+        "onset_ratios": slide_map.onsets,
+        "shares": slide_map.grid.shares(),
+        "cells": slide_map.grid.columns(),
     }
 
 
-def _column(one) -> list[Any]:
-    numbers = [one.ratio, np.degrees(one.alpha_minus_theta), one.friction]
-    numbers += [one.at_bowl[name] for name in LIMITS] + [one.onsets[name] for name in ONSETS]
-    shares = [_percent(share) for share in one.grid.shares().values()]
-    return [*(_number(number) for number in numbers), regime_words(one.regime), *shares]
+def _column(slide_map) -> list[Any]:
+    numbers = [slide_map.ratio, np.degrees(slide_map.alpha_minus_theta), slide_map.friction]
+    numbers += [slide_map.at_bowl[name] for name in LIMIT_LABELS] + [
+        slide_map.onsets[name] for name in ONSETS
+    ]
+    shares = [_percent(share) for share in slide_map.grid.shares().values()]
+    return [*(_number(number) for number in numbers), regime_words(slide_map.regime), *shares]
 
 
 def _number(value) -> str:
@@ -138,37 +139,24 @@ RATIO = "acceleration ratio G = A ω² / g [1]"
 FRICTION = "limiting friction μ [1]"
 HIGHEST = 2.0  # [1] friction at which pictures are cut: hardly any pair has more
 LEVELS = (0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 4.0)  # [1] of the contour lines
-NEAR = 0.1  # [1] of a level: the bowl's own friction, nearer than that, takes its place
-REGIMES = {  # colour and label; what a designer wants is the strongest
-    "stick": ("#eef2f5", "sticks"),
-    "forward": ("#79bfa4", "slips forward only"),
-    "backward": ("#e3a08a", "slips back only"),
-    "both": ("#f3dfae", "slips both ways"),
-    "hop": ("#e1e5e8", "hops"),
-}
-HATCH = "#b4bcc3"
+NEAR_LEVEL = 0.1  # [1] of a level: the bowl's own friction, nearer than that, takes its place
+SLIDE_COLOURS = {  # what a designer wants is the strongest; a hop is hatched as well
+    "stick": "#eef2f5", "forward": "#79bfa4", "backward": "#e3a08a", "both": "#f3dfae", "hop": "#e1e5e8",
+}  # fmt: skip
+HOP_HATCH_COLOUR = "#b4bcc3"
 LETTER = (0.0125, 0.055)  # width of a letter and height of a line, over the picture's
-SHADES = "cividis"
-OWN = "this bowl"
+LEVEL_COLOURS = "cividis"
+OWN_LABEL = "this bowl"
 LABEL = {"fontsize": 8.5, "color": style.INK, "zorder": 4}
 
 
-def surface(slide):
-    """Draw limiting friction [4.27] over (alpha - theta, G), as Figures 5-2 to 5-4, up to friction 2.
-
-    Parameters
-    ----------
-    slide : SlideMap
-
-    Returns
-    -------
-    Figure
-    """
+def surface(slide: SlideMap):
+    """Draw limiting friction [4.27] over (alpha - theta, G), as Figures 5-2 to 5-4, up to friction 2."""
     figure = style.figure(6.4, 5.2)
     axes = figure.add_subplot(projection="3d", computed_zorder=False)
     angles, ratios, friction = slide.sheet(HIGHEST)
     axes.plot_surface(
-        np.degrees(angles), ratios, friction, cmap=SHADES, vmin=0.0, vmax=HIGHEST,
+        np.degrees(angles), ratios, friction, cmap=LEVEL_COLOURS, vmin=0.0, vmax=HIGHEST,
         rcount=61, ccount=61, edgecolor="white", linewidth=0.15, zorder=1,
     )  # fmt: skip
     own = slide.level_line(slide.friction, angles[:, 0])
@@ -190,18 +178,8 @@ def surface(slide):
     return figure
 
 
-def contours(slide):
-    """Draw lines of equal limiting friction [4.27], as Figure 5-5, with the hop and the bowl's own point.
-
-    Parameters
-    ----------
-    slide : SlideMap
-        Of many cells.
-
-    Returns
-    -------
-    Figure
-    """
+def contours(slide: SlideMap):
+    """Draw lines of equal limiting friction [4.27], as Figure 5-5, with the hop and the bowl's own point."""
     figure, axes = _map_axes(slide, "Limiting friction")
     _levels(axes, slide)
     _hop_region(axes, slide, slide.level_hop)
@@ -209,22 +187,12 @@ def contours(slide):
     return figure
 
 
-def regimes(slide):
-    """Draw what the bowl's own friction allows in each cell, with the bowl's own point.
-
-    Parameters
-    ----------
-    slide : SlideMap
-        Of many cells.
-
-    Returns
-    -------
-    Figure
-    """
+def regimes(slide: SlideMap):
+    """Draw what the bowl's own friction allows in each cell, with the bowl's own point."""
     figure, axes = _map_axes(slide, f"Regimes at static friction {slide.friction:g}")
     widest, top = axes.get_xlim()[1], axes.get_ylim()[1]
     colours = (
-        (255.0 * mpl_colors.to_rgba_array([REGIMES[name][0] for name in slide.grid.names]))
+        (255.0 * mpl_colors.to_rgba_array([SLIDE_COLOURS[name] for name in slide.grid.names]))
         .round()
         .astype(np.uint8)
     )
@@ -240,17 +208,7 @@ def regimes(slide):
 
 
 def curves(slides):
-    """Draw limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28].
-
-    Parameters
-    ----------
-    slides : sequence of SlideMap
-        One a vibration angle.
-
-    Returns
-    -------
-    Figure
-    """
+    """Draw limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28]."""
     figure = style.figure(6.4, 4.2)
     axes = style.tidy(
         figure.add_subplot(), title="Limiting friction of an aligned part, α = θ", x=RATIO, y=FRICTION
@@ -259,12 +217,12 @@ def curves(slides):
         _curve(axes, slide, shade)
     first = slides[0]
     axes.axhline(first.friction, color=style.ACCENT, linewidth=1.0, alpha=0.7)
-    axes.plot([], [], color=style.INK, linestyle="--", linewidth=1.0, label="backward slip, this track")
+    axes.plot([], [], color=style.INK, linestyle="--", linewidth=1.0, label="slips back, this track")
     axes.set(xlim=(0, _right_edge(slides)), ylim=(0, HIGHEST))
     _own_point(
         axes, first.ratio, first.friction, f"this bowl, G = {first.ratio:.3g}, μ = {first.friction:g}", drop=9
     )
-    axes.plot([], [], color=style.ACCENT, linewidth=1.0, alpha=0.7, marker="o", label=OWN)
+    axes.plot([], [], color=style.ACCENT, linewidth=1.0, alpha=0.7, marker="o", label=OWN_LABEL)
     figure.legend(
         fontsize=8,
         frameon=False,
@@ -279,7 +237,7 @@ def _map_axes(slide, title) -> tuple[Any, ...]:
     figure = style.figure(6.4, 4.6)
     title = f"{title}, β = {np.degrees(slide.beta):.6g}°"
     axes = style.tidy(figure.add_subplot(), title=title, x=ANGLE, y=RATIO, grid="none")
-    widest = slide.grid.first.shown[-1]
+    widest = slide.grid.first.in_unit[-1]
     axes.set(xlim=(-widest, widest), ylim=(0, slide.grid.second.values[-1]))
     axes.set_xticks(np.linspace(-widest, widest, 7))
     return figure, axes
@@ -290,8 +248,8 @@ def _hop_region(axes, slide, start) -> None:
     top = slide.grid.second.values[-1]
     if start >= top:
         return
-    with matplotlib.rc_context({"hatch.color": HATCH, "hatch.linewidth": 0.5}):
-        axes.axhspan(start, top, facecolor=REGIMES["hop"][0], hatch="////", linewidth=0, zorder=1.5)
+    with matplotlib.rc_context({"hatch.color": HOP_HATCH_COLOUR, "hatch.linewidth": 0.5}):
+        axes.axhspan(start, top, facecolor=SLIDE_COLOURS["hop"], hatch="////", linewidth=0, zorder=1.5)
     axes.axhline(start, color=style.INK, linewidth=1.0, zorder=1.6)
     x = -0.5 * axes.get_xlim()[1] if slide.ratio > start else 0.0  # beside the bowl's own point
     axes.text(
@@ -319,7 +277,7 @@ def _own_point(axes, x, y, text, drop=0) -> None:
 def _label_region(axes, slide, name) -> bool:
     """Write the regime's name into its region, on two lines if need be; False if it has no room."""
     inside = (slide.grid.codes == slide.grid.names.index(name)) & ~_taken(slide)
-    for text in (REGIMES[name][1], REGIMES[name][1].replace(" ", "\n", 1)):
+    for text in (regime_words(name), regime_words(name).replace(" ", "\n", 1)):
         lines = text.split("\n")
         box = (
             int(LETTER[0] * max(map(len, lines)) * inside.shape[0]),
@@ -328,7 +286,7 @@ def _label_region(axes, slide, name) -> bool:
         room = ndimage.minimum_filter(inside, size=box, mode="constant", cval=False)
         if room.any():
             i, j = _most_central(room)
-            x, y = slide.grid.first.shown[i], slide.grid.second.values[j]
+            x, y = slide.grid.first.in_unit[i], slide.grid.second.values[j]
             axes.text(x, y, text, ha="center", va="center", path_effects=style.halo(), **LABEL)
             return True
     return False
@@ -336,7 +294,7 @@ def _label_region(axes, slide, name) -> bool:
 
 def _taken(slide):
     """Cells that the bowl's own point and its name lie over."""
-    angles, ratios = slide.grid.first.shown, slide.grid.second.values
+    angles, ratios = slide.grid.first.in_unit, slide.grid.second.values
     across = (np.asarray(angles) - np.degrees(slide.alpha_minus_theta)) / np.ptp(angles)
     across = np.abs(across) if slide.alpha_minus_theta > 0.0 else across  # the name is on either side
     up = np.abs(np.asarray(ratios) - slide.ratio) / np.ptp(ratios)
@@ -355,7 +313,9 @@ def _most_central(room) -> tuple[Any, ...]:
 def _legend(figure, slide, names) -> None:
     """Colours of the regimes that are on the map but too thin to be named there."""
     shares = slide.grid.shares()
-    patches = [mpl_patches.Patch(color=REGIMES[n][0], label=REGIMES[n][1]) for n in names if shares[n] > 0]
+    patches = [
+        mpl_patches.Patch(color=SLIDE_COLOURS[n], label=regime_words(n)) for n in names if shares[n] > 0
+    ]
     if patches:
         figure.legend(
             handles=patches, loc="outside lower left", ncols=len(patches), fontsize=8, frameon=False
@@ -365,13 +325,13 @@ def _legend(figure, slide, names) -> None:
 def _levels(axes, slide) -> None:
     """Contour lines, each with its value written at an angle: those that the map reaches."""
     friction = slide.grid.values["mu_limit"]
-    x, y = slide.grid.first.shown, slide.grid.second.values
+    x, y = slide.grid.first.in_unit, slide.grid.second.values
     lines = {
         level: (shade, 1.1, (-22, -40)[place % 2], f"μ = {level:g}")
         for place, (level, shade) in enumerate(zip(LEVELS, _shades(len(LEVELS))))
-        if abs(level - slide.friction) > NEAR * level
+        if abs(level - slide.friction) > NEAR_LEVEL * level
     }
-    lines[slide.friction] = (style.ACCENT, 1.8, 60, f"{OWN}'s μ = {slide.friction:g}")
+    lines[slide.friction] = (style.ACCENT, 1.8, 60, f"{OWN_LABEL}'s μ = {slide.friction:g}")
     levels = [level for level in sorted(lines) if np.nanmin(friction) < level < np.nanmax(friction)]
     if not levels:
         return
@@ -381,7 +341,7 @@ def _levels(axes, slide) -> None:
     named = [place for place in places if place[1] < y[-1]]
     if named:
         for text in axes.clabel(drawn, fmt=dict(zip(levels, texts)), fontsize=7, manual=named):
-            if not text.get_text().startswith(OWN):
+            if not text.get_text().startswith(OWN_LABEL):
                 text.set_color(style.INK)
 
 
@@ -410,11 +370,11 @@ def _right_edge(slides):
 
 
 def _shades(count):
-    return matplotlib.colormaps[SHADES](np.linspace(0.05, 0.8, count))
+    return matplotlib.colormaps[LEVEL_COLOURS](np.linspace(0.05, 0.8, count))
 
 
-PICTURE = (721, 601)  # cells of a map that is drawn
-ALTS = {
+MAP_SHAPE = (721, 601)  # cells of a map that is drawn
+SLIDE_ALTS = {
     "surface": "Limiting friction over the heading and the acceleration ratio",
     "contours": "Lines of equal limiting friction",
     "regimes": "Regimes of a part over its heading and the acceleration ratio",
@@ -423,11 +383,11 @@ ALTS = {
 
 def offers(study) -> list[Any]:
     """Offer the files of a SlideStudy, as a list of Offer."""
-    fine = cache(partial(study.fine, PICTURE))  # once for all pictures
+    fine = cache(partial(study.fine, MAP_SHAPE))  # once for all pictures
     pictures = [
-        offer.picture(f"slide_{kind}_beta{np.degrees(one.beta):.6g}.png", alt, _draw, kind, fine, place)
-        for place, one in enumerate(study.maps)
-        for kind, alt in ALTS.items()
+        offer.picture(f"slide_{kind}_beta{np.degrees(slide_map.beta):.6g}.png", alt, _draw, kind, fine, place)
+        for place, slide_map in enumerate(study.maps)
+        for kind, alt in SLIDE_ALTS.items()
     ]
     return [
         offer.table("slide.csv", cells, study.maps),

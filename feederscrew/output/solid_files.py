@@ -89,10 +89,10 @@ def bowl_3mf(solid, title, mark=""):
 
 def segments_3mf(pieces, title, mark=""):
     """Return segments of a bowl as the bytes of a 3MF file, one object each, beside each other."""
-    across = np.cumsum([0.0, *(piece.size[0] + SEGMENT_GAP_M for piece in pieces)])
+    across = np.cumsum([0.0, *(segment.size[0] + SEGMENT_GAP_M for segment in pieces)])
     moved = zip(across, pieces)
     return pack_3mf(
-        [(piece.name, piece.vertices + [x, 0.0, 0.0], piece.faces) for x, piece in moved], title, mark
+        [(segment.name, segment.vertices + [x, 0.0, 0.0], segment.faces) for x, segment in moved], title, mark
     )
 
 
@@ -100,7 +100,7 @@ def pack_3mf(objects, title, mark=""):
     """Return objects (name, vertices (V, 3) [m], faces (F, 3)) as the bytes of a 3MF file."""
     objects = [(marking.marked_title(name, mark), *surface) for name, *surface in objects]
     model = MODEL + f'<metadata name="Title">{quoteattr(title)[1:-1]}</metadata>\n<resources>\n'
-    model += "".join(_object(k + 1, *body) for k, body in enumerate(objects))
+    model += "".join(_object(k + 1, *member) for k, member in enumerate(objects))
     items = "".join(f'<item objectid="{k + 1}"/>' for k in range(len(objects)))
     model += f"</resources>\n<build>{items}</build>\n</model>\n"
     contents = {"[Content_Types].xml": TYPES, "_rels/.rels": RELATIONS, "3D/3dmodel.model": model}

@@ -12,8 +12,8 @@ INK = "#22303c"  # text and axes
 FAINT = "#d5dbe1"  # grids and frames
 ANSWER = "#8fa5b5"  # the recommended answer
 ACCENT = "#d55e00"  # what a picture is about: the contact polygon, the operating point
-LEVEL = 50  # letters that stand side by side under an axis
-SPARE = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
+PNG_LEVEL = 50  # letters that stand side by side under an axis
+SPARE_COLOURS = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 
 
 def figure(width=6.4, height=4.0):
@@ -70,7 +70,7 @@ def tidy(axes, *, title="", x="", y="", grid="both"):
 
 def named_ticks(axes, places, names) -> None:
     """Write names under an x axis, slanting where they would touch each other."""
-    slanting = len(names) * max(map(len, names), default=0) > LEVEL
+    slanting = len(names) * max(map(len, names), default=0) > PNG_LEVEL
     look = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"} if slanting else {}
     axes.set_xticks(places, names, **look)
 
@@ -78,7 +78,11 @@ def named_ticks(axes, places, names) -> None:
 def method(name, place=0) -> tuple[Any, ...]:
     """Return label and colour of a rule or profile; ``place`` picks a spare colour for an unknown one."""
     rule = registry.RULE_OF.get(name)
-    return (rule.label, rule.colour) if rule else (name.replace("_", " "), SPARE[place % len(SPARE)])
+    return (
+        (rule.label, rule.colour)
+        if rule
+        else (name.replace("_", " "), SPARE_COLOURS[place % len(SPARE_COLOURS)])
+    )
 
 
 def png(figure):
@@ -93,4 +97,4 @@ def halo():
 
 def rim():
     """Return the path effects of white letters over light colours."""
-    return canvas.RIM
+    return canvas.LETTER_RIM

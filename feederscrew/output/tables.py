@@ -11,7 +11,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.output import window
 
-UNITS = {  # the end of a column's name, and how a heading writes it
+COLUMN_UNITS = {  # the end of a column's name, and how a heading writes it
     "_n_per_mm": "N/mm",
     "_per_minute": "1/min",
     "_percent": "%",
@@ -42,8 +42,8 @@ UNITS = {  # the end of a column's name, and how a heading writes it
 }
 SHARES = ("share", "efficiency", "purity")  # last words of columns of shares ...
 PASSED = ("passes", "passes_devices", "passed_low", "passed_high")  # ... and whole names of others
-DIGITS = 4  # significant, in a table for people
-NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
+TABLE_DIGITS = 4  # significant, in a table for people
+COLUMN_NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
 MIXED = "value"  # a column whose rows have units of their own: none is rounding beside another
 PAGE = 100  # letters of a line that a table for people should not be wider than
 
@@ -86,10 +86,10 @@ def frame(columns):
     ValueError
         If the columns are not equally long.
     """
-    found = Frame({name: _as_column(values) for name, values in columns.items()})
-    if len(lengths := {len(column) for column in found.values()}) > 1:
+    table = Frame({name: _as_column(values) for name, values in columns.items()})
+    if len(lengths := {len(column) for column in table.values()}) > 1:
         raise ValueError(f"columns of one table are not of the same length: {sorted(lengths)}")
-    return found
+    return table
 
 
 def data_frame(frame):
@@ -136,7 +136,11 @@ def text(frame, format, width=None):
         Lines that end in a newline; the same frame always gives the same bytes.
     """
     if format == "csv":
-        return _csv(frame)
+        lines = io.StringIO()
+        writer = csv.writer(lines, lineterminator="\n")
+        writer.writerow(frame)
+        writer.writerows(zip(*([_cell(value) for value in column] for column in frame.values())))
+        return lines.getvalue()
     if format == "table":
         return _aligned(frame, width)
     raise ValueError(f"format is {format!r}, not 'table' or 'csv'")
@@ -150,15 +154,6 @@ def to_page(frame, spare, width=PAGE) -> tuple[Any, ...]:
     """
     gone = window.spared({name: len(_column(name, cells)[0]) for name, cells in frame.items()}, spare, width)
     return frame.without(gone), [heading(name)[0] for name in gone]
-
-
-def _csv(frame):
-    """Comma-separated lines, the names first; cells that would look like nothing at all are quoted."""
-    lines = io.StringIO()
-    writer = csv.writer(lines, lineterminator="\n")
-    writer.writerow(frame)
-    writer.writerows(zip(*([_cell(value) for value in column] for column in frame.values())))
-    return lines.getvalue()
 
 
 def _cell(value):
@@ -224,8 +219,8 @@ def heading(name, numeric=True) -> tuple[Any, ...]:
         if rule.endswith((" low", " high")):
             return rule.rsplit(" ", 1)[1], "[%]"
         return (rule.upper() if _is_abbreviation(rule) else rule), "[%]"
-    ending = next((ending for ending in UNITS if name.endswith(ending) and name != ending), "")
-    return name.removesuffix(ending).replace("_", " "), f"[{UNITS[ending]}]" if ending else ""
+    ending = next((ending for ending in COLUMN_UNITS if name.endswith(ending) and name != ending), "")
+    return name.removesuffix(ending).replace("_", " "), f"[{COLUMN_UNITS[ending]}]" if ending else ""
 
 
 def _is_abbreviation(name):
@@ -249,8 +244,8 @@ def _aligned(frame, width) -> str:
         pieces = [list(columns.values())]
     else:
         texts = [name for name, column in frame.items() if not is_numeric(column)]
-        beside = window.narrowed(columns, texts, width)
-        pieces = window.folded(columns, width) if beside is None else [beside]
+        side_by_side = window.narrowed(columns, texts, width)
+        pieces = window.folded(columns, width) if side_by_side is None else [side_by_side]
     return "\n".join("".join(f"{line}\n" for line in _lines(piece) if line) for piece in pieces)
 
 
@@ -274,8 +269,10 @@ def _numbers(name, values) -> list[Any]:
         return [str(value) for value in values]
     values = values * (100.0 if is_share(name) else 1.0)
     largest = max(np.abs(values[np.isfinite(values)]), default=0.0)
-    nothing = 0.0 if name == MIXED else NOISE * largest
-    return _pointed([_number(0.0 if abs(value) <= nothing else value) for value in values])
+    nothing = 0.0 if name == MIXED else COLUMN_NOISE * largest
+    cells = [_number(0.0 if abs(value) <= nothing else value) for value in values]
+    tails = [len(cell) - cell.find(".") if "." in cell else 0 for cell in cells]
+    return [cell + " " * (max(tails, default=0) - tail) for cell, tail in zip(cells, tails)]
 
 
 def _number(value) -> str:
@@ -284,18 +281,12 @@ def _number(value) -> str:
     if value == 0.0:
         return "0"
     if not 1e-4 <= abs(value) < 1e7:
-        return f"{value:.{DIGITS - 1}e}"
-    exponent = int(f"{value:.{DIGITS - 1}e}".partition("e")[2])  # after rounding: 9.9999 is 10.00
-    return f"{value:.{max(0, DIGITS - 1 - exponent)}f}"
+        return f"{value:.{TABLE_DIGITS - 1}e}"
+    exponent = int(f"{value:.{TABLE_DIGITS - 1}e}".partition("e")[2])  # after rounding: 9.9999 is 10.00
+    return f"{value:.{max(0, TABLE_DIGITS - 1 - exponent)}f}"
 
 
 def _word(value):
     if isinstance(value, (bool, np.bool_)):
         return "yes" if value else "no"
     return "-" if value is None or value != value else units.printable(str(value))
-
-
-def _pointed(cells) -> list[Any]:
-    """Cells padded on the right until their decimal points stand under each other."""
-    tails = [len(cell) - cell.find(".") if "." in cell else 0 for cell in cells]
-    return [cell + " " * (max(tails, default=0) - tail) for cell, tail in zip(cells, tails)]

@@ -8,28 +8,23 @@ import numpy as np
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.columns import UJ
+from feederscrew.output.tables import Frame
+from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.units import GRAVITY, MM
 
 
-def transitions(study):
+def transitions(study: AspectsStudy) -> Frame:
     """Return the tipping graph, one row a way from one aspect into another or into its equal.
 
-    Parameters
-    ----------
-    study : AspectsStudy
-
-    Returns
-    -------
-    Frame
-        The columns of ``graph.csv``.
+    The columns of ``graph.csv``.
     """
-    ways, names = study.transitions, study.aspects.names
-    axes = np.array([way.axis for way in ways]).reshape(-1, 3)
-    lifts = np.array([way.lift for way in ways], dtype=float)
+    tips, names = study.transitions, study.aspects.names
+    axes = np.array([tip.axis for tip in tips]).reshape(-1, 3)
+    lifts = np.array([tip.lift for tip in tips], dtype=float)
     return tables.frame(
         {
-            "from": [names[way.start] for way in ways],
-            "to": [names[way.end] for way in ways],
+            "from": [names[tip.start] for tip in tips],
+            "to": [names[tip.end] for tip in tips],
             "barrier_mm": lifts / MM,
             "barrier_uJ": study.part.mass * GRAVITY * lifts / UJ,
             "axis_x": axes[:, 0],
@@ -39,17 +34,8 @@ def transitions(study):
     )
 
 
-def offers(study) -> list[Any]:
-    """Offer the table and the drawing of what tips into what.
-
-    Parameters
-    ----------
-    study : AspectsStudy
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: AspectsStudy) -> list[offer.Offer]:
+    """Offer the table and the drawing of what tips into what."""
     alt = "Tipping graph: which aspect tips into which, and the lift it takes"
     return [
         offer.table("graph.csv", transitions, study),
@@ -63,7 +49,7 @@ def _graph(study):
 
 
 MOST_GRAPH_ASPECTS = 12  # aspects a picture can show
-CLEAR = 4.0  # [pt] between an arrow and a disc
+LABEL_CLEARANCE = 4.0  # [pt] between an arrow and a disc
 BEND = 0.12  # of an arrow, so that there and back lie apart
 LIFT_SPOTS = (  # of the way: where the lift may be written, the first that is free
     0.3, 0.27, 0.33, 0.24, 0.36, 0.21, 0.39, 0.42, 0.45, 0.48, 0.54, 0.6, 0.66, 0.72,
@@ -72,43 +58,31 @@ CROSSED = 2e-3  # of a point of another arrow under a label, as an overlap
 LETTER_SIZE = (0.041, 0.109)  # width and height of one, over the ring's radius
 DISC_SIZE = (0.22, 0.22)  # half a disc, over the ring's radius
 FRAMED = 4200.0  # [pt2] square about the disc behind a drawn aspect
-HALF = 0.15  # width of a drawn aspect, over the ring's diameter
-PICTURE = (160, 120)  # [px] of it
-LETTERS = 2  # of a name that fits into a disc
-PALE = "#9ba3aa"  # of ways that are not the easiest
+PICTURE_HALF_WIDTH = 0.15  # width of a drawn aspect, over the ring's diameter
+ASPECT_PICTURE_PX = (160, 120)  # [px] of it
+LIFT_DIGITS = 2  # of a name that fits into a disc
+PALE_ARROW = "#9ba3aa"  # of ways that are not the easiest
 EQUAL_LIFT = 1.001  # of the lowest lift out of a disc, up to which another is as easy
-REACH = 1.45  # of the picture, where the ring of discs has radius 1
+RING_REACH = 1.45  # of the picture, where the ring of discs has radius 1
 
 
-def graph(title, names, ways, shares, drawn=None):
-    """Draw the aspects on a ring, joined by arrows that carry the lift in mm.
+def graph(title: str, names, tips, shares, drawn=None):
+    """Draw the A aspects on a ring, joined by arrows that carry the lift in mm.
 
-    Parameters
-    ----------
-    title : str
-    names : sequence of str
-        Of the A aspects.
-    ways : sequence of Transition
-    shares : (A,) float [1]
-        Quasi-static probability; an aspect where it is NaN is left out.
-    drawn : function, optional
-        Gives the picture (H, W, C) of an aspect by its row; without it a disc stands for each aspect, whose
-        area grows with its share.
-
-    Returns
-    -------
-    Figure
+    ``tips`` are Transitions, ``shares`` (A,) [1] quasi-static probabilities: an aspect where it is NaN is
+    left out. ``drawn`` gives the picture (H, W, C) of an aspect by its row; without it a disc stands for
+    each aspect, whose area grows with its share.
     """
     figure = style.figure(6.4, 6.4)
     axes = figure.add_subplot()
     head = f"{title}: lift to tip [mm]"
-    axes.text(-REACH, REACH, head, ha="left", va="top", fontsize=10, color=style.INK)
-    shown = [k for k in range(len(names)) if np.isfinite(shares[k])][:MOST_GRAPH_ASPECTS]
-    turn = np.pi / 2 - 2.0 * np.pi * np.arange(len(shown)) / max(len(shown), 1)
-    places = {k: np.array([np.cos(a), np.sin(a)]) for k, a in zip(shown, turn)}
+    axes.text(-RING_REACH, RING_REACH, head, ha="left", va="top", fontsize=10, color=style.INK)
+    visible = [k for k in range(len(names)) if np.isfinite(shares[k])][:MOST_GRAPH_ASPECTS]
+    turn = np.pi / 2 - 2.0 * np.pi * np.arange(len(visible)) / max(len(visible), 1)
+    places = {k: np.array([np.cos(a), np.sin(a)]) for k, a in zip(visible, turn)}
     sizes = 500.0 + 2500.0 * np.nan_to_num(shares)  # [pt2] squares about the discs
     sizes = sizes if drawn is None else np.full(len(names), FRAMED)
-    _arrows(axes, ways, places, sizes, names)
+    _arrows(axes, tips, places, sizes, names)
     for k, place in places.items():
         if drawn is None:
             axes.scatter(*place, s=sizes[k], color="white", edgecolor=style.INK, zorder=3)
@@ -120,40 +94,32 @@ def graph(title, names, ways, shares, drawn=None):
         "orange: the easiest way off each aspect\n"
         "below each aspect: the share of all attitudes from which the part, let go without speed, ends on it"
     )
-    axes.text(0.0, -REACH, note, ha="center", va="bottom", fontsize=8, color=style.INK)
-    axes.set_xlim(-REACH, REACH)
-    axes.set_ylim(-REACH, REACH)
+    axes.text(0.0, -RING_REACH, note, ha="center", va="bottom", fontsize=8, color=style.INK)
+    axes.set_xlim(-RING_REACH, RING_REACH)
+    axes.set_ylim(-RING_REACH, RING_REACH)
     axes.set_aspect("equal")
     axes.axis("off")
     return figure
 
 
-def of_part(study, ways, shares):
+def of_part(study: AspectsStudy, tips, shares):
     """Draw the graph of an AspectsStudy or report case with the part in each aspect, where it has a shape.
 
-    Parameters
-    ----------
-    study : AspectsStudy
-    ways : sequence of Transition
-    shares : (A,) float [1]
-
-    Returns
-    -------
-    Figure
+    ``tips`` are Transitions, ``shares`` (A,) [1].
     """
-    part, found = study.part, study.aspects
+    part, resting = study.part, study.aspects
     if part.vertices is None:
-        return graph(part.name, found.names, ways, shares)
+        return graph(part.name, resting.names, tips, shares)
     from feederscrew.output import shading
 
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
-    drawn = partial(shading.thumbnail, solid, found, size=PICTURE)
-    return graph(part.name, found.names, ways, shares, drawn)
+    drawn = partial(shading.thumbnail, solid, resting, size=ASPECT_PICTURE_PX)
+    return graph(part.name, resting.names, tips, shares, drawn)
 
 
 def _framed(axes, picture, text, place) -> None:
     """The part as it rests on an aspect, its name and its share below."""
-    half = HALF * np.array([1.0, picture.shape[0] / picture.shape[1]])
+    half = PICTURE_HALF_WIDTH * np.array([1.0, picture.shape[0] / picture.shape[1]])
     low, high = place - half + [0.0, 0.03], place + half + [0.0, 0.03]
     axes.imshow(picture, extent=(low[0], high[0], low[1], high[1]), zorder=4, interpolation="antialiased")
     look = {"ha": "center", "va": "top", "color": style.INK, "fontsize": 9, "fontweight": "bold", "zorder": 5}
@@ -162,52 +128,38 @@ def _framed(axes, picture, text, place) -> None:
 
 def _name(axes, name, place) -> None:
     """A letter within its disc, a longer name across it."""
-    letter = len(name) <= LETTERS
+    letter = len(name) <= LIFT_DIGITS
     box = {} if letter else {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0}}
     look = {"ha": "center", "va": "center", "color": style.INK, "fontsize": 11 if letter else 9}
     axes.annotate(name, place, zorder=4, **look, **box)
 
 
-def _arrows(axes, ways, places, sizes, names) -> None:
+def _arrows(axes, tips, places, sizes, names) -> None:
     """The easiest way between every two discs that are shown; the easiest out of each stands out."""
     lowest: dict[int, float] = {}
     between: dict[tuple[int, int], float] = {}
-    for way in ways:
-        lowest[way.start] = min(way.lift, lowest.get(way.start, np.inf))
-        pair = (way.start, way.end)
-        if set(pair) <= set(places) and way.lift < between.get(pair, np.inf):
-            between[pair] = way.lift
+    for tip in tips:
+        lowest[tip.start] = min(tip.lift, lowest.get(tip.start, np.inf))
+        pair = (tip.start, tip.end)
+        if set(pair) <= set(places) and tip.lift < between.get(pair, np.inf):
+            between[pair] = tip.lift
     taken = [(*place, max(DISC_SIZE[0], _half(names[k])[0]), DISC_SIZE[1]) for k, place in places.items()]
     curves = {pair: _curve(places[pair[0]], places[pair[1]], np.linspace(0.0, 1.0, 60)) for pair in between}
     for (start, end), lift in sorted(between.items(), key=lambda item: -item[1]):  # the easy ones on top
         ends = (places[start], sizes[start]), (places[end], sizes[end])
-        others = [curve for pair, curve in curves.items() if pair != (start, end)]
-        taken.append(arrow(axes, *ends, lift, lift <= EQUAL_LIFT * lowest[start], taken, others))
+        other_labels = [curve for pair, curve in curves.items() if pair != (start, end)]
+        taken.append(arrow(axes, *ends, lift, lift <= EQUAL_LIFT * lowest[start], taken, other_labels))
 
 
-def arrow(axes, begin, end, lift, easiest, taken=(), others=()) -> tuple[Any, ...]:
+def arrow(axes, begin, end, lift, easiest, taken=(), other_labels=()) -> tuple[Any, ...]:
     """Draw one way between two discs (place, size), bent to leave room for the way back.
 
-    Parameters
-    ----------
-    axes : Axes
-    begin, end : pair of (2,) float and float
-        Place and size of a disc.
-    lift : float [m]
-    easiest : bool
-        Out of that disc.
-    taken : sequence of 4 float
-        Boxes of discs and labels that are there already: middle, half width, half height.
-    others : sequence of (K, 2) float
-        Points of the other arrows: a number stands where it is none of theirs.
-
-    Returns
-    -------
-    tuple of 4 float
-        The box of its own label.
+    ``lift`` [m] is its label; the ``easiest`` out of that disc stands out. ``taken`` are boxes of discs
+    and labels that are there already: middle, half width, half height. ``other_labels`` are (K, 2) points
+    of the other arrows: a number stands where it is none of theirs. Returns the box of its own label.
     """
     (start, from_size), (end, to_size) = begin, end
-    colour, text = style.ACCENT if easiest else PALE, _lift_mm(lift)
+    colour, text = style.ACCENT if easiest else PALE_ARROW, _lift_mm(lift)
     box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
     look = {"ha": "center", "va": "center", "fontsize": 9, "zorder": 5, "bbox": box}
     look["color"] = style.ACCENT if easiest else style.INK
@@ -215,11 +167,13 @@ def arrow(axes, begin, end, lift, easiest, taken=(), others=()) -> tuple[Any, ..
         axes.annotate(text, 1.32 * start, **look)
         return (*1.32 * start, *_half(text))
     bent = {"connectionstyle": f"arc3,rad={BEND}", "arrowstyle": "-|>,head_length=0.5,head_width=0.22"}
-    shrunk = {f"shrink{e}": 0.5 * np.sqrt(size) + CLEAR for e, size in (("A", from_size), ("B", to_size))}
+    shrunk = {
+        f"shrink{e}": 0.5 * np.sqrt(size) + LABEL_CLEARANCE for e, size in (("A", from_size), ("B", to_size))
+    }
     order = {"zorder": 2 if easiest else 1}
     axes.annotate("", end, start, arrowprops={**bent, **shrunk, "color": colour, "linewidth": 1.1}, **order)
     spots = _curve(start, end, np.array(LIFT_SPOTS))
-    crossed = np.reshape(np.concatenate([*others, np.zeros((0, 2))]), (-1, 2))
+    crossed = np.reshape(np.concatenate([*other_labels, np.zeros((0, 2))]), (-1, 2))
     half = np.array(_half(text))
     hidden = [
         sum(_overlap((*spot, *half), other) for other in taken)
@@ -234,8 +188,8 @@ def arrow(axes, begin, end, lift, easiest, taken=(), others=()) -> tuple[Any, ..
 def _curve(start, end, shares):
     """The points (K, 2) of a bent arrow at shares (K,) of its way."""
     along = end - start
-    beside = np.array([along[1], -along[0]]) * BEND  # of the middle control point of the arc
-    return start + shares[:, None] * along + 2.0 * (shares * (1.0 - shares))[:, None] * beside
+    offset = np.array([along[1], -along[0]]) * BEND  # of the middle control point of the arc
+    return start + shares[:, None] * along + 2.0 * (shares * (1.0 - shares))[:, None] * offset
 
 
 def _half(text) -> tuple[Any, ...]:
@@ -243,9 +197,9 @@ def _half(text) -> tuple[Any, ...]:
     return 0.5 * LETTER_SIZE[0] * len(text), 0.5 * LETTER_SIZE[1]
 
 
-def _overlap(one, other):
+def _overlap(first, other):
     """Area that two boxes share."""
-    sides = [one[k + 2] + other[k + 2] - abs(one[k] - other[k]) for k in (0, 1)]
+    sides = [first[k + 2] + other[k + 2] - abs(first[k] - other[k]) for k in (0, 1)]
     return max(sides[0], 0.0) * max(sides[1], 0.0)
 
 

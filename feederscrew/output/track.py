@@ -13,11 +13,11 @@ from feederscrew.output import style, tables
 from feederscrew.output.floor import (
     CONTACT,
     DRIVE,
-    EVERY,
     FRICTION,
     NORMAL,
     OUTSIDE,
     PART,
+    SAMPLE_STEP,
     STATE_WORDS,
     arrow,
     chosen,
@@ -34,28 +34,29 @@ from feederscrew.output.floor import (
     tips,
 )
 from feederscrew.output.heavy import heavy
+from feederscrew.studies.track import TrackStudy
 from feederscrew.units import MM
 
 mpl_patches = heavy("matplotlib.patches")
 shading = heavy("feederscrew.output.shading")
 
-CONTACTS = ("floor", "wall_1", "wall_2")
+CONTACT_NAMES = ("floor", "wall_1", "wall_2")
 HELD_ACROSS = (
     "at rest at the upper reversal, friction across the track or up the wall can hold the part; by the least "
     "friction along the track, which the reactions show and the cycle follows, it would slide"
 )
-ALONG = (
+VELOCITY_LABEL = (
     "velocity along the wall, with its friction and the bank [mm/s]"  # not that of a point mass, of convey
 )
-UNKNOWN = "not known: it hops"
+UNKNOWN_IN_FLIGHT = "not known: it hops"
 IN_FLIGHT = "in flight"  # no contact of all
 TURNED_OFF = (
     "friction turns the part about the wall contact that is left; the velocity is that of a part that keeps "
     "its heading, and too high - feeder trial follows the turning"
 )
-TURNS = 1.0  # [rad/s2] in 10 ms that is less than a hundredth of a degree
+MIN_TURNING_RAD_S2 = 1.0  # [rad/s2] in 10 ms that is less than a hundredth of a degree
 TURNED = 1.0  # [deg] of heading: less is not worth a word
-LABELS = {
+TRACK_LABELS = {
     "normal_force_N": "normal force N",
     "wall_1_N": "wall reaction R1, trailing contact",
     "wall_2_N": "wall reaction R2, leading contact",
@@ -70,131 +71,120 @@ LABELS = {
 }
 
 
-def instant(found) -> dict[Any, Any]:
-    """One instant under the names of the JSON contract; ``found`` is a TrackMotion of one instant."""
-    load = found.normal_force + abs(found.traction)
+def instant(motion) -> dict[Any, Any]:
+    """One instant under the names of the JSON contract; ``motion`` is a TrackMotion of one instant."""
+    load = motion.normal_force + abs(motion.traction)
     return {
-        "normal_force_N": float(found.normal_force),
-        "wall_1_N": noiseless(found.walls[0], load),
-        "wall_2_N": noiseless(found.walls[1], load),
-        "radial_friction_N": noiseless(found.radial_friction, load),
-        "traction_N": noiseless(found.traction, load),
-        "normal_line_offset_mm": noiseless(found.offset[0] / MM, 1.0),
-        "normal_line_offset_y_mm": noiseless(found.offset[1] / MM, 1.0),
-        "acceleration_x_m_s2": float(found.acceleration[0]),
-        "acceleration_y_m_s2": noiseless(found.acceleration[1], found.acceleration[0]),
-        "turning_rad_s2": noiseless(found.turning, found.acceleration[0] / MM),
-        "wall_1_friction_N": float(found.wall_friction[0]),
-        "wall_2_friction_N": float(found.wall_friction[1]),
-        "floor_couple_N_mm": float(found.couple) / MM,
-        "opened": [] if found.state == HOP else opened(found.closed),
-        "tips": tips(found.inside),
-        "state": MOTION_STATES[int(found.state)],
+        "normal_force_N": float(motion.normal_force),
+        "wall_1_N": noiseless(motion.walls[0], load),
+        "wall_2_N": noiseless(motion.walls[1], load),
+        "radial_friction_N": noiseless(motion.radial_friction, load),
+        "traction_N": noiseless(motion.traction, load),
+        "normal_line_offset_mm": noiseless(motion.offset[0] / MM, 1.0),
+        "normal_line_offset_y_mm": noiseless(motion.offset[1] / MM, 1.0),
+        "acceleration_x_m_s2": float(motion.acceleration[0]),
+        "acceleration_y_m_s2": noiseless(motion.acceleration[1], motion.acceleration[0]),
+        "turning_rad_s2": noiseless(motion.turning, motion.acceleration[0] / MM),
+        "wall_1_friction_N": float(motion.wall_friction[0]),
+        "wall_2_friction_N": float(motion.wall_friction[1]),
+        "floor_couple_N_mm": float(motion.couple) / MM,
+        "opened": [] if motion.state == HOP else opened(motion.closed),
+        "tips": tips(motion.inside),
+        "state": MOTION_STATES[int(motion.state)],
     }
 
 
-def printed(found) -> dict[Any, Any]:
-    """Return the same of the printed equations; ``found`` is a PrintedTrack of one instant."""
+def printed(motion) -> dict[Any, Any]:
+    """Return the same of the printed equations; ``motion`` is a PrintedTrack of one instant."""
     return {
-        "normal_force_N": float(found.normal_force),
-        "wall_1_N": float(found.walls[0]),
-        "wall_2_N": float(found.walls[1]),
-        "radial_friction_N": float(found.radial_friction),
-        "traction_N": float(found.traction),
-        "normal_line_offset_mm": float(found.offset) / MM,
-        "acceleration_x_m_s2": float(found.acceleration),
+        "normal_force_N": float(motion.normal_force),
+        "wall_1_N": float(motion.walls[0]),
+        "wall_2_N": float(motion.walls[1]),
+        "radial_friction_N": float(motion.radial_friction),
+        "traction_N": float(motion.traction),
+        "normal_line_offset_mm": float(motion.offset) / MM,
+        "acceleration_x_m_s2": float(motion.acceleration),
         "tips": None,
-        "state": "hop" if found.normal_force <= 0.0 else "slide" if found.slides else "stick",
+        "state": "hop" if motion.normal_force <= 0.0 else "slide" if motion.slides else "stick",
     }
 
 
-def over_cycle(found, course) -> dict[Any, Any]:
-    """One period as columns; ``found`` is a TrackMotion of shape (N,)."""
-    shown = slice(None, None, EVERY)
-    pairs = {"": found.walls, "_friction": found.wall_friction}
+def over_cycle(motion, course) -> dict[Any, Any]:
+    """One period as columns; ``motion`` is a TrackMotion of shape (N,)."""
+    samples = slice(None, None, SAMPLE_STEP)
+    pairs = {"": motion.walls, "_friction": motion.wall_friction}
     return {
-        "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[shown],
-        "state": [MOTION_STATES[code] for code in found.state[shown]],
-        "normal_force_N": found.normal_force[shown],
-        **{f"wall_{k + 1}{name}_N": pair[shown, k] for name, pair in pairs.items() for k in (0, 1)},
-        "radial_friction_N": found.radial_friction[shown] + 0.0,
-        "traction_N": found.traction[shown],
-        "normal_line_offset_mm": found.offset[shown, 0] / MM,
-        "normal_line_offset_y_mm": found.offset[shown, 1] / MM,
-        "acceleration_x_m_s2": found.acceleration[shown, 0],
-        "acceleration_y_m_s2": found.acceleration[shown, 1],
-        "turning_rad_s2": found.turning[shown],
-        "floor_couple_N_mm": found.couple[shown] / MM,
-        "velocity_m_s": course.velocity[shown],
-        "friction_needed": found.needed[shown, 0],
+        "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[samples],
+        "state": [MOTION_STATES[code] for code in motion.state[samples]],
+        "normal_force_N": motion.normal_force[samples],
+        **{f"wall_{k + 1}{name}_N": pair[samples, k] for name, pair in pairs.items() for k in (0, 1)},
+        "radial_friction_N": motion.radial_friction[samples] + 0.0,
+        "traction_N": motion.traction[samples],
+        "normal_line_offset_mm": motion.offset[samples, 0] / MM,
+        "normal_line_offset_y_mm": motion.offset[samples, 1] / MM,
+        "acceleration_x_m_s2": motion.acceleration[samples, 0],
+        "acceleration_y_m_s2": motion.acceleration[samples, 1],
+        "turning_rad_s2": motion.turning[samples],
+        "floor_couple_N_mm": motion.couple[samples] / MM,
+        "velocity_m_s": course.velocity[samples],
+        "friction_needed": motion.needed[samples, 0],
         "opened": [
             IN_FLIGHT if state == HOP else " ".join(opened(pair))
-            for state, pair in zip(found.state[shown], found.closed[shown])
+            for state, pair in zip(motion.state[samples], motion.closed[samples])
         ],
-        "tips": [tips(inside) for inside in found.inside[shown]],
+        "tips": [tips(inside) for inside in motion.inside[samples]],
     }
 
 
-def document(found, settings) -> dict[Any, Any]:
-    """Return all of one TrackStudy, for JSON; of one as published, the upper reversal by print.
-
-    Parameters
-    ----------
-    found : TrackStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-
-    Returns
-    -------
-    dict
-    """
+def document(study: TrackStudy, settings) -> dict[str, Any]:
+    """Return all of one TrackStudy, for JSON; of one as published, the upper reversal by print."""
     values = {}
-    if found.printed is not None:
-        values = {"instant": printed(found.printed), "difference": differences(found)}
-        values["omitted_terms"] = omitted_terms(found)
+    if study.printed is not None:
+        values = {"instant": printed(study.printed), "difference": differences(study)}
+        values["omitted_terms"] = omitted_terms(study)
     return {
-        "part": found.part.name,
-        "aspect": found.posture.name,
-        "heading_deg": float(np.degrees(found.seat.heading)),
-        "height_mm": found.seat.height / MM,
-        "wall_contacts": _contacts(found),
-        "as_published": found.printed is not None,
-        "regime": regime(found.cycle.state),
-        "instant": instant(found.now),
+        "part": study.part.name,
+        "aspect": study.posture.name,
+        "heading_deg": float(np.degrees(study.seat.heading)),
+        "height_mm": study.seat.height / MM,
+        "wall_contacts": _contacts(study),
+        "as_published": study.printed is not None,
+        "regime": regime(study.cycle.state),
+        "instant": instant(study.now),
         **values,
-        "on_the_track": None if found.stands is None else found.stands.verdict,
-        "on_the_track_said": None if found.stands is None else found.stands.sentence,
-        "first_to_open": found.opening.contact,
-        "opens_at_drive_factor": found.opening.drive_factor,
-        "opens_at_reversal": found.opening.reversal,
-        "tipping_axis": _axis(found.opening),
-        "friction_needed": friction_needed(found.cycle),
-        "held_across": found.held_across,
-        "stays_on_wall": stays_on_wall(found.cycle),
-        "bank_without_radial_friction_deg": float(np.degrees(found.bank_without_radial_friction)),
-        "mean_velocity_m_s": mean_velocity(found),
-        "settled": found.course.settled,
-        "cycle": over_cycle(found.cycle, found.course),
+        "on_the_track": None if study.stands is None else study.stands.verdict,
+        "on_the_track_said": None if study.stands is None else study.stands.sentence,
+        "first_to_open": study.opening.contact,
+        "opens_at_drive_factor": study.opening.drive_factor,
+        "opens_at_reversal": study.opening.reversal,
+        "tipping_axis": _axis(study.opening),
+        "friction_needed": friction_needed(study.cycle),
+        "held_across": study.held_across,
+        "stays_on_wall": stays_on_wall(study.cycle),
+        "bank_without_radial_friction_deg": float(np.degrees(study.bank_without_radial_friction)),
+        "mean_velocity_m_s": mean_velocity(study),
+        "settled": study.course.settled,
+        "cycle": over_cycle(study.cycle, study.course),
         "bowl": settings,
     }
 
 
-def differences(found):
+def differences(study):
     """Return the printed against the complete upper reversal of a TrackAsPublished, as a frame."""
-    return difference(printed(found.printed), instant(found.now), found.terms)
+    return difference(printed(study.printed), instant(study.now), study.terms)
 
 
-def omitted_terms(found):
+def omitted_terms(study):
     """Return the terms that the printed equations of a TrackAsPublished leave out, as a frame."""
     names = ("name", "equation", "value", "unit")
-    return tables.frame({name: [getattr(term, name) for term in found.omitted] for name in names})
+    return tables.frame({name: [getattr(term, name) for term in study.omitted] for name in names})
 
 
 def friction_needed(cycle):
     """Greatest friction over normal force that holds the part at rest through the cycle, by contact."""
     if not np.isfinite(cycle.needed).all():
-        return dict.fromkeys(CONTACTS, np.nan)
-    return dict(zip(CONTACTS, cycle.needed.max(axis=0).tolist()))
+        return dict.fromkeys(CONTACT_NAMES, np.nan)
+    return dict(zip(CONTACT_NAMES, cycle.needed.max(axis=0).tolist()))
 
 
 def stays_on_wall(cycle) -> bool | None:
@@ -202,7 +192,7 @@ def stays_on_wall(cycle) -> bool | None:
     return None if HOP in cycle.state else bool(cycle.closed.any(axis=-1).all())
 
 
-def shown(document, format):
+def frame_of(document, format):
     """What goes to stdout: the cycle as CSV; for people the upper reversal, or what print leaves out."""
     if format == "csv":
         return tables.frame(document["cycle"])
@@ -212,16 +202,18 @@ def shown(document, format):
 def summary(document):
     """Return what people want to know first, a row a quantity."""
     now, needed = document["instant"], document["friction_needed"]
-    rows = {label(name, text): now[name] for name, text in LABELS.items() if name in now}
+    rows = {label(name, text): now[name] for name, text in TRACK_LABELS.items() if name in now}
     rows |= {
         "state at the upper reversal": STATE_WORDS.get(now["state"], now["state"]),
         "regime over the cycle": STATE_WORDS.get(document["regime"], document["regime"]),
         "on the track, over the strokes": document["on_the_track_said"],
-        ALONG: None if document["mean_velocity_m_s"] is None else document["mean_velocity_m_s"] / MM,
+        VELOCITY_LABEL: None if document["mean_velocity_m_s"] is None else document["mean_velocity_m_s"] / MM,
         "heading [deg]": document["heading_deg"],
         **_opening(document),
-        "stays against the wall": UNKNOWN if document["stays_on_wall"] is None else document["stays_on_wall"],
-        **{f"friction needed to hold it, {name.replace('_', ' ')}": needed[name] for name in CONTACTS},
+        "stays against the wall": UNKNOWN_IN_FLIGHT
+        if document["stays_on_wall"] is None
+        else document["stays_on_wall"],
+        **{f"friction needed to hold it, {name.replace('_', ' ')}": needed[name] for name in CONTACT_NAMES},
         "bank without radial friction [deg]": document["bank_without_radial_friction_deg"],
     }
     return tables.frame({"quantity": list(rows), "value": [shown_value(value) for value in rows.values()]})
@@ -235,12 +227,12 @@ def _opening(document) -> dict[Any, Any]:
     return {"first contact to open": contact, "opens at this many times the drive": factor}
 
 
-def remarks(found):
+def remarks(study):
     """Return what a reader of a TrackStudy should know, a sentence each."""
-    lines, cycle = chosen(found), found.cycle
-    if len(found.seat.contact) == 0:
+    lines, cycle = chosen(study), study.cycle
+    if len(study.seat.contact) == 0:
         lines.append("a part card has no contact polygon: whether it tips is not known")
-    if found.held_across:
+    if study.held_across:
         lines.append(HELD_ACROSS)
     if HOP in cycle.state:
         lines.append(
@@ -250,39 +242,39 @@ def remarks(found):
     elif not cycle.closed.all():
         share = 100.0 * np.mean(~cycle.closed.all(axis=-1))
         lines.append(f"a wall contact is open for {share:.0f} % of the cycle: {_which(cycle.closed)}")
-        if found.posture.kind != "rolling" and np.abs(cycle.turning).max() > TURNS:
+        if study.posture.kind != "rolling" and np.abs(cycle.turning).max() > MIN_TURNING_RAD_S2:
             lines.append(TURNED_OFF)
-    if found.posture.kind == "rolling":
+    if study.posture.kind == "rolling":
         lines.append("rolling aspect: held by the wall, its rolling about the axis is not followed")
-    turn = np.degrees(found.seat.twist(found.bowl.track.bank))
+    turn = np.degrees(study.seat.twist(study.bowl.track.bank))
     if abs(turn) > TURNED:
         lines.append(
             f"the wall contacts lie at different heights: banked, the part turns by about {turn:.2g} deg more"
         )
-    if found.headings is not None and found.headings.overhangs[found.row] > 0.0:
+    if study.headings is not None and study.headings.overhangs[study.row] > 0.0:
         lines.append(
-            f"the part overhangs the track's edge by {found.headings.overhangs[found.row] / MM:.3g} mm"
+            f"the part overhangs the track's edge by {study.headings.overhangs[study.row] / MM:.3g} mm"
         )
     return lines
 
 
 def opened(closed) -> list[Any]:
     """Return names of the wall contacts that have opened."""
-    return [name for name, shut in zip(CONTACTS[1:], closed) if not shut]
+    return [name for name, shut in zip(CONTACT_NAMES[1:], closed) if not shut]
 
 
 def _which(closed) -> str:
-    names = [name.replace("_", " ") for name, shut in zip(CONTACTS[1:], closed.T) if not shut.all()]
+    names = [name.replace("_", " ") for name, shut in zip(CONTACT_NAMES[1:], closed.T) if not shut.all()]
     return " and ".join(names)
 
 
-def _contacts(found) -> list[Any]:
+def _contacts(study) -> list[Any]:
     """Place of each wall contact from the foot of the centre of mass, and sigma."""
-    places = found.seat.walls + np.array([0.0, 0.0, found.seat.height])
-    sigma = np.degrees(np.arcsin(-found.seat.walls[:, 0] / found.bowl.track.radius))
+    places = study.seat.walls + np.array([0.0, 0.0, study.seat.height])
+    sigma = np.degrees(np.arcsin(-study.seat.walls[:, 0] / study.bowl.track.radius))
     return [
         {"name": name, "place_mm": place / MM, "sigma_deg": float(angle)}
-        for name, place, angle in zip(CONTACTS[1:], places, sigma)
+        for name, place, angle in zip(CONTACT_NAMES[1:], places, sigma)
     ]
 
 
@@ -336,27 +328,17 @@ def _value(bowl, axis):
 
 
 WALL, SURFACE, WEIGHT = "#5d6b78", "#e9edf0", "#22303c"
-SHADES = ("#b5482a", "#e08a3c")  # of R1 and R2
-LONGEST = 0.55  # of the part's size: the longest arrow
-LEAST = 1e-3  # of the longest: shorter arrows are left out
-BARE = 0.02  # [m] size of a picture of a part card, which has no outline
+WALL_COLOURS = ("#b5482a", "#e08a3c")  # of R1 and R2
+REACTION_ARROW_SHARE = 0.55  # of the part's size: the longest arrow
+MIN_ARROW_SHARE = 1e-3  # of the longest: shorter arrows are left out
+CARD_SIZE_M = 0.02  # [m] size of a picture of a part card, which has no outline
 
 
-def part(found, title):
-    """The part on the track at the upper reversal, seen from above and from behind, with what acts on it.
-
-    Parameters
-    ----------
-    found : TrackStudy
-    title : str
-
-    Returns
-    -------
-    Figure
-    """
+def part(study: TrackStudy, title: str):
+    """Draw the part on the track at the upper reversal, from above and from behind, with what acts on it."""
     figure = style.figure(11.0, 5.4)
     above, behind = figure.subplots(1, 2)
-    state = MOTION_STATES[int(found.now.state)]
+    state = MOTION_STATES[int(study.now.state)]
     figure.suptitle(
         f"{title}, upper reversal: {state}; arrow length ∝ √force",
         x=0.01,
@@ -365,8 +347,8 @@ def part(found, title):
         color=style.INK,
         fontweight="bold",
     )
-    _above(above, found)
-    _behind(behind, found)
+    _above(above, study)
+    _behind(behind, study)
     for axes in (above, behind):
         axes.set_aspect("equal")
         axes.margins(0.16)
@@ -374,30 +356,19 @@ def part(found, title):
     return figure
 
 
-def cycle(found, course, title):
-    """Draw reactions and velocity over one settled period.
-
-    Parameters
-    ----------
-    found : TrackMotion of shape (N,)
-    course : Cycle
-    title : str
-
-    Returns
-    -------
-    Figure
-    """
+def cycle(motion, course, title: str):
+    """Draw reactions and velocity over one settled period; arguments as of ``over_cycle``."""
     figure = style.figure(6.8, 6.4)
     upper, middle, lower = figure.subplots(3, 1, sharex=True)
     phase = np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)
     style.tidy(upper, title=title, y="force [N]")
-    upper.plot(phase, found.normal_force, color=NORMAL, label="normal force N")
-    upper.plot(phase, found.traction, color=FRICTION, label="traction R4")
-    upper.set_ylim(top=1.28 * max(found.normal_force.max(), 1e-12))
+    upper.plot(phase, motion.normal_force, color=NORMAL, label="normal force N")
+    upper.plot(phase, motion.traction, color=FRICTION, label="traction R4")
+    upper.set_ylim(top=1.28 * max(motion.normal_force.max(), 1e-12))
     style.tidy(middle, y="wall [N]")
-    for k, color in enumerate(SHADES):
-        middle.plot(phase, found.walls[:, k], color=color, label=f"R{k + 1}")
-    middle.plot(phase, found.radial_friction, color=NORMAL, linestyle="--", label="R3")
+    for k, color in enumerate(WALL_COLOURS):
+        middle.plot(phase, motion.walls[:, k], color=color, label=f"R{k + 1}")
+    middle.plot(phase, motion.radial_friction, color=NORMAL, linestyle="--", label="R3")
     style.tidy(lower, x="phase ωt [deg]; upper reversal at 90°", y="velocity [mm/s]")
     lower.plot(phase, course.velocity / MM, color="#2f7d5b", label=mean(course))
     for axes in (upper, middle, lower):
@@ -406,8 +377,8 @@ def cycle(found, course, title):
         axes.legend(
             fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), labelcolor=style.INK
         )
-    state_band(upper, phase, found.state, MOTION_STATES)
-    state_legend(figure, found.state, MOTION_STATES)
+    state_band(upper, phase, motion.state, MOTION_STATES)
+    state_legend(figure, motion.state, MOTION_STATES)
     return figure
 
 
@@ -417,9 +388,9 @@ def mean(course) -> str:
     return f"mean, with the\nwall's friction:\n{velocity}"
 
 
-def _above(axes, found) -> None:
+def _above(axes, study) -> None:
     """Across the track surface: X to the right, the wall below."""
-    seat, now, posture = found.seat, found.now, found.posture
+    seat, now, posture = study.seat, study.now, study.posture
     style.tidy(
         axes,
         title="from above, the wall below",
@@ -428,49 +399,49 @@ def _above(axes, found) -> None:
         grid="none",
     )
     size = _size(posture)
-    _arcs(axes, found, size)
+    _arcs(axes, study, size)
     if len(posture.outline):
         _body(axes, turned(posture.outline, seat.heading) / MM)
         _contact(axes, seat.contact / MM)
-    side = frame(found.bowl, seat.walls)
+    side = frame(study.bowl, seat.walls)
     scale = _Scale(now, size)
-    for k, color in enumerate(SHADES):
+    for k, color in enumerate(WALL_COLOURS):
         start = seat.walls[k, :2] / MM
         scale.draw(axes, start, side.normals[k, :2], now.walls[k], f"R{k + 1}", color, pushing=True)
         scale.draw(axes, start, -side.courses[k, :2], now.wall_friction[k], f"R{k + 1}f", color)
     foot = now.offset / MM if np.isfinite(now.offset).all() else np.zeros(2)
     scale.draw(axes, foot, np.array([-1.0, 0.0]), now.traction, "R4", FRICTION)
     scale.draw(axes, foot, np.array([0.0, 1.0]), now.radial_friction, "R3", FRICTION)
-    scale.draw(axes, np.zeros(2), *_unit(_drive(found)[:2]), "drive", DRIVE)
+    scale.draw(axes, np.zeros(2), *_unit(_drive(study)[:2]), "drive", DRIVE)
     if now.normal_force > 0.0 and np.isfinite(now.offset).all():
         axes.plot(*foot, "x", color=NORMAL, markersize=8, markeredgewidth=2, zorder=7)
     shading.centre_of_mass(axes, 0.02 * size / MM)
 
 
-def _behind(axes, found) -> None:
+def _behind(axes, study) -> None:
     """Across the track: the wall to the right, up as gravity has it."""
-    seat, now, posture = found.seat, found.now, found.posture
+    seat, now, posture = study.seat, study.now, study.posture
     style.tidy(
         axes, title="from behind, the wall to the right", x="towards the wall [mm]", y="up [mm]", grid="none"
     )
-    bank, size = float(found.bowl.track.bank), _size(posture)
-    _section(axes, found, bank, size)
+    bank, size = float(study.bowl.track.bank), _size(posture)
+    _section(axes, study, bank, size)
     scale = _Scale(now, size)
 
     def place(point):
         return turned(np.asarray(point)[1:], bank) * [-1.0, 1.0] / MM
 
-    side = frame(found.bowl, seat.walls)
-    for k, color in enumerate(SHADES):
+    side = frame(study.bowl, seat.walls)
+    for k, color in enumerate(WALL_COLOURS):
         lift = np.array([0.0, 0.04 - 0.08 * k]) * size / MM  # or two reactions at one height hide each other
         push = _unit(place(side.normals[k]) * now.walls[k] * MM)
         scale.draw(axes, place(seat.walls[k]) + lift, *push, f"R{k + 1}", color, pushing=True)
     foot = np.array([0.0, 0.0 if np.isnan(now.offset[1]) else now.offset[1], -seat.height])
-    scale.draw(axes, place(foot), *_unit(place([0, 0, 1.0]) * now.normal_force * MM), "N", NORMAL, beside=1)
+    scale.draw(axes, place(foot), *_unit(place([0, 0, 1.0]) * now.normal_force * MM), "N", NORMAL, side=1)
     scale.draw(axes, place(foot), *_unit(place([0, 1.0, 0]) * now.radial_friction * MM), "R3", FRICTION)
-    weight = seat.mass * float(found.bowl.gravity)
+    weight = seat.mass * float(study.bowl.gravity)
     scale.draw(axes, np.zeros(2), np.array([0.0, -1.0]), weight, "weight", WEIGHT)
-    scale.draw(axes, np.zeros(2), *_unit(place(_drive(found)) * MM), "drive", DRIVE, beside=-1)
+    scale.draw(axes, np.zeros(2), *_unit(place(_drive(study)) * MM), "drive", DRIVE, side=-1)
     shading.centre_of_mass(axes, 0.02 * size / MM)
 
 
@@ -479,24 +450,24 @@ class _Scale:
 
     def __init__(self, now, size) -> None:
         self.longest = max(float(now.normal_force), float(np.linalg.norm(now.load)), *now.walls)
-        self.length = LONGEST * size / MM
+        self.length = REACTION_ARROW_SHARE * size / MM
 
     def draw(self, axes, start, direction, value, name, color, **style) -> None:
         """One force of so many newtons along a unit vector; none where it is zero."""
-        if abs(value) > LEAST * self.longest:
+        if abs(value) > MIN_ARROW_SHARE * self.longest:
             step = np.sign(value) * self.length * np.sqrt(abs(value) / self.longest) * np.asarray(direction)
             arrow(axes, start, step, f"{name} {newtons(abs(value))}", color, **style)
 
 
 def _size(posture):
-    return float(np.ptp(posture.outline, axis=0).max()) if len(posture.outline) else BARE
+    return float(np.ptp(posture.outline, axis=0).max()) if len(posture.outline) else CARD_SIZE_M
 
 
-def _drive(found):
+def _drive(study):
     """Inertial force of the drive in track axes."""
-    bowl = found.bowl
-    push = found.seat.mass * bowl.drive.amplitude * (2.0 * np.pi * bowl.drive.frequency) ** 2
-    return push * frame(bowl, found.seat.walls).drive
+    bowl = study.bowl
+    push = study.seat.mass * bowl.drive.amplitude * (2.0 * np.pi * bowl.drive.frequency) ** 2
+    return push * frame(bowl, study.seat.walls).drive
 
 
 def _unit(vector) -> tuple[np.ndarray, float]:
@@ -505,9 +476,9 @@ def _unit(vector) -> tuple[np.ndarray, float]:
     return (vector / size if size > 0.0 else np.zeros(2)), size
 
 
-def _arcs(axes, found, size) -> None:
+def _arcs(axes, study, size) -> None:
     """The wall and the track's free edge."""
-    track, seat = found.bowl.track, found.seat
+    track, seat = study.bowl.track, study.seat
     centre = seat.walls[:, 1].mean() + np.sqrt(track.radius**2 - np.square(seat.walls[:, 0]).mean())
     reach = np.linspace(-0.75, 0.75, 121) * size / track.radius
     for radius, dashes in ((track.radius, "-"), (track.radius - track.width, (0, (5, 3)))):
@@ -526,9 +497,9 @@ def _arcs(axes, found, size) -> None:
         )  # fmt: skip
 
 
-def _section(axes, found, bank, size) -> None:
+def _section(axes, study, bank, size) -> None:
     """Track, wall and part across the direction of travel."""
-    seat, posture, track = found.seat, found.posture, found.bowl.track
+    seat, posture, track = study.seat, study.posture, study.bowl.track
     at_wall = seat.walls[:, 1].mean()
     ends = np.array([[at_wall, -seat.height], [at_wall + track.width, -seat.height]])
     if posture.corners is not None:
@@ -565,24 +536,11 @@ def _contact(axes, polygon) -> None:
     )
 
 
-SHOWN = "acceleration_x_m_s2"
+MAP_COLUMN = "acceleration_x_m_s2"
 
 
-def offers(study, settings, grid) -> list[Any]:
-    """Offer the files of a TrackStudy.
-
-    Parameters
-    ----------
-    study : TrackStudy
-    settings : dict of str to str
-        The bowl's values in effect.
-    grid : Grid
-        Of ``study.over``.
-
-    Returns
-    -------
-    list of Offer
-    """
+def offers(study: TrackStudy, settings, grid) -> list[offer.Offer]:
+    """Offer the files of a TrackStudy, with the map of a Grid of ``study.over``."""
     printed_beside = [
         offer.table("track_difference.csv", differences, study),
         offer.table("track_omitted_terms.csv", omitted_terms, study),
@@ -623,7 +581,7 @@ def _map(study, grid):
     from feederscrew.output.floor import regime_map
 
     return regime_map(
-        grid, SHOWN, title=_title(study), labels=labels(grid),
+        grid, MAP_COLUMN, title=_title(study), labels=labels(grid),
         value="acceleration V'_X at the upper reversal [m/s²]",
         own=own_point(grid, study.bowl), note=map_remarks(grid),
     )  # fmt: skip

@@ -79,8 +79,8 @@ def spared(wide, spare, width):
     """
     gone = []
     for group in spare:
-        kept = [letters for name, letters in wide.items() if name not in gone]
-        if sum(kept) + len(GAP) * (len(kept) - 1) <= width:
+        letters_left = [letters for name, letters in wide.items() if name not in gone]
+        if sum(letters_left) + len(GAP) * (len(letters_left) - 1) <= width:
             break
         gone += [name for name in group if name in wide]
     return gone

@@ -3,7 +3,10 @@
 import re
 
 PHASE_WORDS = {"stick": "sticks", "forward": "slips forward", "backward": "slips back", "flight": "flies"}
-REGIME_WORDS = {"backward": "slips back only"}  # whose short name does not say that it is the part that slips
+REGIME_WORDS = {  # of a regime's name in files
+    "stick": "sticks", "forward": "slips forward only", "backward": "slips back only",
+    "both": "slips both ways", "hop": "hops",
+}  # fmt: skip
 
 
 def regime_words(regime: str) -> str:

@@ -78,18 +78,18 @@ def _aspect_entries(root, faults):
 
 def _directions(entries, faults) -> tuple[Any, ...]:
     """Names with their unit vectors; what is wrong is added to ``faults``."""
-    known: dict[str, tuple[str, tuple[float, ...]]] = {}  # by folded name: name, vector
+    named_directions: dict[str, tuple[str, tuple[float, ...]]] = {}  # by folded name: name, vector
     for entry in entries:
         try:
-            name, down = _name(entry, known), _direction(entry)
-            _refuse_repeated_direction(entry, down, known)
-            known[name.casefold()] = name, down
+            name, down = _name(entry, named_directions), _direction(entry)
+            _refuse_repeated_direction(entry, down, named_directions)
+            named_directions[name.casefold()] = name, down
         except ConfigError as fault:
             faults.append(fault)
-    return tuple(known.values())
+    return tuple(named_directions.values())
 
 
-def _name(entry, known) -> str:
+def _name(entry, named_directions) -> str:
     """The name of one line, fit for tables, files and pictures."""
     name = entry.key
     shape = rf"[^\W_](?:[\w{re.escape(NAME_MARKS)}]{{0,{MAX_NAME_LETTERS - 2}}}\w)?"
@@ -101,8 +101,8 @@ def _name(entry, known) -> str:
         raise ConfigError(
             entry.where, what, mend if name.casefold() not in RESERVED_NAMES else "choose another"
         )
-    if name.casefold() in known:
-        what = f"{units.quantity_text(name)} and '{known[name.casefold()][0]}' differ in case only"
+    if name.casefold() in named_directions:
+        what = f"{units.quantity_text(name)} and '{named_directions[name.casefold()][0]}' differ in case only"
         raise ConfigError(entry.where, what, "give each its own name")
     return name
 
@@ -124,9 +124,9 @@ def _direction(entry) -> tuple[float, float, float]:
     return tuple((down / np.sqrt((down**2).sum())).tolist())
 
 
-def _refuse_repeated_direction(entry, down, known) -> None:
+def _refuse_repeated_direction(entry, down, named_directions) -> None:
     """Refuse a direction that another name has."""
-    for name, other in known.values():
+    for name, other in named_directions.values():
         if np.abs(np.subtract(down, other)).max() < EQUAL_DIRECTIONS_RAD:
             what = f"{units.quantity_text(entry.key)} has the direction of '{name}'"
             raise ConfigError(entry.where, what, "keep one of them")

@@ -101,11 +101,11 @@ def read_card(file) -> Part | None:
     if root.kind != "mapping":
         needed = ", ".join(key.word for key in CARD_KEYS if key.required)
         raise ConfigError(root.where, "no 'key: value' line", f"write {needed}")
-    shown = _mapping(root, CARD_KEYS, faults)
-    aspects = _aspects(shown.get("aspects"), faults)
-    printed = {key: _mapping(shown[key], keys, faults) for key, keys in PRINTED_BLOCKS if key in shown}
+    values = _mapping(root, CARD_KEYS, faults)
+    aspects = _aspects(values.get("aspects"), faults)
+    printed = {key: _mapping(values[key], keys, faults) for key, keys in PRINTED_BLOCKS if key in values}
     faults += _unlisted_aspects(root, printed, aspects)
-    inertia, said = _inertia(root, shown.get("inertia"), faults)
+    inertia, remarks = _inertia(root, values.get("inertia"), faults)
     documents.raise_all(faults)
     return Part(
         name=file.name,
@@ -115,12 +115,12 @@ def read_card(file) -> Part | None:
         material="part card",
         density=None,
         volume=None,
-        mass=shown["mass"],
-        centre_of_mass=check.frozen(np.array(shown["centre_of_mass"])),
+        mass=values["mass"],
+        centre_of_mass=check.frozen(np.array(values["centre_of_mass"])),
         inertia=check.frozen(inertia),
         aspects=tuple(CardAspect(**aspect) for aspect in aspects),
         printed=printed or None,
-        warnings=said,
+        warnings=remarks,
     )
 
 
@@ -130,19 +130,19 @@ def _mapping(node, keys, faults):
         what = "is not a block of 'key: value' lines"
         faults.append(ConfigError(node.where, what, f"give it {', '.join(key.word for key in keys)}"))
         return {}
-    known = {key.word: key for key in keys}
+    key_by_word = {key.word: key for key in keys}
     values = {}
     for entry in node.entries:
-        if entry.key not in known:
+        if entry.key not in key_by_word:
             what = f"unknown key {units.quantity_text(entry.key)}"
-            faults.append(ConfigError(entry.where, what, documents.hint(entry.key, list(known))))
+            faults.append(ConfigError(entry.where, what, documents.hint(entry.key, list(key_by_word))))
             continue
         try:
-            values[entry.key] = _value(known[entry.key], entry.value)
+            values[entry.key] = _value(key_by_word[entry.key], entry.value)
         except ConfigError as fault:
             faults.append(fault)
-    given = {entry.key for entry in node.entries}
-    missing = [key for key in keys if key.required and key.word not in given]
+    words = {entry.key for entry in node.entries}
+    missing = [key for key in keys if key.required and key.word not in words]
     if missing:
         what = f"without {' and '.join(key.word for key in missing)}"
         faults.append(ConfigError(node.where, what, f"add {missing[0].word}: {missing[0].example}"))
@@ -193,24 +193,24 @@ def _aspects(rows, faults):
     if rows.kind != "list" or not rows.items:
         faults.append(ConfigError(rows.where, "aspects is not a list", "write - {aspect: 1, height: 6.9 mm}"))
         return []
-    aspects, seen = [], dict[Any, str]()
+    aspects, lines = [], dict[Any, str]()
     for row in rows.items:
-        shown = _mapping(row, ASPECT_KEYS, faults)
-        name = shown.get("aspect")
-        if name in seen:
-            what = f"aspect {units.quantity_text(name)} is already in line {seen[name].rsplit(':', 2)[1]}"
+        values = _mapping(row, ASPECT_KEYS, faults)
+        name = values.get("aspect")
+        if name in lines:
+            what = f"aspect {units.quantity_text(name)} is already in line {lines[name].rsplit(':', 2)[1]}"
             faults.append(ConfigError(row.where, what, "keep one of them"))
         elif name is not None:
-            seen[name] = row.where
-        aspects.append(_keywords(shown, row))
+            lines[name] = row.where
+        aspects.append(_keywords(values, row))
     return aspects
 
 
-def _keywords(shown, row) -> Any:
+def _keywords(values, row) -> Any:
     angle = row.find("solid_angle")
     in_sr = angle is None or not angle.value.text.strip().endswith(RELATIVE_UNIT)
-    renamed = {"name" if word == "aspect" else word: value for word, value in shown.items()}
-    return renamed | {"faces": int(shown.get("faces", 1)), "solid_angle_in_sr": in_sr}
+    renamed = {"name" if word == "aspect" else word: value for word, value in values.items()}
+    return renamed | {"faces": int(values.get("faces", 1)), "solid_angle_in_sr": in_sr}
 
 
 def _unlisted_aspects(root, printed, aspects) -> list[Any]:
@@ -219,11 +219,11 @@ def _unlisted_aspects(root, printed, aspects) -> list[Any]:
     return [
         ConfigError(
             root.find(block).value.find("aspect").value.where,
-            f"{block}: the card lists no aspect {units.quantity_text(shown['aspect'])}",
+            f"{block}: the card lists no aspect {units.quantity_text(values['aspect'])}",
             f"known are {', '.join(map(str, names))}",
         )
-        for block, shown in printed.items()
-        if "aspect" in shown and shown["aspect"] not in names
+        for block, values in printed.items()
+        if "aspect" in values and values["aspect"] not in names
     ]
 
 
@@ -234,9 +234,9 @@ def _inertia(root, rows, faults) -> tuple[Any, ...]:
     printed, where = np.array(rows), root.find("inertia").value.where
     upper = np.triu(printed) + np.triu(printed, 1).T
     if np.allclose(printed, upper, rtol=SYMMETRY_TOLERANCE, atol=0.0):
-        said: tuple[str, ...] = ()
+        remarks: tuple[str, ...] = ()
     elif np.allclose(np.abs(printed), np.abs(upper), rtol=SYMMETRY_TOLERANCE, atol=0.0):
-        said = (f"{where}: the inertia matrix is not symmetric (signs differ): its upper half is used",)
+        remarks = (f"{where}: the inertia matrix is not symmetric (signs differ): its upper half is used",)
     else:
         faults.append(ConfigError(where, "the inertia matrix is not symmetric", "make its halves equal"))
         return upper, ()
@@ -245,4 +245,4 @@ def _inertia(root, rows, faults) -> tuple[Any, ...]:
         text = ", ".join(f"{moment / units.factor('g mm2', 'inertia'):.4g}" for moment in moments)
         what = f"no body has the principal moments {text} g mm2"
         faults.append(ConfigError(where, what, "the largest must not exceed the sum of the others"))
-    return upper, said
+    return upper, remarks

@@ -126,8 +126,8 @@ def _read_density(text) -> float:
         raise ArgumentError(DENSITY_ARGUMENT, error.what, error.mend) from None
     if not LIGHTEST_SOLID_KG_M3 <= value <= HEAVIEST_SOLID_KG_M3:
         what = f"{units.quantity_text(text)} is the density of no solid"
-        meant = _plausible_unit(number, but=unit)
-        mend = f"did you mean {number:g} {meant}?" if meant else "steel has 7.85 g/cm3"
+        likely_unit = _plausible_unit(number, but=unit)
+        mend = f"did you mean {number:g} {likely_unit}?" if likely_unit else "steel has 7.85 g/cm3"
         raise ArgumentError(DENSITY_ARGUMENT, what, mend)
     return value
 

@@ -247,9 +247,9 @@ def check_surface(vertices, faces, where, unit, allow_open=False) -> CheckedSurf
     )
     if not edges.closed and (joined is None or not joined.edges.closed):
         # Cracks about as wide as the tolerance are half joined: the rest then closes from the start only.
-        corners, sides, _, said = mending.mend_facets(*loose, tolerance, where, corners=False)
+        corners, sides, _, warnings = mending.mend_facets(*loose, tolerance, where, corners=False)
         whole = mending.join_cracks(corners, sides, tolerance, size, where)
-        joined, mended = (joined, mended) if whole is None else (whole, said)
+        joined, mended = (joined, mended) if whole is None else (whole, warnings)
     if joined is not None:
         vertices, faces, edges = joined.vertices, joined.faces, joined.edges
         mended, tolerance = (*mended, _joined(joined, unit)), max(tolerance, joined.width)
@@ -257,16 +257,16 @@ def check_surface(vertices, faces, where, unit, allow_open=False) -> CheckedSurf
         surface, unseen = _closed(vertices, faces, edges, where, unit, allow_open)
     else:
         surface, unseen = _opened(vertices, faces, edges, size, where, unit, allow_open), ()
-    vertices, faces, solid, is_open, said = surface
+    vertices, faces, solid, is_open, warnings = surface
     is_open = is_open or (joined is not None and joined.width > mending.JOIN_SHARE * size)
     if solid.volume < 0.0:
-        faces, solid, said = faces[:, ::-1], solid.reversed, (*said, INVERTED_WARNING)
+        faces, solid, warnings = faces[:, ::-1], solid.reversed, (*warnings, INVERTED_WARNING)
     if solid.volume <= EMPTY_VOLUME_SHARE * size**3:
         raise MeshError(where, "encloses no volume", EXPORT_SOLID)
     if len(unseen):
-        said += _crossed(vertices, faces[unseen], tolerance, size, where, unit, allow_open)
+        warnings += _crossed(vertices, faces[unseen], tolerance, size, where, unit, allow_open)
     _refuse_impossible(solid, vertices, where, unit)
-    return CheckedSurface(vertices, faces, solid, is_open, slivers + blurred + mended + said)
+    return CheckedSurface(vertices, faces, solid, is_open, slivers + blurred + mended + warnings)
 
 
 def check_hull(surface, hull_volume, where, unit) -> None:
@@ -317,13 +317,13 @@ def _joined(joined, unit) -> str:
 
 def _crossed(vertices, faces, tolerance, size, where, unit, allow_open) -> tuple[Any, ...]:
     """What to say of a surface that passes through itself; refused where it does so deeply."""
-    found = crossings.find_crossings(vertices, faces, tolerance)
-    deepest = float(found.depths.max(initial=0.0))
+    cuts = crossings.find_crossings(vertices, faces, tolerance)
+    deepest = float(cuts.depths.max(initial=0.0))
     if deepest <= SHALLOW_CROSSING_SHARE * size:
         return ()
-    place = _place(found.points[np.argmax(found.depths)])
+    place = _place(cuts.points[np.argmax(cuts.depths)])
     what = (
-        f"the surface passes through itself: {_many(len(found.pairs), 'pair')} of facets cut each other, "
+        f"the surface passes through itself: {_many(len(cuts.pairs), 'pair')} of facets cut each other, "
         f"the deepest by {deepest:.2g} {unit} at ({place})"
     )
     if deepest > DEEP_CROSSING_SHARE * size and not allow_open:
@@ -383,7 +383,7 @@ def _opened(vertices, faces, edges, size, where, unit, allow_open) -> tuple[Any,
     hole = find_holes(vertices, edges)
     if not allow_open:
         raise MeshError(where, *_gaps(vertices, edges, hole, open_edges, size, unit))
-    said = (
+    warnings = (
         f"the surface is open: {_many(len(hole.rims), 'hole')} filled in for these numbers (`allow_open`)",
     )
     capped = np.concatenate([vertices[faces], cap_holes(vertices, hole.rims)])
@@ -400,12 +400,12 @@ def _opened(vertices, faces, edges, size, where, unit, allow_open) -> tuple[Any,
         raise MeshError(where, what, SEW_IN_CAD)
     number, shell = topology.split_shells(closed, facets)
     if number == 1:
-        return vertices, faces, mass.integrate_solid(capped), True, said
+        return vertices, faces, mass.integrate_solid(capped), True, warnings
     several = _as_bodies(filled, facets, shell, where, unit, allow_open)
     if several is None:
-        return vertices, faces, mass.integrate_solid(capped), True, said
+        return vertices, faces, mass.integrate_solid(capped), True, warnings
     solid = mass.integrate_solid(several.vertices[several.faces])
-    return several.vertices, several.faces, solid, True, (*said, *several.warnings)
+    return several.vertices, several.faces, solid, True, (*warnings, *several.warnings)
 
 
 def _as_bodies(vertices, faces, shell, where, unit, allow_open) -> BodiesTogether | None:
@@ -432,7 +432,7 @@ def _gaps(vertices, edges, hole, open_edges, size, unit) -> tuple[str, str]:
     edges_text = f"the surface is open: {_many(open_edges, 'edge')} without a neighbour"
     gaps = mending.measure_gaps(vertices, edges, size)
     crack = f"cracks up to {gaps.width:.2g} {unit} wide, the widest at ({_place(gaps.place)})"
-    if not gaps.others:
+    if not gaps.rim_edges:
         limits = f"up to {mending.JOIN_SHARE * size:.2g} {unit} they are joined where no wall is as thin"
         mend = f"{SEW_IN_CAD}, or pass `allow_open` to join up to {mending.OPEN_JOIN_SHARE * size:.2g} {unit}"
         return f"{edges_text} along {crack}; {limits}", mend

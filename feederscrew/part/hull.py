@@ -47,7 +47,7 @@ class CentreOutsideError(MeshError):
     """A centre of mass that is on or outside the part's convex hull."""
 
 
-def convex_hull(points, centre, where="part", given=True) -> Hull:
+def convex_hull(points, centre, where="part", centre_given=True) -> Hull:
     """Return the convex hull of a point set about a centre of mass inside it.
 
     Parameters
@@ -58,7 +58,7 @@ def convex_hull(points, centre, where="part", given=True) -> Hull:
         Centre of mass, in the same axes.
     where : str
         The file, for the error line.
-    given : bool
+    centre_given : bool
         Whether the user gave the centre of mass; else it is that of the surface.
 
     Returns
@@ -104,7 +104,7 @@ def convex_hull(points, centre, where="part", given=True) -> Hull:
         raise CentreOutsideError(
             where,
             "the centre of mass is not inside the part's convex hull",
-            "check `centre_of_mass` and its units" if given else "export it as a closed solid",
+            "check `centre_of_mass` and its units" if centre_given else "export it as a closed solid",
         )
     return Hull(
         vertices=check.frozen(vertices),
@@ -136,13 +136,13 @@ def _turning_corners(points, triangles) -> NDArray[np.bool_]:
     degrees = np.bincount(origins, minlength=len(points))
     some = np.flatnonzero(degrees[origins] < CONE_TIP_EDGES)
     some = some[np.argsort(origins[some], kind="stable")]
-    origins, ways = origins[some], vectors.unit(points[targets[some]] - points[origins[some]])
+    origins, directions = origins[some], vectors.unit(points[targets[some]] - points[origins[some]])
     real = degrees > 0
     for shift in range(
         1, CONE_TIP_EDGES - 1
     ):  # every pair of edges of a corner, those so many apart in its list
         pairs = np.flatnonzero(origins[shift:] == origins[:-shift])
-        bent = vectors.norm(ways[pairs] + ways[pairs + shift])
+        bent = vectors.norm(directions[pairs] + directions[pairs + shift])
         real[origins[pairs[bent < STRAIGHT_ANGLE_RAD]]] = False
     return real & ~_coplanar_corners(points, triangles)
 

@@ -185,8 +185,8 @@ def _bytes(source, where, stdin) -> Any:
 
 
 def _misnamed(file, kind) -> tuple[Any, ...]:
-    known = {suffix for format in FORMATS.values() for suffix in format.suffixes}
-    if file.suffix not in known or file.suffix in FORMATS[kind].suffixes:
+    suffixes = {suffix for format in FORMATS.values() for suffix in format.suffixes}
+    if file.suffix not in suffixes or file.suffix in FORMATS[kind].suffixes:
         return ()
     return (f"named .{file.suffix} but its content is {FORMATS[kind].title}: read as that",)
 
@@ -247,21 +247,21 @@ def list_bodies(soup: Soup) -> tuple[FileBody, ...]:
     volume = np.bincount(shell, mass.tetrahedron_volumes(points[faces]), minlength=number)
     low, high = _surface_boxes(points, faces, shell, number)
     of_body = _assign_cavities(points, faces, shell, np.where(is_open, 0.0, volume), low, high)
-    found: list[FileBody] = []
-    for one in dict.fromkeys(of_body[shell].tolist()):
-        own = np.flatnonzero(of_body == one)
+    bodies: list[FileBody] = []
+    for number_of_body in dict.fromkeys(of_body[shell].tolist()):
+        own = np.flatnonzero(of_body == number_of_body)
         mine = np.flatnonzero(np.isin(shell, own))
         size = high[own].max(axis=0) - low[own].min(axis=0)
-        found.append(
+        bodies.append(
             FileBody(
-                len(found) + 1,
+                len(bodies) + 1,
                 _body_name(soup, facets[mine]),
                 abs(float(volume[own].sum())),
                 tuple(size.tolist()),
                 facets[mine],
             )
         )
-    return tuple(found)
+    return tuple(bodies)
 
 
 def take_body(soup: Soup, body: str, where: str, unit: str) -> tuple[Soup, FileBody | None]:
@@ -289,16 +289,16 @@ def take_body(soup: Soup, body: str, where: str, unit: str) -> tuple[Soup, FileB
     ArgumentError
         If there is no such body; the line lists those there are.
     """
-    known = list_bodies(soup)
-    if not known:
+    bodies = list_bodies(soup)
+    if not bodies:
         return soup, None
-    one = _choose_body(known, body.strip(), where, unit)
-    if len(known) == 1:
+    chosen = _choose_body(bodies, body.strip(), where, unit)
+    if len(bodies) == 1:
         return soup, None
-    rest = "the other one is" if len(known) == 2 else f"the {len(known) - 1} others are"
-    warning = f"body {one.text(unit)} of {len(known)} is taken: {rest} left out"
-    objects = None if soup.objects is None else soup.objects[one.facets]
-    faces = soup.faces[one.facets]
+    rest = "the other one is" if len(bodies) == 2 else f"the {len(bodies) - 1} others are"
+    warning = f"body {chosen.text(unit)} of {len(bodies)} is taken: {rest} left out"
+    objects = None if soup.objects is None else soup.objects[chosen.facets]
+    faces = soup.faces[chosen.facets]
     used, own = np.unique(faces, return_inverse=True)
     return (
         replace(
@@ -308,48 +308,50 @@ def take_body(soup: Soup, body: str, where: str, unit: str) -> tuple[Soup, FileB
             objects=objects,
             warnings=(*soup.warnings, warning),
         ),
-        one,
+        chosen,
     )
 
 
 def refuse_bodies(fault: MeshError, soup: Soup, unit: str) -> MeshError:
     """Return the fault of a file of several bodies with a list of them, and how to take one."""
-    known = list_bodies(soup)
-    if len(known) < 2:
+    bodies = list_bodies(soup)
+    if len(bodies) < 2:
         return fault
     what = fault.what.partition(", of ")[0] if fault.what.startswith("holds ") else fault.what
-    what = f"holds {len(known)} bodies" if fault.what.startswith("holds ") else what
-    return MeshError(fault.where, f"{what}: {_bodies_text(known, unit)}", f"{TAKE_BODY}, {fault.mend}")
+    what = f"holds {len(bodies)} bodies" if fault.what.startswith("holds ") else what
+    return MeshError(fault.where, f"{what}: {_bodies_text(bodies, unit)}", f"{TAKE_BODY}, {fault.mend}")
 
 
-def _bodies_text(known, unit) -> str:
-    more = f", and {len(known) - LISTED_FILE_BODIES} more" if len(known) > LISTED_FILE_BODIES else ""
-    return ", ".join(body.text(unit) for body in known[:LISTED_FILE_BODIES]) + more
+def _bodies_text(bodies, unit) -> str:
+    more = f", and {len(bodies) - LISTED_FILE_BODIES} more" if len(bodies) > LISTED_FILE_BODIES else ""
+    return ", ".join(body.text(unit) for body in bodies[:LISTED_FILE_BODIES]) + more
 
 
-def _choose_body(known, body, where, unit) -> FileBody:
+def _choose_body(bodies, body, where, unit) -> FileBody:
     """The body that is meant."""
     if not body:
         raise ArgumentError("body", "is empty", GIVE_BODY)
     if body.lower() == LARGEST_BODY:
-        return max(known, key=lambda one: one.volume)
+        return max(bodies, key=lambda candidate: candidate.volume)
     if BODY_NUMBER.fullmatch(body):
-        if 1 <= int(body) <= len(known):
-            return known[int(body) - 1]
+        if 1 <= int(body) <= len(bodies):
+            return bodies[int(body) - 1]
         named = []
     else:
-        named = [one for one in known if one.name == body]
-        named = named or [one for one in known if one.name.strip().lower() == body.lower() and body]
+        named = [candidate for candidate in bodies if candidate.name == body]
+        named = named or [
+            candidate for candidate in bodies if candidate.name.strip().lower() == body.lower() and body
+        ]
     if len(named) == 1:
         return named[0]
     if named:
-        numbers = " and ".join(str(one.number) for one in named)
+        numbers = " and ".join(str(candidate.number) for candidate in named)
         raise ArgumentError(
             "body", f"{quantity_text(body)} is the name of bodies {numbers}", "give its number"
         )
     raise ArgumentError(
         "body",
-        f"there is no body {quantity_text(body)}: {where} holds {_bodies_text(known, unit)}",
+        f"there is no body {quantity_text(body)}: {where} holds {_bodies_text(bodies, unit)}",
         GIVE_BODY,
     )
 
@@ -358,8 +360,8 @@ def _file_surfaces(points, faces, objects) -> tuple[int, NDArray[np.int64], NDAr
     """How many surfaces hang together, the one of each facet, and whether each is open."""
     keys = faces
     if objects is not None and objects.max(initial=0) > 0:
-        apart = faces * (int(objects.max()) + 1) + objects[:, None]
-        _, keys = np.unique(apart, return_inverse=True)
+        of_object = faces * (int(objects.max()) + 1) + objects[:, None]
+        _, keys = np.unique(of_object, return_inverse=True)
         keys = keys.reshape(-1, 3)
         if not topology.edge_table(keys, int(keys.max()) + 1).closed:
             keys = faces  # objects that close only together
@@ -505,18 +507,18 @@ def load(
             raise ArgumentError("body", "a part card is of one body", "leave it out")
         _refuse_beside_card(units=units, density=density, centre_of_mass=centre_of_mass, names=names)
         return card.read_card(file)
-    known = (
+    own_names = (
         names
         if names is None or isinstance(names, aspect_names.AspectNames)
         else aspect_names.read_aspect_names(names)
     )
     solid = _solid_part(file, read_soup(file), units, (value, material), centre_of_mass, body, allow_open)
-    return replace(solid, names=known)
+    return replace(solid, names=own_names)
 
 
 def _solid_part(file, soup, wanted, stuff, centre_text, body, allow_open) -> Part:
-    unit, said = _choose_unit(soup, wanted)
-    soup, one = (soup, None) if body is None else take_body(soup, body, file.where, unit)
+    unit, unit_warnings = _choose_unit(soup, wanted)
+    soup, chosen = (soup, None) if body is None else take_body(soup, body, file.where, unit)
     try:
         surface = gate.check_surface(soup.vertices, soup.faces, file.where, unit, allow_open)
     except SeveralBodiesError as fault:
@@ -525,7 +527,7 @@ def _solid_part(file, soup, wanted, stuff, centre_text, body, allow_open) -> Par
     vertices, solid = surface.vertices * scale, surface.solid.scaled(scale)
     centre, shifted = _read_centre(centre_text, unit, solid.centre)
     try:
-        hull = convex_hull(vertices, centre, file.where, given=centre_text is not None)
+        hull = convex_hull(vertices, centre, file.where, centre_given=centre_text is not None)
     except CentreOutsideError as fault:
         if centre_text is None:
             raise
@@ -533,9 +535,9 @@ def _solid_part(file, soup, wanted, stuff, centre_text, body, allow_open) -> Par
     gate.check_hull(surface, hull.volume / scale**3, file.where, unit)
     density, material = stuff
     return Part(
-        name=file.name if one is None else f"{file.name}-{one.number}",
+        name=file.name if chosen is None else f"{file.name}-{chosen.number}",
         source=file.source,
-        sha256=file.sha256 if one is None else _body_digest(file.sha256, one.number),
+        sha256=file.sha256 if chosen is None else _body_digest(file.sha256, chosen.number),
         file_sha256=file.sha256,
         units=unit,
         material=material,
@@ -550,7 +552,7 @@ def _solid_part(file, soup, wanted, stuff, centre_text, body, allow_open) -> Par
         open_surface=surface.open_surface,
         warnings=(
             *soup.warnings,
-            *said,
+            *unit_warnings,
             *_size_warnings(vertices, unit, wanted),
             *surface.warnings,
             *shifted,

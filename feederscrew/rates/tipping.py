@@ -125,7 +125,7 @@ def goes_over(rocker: Rocker, period: float, start: int = 0) -> bool:
 def over_period(place: Seat, bowl: Bowl) -> tuple[np.ndarray, np.ndarray]:
     """Return what the track does to a part over a settled period.
 
-    Source: Housner 1963, the rocking block; docs/trial.md, "What other parts said of the rules".
+    Source: Housner 1963, the rocking block; docs/method/trial.md, "What other parts said of the rules".
 
     Parameters
     ----------
@@ -484,7 +484,7 @@ SUPPORT_LOSS_TOLERANCE_M = (
 def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, margin: float) -> np.ndarray:
     """Return which orientations the drive leaves lying on what a chain of devices leaves of their feet.
 
-    Source: own; docs/trial.md, "What other parts said of the rules".
+    Source: own; docs/method/trial.md, "What other parts said of the rules".
 
     Parameters
     ----------

@@ -204,7 +204,7 @@ def grounded(hull, faces, rows) -> Ground:
     return Ground(hull, tuple(faces), check.frozen(rows), check.frozen(labels), tips)
 
 
-def ground(part, aspects) -> Ground:
+def require_ground(part, aspects) -> Ground:
     """Return the faces of a part matched to the rows of its aspects, with exact basins and barriers.
 
     Parameters
@@ -228,14 +228,14 @@ def ground(part, aspects) -> Ground:
     return aspects.ground
 
 
-def exact(found, part, aspects, exponent=formulas.EXPONENTS["hard"]) -> Exact:
+def exact(ground, part, aspects, exponent=formulas.EXPONENTS["hard"]) -> Exact:
     """Compute the columns that exact tumbling adds to the aspects of a part.
 
     Source: docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
 
     Parameters
     ----------
-    found : Ground
+    ground : Ground
     part : Part
     aspects : Aspects
     exponent : float [1]
@@ -245,61 +245,61 @@ def exact(found, part, aspects, exponent=formulas.EXPONENTS["hard"]) -> Exact:
     -------
     Exact
     """
-    tips, count = found.tips, len(aspects.names)
+    tips, count = ground.tips, len(aspects.names)
     lifts = barriers.barriers(tips)
-    lowest = _lowest(found.rows, np.where(np.isfinite(lifts), lifts, np.nan), count)
-    angles = _tip_angles(found.faces, lifts)
+    lowest = _lowest(ground.rows, np.where(np.isfinite(lifts), lifts, np.nan), count)
+    angles = _tip_angles(ground.faces, lifts)
     return Exact(
-        probabilities=_probabilities(found, aspects.stable, exponent),
+        probabilities=_probabilities(ground, aspects.stable, exponent),
         barriers=check.frozen(lowest),
         barrier_energies=check.frozen(part.mass * GRAVITY * lowest),
-        tip_angles=check.frozen(_lowest(found.rows, angles, count)),
+        tip_angles=check.frozen(_lowest(ground.rows, angles, count)),
         doubts=tips.doubts,
     )
 
 
-def _probabilities(found, stable, exponent) -> dict[str, NDArray[np.float64]]:
+def _probabilities(ground, stable, exponent) -> dict[str, NDArray[np.float64]]:
     """Probability of each class by every rule that weighs faces."""
-    tips = found.tips
+    tips = ground.tips
     quantities = FaceQuantities(
         tips=tips,
-        faces=found.faces,
+        faces=ground.faces,
         shares=tips.shares,
         heights=tips.heights,
-        radius=found.hull.radius,
+        radius=ground.hull.radius,
         exponent=exponent,
     )
     weights = registry.weights(quantities)
-    return {rule: _by_class(found, weight, stable) for rule, weight in weights.items()}
+    return {rule: _by_class(ground, weight, stable) for rule, weight in weights.items()}
 
 
-def _by_class(found, weights, stable) -> NDArray[np.float64]:
+def _by_class(ground, weights, stable) -> NDArray[np.float64]:
     """(A,) shares of the classes, from the (F,) weights of their faces."""
-    sums = np.bincount(found.rows, weights, minlength=len(stable))
+    sums = np.bincount(ground.rows, weights, minlength=len(stable))
     return check.frozen(formulas.normalised(sums, stable))
 
 
-def transitions(found) -> list[Transition]:
+def transitions(ground) -> list[Transition]:
     """Return the graph of what tips into what.
 
     Parameters
     ----------
-    found : Ground
+    ground : Ground
 
     Returns
     -------
     list of Transition
         The lowest way of each ordered pair of classes, by row; into an equal face as well.
     """
-    lifts = barriers.rises(found.tips)
-    ways: dict[tuple[int, int], Transition] = {}
-    for pair, lift, axis in zip(found.rows[found.tips.pairs], lifts, found.tips.axes):
+    lifts = barriers.rises(ground.tips)
+    lowest: dict[tuple[int, int], Transition] = {}
+    for pair, lift, axis in zip(ground.rows[ground.tips.pairs], lifts, ground.tips.axes):
         for start, end, up in ((*pair, lift[0]), (*pair[::-1], lift[1])):
-            way = Transition(int(start), int(end), float(up), tuple(axis.tolist()))
-            best = ways.setdefault((way.start, way.end), way)
-            if way.lift < best.lift:
-                ways[way.start, way.end] = way
-    return [ways[pair] for pair in sorted(ways)]
+            step = Transition(int(start), int(end), float(up), tuple(axis.tolist()))
+            best = lowest.setdefault((step.start, step.end), step)
+            if step.lift < best.lift:
+                lowest[step.start, step.end] = step
+    return [lowest[pair] for pair in sorted(lowest)]
 
 
 def _tip_angles(faces, lifts) -> NDArray[np.float64]:

@@ -33,10 +33,10 @@ def on_lists(function):
 
     def run(*arrays) -> Any:
         lists = [array.tolist() for array in arrays]
-        made = function(*lists)
+        result = function(*lists)
         for array, filled in zip(arrays, lists):
             array[:] = filled
-        return made
+        return result
 
     return run
 
@@ -51,7 +51,7 @@ def find_root(forest, k) -> int:
 
 
 @compiled
-def join_trees(heights, limits, ones, others, tops, region, basin, standing) -> None:
+def join_trees(heights, limits, lefts, rights, tops, region, basin, standing) -> None:
     """Join sinks along ways sorted by height where the shallower side rises no more than its limit.
 
     A way between sinks that lower ways have led to each other is passed over.
@@ -61,13 +61,13 @@ def join_trees(heights, limits, ones, others, tops, region, basin, standing) -> 
     Parameters
     ----------
     heights, limits : (B,) float [m], of the sinks
-    ones, others : (W,) int, sinks on either side of each way
+    lefts, rights : (W,) int, sinks on either side of each way
     tops : (W,) float [m], ascending
     region, basin : (B,) int, each sink its own; two forests, their roots the lowest of each tree
     standing : (W,) bool, filled with the ways that join regions but no basins
     """
     for k in range(len(tops)):
-        i, j = ones[k], others[k]
+        i, j = lefts[k], rights[k]
         low, high = find_root(region, i), find_root(region, j)
         if low == high:
             continue
@@ -215,14 +215,14 @@ def landscape(hull) -> Landscape:
     smooth = gentle(_broad_normals(hull, below), pairs)
     local = find_roots(below)
     basins, deep = _joined(hull, local, pairs[smooth], tops[smooth], ripple)
-    strips, way = local[pairs[smooth][deep]], tops[smooth][deep]
+    strips, crest = local[pairs[smooth][deep]], tops[smooth][deep]
     basins, _ = _joined(hull, basins, pairs, tops, nothing)
     return Landscape(
         pairs=pairs,
         basins=basins,
         sinks=_sinks(basins),
         ripples=basins[strips],
-        rises=way / hull.heights[basins[strips]].max(axis=1, initial=0.0) - 1.0,
+        rises=crest / hull.heights[basins[strips]].max(axis=1, initial=0.0) - 1.0,
         bends=_bend(hull, strips),
         lows=_sinks(local),
     )

@@ -238,8 +238,8 @@ def trace_saddles(edges, tops, saddles, directions, gauges, pairs, peaks, areas)
 
 def trace_saddles_together(edges, tops, saddles, directions, gauges, pairs, peaks, areas) -> None:
     """Fill what ``walk.trace_saddles`` fills, of the same arguments."""
-    ways = edges.facets[np.stack([saddles, edges.twins[saddles]], axis=1) // 3]
-    pairs[:], peaks[:] = _ends(edges, ways)[ways], LOST_WALK
+    sides = edges.facets[np.stack([saddles, edges.twins[saddles]], axis=1) // 3]
+    pairs[:], peaks[:] = _ends(edges, sides)[sides], LOST_WALK
     sound = np.flatnonzero((pairs != LOST_WALK).all(axis=1))
     if not len(sound):
         return
@@ -247,8 +247,10 @@ def trace_saddles_together(edges, tops, saddles, directions, gauges, pairs, peak
     down, gauge = np.tile(directions[sound].T, 2), np.tile(gauges[pairs[sound]].T, 2)
     tips, fans = _climbs(edges, tops, down, ends.ravel(), gauge.swapaxes(0, 1))
     peaks[sound] = tips.reshape(2, -1).T
-    back, ahead = fans.reshape(2, 2, -1).swapaxes(0, 1)  # from origins and targets, seen from left and right
-    np.add.at(areas, pairs[sound], (ahead - back).T * (1.0, -1.0))
+    behind, ahead = fans.reshape(2, 2, -1).swapaxes(
+        0, 1
+    )  # from origins and targets, seen from left and right
+    np.add.at(areas, pairs[sound], (ahead - behind).T * (1.0, -1.0))
 
 
 def _ends(edges, starts) -> NDArray[np.int64]:
@@ -256,16 +258,16 @@ def _ends(edges, starts) -> NDArray[np.int64]:
 
     Filled where walks from ``starts`` lead; the last entry stands for a lost walk.
     """
-    goes, known = _over_edges(edges)
-    here, seen = np.unique(starts), np.zeros(len(known), bool)
+    goes, is_sure = _over_edges(edges)
+    here, visited = np.unique(starts), np.zeros(len(is_sure), bool)
     while len(here):
-        seen[here] = True
-        for facet in here[~known[here]]:
+        visited[here] = True
+        for facet in here[~is_sure[here]]:
             goes[facet] = next_facet(edges, facet)
         onward = goes[here]
-        here = np.unique(onward[(onward != LOST_WALK) & ~seen[onward]])
+        here = np.unique(onward[(onward != LOST_WALK) & ~visited[onward]])
     ends = goes
-    for _ in range(len(known).bit_length()):
+    for _ in range(len(is_sure).bit_length()):
         ends = ends[ends]
     return np.where(goes[ends] == ends, ends, LOST_WALK)
 
@@ -290,13 +292,13 @@ def _climbs(edges, tops, x, corners, gauges) -> tuple[NDArray[np.int64], NDArray
     steps: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
     while len(going) and len(steps) < len(edges.vertices):
         rising = ~tops[corners]
-        way, y = np.full(len(going), LOST_WALK), _unit(edges.vertices[corners].T)
+        half_edges, y = np.full(len(going), LOST_WALK), _unit(edges.vertices[corners].T)
         if rising.any():
-            way[rising], y[:, rising] = _next_corners(edges, x[:, rising], corners[rising])
+            half_edges[rising], y[:, rising] = _next_corners(edges, x[:, rising], corners[rising])
         steps.append((going, x, y))
         peaks[going[~rising]] = corners[~rising]
-        on = way != LOST_WALK
-        going, x, corners = going[on], y[:, on], edges.targets[way[on]]
+        on = half_edges != LOST_WALK
+        going, x, corners = going[on], y[:, on], edges.targets[half_edges[on]]
     who, x, y = (np.concatenate(each, axis=-1) for each in zip(*steps))
     fans = [np.bincount(who, _areas(gauge[:, who], x, y), minlength=len(peaks)) for gauge in gauges]
     return peaks, np.stack(fans)
@@ -304,25 +306,25 @@ def _climbs(edges, tops, x, corners, gauges) -> tuple[NDArray[np.int64], NDArray
 
 def _next_corners(edges, x, corners) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """(N,) half-edges and (3, N) directions as ``walk.next_corner`` gives them, up the flow."""
-    ways, up = _around(edges, corners), edges.vertices[corners].T
-    slopes, there = edges.slopes[ways], edges.vertices[edges.targets[ways]].transpose(2, 0, 1)
-    steps = np.full(ways.shape, np.inf)
+    half_edges, up = _around(edges, corners), edges.vertices[corners].T
+    slopes, there = edges.slopes[half_edges], edges.vertices[edges.targets[half_edges]].transpose(2, 0, 1)
+    steps = np.full(half_edges.shape, np.inf)
     rise = np.maximum(dot(x, up) - dot(x[:, None], there), 0.0)
     np.divide(rise, slopes, out=steps, where=slopes > 0.0)
     best = steps.argmin(axis=0), np.arange(len(corners))
-    found, step = np.isfinite(steps[best]), steps[best]
-    y = np.where(found, _unit(x + np.where(found, step, 0.0) * up), x)
-    return np.where(found, ways[best], LOST_WALK), y
+    is_up, step = np.isfinite(steps[best]), steps[best]
+    y = np.where(is_up, _unit(x + np.where(is_up, step, 0.0) * up), x)
+    return np.where(is_up, half_edges[best], LOST_WALK), y
 
 
 def _around(edges, corners) -> NDArray[np.int64]:
     """(K, N) half-edges leaving each corner, in their order; again from the first where there are fewer."""
-    ways = [edges.vertex_edges[corners]]
-    back = np.zeros(len(corners), bool)
-    while not back.all() and len(ways) < len(edges.origins):
-        ways.append(edges.around[ways[-1]])
-        back |= ways[-1] == ways[0]
-    return np.stack(ways)
+    half_edges = [edges.vertex_edges[corners]]
+    is_closed = np.zeros(len(corners), bool)
+    while not is_closed.all() and len(half_edges) < len(edges.origins):
+        half_edges.append(edges.around[half_edges[-1]])
+        is_closed |= half_edges[-1] == half_edges[0]
+    return np.stack(half_edges)
 
 
 def _unit(x) -> NDArray[np.float64]:

@@ -10,7 +10,7 @@ from feederscrew.bowl.record import Unbalance
 from feederscrew.errors import FeederError
 from feederscrew.part import mass
 from feederscrew.solidbowl import facets, stairs, track
-from feederscrew.solidbowl.plan import BOLT_CLEARANCE_M, FULL_TURN, BowlPlan
+from feederscrew.solidbowl.plan import BOLT_CLEARANCE_M, FULL_TURN_RAD, BowlPlan
 from feederscrew.solidbowl.segments import Segments
 from feederscrew.tooling import whole_surface
 
@@ -226,13 +226,13 @@ def _opening(plan, kit) -> list[Any]:
 
 def _drilled(plan, kit) -> list[Any]:
     """Holes of the bolts, in the middle and on their circle, and drain holes."""
-    angles = FULL_TURN * (np.arange(plan.bolts) + 0.5) / plan.bolts
+    angles = FULL_TURN_RAD * (np.arange(plan.bolts) + 0.5) / plan.bolts
     circle = [(0.0, 0.0)] + [
         (0.5 * plan.bolt_circle * np.cos(a), 0.5 * plan.bolt_circle * np.sin(a)) for a in angles
     ]
     holes = [(item, plan.bolt) for item in circle]
     edge = plan.ring + BOLT_CLEARANCE_M - plan.drain
-    angles = FULL_TURN * np.arange(plan.drains) / max(plan.drains, 1)
+    angles = FULL_TURN_RAD * np.arange(plan.drains) / max(plan.drains, 1)
     holes += [((edge * np.cos(a), edge * np.sin(a)), plan.drain) for a in angles]
     return [
         kit.disc(at, size, plan.underside - PIECE_OVERLAP_M, plan.dome + PIECE_OVERLAP_M)

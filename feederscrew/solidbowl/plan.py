@@ -30,7 +30,7 @@ PRINTED_MATERIALS = (
     BowlMaterial("pla", 4e-3, 5e-3, 4e-3, 1240.0, supported=False, flat=True),
     BowlMaterial("pa12", 3e-3, 4e-3, 3e-3, 1010.0, supported=True, flat=False),
 )
-NAMES = (*(item.name for item in PRINTED_MATERIALS), STEEL_NAME)
+MATERIAL_NAMES = (*(item.name for item in PRINTED_MATERIALS), STEEL_NAME)
 
 
 def material(name, rules):
@@ -39,7 +39,7 @@ def material(name, rules):
     Parameters
     ----------
     name : str
-        Of ``NAMES``; 'steel' is the sheet of the bowl file.
+        Of ``MATERIAL_NAMES``; 'steel' is the sheet of the bowl file.
     rules : Sizing
         Its thickness and density of the sheet.
 
@@ -246,8 +246,10 @@ MIN_TRACK_HEIGHT_M = 10e-3  # [m] over the floor of a track that goes down
 BANK_DROP_FACTOR = (
     1.5  # of the tangent of a bank: beside the chord of an arc a twist takes some of the height
 )
-FULL_TURN = 2.0 * np.pi
-MIN_CLEAR_TRACK_RAD = 0.25 * FULL_TURN  # of track at least, over floor and dome: there its width is measured
+FULL_TURN_RAD = 2.0 * np.pi
+MIN_CLEAR_TRACK_RAD = (
+    0.25 * FULL_TURN_RAD
+)  # of track at least, over floor and dome: there its width is measured
 SHORTEST = 0.999  # of it: what is told has four digits
 SEEN, CLEARED = 0.3, 3e-4  # of the plate, and [m] over the dome: there the free edge is measured
 
@@ -299,7 +301,7 @@ class BowlPlan:
         """How many facets a full turn has; where the track is steep across, more."""
         banks = self.path.bank, *(bank for _, _, bank in self.path.leans)
         chord = self.chord / max(1.0, *(BANK_DROP_FACTOR * float(np.tan(bank)) for bank in banks))
-        return int(np.ceil(FULL_TURN / (2.0 * np.arccos(1.0 - chord / self.path.radius)) / 4.0)) * 4
+        return int(np.ceil(FULL_TURN_RAD / (2.0 * np.arccos(1.0 - chord / self.path.radius)) / 4.0)) * 4
 
     @property
     def outlet_height(self) -> float:
@@ -309,7 +311,7 @@ class BowlPlan:
     @property
     def turns(self):
         """Turns of the track from the floor to the outlet."""
-        return -float(self.path.angle(0.0)) / FULL_TURN
+        return -float(self.path.angle(0.0)) / FULL_TURN_RAD
 
     @property
     def room(self) -> float:
@@ -439,7 +441,7 @@ def _track_path(size, track, made_of, tooled, options, stepped) -> tuple[Any, ..
     needed = 0.0 if tooled is None else tooled.length + OUTLET_LEAD_M
     drops = () if tooled is None else tooled.drops
     rise, gained = np.tan(track.climb), _gained(track, tooled, needed)
-    round_once = FULL_TURN * track.radius
+    round_once = FULL_TURN_RAD * track.radius
     free = round_once - track.width * np.sin(track.bank) / rise  # of track below, from where it rises
     falls = None if tooled is None or stepped is not None else tooled.falls
     most = np.inf if falls is None else free + needed - falls
@@ -505,7 +507,7 @@ def _check_bends(path, stepped, round_once, tallest) -> None:
 def _check_beside(path, stepped) -> None:
     """Raise the fault of a track that goes down too near to the turn before, beside which it lies."""
     last = np.array([*(at for at, _ in path.bends), path.end])
-    free = float((path.risen(last) - path.risen(path.at(path.angle(last) - FULL_TURN))).min())
+    free = float((path.risen(last) - path.risen(path.at(path.angle(last) - FULL_TURN_RAD))).min())
     if free < stepped.needed:
         what = f"a device leads the track down to {1e3 * free:.4g} mm over the turn before"
         mend = (

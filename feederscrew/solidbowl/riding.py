@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.geometry.vectors import product
 from feederscrew.solidbowl import track
-from feederscrew.solidbowl.plan import FULL_TURN
+from feederscrew.solidbowl.plan import FULL_TURN_RAD
 from feederscrew.solidbowl.stairs import CONICAL
 
 SPACED = 1.3  # of its length: from part to part
@@ -67,7 +67,7 @@ def clearances(plan, points, near) -> tuple[Any, ...]:
     """
     path, (x, y, z) = plan.path, points.T
     theta = np.arctan2(y, x)
-    theta = theta + FULL_TURN * np.round((float(path.angle(near)) - theta) / FULL_TURN)
+    theta = theta + FULL_TURN_RAD * np.round((float(path.angle(near)) - theta) / FULL_TURN_RAD)
     straight = theta > 0.0
     s = np.where(straight, path.end + y, path.at(theta))
     out = np.where(straight, x, np.hypot(x, y)) - path.wall_radius(s)
@@ -81,7 +81,7 @@ def leaning(plan, s):
     """Return how far the wall leans outwards over its height [1], at lengths along it."""
     if plan.stairs is not None and plan.stairs.shape == CONICAL:
         return np.where(
-            plan.path.angle(s) < -FULL_TURN, 1.0 / np.tan(plan.stairs.slope), 0.0
+            plan.path.angle(s) < -FULL_TURN_RAD, 1.0 / np.tan(plan.stairs.slope), 0.0
         )  # upright above
     leaning = np.zeros(np.shape(s))
     for groove in track.groove_spans(plan):

@@ -11,7 +11,7 @@ import shapely
 from feederscrew import units
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.solidbowl import facets
-from feederscrew.solidbowl.plan import FULL_TURN
+from feederscrew.solidbowl.plan import FULL_TURN_RAD
 from feederscrew.solidbowl.track import fillet
 from feederscrew.tooling import whole_surface
 from feederscrew.units import MM
@@ -59,7 +59,7 @@ class Lug:
 
 def _regular(corners, across):
     """A regular polygon [m] by the distance of its flats, one of them outwards."""
-    turns = FULL_TURN * (np.arange(corners) + 0.5) / corners
+    turns = FULL_TURN_RAD * (np.arange(corners) + 0.5) / corners
     size = 0.5 * across / np.cos(np.pi / corners)
     return shapely.Polygon(size * np.column_stack([np.cos(turns), np.sin(turns)]))
 
@@ -122,7 +122,7 @@ def _level(at, extents) -> Iterator[Any]:
     """Frames of lugs round a level seam."""
     around = np.pi * (extents[0, 1] - extents[0, 0])
     up = np.array([0.0, 0.0, 1.0])
-    for turn in FULL_TURN * (np.arange(count := int(around / SCREW_SPACING_M / 2.0)) + 0.5) / count:
+    for turn in FULL_TURN_RAD * (np.arange(count := int(around / SCREW_SPACING_M / 2.0)) + 0.5) / count:
         out = np.array([np.cos(turn), np.sin(turn), 0.0])
         yield at * up, up, out, np.cross(up, out)
 
@@ -456,7 +456,7 @@ def _where(plan, places):
     """What of a bowl places (N, 3) [m] belong to, outlet at the angle 0: words (N,)."""
     path, (x, y, z) = plan.path, places.T
     r, theta = np.hypot(x, y), np.arctan2(y, x)
-    behind = theta - FULL_TURN * (theta > 0.0) - FULL_TURN * np.arange(int(plan.turns) + 2)[:, None]
+    behind = theta - FULL_TURN_RAD * (theta > 0.0) - FULL_TURN_RAD * np.arange(int(plan.turns) + 2)[:, None]
     s = path.at(behind)  # of each turn of the track that is there
     inwards = (path.wall_radius(s) - r) / np.cos(path.bank_at(s))
     above = z - path.height(s, inwards)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.solidbowl.plan import DIP, FULL_TURN
+from feederscrew.solidbowl.plan import DIP, FULL_TURN_RAD
 from feederscrew.solidbowl.stairs import CONICAL
 
 TRACK_PIECE_OVERLAP_M = 1e-3  # [m] by which one piece reaches into another
@@ -111,7 +111,7 @@ def _strips(plan):
     fastest = max(
         [0.0, *(abs(b - a) / (lean[1] - lean[0]) for a, b, lean in zip(banks, banks[1:], path.leans))]
     )
-    step = FULL_TURN * path.radius / plan.segments / TWISTED
+    step = FULL_TURN_RAD * path.radius / plan.segments / TWISTED
     twist = max(twist, 0.25 * fastest * step * plan.across)
     return int(np.ceil(twist / (0.3 * plan.chord))) + 1
 
@@ -305,7 +305,7 @@ BEYOND_WALL_M = 1.0  # [m] beyond everything
 GROOVE_WALL_MARGIN_M = 5e-3  # [m] of the face beyond the tallest part
 OPENING = 24  # sections of a stretch over which the wall opens
 STRIPS = 8  # of the face upwards: its facets are about as wide as high where it turns fast
-MAX_GROOVE_WALL_RAD = 0.85 * FULL_TURN  # [rad] before the outlet: above it the bowl's wall is open
+MAX_GROOVE_WALL_RAD = 0.85 * FULL_TURN_RAD  # [rad] before the outlet: above it the bowl's wall is open
 
 
 def groove_wall_cuts(plan, kit) -> list[Any]:

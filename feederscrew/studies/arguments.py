@@ -42,6 +42,7 @@ class DriveSettings(TypedDict, total=False):
     phase: Setting
     second_harmonic: Setting
     second_harmonic_phase: Setting
+    second_harmonic_angle: Setting
     static: Setting
     kinetic: Setting
     static_backward: Setting
@@ -131,18 +132,24 @@ def with_settings(function: Function) -> Function:
     which one is near.
     """
     signature = inspect.signature(function)
-    own = [one for one in signature.parameters.values() if one.kind is not inspect.Parameter.VAR_KEYWORD]
+    own = [
+        parameter
+        for parameter in signature.parameters.values()
+        if parameter.kind is not inspect.Parameter.VAR_KEYWORD
+    ]
     settings = [
         inspect.Parameter(key.word, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Setting)
         for key in BOWL_KEYS
         if key.word in BowlSettings.__optional_keys__ and key.word not in signature.parameters
     ]
-    names = [one.name for one in (*own, *settings)]
+    names = [parameter.name for parameter in (*own, *settings)]
 
     @functools.wraps(function)
     def with_known_keywords(*arguments: Any, **keywords: Any) -> object:
         if unknown := next((name for name in keywords if name not in names), None):
-            raise TypeError(f"{function.__name__}() {_unknown(unknown, [one.name for one in own], names)}")
+            raise TypeError(
+                f"{function.__name__}() {_unknown(unknown, [parameter.name for parameter in own], names)}"
+            )
         return function(*arguments, **keywords)
 
     cast(Any, with_known_keywords).__signature__ = signature.replace(parameters=[*own, *settings])
@@ -235,7 +242,7 @@ Path: TypeAlias = str | PathLike[str]
 Quantity: TypeAlias = str | float  # '2 mm', or a number in SI units
 Condition: TypeAlias = Quantity | tuple[Quantity, Quantity] | None  # or the smaller and the larger
 SI = {"length": "m", "angular velocity": "rad/s", "velocity": "m/s", "number": ""}
-PART = "give a Part, as load returns it"
+PART_MEND = "give a Part, as load returns it"
 BOWL = "give a Bowl, as read_bowl returns it"
 SEVERAL_BOWLS = f"{BOWL}, or several in a list"
 
@@ -249,7 +256,7 @@ class BowlFile(TypedDict, total=False):
 
 def a_part(part: object) -> Part:
     """Return the part; raises ArgumentError where it is none."""
-    check.kind("part", part, Part, PART)
+    check.kind("part", part, Part, PART_MEND)
     return cast(Part, part)
 
 
@@ -269,10 +276,10 @@ def some_bowls(
     return tuple(a_bowl(bowl, overrides, settings) for bowl in several_bowls)
 
 
-def the_aspects(found: object) -> Aspects:
+def the_aspects(aspects: object) -> Aspects:
     """Return the aspects; raises ArgumentError where they are none."""
-    check.kind("found", found, Aspects, "give Aspects, as find_aspects returns them")
-    return cast(Aspects, found)
+    check.kind("aspects", aspects, Aspects, "give Aspects, as find_aspects returns them")
+    return cast(Aspects, aspects)
 
 
 def a_file(name: str, path: object) -> Path:
@@ -296,12 +303,12 @@ def whole(name: str, value: int, low: int = 1) -> int:
     return cast(int, count(name, value, low))
 
 
-def several(name: str, given: object, wanted: type, mend: str) -> tuple[Any, ...]:
+def several(name: str, items: object, wanted: type, mend: str) -> tuple[Any, ...]:
     """Return what is given in a list as a tuple; raises ArgumentError where one is of another class."""
-    check.kind(name, given, (tuple, list), mend)
-    for one in (found := tuple(cast(list[object], given))):
-        check.kind(name, one, wanted, mend)
-    return found
+    check.kind(name, items, (tuple, list), mend)
+    for item in (values := tuple(cast(list[object], items))):
+        check.kind(name, item, wanted, mend)
+    return values
 
 
 def amount(name: str, value: Quantity, dimension: str, low: float = -math.inf) -> float:
@@ -366,23 +373,23 @@ def an_aspect(name: str | None) -> str | None:
     return name
 
 
-def a_file_of_bowl(given: object) -> BowlFile:
+def a_file_of_bowl(value: object) -> BowlFile:
     """Return the keywords of ``read_bowl``; raises ArgumentError where they are no dict of these."""
     mend = "give a dict of path and overrides"
-    check.kind("bowl", {} if given is None else given, Mapping, mend)
-    found = cast(BowlFile, given or {})
-    if strange := sorted(set(found) - {"path", "overrides"}):
+    check.kind("bowl", {} if value is None else value, Mapping, mend)
+    bowl_file = cast(BowlFile, value or {})
+    if strange := sorted(set(bowl_file) - {"path", "overrides"}):
         raise ArgumentError("bowl", f"has a key {strange[0]!r}", mend)
-    return found
+    return bowl_file
 
 
-def surface(given: str | float | None) -> str | float | None:
+def surface(value: str | float | None) -> str | float | None:
     """Return a surface by its name, or the exponent that stands for it; None stays None."""
-    if isinstance(given, str):
-        if given not in EXPONENTS:
-            raise ArgumentError("surface", f"is {given!r}", f"give {listed(list(EXPONENTS))} or an exponent")
-        return given
-    return None if given is None else check.argument("surface", given, 0.0)
+    if isinstance(value, str):
+        if value not in EXPONENTS:
+            raise ArgumentError("surface", f"is {value!r}", f"give {listed(list(EXPONENTS))} or an exponent")
+        return value
+    return None if value is None else check.argument("surface", value, 0.0)
 
 
 def _typed(name: str, value: Condition) -> str | None:

@@ -9,7 +9,7 @@ import numpy as np
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.exact_tumbling import Transition, ground, transitions
+from feederscrew.resting.exact_tumbling import Transition, require_ground, transitions
 from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.formulas import EXPONENTS
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from feederscrew.studies.drop import DropStudy
 
 AIM = "1%"  # half the widest 95 % interval of the sampling at which a part is dropped no further
-MOST = 20_000  # drops: a share of a half takes half of them
-NOTHING = "none of {} drops came to rest: the closed form is taken"
+MAX_DROPS = 20_000  # drops: a share of a half takes half of them
+NOTHING_AT_REST = "none of {} drops came to rest: the closed form is taken"
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class AspectsStudy(ReadableRecord):
         MeshError
             If the part is a card without a shape.
         """
-        return transitions(ground(self.part, self.aspects))
+        return transitions(require_ground(self.part, self.aspects))
 
 
 def aspects(
@@ -105,12 +105,12 @@ def aspects(
     part, surface = arguments.a_part(part), arguments.surface(surface)
     launch = LAUNCH if launch is None else launch
     exponent = EXPONENTS[surface] if isinstance(surface, str) else surface
-    found = find(part, unstable=unstable, as_published=as_published, exponent=exponent, launch=launch)
-    wanted = part.vertices is not None and np.count_nonzero(found.stable) > 1 and exponent is None
+    closed = find(part, unstable=unstable, as_published=as_published, exponent=exponent, launch=launch)
+    wanted = part.vertices is not None and np.count_nonzero(closed.stable) > 1 and exponent is None
     if drops == 0 or (drops is None and not wanted):
-        return AspectsStudy(part, found)
+        return AspectsStudy(part, closed)
     launch = recommended.launch_named(launch)
-    return with_drops(found, _dropped(part, found, launch, drops, OnCores(jobs, progress, before)), launch)
+    return with_drops(closed, _dropped(part, closed, launch, drops, OnCores(jobs, progress, before)), launch)
 
 
 def find_aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -> Aspects:
@@ -134,37 +134,37 @@ def answered(part: Part) -> Aspects:
     return aspects(part).aspects
 
 
-def _dropped(part: Part, found: Aspects, launch: str, drops: int | None, run: OnCores) -> "DropStudy":
+def _dropped(part: Part, closed: Aspects, launch: str, drops: int | None, run: OnCores) -> "DropStudy":
     """The drop test, made once in a run."""
     from feederscrew.dropping.ensemble import drops_of
     from feederscrew.studies.drop import drop
 
-    many: dict[str, Any] = {"drops": MOST, "until": AIM} if drops is None else {"drops": drops}
+    many: dict[str, Any] = {"drops": MAX_DROPS, "until": AIM} if drops is None else {"drops": drops}
 
     def make() -> "DropStudy":
         if run.before:
             run.before(many["drops"])
-        return drop(part, launch, **many, jobs=run.cores, progress=run.progress, aspects=found)
+        return drop(part, launch, **many, jobs=run.cores, progress=run.progress, aspects=closed)
 
     def to_arrays(test: "DropStudy") -> dict[str, np.ndarray]:
         held = vars(test.result.drops)
         return {name: value for name, value in held.items() if name != "partial"}
 
     def from_arrays(arrays: Mapping[str, np.ndarray]) -> "DropStudy":
-        return drop(part, launch, **many, dropped=drops_of(arrays, many["drops"]), aspects=found)
+        return drop(part, launch, **many, dropped=drops_of(arrays, many["drops"]), aspects=closed)
 
     simulation = simulation_cache.Simulation(
         "drop", (launch, drops), make, lambda test: not test.result.drops.partial, to_arrays, from_arrays
     )
-    return replace(simulation_cache.once(part, found, simulation), part=part, aspects=found)
+    return replace(simulation_cache.once(part, closed, simulation), part=part, aspects=closed)
 
 
-def with_drops(found: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:
+def with_drops(closed: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:
     """Return the study with a drop test, whose answer takes the place of the closed form's.
 
     Parameters
     ----------
-    found : Aspects
+    closed : Aspects
         With the closed form's answer for the launch.
     test : DropStudy
         Of that part.
@@ -177,10 +177,12 @@ def with_drops(found: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:
         With a warning where the user stopped the test, or nothing came to rest.
     """
     tally = test.result.tally
-    said: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     answer: recommended.Recommended | None = recommended.dropped(tally, launch)
     if test.result.drops.partial:
-        said = (f"partial: stopped after {test.drops} drops",)
+        warnings = (f"partial: stopped after {test.drops} drops",)
     if not tally.counts.any():
-        answer, said = found.recommended, (*said, NOTHING.format(test.drops))
-    return AspectsStudy(test.part, replace(found, recommended=answer, warnings=found.warnings + said), tally)
+        answer, warnings = closed.recommended, (*warnings, NOTHING_AT_REST.format(test.drops))
+    return AspectsStudy(
+        test.part, replace(closed, recommended=answer, warnings=closed.warnings + warnings), tally
+    )

@@ -46,14 +46,14 @@ from feederscrew.studies.arguments import (
     override_texts,
     with_settings,
 )
-from feederscrew.studies.rate import LEAST, arriving
+from feederscrew.studies.rate import MIN_POSITIVE, arriving
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
 from feederscrew.version import __version__
 
 ASSUMED_DENSITY = 7850.0  # [kg/m3] of a fill of which nothing is known: steel, solid
 PART, FILE, ASSUMED = "of the part", "as sizing.fill_density says", "steel assumed: give the part"  # fills
-ENOUGH = 1.0 - 1e-6  # of a target
+TARGET_TOLERANCE = 1.0 - 1e-6  # of a target
 SAME_STROKE = 1e-3  # [1] strokes that are nearer than this are one
 
 
@@ -84,7 +84,7 @@ class Lowest:
 
     rate: float  # [1/s]
     level: float  # [1] of the full bowl, there
-    way: str  # how the amplitude is held meanwhile, of ``drive_sought.WAYS``
+    control: str  # how the amplitude is held meanwhile, of ``drive_sought.WAYS``
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +133,8 @@ class MachineSheet(ReadableRecord):
         return None if self.solid is None else both_rocking_modes(self.bowl, self.solid)
 
     @property
-    def _asked(self) -> Order:
+    def order_of_parts(self) -> Order:
+        """The Order; raises ValueError of a machine without one."""
         if self.order is None:
             raise ValueError("a machine without an order brings no parts")
         return self.order
@@ -142,16 +143,18 @@ class MachineSheet(ReadableRecord):
     def lowest(self) -> Lowest:
         """The Lowest rate from the full bowl to the empty one; of a sheet with an order."""
         alone, controlled = (self.rates(v) for v in (self.velocities, self.controlled))
-        enough = alone.min() >= ENOUGH * self._asked.target or alone.min() >= controlled.min()
-        rates, way = (alone, drive_sizing.ALONE) if enough else (controlled, drive_sizing.CONTROLLED)
+        enough = (
+            alone.min() >= TARGET_TOLERANCE * self.order_of_parts.target or alone.min() >= controlled.min()
+        )
+        rates, control = (alone, drive_sizing.ALONE) if enough else (controlled, drive_sizing.CONTROLLED)
         row = int(np.argmin(rates))
         return Lowest(
-            float(rates[row]), float(self.emptying.levels[row]), drive_sizing.STROKE_CONTROL_LABELS[way]
+            float(rates[row]), float(self.emptying.levels[row]), drive_sizing.STROKE_CONTROL_LABELS[control]
         )
 
     def rates(self, velocities: np.ndarray) -> np.ndarray:
         """Return counted parts [1/s] at velocities; of a sheet with an order."""
-        return np.nan_to_num(np.maximum(velocities, 0.0)) * self._asked.flow.parts
+        return np.nan_to_num(np.maximum(velocities, 0.0)) * self.order_of_parts.flow.parts
 
 
 def machine(settings: Sequence[Setting]) -> MachineSheet:
@@ -182,7 +185,7 @@ def bowl(
     aspect: str | None = None,
     heading: float | None = None,
     rule: str = "recommended",
-    known: Aspects | None = None,
+    aspects: Aspects | None = None,
     as_tried: bool = False,
     gap: float = 0.0,
     fill: float = 1.0,
@@ -202,7 +205,7 @@ def bowl(
     heading : float [rad], optional
         As for ``queue.wanted``.
     rule : str
-    known : Aspects, optional
+    aspects : Aspects, optional
         Of the part, with the answer to take, where they are known already.
     as_tried : bool
         Whether a trial has shown what the settings say: their drive is kept, and what the static rule takes
@@ -224,34 +227,39 @@ def bowl(
         If no bowl is so large, or none reaches the target; the latter not of what was tried.
     """
     plain = solidbowl.in_material(answer.conveying(bowls.record(settings)), solid)
-    found = arriving(part, plain, rule) if known is None else known
+    aspects = arriving(part, plain, rule) if aspects is None else aspects
     straight = replace(sizing.STRAIGHT_TRACK, climb=plain.track.climb)
-    wanted = None if aspect is None else well_oriented.wanted(part, found, straight, aspect, heading)
-    lying = sizing.find_lying(part, found, wanted)
-    _check_rule(rule, found)
+    wanted = None if aspect is None else well_oriented.wanted(part, aspects, straight, aspect, heading)
+    lying = sizing.find_lying(part, aspects, wanted)
+    _check_rule(rule, aspects)
     counted: dict[str, Any] = {"rule": rule, "gap": gap, "fill": fill}
     least = None
     while True:
         size = _size(lying, part, plain, settings, sorts=wanted is None, climb=least)
         track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
-        one = None if wanted is None else well_oriented.wanted(part, found, track, *wanted)
-        ways = _ways(part, found, track, plain.devices)
+        target_orientation = None if wanted is None else well_oriented.wanted(part, aspects, track, *wanted)
+        orientations_at = _orientations_by_drive(part, aspects, track, plain.devices)
         try:
-            size, made = solidbowl.solid(
-                replace(plain, track=track), size, part, ways(None), solid, counted | {"target": one}
+            size, body = solidbowl.solid(
+                replace(plain, track=track),
+                size,
+                part,
+                orientations_at(None),
+                solid,
+                counted | {"target": target_orientation},
             )
             break
         except TrackTooLow as fault:
             if fault.climb is None or "climb" in drive_sizing.user_keys(settings, "track"):
                 raise
             least = fault.climb
-    wanted, counted["target"], plain = one, one, replace(plain, track=track)
+    wanted, counted["target"], plain = target_orientation, target_orientation, replace(plain, track=track)
     room = cast(float, part.volume if part.hull is None else part.hull.volume)  # a card has no size
-    sought = drive_sizing.DriveSearch(plain, size, tuple(settings), target, part.mass / room)
-    bare = _ways(part, found, track, ())
+    search = drive_sizing.DriveSearch(plain, size, tuple(settings), target, part.mass / room)
+    bare = _orientations_by_drive(part, aspects, track, ())
     driven, flow, note = _driven(
-        sought,
-        lambda bowl: sizing.flow(ways(bowl), **counted),
+        search,
+        lambda bowl: sizing.flow(orientations_at(bowl), **counted),
         (lambda bowl: sizing.flow(bare(bowl), **counted)) if as_tried else None,
     )
     order = Order(
@@ -259,19 +267,19 @@ def bowl(
         target=target,
         wanted=wanted,
         rule=rule,
-        answer=found.source(rule),
-        tipping=remark(ways(driven).lying),
+        answer=aspects.source(rule),
+        tipping=remark(orientations_at(driven).lying),
         lying=lying,
         size=size,
         steepest=sizing.steepest_climb(driven),
         flow=flow,
         hopper=target * plain.sizing.hopper_interval * room / plain.sizing.packing,
         handbook=plain.sizing.handbook_speed * flow.share / flow.length,
-        shape=sizing.size_shape(part, found, track, wanted),
+        shape=sizing.size_shape(part, aspects, track, wanted),
         climb_for_devices=least is not None,
         static_drive=note,
     )
-    return replace(_sheet(driven, settings, size.depth, (sought.bulk, PART), order), solid=made)
+    return replace(_sheet(driven, settings, size.depth, (search.bulk, PART), order), solid=body)
 
 
 @with_settings
@@ -309,7 +317,7 @@ def size_bowl(
         At the stroke that was tried, where the file has a trial that is still of this part and bowl.
     """
     own: dict[str, Any] = {"rule": rule, "gap": arguments.amount("gap", gap, "length", 0.0), "fill": fill}
-    wanted = arguments.amount("target", target, "rate", LEAST)
+    wanted = arguments.amount("target", target, "rate", MIN_POSITIVE)
     angle = arguments.angle("heading", heading)
     solid = arguments.a_part(part)
     file = None if path is None else arguments.a_file("path", path)
@@ -321,7 +329,7 @@ def size_bowl(
 
 
 def _driven(
-    sought: drive_sizing.DriveSearch,
+    search: drive_sizing.DriveSearch,
     flow: Callable[[Bowl | None], sizing.Flow],
     bare: Callable[[Bowl | None], sizing.Flow] | None,
 ) -> tuple[Bowl, sizing.Flow, str]:
@@ -331,12 +339,12 @@ def _driven(
     them. None of what was not tried.
     """
     if bare is None:
-        return (*drive_sizing.bring_target(sought, flow), "")
-    driven = drive_sizing.with_own_drive(sought)
-    rate, own = f"{sought.target * units.MINUTE:.4g}/min", 2e3 * driven.drive.amplitude
+        return (*drive_sizing.bring_target(search, flow), "")
+    driven = drive_sizing.with_own_drive(search)
+    rate, own = f"{search.target * units.MINUTE:.4g}/min", 2e3 * driven.drive.amplitude
     lead = f"the drive is the one that was tried, {own:.3g} mm peak to peak"
     try:
-        other, _ = drive_sizing.bring_target(sought, flow)
+        other, _ = drive_sizing.bring_target(search, flow)
     except FeederError:
         return driven, _flow(driven, flow, bare), f"{lead}: the static rule finds none for {rate}"
     stroke = 2e3 * other.drive.amplitude
@@ -366,18 +374,20 @@ def _sorting(bowl: Bowl, order: Order) -> Iterator[str]:
 
 def _on_its_springs(bowl: Bowl, settings: Sequence[Setting]) -> Bowl:
     """The bowl at the frequency and angle of its machine, were it only the default one, unless given."""
-    made = {
+    by_machine = {
         "frequency": bowl.machine.supply,
         "vibration_angle": float(vibration_angle(bowl.machine, bowl.track.radius, bowl.track.climb)),
     }
-    said = drive_sizing.user_keys(settings, "drive")
-    return replace(bowl, drive=replace(bowl.drive, **{k: v for k, v in made.items() if k not in said}))
+    user_keys = drive_sizing.user_keys(settings, "drive")
+    return replace(
+        bowl, drive=replace(bowl.drive, **{k: v for k, v in by_machine.items() if k not in user_keys})
+    )
 
 
-def _check_rule(rule: str, found: Aspects) -> None:
-    if rule not in found.chances:
-        known = ", ".join(found.chances)
-        raise ArgumentError(f"rule {rule}", "has no probabilities of this part", f"choose one of {known}")
+def _check_rule(rule: str, aspects: Aspects) -> None:
+    if rule not in aspects.chances:
+        rules = ", ".join(aspects.chances)
+        raise ArgumentError(f"rule {rule}", "has no probabilities of this part", f"choose one of {rules}")
 
 
 def _size(
@@ -390,25 +400,25 @@ def _size(
     climb: float | None = None,
 ) -> sizing.Size:
     """The size of the bowl; what the file says of its track is kept, and a ``climb`` that devices ask for."""
-    said, track = drive_sizing.user_keys(settings, "track"), plain.track
+    user_keys, track = drive_sizing.user_keys(settings, "track"), plain.track
     greatest = float(np.ptp(np.asarray(part.vertices), axis=0).max())
     return sizing.size_bowl(
-        replace(lying, hanging=greatest if any(one.hangs for one in plain.devices) else 0.0),
+        replace(lying, hanging=greatest if any(device.hangs for device in plain.devices) else 0.0),
         part.source,
         plain.sizing,
         sorts=sorts,
-        diameter=2.0 * track.radius if "radius" in said else None,
-        width=track.width if "width" in said else None,
-        climb=track.climb if "climb" in said else climb,
+        diameter=2.0 * track.radius if "radius" in user_keys else None,
+        width=track.width if "width" in user_keys else None,
+        climb=track.climb if "climb" in user_keys else climb,
     )
 
 
-def _ways(
+def _orientations_by_drive(
     part: Part, aspects: Aspects, track: Track, devices: Sequence[Device]
 ) -> Callable[[Bowl | None], stream.Orientations]:
     """A function from a bowl, or None, to the orientations along its track."""
-    every = orientations(part, aspects, track)
-    return cache(lambda driven: stream.along(every, aspects, devices, bowl=driven))
+    on_the_track = orientations(part, aspects, track)
+    return cache(lambda driven: stream.along(on_the_track, aspects, devices, bowl=driven))
 
 
 def _sheet(
@@ -416,21 +426,21 @@ def _sheet(
 ) -> MachineSheet:
     """Everything of a bowl with its machine; ``bulk`` is the density of what fills it, and whence it is."""
     under, rules, moved = bowl.machine, bowl.sizing, stroke(bowl)
-    made = analyse_springs(under)
-    magnified = float(gain(moved.frequency, made.natural_frequency, under.damping))
+    springs = analyse_springs(under)
+    magnified = float(gain(moved.frequency, springs.natural_frequency, under.damping))
     room = None if order is None else order.size.room
     fill = sizing.full_bowl(room or bowl.track.radius, depth, bulk[0], rules)
     emptied = sizing.emptying(bowl, fill)
     turns = _turns(bowl, depth) if order is None else order.size.turns
     radii, turned = angles(under, bowl.track)
-    force = float(made.stiffness * moved.springs / magnified)
+    force = float(springs.stiffness * moved.springs / magnified)
     return MachineSheet(
         bowl=bowl,
         has_machine=has_machine({s.key.name for s in settings if s.is_own}),
-        springs=made,
+        springs=springs,
         stroke=moved,
         answer=answer.answer(bowl),
-        detuning=made.natural_frequency / moved.frequency - 1.0,
+        detuning=springs.natural_frequency / moved.frequency - 1.0,
         gain=magnified,
         stress=float(leaf_stress(under, moved.springs)),
         force=force,

@@ -22,7 +22,7 @@ VELOCITY, SPREAD, PARTS = "velocity_mm_s", "spread_mm_s", "parts"
 MAX_BYTES, MAX_ROWS = 200_000, 200
 LEAST_DOUBT = 0.03  # [1] of a velocity: what a film and a point mass leave open at least (assumption)
 QUANTITIES = ("friction", "restitution", "stroke")
-COARSE = (np.linspace(0.1, 1.0, 19), np.linspace(0.0, 0.8, 9), np.linspace(0.85, 1.15, 9))
+COARSE_GRID = (np.linspace(0.1, 1.0, 19), np.linspace(0.0, 0.8, 9), np.linspace(0.85, 1.15, 9))
 FINE, LEVEL = 9, 0.95  # values of each quantity between the neighbours of the best; of the intervals
 
 
@@ -44,7 +44,7 @@ class BowlFit:
     @property
     def open_ended(self) -> NDArray[np.bool_]:
         """(3,) whether an interval reaches an end of what was tried: the velocities do not decide it."""
-        ends = np.array([(one[0], one[-1]) for one in COARSE])
+        ends = np.array([(values[0], values[-1]) for values in COARSE_GRID])
         return (self.low <= ends[:, 0]) | (self.high >= ends[:, 1])
 
 
@@ -76,9 +76,9 @@ def fit_bowl(path: str | Path, bowl_path: str | Path | None = None) -> BowlFit:
     measured, doubt = (np.array([row[place] for row in rows]) for place in (1, 2))
     own = [answer.conveying(bowls.read(bowl_path, row[0])) for row in rows]
     assumed = np.array([own[0].friction.static, own[0].restitution, 1.0])
-    tried, sums = _sums(own, measured, doubt, COARSE)
+    tried, sums = _sums(own, measured, doubt, COARSE_GRID)
     best = [values[place] for values, place in zip(tried, np.unravel_index(np.nanargmin(sums), sums.shape))]
-    near = tuple(_about(values, value) for values, value in zip(COARSE, best))
+    near = tuple(_about(values, value) for values, value in zip(COARSE_GRID, best))
     finer, fine_sums = _sums(own, measured, doubt, near)
     if np.nanmin(fine_sums) <= np.nanmin(sums):
         place = np.unravel_index(np.nanargmin(fine_sums), fine_sums.shape)
@@ -88,7 +88,7 @@ def fit_bowl(path: str | Path, bowl_path: str | Path | None = None) -> BowlFit:
     rise = chi2.ppf(LEVEL, 1) * max(1.0, misfit if free > 0 else 1.0)
     ends = [_ends(k, ((tried, sums), (finer, fine_sums)), least + rise) for k in range(len(QUANTITIES))]
     step = [values[1] - values[0] for values in near]  # an interval is no narrower than the grid
-    bounds = np.array([(values[0], values[-1]) for values in COARSE]).T
+    bounds = np.array([(values[0], values[-1]) for values in COARSE_GRID]).T
     low, high = np.clip(np.array(ends).T + np.array([[-1.0], [1.0]]) * step, *bounds)
     return BowlFit(
         settings=tuple(", ".join(row[0]) for row in rows),
@@ -114,8 +114,8 @@ def _ends(axis: int, grids: tuple, limit: float) -> tuple[float, float]:
     """Least and greatest value of a quantity whose best sum over the two others stays below a limit."""
     inside = []
     for tried, sums in grids:
-        others = tuple(k for k in range(len(QUANTITIES)) if k != axis)
-        best = np.nanmin(np.where(np.isfinite(sums), sums, np.inf), axis=others)
+        other_axes = tuple(k for k in range(len(QUANTITIES)) if k != axis)
+        best = np.nanmin(np.where(np.isfinite(sums), sums, np.inf), axis=other_axes)
         inside += list(tried[axis][best <= limit])
     return min(inside), max(inside)
 
@@ -140,9 +140,9 @@ def _with(bowl: Bowl, friction: Any, restitution: Any, stroke: Any) -> Bowl:
     factor = friction / bowl.friction.static
 
     names = ("static", "kinetic", "static_backward", "kinetic_backward", "wall")
-    given = {name: getattr(bowl.friction, name) for name in names}
+    coefficients = {name: getattr(bowl.friction, name) for name in names}
     scaled: dict[str, Any] = {
-        name: None if value is None else value * factor for name, value in given.items()
+        name: None if value is None else value * factor for name, value in coefficients.items()
     }
     return replace(
         bowl,

@@ -43,10 +43,10 @@ def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
     """
     part, counts = arguments.a_part(part), arguments.a_file("counts", counts)
     text, sha256 = count_files.read_count_text(counts)
-    table, found = count_files.parse_count_sheet(text, str(counts)), find(part)
+    table, aspects = count_files.parse_count_sheet(text, str(counts)), find(part)
     if not profiles.counts_by_device(table):
-        measured = profiles.measured(table, str(counts), sha256, found.names)
-        return CalibrateStudy(part, found, measured, tuple(fit_counts(part, found, measured)))
+        measured = profiles.measured(table, str(counts), sha256, aspects.names)
+        return CalibrateStudy(part, aspects, measured, tuple(fit_counts(part, aspects, measured)))
     tested = profiles.device_counts(table, str(counts), sha256)
-    flow, _ = passages.counted_ways(part, found, passages.bowl_of(tested)[1], tested)
-    return CalibrateStudy(part, found, tested, (fit_passes(part, found, tested, flow),))
+    flow, _ = passages.counted_flow(part, aspects, passages.bowl_of(tested)[1], tested)
+    return CalibrateStudy(part, aspects, tested, (fit_passes(part, aspects, tested, flow),))

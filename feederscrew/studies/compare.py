@@ -16,7 +16,7 @@ from feederscrew.studies import arguments
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.passages import FeedingStudy, feeding
 
-MOST = 500  # files of one comparison
+MAX_FILES = 500  # files of one comparison
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,12 +61,12 @@ class SetStudy(ReadableRecord):
         return self.aspects.recommended
 
     @property
-    def apart(self) -> dict[str, float]:
+    def distances(self) -> dict[str, float]:
         """Total variation [1] of the profile from each answer."""
         mine = self.profile.fractions / self.profile.fractions.sum()
         return {
-            name: deviation.total_variation(mine, one.fractions / one.fractions.sum())
-            for name, one in self.answers.items()
+            name: deviation.total_variation(mine, answer.fractions / answer.fractions.sum())
+            for name, answer in self.answers.items()
         }
 
     @property
@@ -89,24 +89,24 @@ class SetsStudy(ReadableRecord):
     @property
     def answers(self) -> tuple[str, ...]:
         """Every answer that some set has, in their order."""
-        return tuple(dict.fromkeys(name for one in self.sets for name in one.answers))
+        return tuple(dict.fromkeys(name for study in self.sets for name in study.answers))
 
     @property
     def series(self) -> dict[str, tuple[SetStudy, ...]]:
         """The sets by the series they say they belong to, else by their file."""
-        found: dict[str, list[SetStudy]] = {}
-        for one in self.sets:
-            name = one.measured.head.series or Path(one.measured.source).stem
-            found.setdefault(name, []).append(one)
-        return {name: tuple(sets) for name, sets in found.items()}
+        by_series: dict[str, list[SetStudy]] = {}
+        for study in self.sets:
+            name = study.measured.head.series or Path(study.measured.source).stem
+            by_series.setdefault(name, []).append(study)
+        return {name: tuple(sets) for name, sets in by_series.items()}
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
-        listed = [line for one in self.sets for line in one.measured.warnings(one.part)]
-        listed += [line for one in self.feedings for line in one.measured.warnings(one.part)]
-        every: tuple[SetStudy | FeedingStudy, ...] = (*self.sets, *self.feedings)
-        listed += [f"{one.part.source}: {line}" for one in every for line in one.aspects.warnings]
+        listed = [line for study in self.sets for line in study.measured.warnings(study.part)]
+        listed += [line for study in self.feedings for line in study.measured.warnings(study.part)]
+        studies: tuple[SetStudy | FeedingStudy, ...] = (*self.sets, *self.feedings)
+        listed += [f"{study.part.source}: {line}" for study in studies for line in study.aspects.warnings]
         return tuple(dict.fromkeys(listed))
 
 
@@ -150,11 +150,11 @@ def compare(
     if profiles.counts_by_device(table):
         tested = profiles.device_counts(table, str(counts), sha256)
         return feeding(part, tested, launch=launch, progress=progress, before=before)
-    found, rules = _answers(part, table.head, launch, as_published)
+    aspects, rules = _answers(part, table.head, launch, as_published)
     names = [rule.name for rule in rules]
-    measured = profiles.measured(table, str(counts), sha256, found.names, names)
+    measured = profiles.measured(table, str(counts), sha256, aspects.names, names)
     compared = deviation.compare((*measured.profiles, *rules))
-    return CompareStudy(part, found, measured, rules, tuple(compared))
+    return CompareStudy(part, aspects, measured, rules, tuple(compared))
 
 
 def compare_sets(
@@ -185,8 +185,8 @@ def compare_sets(
         Every fault of the files.
     """
     names = [str(path) for path in files]
-    if not 0 < len(names) <= MOST:
-        raise FeederError("files", f"are {len(names)}", f"name 1 to {MOST} files of counts")
+    if not 0 < len(names) <= MAX_FILES:
+        raise FeederError("files", f"are {len(names)}", f"name 1 to {MAX_FILES} files of counts")
     faults: list[FeederError] = []
     studies: list[SetStudy | FeedingStudy] = []
     inputs: dict[str, str] = {}
@@ -199,8 +199,8 @@ def compare_sets(
             progress(done, len(names))
     if faults:
         raise Faults(faults)
-    sets = tuple(one for one in studies if isinstance(one, SetStudy))
-    return SetsStudy(sets, inputs, tuple(one for one in studies if isinstance(one, FeedingStudy)))
+    sets = tuple(study for study in studies if isinstance(study, SetStudy))
+    return SetsStudy(sets, inputs, tuple(study for study in studies if isinstance(study, FeedingStudy)))
 
 
 def _studies(
@@ -211,9 +211,9 @@ def _studies(
     table = count_files.parse_count_sheet(text, path)
     if not table.head.part:
         raise FeederError(path, "does not say which part was counted", "add a line '# part: FILE' at its top")
-    beside = Path(path).parent / table.head.part
+    part_path = Path(path).parent / table.head.part
     names = str(Path(path).parent / table.head.names) if table.head.names else None
-    part = load(str(beside), names=names, **table.head.reading)
+    part = load(str(part_path), names=names, **table.head.reading)
     inputs |= {path: sha256} | part.inputs
     if profiles.counts_by_device(table):
         fed = feeding(part, profiles.device_counts(table, path, sha256), launch=launch)

@@ -144,8 +144,8 @@ def curve(settings: Sequence[Setting], span: KeyRange) -> ConveyCurve:
     -------
     ConveyCurve
     """
-    found = answer.cells(bowls.swept(settings, {span.key.name: np.array(span.values)}))
-    cells = {name: np.broadcast_to(values, len(span.values)) for name, values in found.items()}
+    columns = answer.cells(bowls.swept(settings, {span.key.name: np.array(span.values)}))
+    cells = {name: np.broadcast_to(values, len(span.values)) for name, values in columns.items()}
     return ConveyCurve("curve", span.key.name, (grids.axis(span),), cells)
 
 
@@ -213,8 +213,10 @@ def velocity_map(
     """
     first, second = ranges
 
-    def function(one: np.ndarray, other: np.ndarray) -> dict[str, np.ndarray]:
-        return answer.cells(bowls.swept(settings, {first.key.name: one, second.key.name: other}))
+    def function(first_values: np.ndarray, second_values: np.ndarray) -> dict[str, np.ndarray]:
+        return answer.cells(
+            bowls.swept(settings, {first.key.name: first_values, second.key.name: second_values})
+        )
 
     grid = grids.evaluate(grids.axis(first), grids.axis(second), function, answer.SWEEP_REGIMES)
     bowl = bowls.record(settings)

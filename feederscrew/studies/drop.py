@@ -16,7 +16,7 @@ from feederscrew.running import RunSettings
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Condition
 
-BESIDE = ("csa", "surface")  # rules that the drops are shown with
+RULES_DRAWN = ("csa", "surface")  # rules that the drops are shown with
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class DropStudy(ReadableRecord):
     @property
     def rules(self) -> dict[str, np.ndarray]:
         """Probabilities (A,) by the rules that the drops are shown with."""
-        return {rule: self.aspects.probabilities[rule] for rule in BESIDE}
+        return {rule: self.aspects.probabilities[rule] for rule in RULES_DRAWN}
 
     @property
     def telling(self) -> traces.DropTrace:
@@ -114,13 +114,13 @@ def drop(
     part, drops = arguments.a_part(part), arguments.count("drops", drops)
     launch_named(launch)
     check_run(drops, seed, jobs)
-    found = find(part) if aspects is None else aspects
+    resting = find(part) if aspects is None else aspects
     result = drop_test.test(
-        part, found, launch, ranges,
+        part, resting, launch, ranges,
         drops=drops, until=until, traced=traced, dropped=dropped,
         run=RunSettings(seed, jobs, progress, before),
     )  # fmt: skip
-    return DropStudy(part, found, result)
+    return DropStudy(part, resting, result)
 
 
 def check_run(drops: int | None, seed: int | None, jobs: int | None) -> None:

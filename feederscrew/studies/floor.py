@@ -19,7 +19,7 @@ from feederscrew.studies.rate import likeliest
 
 TOP_ANGLE, TOP_FRICTION = np.pi / 2.0, 1.0  # [rad], [1] as Figure 5-6
 LEAST_FREQUENCY, TOP_FREQUENCY, TOP_AMPLITUDE = 10.0, 120.0, 0.5e-3  # [Hz], [Hz], [m] as Figure 5-7, or more
-ROOM = 1.25  # a map reaches at least so far beyond the bowl's own point
+MAP_MARGIN = 1.25  # a map reaches at least so far beyond the bowl's own point
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,8 +96,8 @@ class FloorStudy(ReadableRecord):
             drive = replace(self.bowl.drive, frequency=f, amplitude=a)
             return self.cells(replace(self.bowl, drive=drive), self.heading)
 
-        highest = max(TOP_FREQUENCY, ROOM * self.bowl.drive.frequency)
-        widest = max(TOP_AMPLITUDE, ROOM * self.bowl.drive.amplitude)
+        highest = max(TOP_FREQUENCY, MAP_MARGIN * self.bowl.drive.frequency)
+        widest = max(TOP_AMPLITUDE, MAP_MARGIN * self.bowl.drive.amplitude)
         frequency = span("frequency_Hz", LEAST_FREQUENCY, highest, count)
         amplitude = span("amplitude_mm", 0.0, widest, count, 1e-3)
         return evaluate(frequency, amplitude, function, motion_maps.FLOOR_REGIMES)

@@ -29,9 +29,9 @@ class HeadingsStudy(ReadableRecord):
 
     def only(self, aspect: str) -> HeadingsStudy:
         """Return the study of one of its aspects."""
-        kept = [k for k, one in enumerate(self.postures) if one.name == aspect]
-        postures, found = tuple(self.postures[k] for k in kept), tuple(self.headings[k] for k in kept)
-        return replace(self, postures=postures, headings=found)
+        rows = [k for k, stance in enumerate(self.postures) if stance.name == aspect]
+        postures, of_aspect = tuple(self.postures[k] for k in rows), tuple(self.headings[k] for k in rows)
+        return replace(self, postures=postures, headings=of_aspect)
 
 
 @with_settings
@@ -40,7 +40,7 @@ def headings(
     bowl: Bowl,
     aspect: str | None = None,
     *,
-    known: Aspects | None = None,
+    aspects: Aspects | None = None,
     overrides: Overrides = (),
     **settings: Unpack[BowlSettings],
 ) -> HeadingsStudy:
@@ -53,7 +53,7 @@ def headings(
     bowl : Bowl
     aspect : str, optional
         One alone; every stable one without it.
-    known : Aspects, optional
+    aspects : Aspects, optional
         Of the part, with the answer to take; what arrives from the bowl's moving floor without it.
     overrides, **settings
         As for ``read_bowl``: in place of the bowl's own.
@@ -69,14 +69,16 @@ def headings(
     """
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
     track = bowl.track
-    found = arriving(part, bowl) if known is None else known
-    names = [name for name, stays in zip(found.names, found.stable) if stays] if aspect is None else [aspect]
-    postures = tuple(posture(part, found, name) for name in names)
+    resting = arriving(part, bowl) if aspects is None else aspects
+    names = (
+        [name for name, stays in zip(resting.names, resting.stable) if stays] if aspect is None else [aspect]
+    )
+    postures = tuple(posture(part, resting, name) for name in names)
     return HeadingsStudy(
         part=part,
         track=track,
         postures=postures,
-        headings=tuple(wall.headings(one, track) for one in postures),
-        chances=dict(zip(found.names, found.chances[found.ranking].tolist())),
-        answer=found.source(found.ranking),
+        headings=tuple(wall.headings(stance, track) for stance in postures),
+        chances=dict(zip(resting.names, resting.chances[resting.ranking].tolist())),
+        answer=resting.source(resting.ranking),
     )

@@ -100,13 +100,13 @@ def read_bowl(path: Path | None = None, overrides: Overrides = (), **settings: U
     return bowls.read(None if path is None else arguments.a_file("path", path), texts)
 
 
-def posture(part: Part, found: Aspects, aspect: str) -> Posture:
+def posture(part: Part, aspects: Aspects, aspect: str) -> Posture:
     """Return how a part stands on one aspect: its contact, its outline and the height of its centre of mass.
 
     Parameters
     ----------
     part : Part
-    found : Aspects
+    aspects : Aspects
         Of that part.
     aspect : str
         Its name.
@@ -115,17 +115,17 @@ def posture(part: Part, found: Aspects, aspect: str) -> Posture:
     -------
     Posture
     """
-    return postures.posture(arguments.a_part(part), arguments.the_aspects(found), aspect)
+    return postures.posture(arguments.a_part(part), arguments.the_aspects(aspects), aspect)
 
 
-def write_names(part: Part, found: Aspects, path: Path) -> None:
+def write_names(part: Part, aspects: Aspects, path: Path) -> None:
     """Write the names of a part's aspects to a file that ``load`` takes as ``names``.
 
     Parameters
     ----------
     part : Part
         From a mesh.
-    found : Aspects
+    aspects : Aspects
         Of that part.
     path : str or Path
         Of the file, written anew: change a name there and leave its direction.
@@ -136,32 +136,32 @@ def write_names(part: Part, found: Aspects, path: Path) -> None:
         If the part is a card, which has its own names, or the file cannot be written.
     """
     names_file.write_names(
-        arguments.a_part(part), arguments.the_aspects(found), arguments.a_file("path", path)
+        arguments.a_part(part), arguments.the_aspects(aspects), arguments.a_file("path", path)
     )
 
 
-def _point(given: str | Sequence[float] | None) -> str | None:
+def _point(point: str | Sequence[float] | None) -> str | None:
     """A point as the text of one, 'x,y,z'."""
-    if given is None or isinstance(given, str):
-        return given
+    if point is None or isinstance(point, str):
+        return point
     mend = "give 'x,y,z', or three numbers in the file's unit"
-    check.kind("centre_of_mass", given, (tuple, list, np.ndarray), mend)
-    return ",".join(repr(check.argument("centre_of_mass", one)) for one in given)
+    check.kind("centre_of_mass", point, (tuple, list, np.ndarray), mend)
+    return ",".join(repr(check.argument("centre_of_mass", coordinate)) for coordinate in point)
 
 
-def _body(given: str | int | None) -> str | None:
+def _body(body: str | int | None) -> str | None:
     """A name, 'largest', or a number as the text of one."""
-    if given is None or isinstance(given, str):
-        return given
-    check.kind("body", given, (int, np.integer), "give its number, its name, or 'largest'")
-    return str(int(given))
+    if body is None or isinstance(body, str):
+        return body
+    check.kind("body", body, (int, np.integer), "give its number, its name, or 'largest'")
+    return str(int(body))
 
 
-def _density(given: str | float | None) -> str | None:
+def _density(density: str | float | None) -> str | None:
     """A material, a value with its unit, or a number in kg/m3 as the text of one."""
-    if given is None or isinstance(given, str):
-        return given
-    value = check.argument("density", given)
+    if density is None or isinstance(density, str):
+        return density
+    value = check.argument("density", density)
     if not LIGHTEST_SOLID_KG_M3 <= value <= HEAVIEST_SOLID_KG_M3:
         what = f"is {value:g} kg/m3"
         raise ArgumentError("density", what, "give kg/m3, 7850 for steel, or a text, '7.85 g/cm3'")

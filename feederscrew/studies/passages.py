@@ -36,8 +36,8 @@ class PassagesStudy(ReadableRecord):
     @property
     def wanted(self) -> int:
         """Place of the most frequent orientation that leaves; of the most frequent one where none does."""
-        leaves = [not one.returned and all(k.verdict.passes > 0.0 for k in met)
-                  for one, met in zip(self.orientations, self.passages)]  # fmt: skip
+        leaves = [not orientation.returned and all(k.verdict.passes > 0.0 for k in until_gone)
+                  for orientation, until_gone in zip(self.orientations, self.passages)]  # fmt: skip
         shares = np.round(self.shares, 9)
         return int(np.argmax(np.where(leaves, shares, 0.0) if any(leaves) else shares))
 
@@ -66,13 +66,13 @@ def passages(part: Part, bowl: Bowl, aspects: Aspects, rule: str) -> PassagesStu
     """
     if any(device.placed for device in bowl.devices):
         refuse_many_facets(part)
-    every, _ = marked(orientations(part, aspects, bowl.track), bowl)
+    coming, _ = marked(orientations(part, aspects, bowl.track), bowl)
     devices = tuple(device for device in bowl.devices if device.placed)
     return PassagesStudy(
         devices=devices,
-        orientations=every,
-        shares=np.nan_to_num([one.chances[rule] for one in every]),
-        passages=tuple(tuple(until_returned(devices, one, every)) for one in every),
+        orientations=coming,
+        shares=np.nan_to_num([orientation.chances[rule] for orientation in coming]),
+        passages=tuple(tuple(until_returned(devices, orientation, coming)) for orientation in coming),
     )
 
 
@@ -150,19 +150,19 @@ def feeding(
     """
     config, bowl = bowl_of(counts)
     launch = launch or counts.head.launch or None
-    found = shares(part, bowl, launch=launch, progress=progress, before=before).aspects
-    flow, stations = counted_ways(part, found, bowl, counts)
-    if (known := found.recommended) is None:
+    aspects = shares(part, bowl, launch=launch, progress=progress, before=before).aspects
+    flow, stations = counted_flow(part, aspects, bowl, counts)
+    if (answer := aspects.recommended) is None:
         raise ArgumentError("part", "is a part card, which meets no device", "give a mesh")
-    low, high = stream.passing_ends(flow, known.low, known.high)
+    low, high = stream.passing_ends(flow, answer.low, answer.high)
     return FeedingStudy(
         part=part,
         bowl=bowl,
         config=config,
-        aspects=found,
+        aspects=aspects,
         measured=counts,
         stations=stations,
-        answers={rule: check.frozen(stream.passing_shares(flow, p)) for rule, p in found.chances.items()},
+        answers={rule: check.frozen(stream.passing_shares(flow, p)) for rule, p in aspects.chances.items()},
         low=check.frozen(low),
         high=check.frozen(high),
     )
@@ -177,7 +177,7 @@ def bowl_of(counts: DeviceCounts) -> tuple[str, Bowl]:
     return config, bowls.read(config)
 
 
-def counted_ways(
+def counted_flow(
     part: Part, aspects: Aspects, bowl: Bowl, counts: DeviceCounts
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return which share of each aspect's parts comes to each counted device, and which goes on from it.
@@ -198,7 +198,7 @@ def counted_ways(
     tuple of str
         (D,) names of the devices.
     """
-    known = stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
-    places = stream.counted_stations(known, counts)
-    flow = stream.station_shares(known, aspects.names)[:, places]
-    return flow, tuple(known.names[place] for place in places)
+    followed = stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
+    places = stream.counted_stations(followed, counts)
+    flow = stream.station_shares(followed, aspects.names)[:, places]
+    return flow, tuple(followed.names[place] for place in places)

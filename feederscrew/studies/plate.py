@@ -15,7 +15,7 @@ from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Condition, DriveSettings, Overrides, Quantity, with_settings
 from feederscrew.studies.drop import check_run
 
-LEAST = 1e-6  # [s]
+MIN_SECONDS_S = 1e-6  # [s]
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,11 +101,11 @@ def shake(
     check_run(drops, seed, jobs)
     pace = plate_test.EXACT_PACE
     if seconds is not None:
-        pace = replace(pace, seconds=arguments.amount("seconds", seconds, "time", LEAST))
-    found = find(part)
+        pace = replace(pace, seconds=arguments.amount("seconds", seconds, "time", MIN_SECONDS_S))
+    aspects = find(part)
     plates = plate_test.test(
-        part, found, driven, launch, ranges,
+        part, aspects, driven, launch, ranges,
         drops=drops, pace=pace, run=RunSettings(seed, jobs, progress, before),
     )  # fmt: skip
-    given = names or ["bowl"] * len(driven)
-    return PlateStudy(part, found, seed, tuple(plates), tuple(given[: len(plates)]))
+    bowl_names = names or ["bowl"] * len(driven)
+    return PlateStudy(part, aspects, seed, tuple(plates), tuple(bowl_names[: len(plates)]))

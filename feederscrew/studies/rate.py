@@ -32,10 +32,10 @@ from feederscrew.tooling.isolating.design import PLAY_M, TOLERANCE_M
 
 DEVICES = "give devices in a list, as a bowl's devices are"
 
-ALIKE = 1.0 - 1e-9  # of the most frequent orientation: as frequent
-LEAST = 1e-6  # of what must be above 0
+EQUAL_SHARE_RATIO = 1.0 - 1e-9  # of the most frequent orientation: as frequent
+MIN_POSITIVE = 1e-6  # of what must be above 0
 CHOOSING = 400  # parts that show which aspect is the likeliest, where its share is well above all others
-SEED = 1  # of the parts that are fed onto the moving floor
+FEED_SEED = 1  # of the parts that are fed onto the moving floor
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ def shares(
     probabilities: str | PathLike[str] | None = None,
     rule: str = RECOMMENDED,
     fed: int | None = None,
-    seed: int = SEED,
+    seed: int = FEED_SEED,
     jobs: int | None = None,
     progress: Callable[..., None] | None = None,
     before: Callable[..., None] | None = None,
@@ -111,9 +111,9 @@ def shares(
     seed, fed = arguments.whole("seed", seed, 0), arguments.count("fed", fed)
     if probabilities is not None:
         probabilities = arguments.a_file("probabilities", probabilities)
-        found = resting(part, drops=0).aspects
-        measured = profiles.read_profile(probabilities, found.names)
-        return Shares(arrivals.counted(found, measured), measured)
+        aspects = resting(part, drops=0).aspects
+        measured = profiles.read_profile(probabilities, aspects.names)
+        return Shares(arrivals.counted(aspects, measured), measured)
     if launch is not None or rule != RECOMMENDED or part.vertices is None:
         drops = None if rule == RECOMMENDED else 0
         return Shares(
@@ -126,15 +126,15 @@ def shares(
                 before=before,
             ).aspects
         )
-    found = resting(part, drops=0).aspects
+    aspects = resting(part, drops=0).aspects
     if not bowl.gravity > 0.0:
         conveying(bowl)  # says so
-    if np.count_nonzero(found.stable) < 2:
-        return Shares(found)
-    if arrivals.too_long(found, bowl):
-        return Shares(arrivals.not_fed(found))
-    arrived = arrivals.arrived(found, _on_the_floor(part, found, bowl, fed, seed, run), seed)
-    return Shares(arrived, fed=arrived.recommended is not found.recommended)
+    if np.count_nonzero(aspects.stable) < 2:
+        return Shares(aspects)
+    if arrivals.too_long(aspects, bowl):
+        return Shares(arrivals.not_fed(aspects))
+    arrived = arrivals.arrived(aspects, _on_the_floor(part, aspects, bowl, fed, seed, run), seed)
+    return Shares(arrived, fed=arrived.recommended is not aspects.recommended)
 
 
 def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED) -> Aspects:
@@ -171,21 +171,21 @@ def likeliest(part: Part, bowl: Bowl) -> Aspects:
     return sample.aspects if is_clear else arriving(part, bowl)
 
 
-def _on_the_floor(part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed: int, run: OnCores) -> Any:
+def _on_the_floor(part: Part, aspects: Aspects, bowl: Bowl, fed: int | None, seed: int, run: OnCores) -> Any:
     """What lies at the track's entry, followed once in a run."""
     from feederscrew.dropping import arrival as floor
 
     def make() -> Any:
         if run.before:
             run.before(None)
-        return floor.arrival(part, found, bowl, drops=fed, seed=seed, jobs=run.cores, progress=run.progress)
+        return floor.arrival(part, aspects, bowl, drops=fed, seed=seed, jobs=run.cores, progress=run.progress)
 
     settings = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity, fed, seed)
     simulation = simulation_cache.Simulation(
         "arrival", settings, make, lambda arrived: not arrived.shaken.partial, floor.to_arrays,
-        lambda arrays: floor.from_arrays(part, found, bowl, fed, arrays),
+        lambda arrays: floor.from_arrays(part, aspects, bowl, fed, arrays),
     )  # fmt: skip
-    return simulation_cache.once(part, found, simulation)
+    return simulation_cache.once(part, aspects, simulation)
 
 
 @dataclass(frozen=True, eq=False)
@@ -249,7 +249,7 @@ def rate(
     probabilities: Path | None = None,
     fed: int | None = None,
     seed: int = 1,
-    known: Shares | None = None,
+    aspect_shares: Shares | None = None,
     overrides: Overrides = (),
     **settings: Unpack[BowlSettings],
 ) -> RateStudy:
@@ -283,7 +283,7 @@ def rate(
         How many parts are fed; without it until every share is known to 2 %.
     seed : int
         Of these parts.
-    known : Shares, optional
+    aspect_shares : Shares, optional
         What ``shares`` returned, in place of all of them.
     overrides, **settings
         As for ``read_bowl``, amplitude='0.3 mm': in place of the bowl's own.
@@ -302,50 +302,50 @@ def rate(
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
     if devices is not None:
         devices = arguments.several("devices", devices, Device, DEVICES)
-    known = the_shares(known)
-    if known is None:
-        known = shares(
+    aspect_shares = the_shares(aspect_shares)
+    if aspect_shares is None:
+        aspect_shares = shares(
             part, bowl,
             rule=rule, launch=launch, probabilities=probabilities, fed=fed, seed=seed,
         )  # fmt: skip
     angle, space = arguments.angle("heading", heading), arguments.amount("gap", gap, "length", 0.0)
-    check.argument("fill", fill, LEAST, 1.0)
+    check.argument("fill", fill, MIN_POSITIVE, 1.0)
     check.argument("sigma", sigma, 0.0)
     require_rule(rule)
     chain = bowl.devices if devices is None else tuple(devices)
     if any(device.placed for device in chain):
         refuse_many_facets(part)
-    found = known.aspects
-    target = None if aspect is None else well_oriented.wanted(part, found, bowl.track, aspect, angle)
-    ways = stream.follow_orientations(part, found, bowl.track, chain, sigma, bowl)
-    lying = arrivals.oriented(ways, known.measured)
+    aspects = aspect_shares.aspects
+    target = None if aspect is None else well_oriented.wanted(part, aspects, bowl.track, aspect, angle)
+    followed = stream.follow_orientations(part, aspects, bowl.track, chain, sigma, bowl)
+    lying = arrivals.oriented(followed, aspect_shares.measured)
     speed = well_oriented.velocity(stream.queueing(bowl, lying.lying))
     target = most_frequent(lying, rule) if target is None else target
     return RateStudy(
         part=part,
         bowl=bowl,
-        aspects=found,
+        aspects=aspects,
         devices=chain,
         rule=rule,
         rate=well_oriented.rate(lying, speed, target, rule, gap=space, fill=fill),
-        measured=known.measured,
+        measured=aspect_shares.measured,
         sigma=sigma,
     )
 
 
-def the_shares(known: object) -> Shares | None:
+def the_shares(aspect_shares: object) -> Shares | None:
     """Return shares as ``shares`` gave them; None stays None."""
-    if known is not None:
-        check.kind("known", known, Shares, "give what shares returned")
-    return cast(Shares | None, known)
+    if aspect_shares is not None:
+        check.kind("aspect_shares", aspect_shares, Shares, "give what shares returned")
+    return cast(Shares | None, aspect_shares)
 
 
-def most_frequent(known: well_oriented.Orientations, rule: str) -> tuple[str, float]:
+def most_frequent(orientations: well_oriented.Orientations, rule: str) -> tuple[str, float]:
     """Return the aspect and the heading in which most parts leave the bowl.
 
     Parameters
     ----------
-    known : Orientations
+    orientations : Orientations
     rule : str
         Whose probabilities are taken.
 
@@ -354,8 +354,10 @@ def most_frequent(known: well_oriented.Orientations, rule: str) -> tuple[str, fl
     (str, float [rad])
         Where none leaves, the ones most likely to land in.
     """
-    chance = np.nan_to_num(known.rules[rule])
-    leaving = (chance[:, None] * known.leaving).sum(axis=0)[known.leaves_as]
+    chance = np.nan_to_num(orientations.rules[rule])
+    leaving = (chance[:, None] * orientations.leaving).sum(axis=0)[orientations.leaves_as]
     weight = leaving if leaving.any() else chance
-    row = int(np.argmax(weight >= ALIKE * weight.max()))  # the first of equals, whatever the rounding
-    return known.aspects[row], known.headings[row]
+    row = int(
+        np.argmax(weight >= EQUAL_SHARE_RATIO * weight.max())
+    )  # the first of equals, whatever the rounding
+    return orientations.aspects[row], orientations.headings[row]

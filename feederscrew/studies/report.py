@@ -34,7 +34,7 @@ from feederscrew.studies.floor import FloorStudy, floor
 from feederscrew.studies.headings import HeadingsStudy, headings
 from feederscrew.studies.inertia import InertiaStudy, inertia
 from feederscrew.studies.passages import PassagesStudy, passages
-from feederscrew.studies.rate import LEAST, RateStudy, Shares, rate, shares
+from feederscrew.studies.rate import MIN_POSITIVE, RateStudy, Shares, rate, shares
 from feederscrew.studies.slide import SlideStudy, slide
 from feederscrew.studies.track import TrackStudy, track
 from feederscrew.studies.trial import TrialStudy, trial
@@ -42,7 +42,7 @@ from feederscrew.studies.trial import TrialStudy, trial
 ANGLES, STROKES = 56, 48  # cells of the velocity map
 LEAST_STROKE = 0.1e-3  # [m] the velocity map goes at least so far
 RECOMMENDED = "recommended"  # the default rule
-ROOM = 2.5  # and to so many times the bowl's own stroke
+STROKE_RANGE = 2.5  # and to so many times the bowl's own stroke
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ class ReportStudy(ReadableRecord):
     @cached_property
     def headings(self) -> HeadingsStudy:
         """The stable headings of every aspect, a HeadingsStudy."""
-        return headings(self.part, self.bowl, known=self.resting.aspects)
+        return headings(self.part, self.bowl, aspects=self.resting.aspects)
 
     @cached_property
     def convey(self) -> ConveyStudy:
@@ -99,7 +99,7 @@ class ReportStudy(ReadableRecord):
     @cached_property
     def velocity_map(self) -> ConveyMap:
         """Velocity over vibration angle and stroke, with the bowl's own point, a ConveyMap."""
-        top = 1e3 * max(ROOM * self.bowl.drive.amplitude, LEAST_STROKE)
+        top = 1e3 * max(STROKE_RANGE * self.bowl.drive.amplitude, LEAST_STROKE)
         strokes = f"drive.amplitude={0.02 * top:.4g}mm:{top:.4g}mm:{STROKES}"
         spans = bowls.key_ranges((f"drive.vibration_angle=5deg:60deg:{ANGLES}", strokes))
         return convey.velocity_map(self.settings, spans, drawn="point")
@@ -109,7 +109,7 @@ class ReportStudy(ReadableRecord):
         """Well-oriented parts, a RateStudy."""
         return rate(
             self.part, self.bowl, self.aspect, heading=self.heading, rule=self.rule,
-            gap=self.gap, fill=self.fill, known=self.shares,
+            gap=self.gap, fill=self.fill, aspect_shares=self.shares,
         )  # fmt: skip
 
     @cached_property
@@ -125,7 +125,9 @@ class ReportStudy(ReadableRecord):
         if self.sent is None:
             return None
         jobs = os.cpu_count() or 1
-        return trial(self.part, [self.bowl], rule=self.rule, known=self.shares, parts=self.sent, jobs=jobs)
+        return trial(
+            self.part, [self.bowl], rule=self.rule, aspect_shares=self.shares, parts=self.sent, jobs=jobs
+        )
 
     @cached_property
     def machine(self) -> MachineSheet | None:
@@ -135,10 +137,10 @@ class ReportStudy(ReadableRecord):
             return machines.bowl(
                 self.settings, self.part, self.target,
                 aspect=self.counted, heading=heading, rule=self.rule, gap=self.gap, fill=self.fill,
-                known=self.resting.aspects, as_tried=self.as_tried,
+                aspects=self.resting.aspects, as_tried=self.as_tried,
             )  # fmt: skip
-        given = has_machine({s.key.name for s in self.settings if s.is_own})
-        return machines.machine(self.settings) if given else None
+        has_own_machine = has_machine({s.key.name for s in self.settings if s.is_own})
+        return machines.machine(self.settings) if has_own_machine else None
 
     @cached_property
     def solid(self) -> BowlSolid | None:
@@ -224,34 +226,34 @@ def report(
     path = None if path is None else arguments.a_file("path", path)
     part, angle = arguments.a_part(part), arguments.angle("heading", heading)
     space = arguments.amount("gap", gap, "length", 0.0)
-    check.argument("fill", fill, LEAST, 1.0)
+    check.argument("fill", fill, MIN_POSITIVE, 1.0)
     wanted = None if target is None else arguments.amount("target", target, "rate")
-    given = bowls.settings(path, texts)
-    chosen = bowls.record(given)
-    known = shares(
+    bowl_settings = bowls.settings(path, texts)
+    chosen = bowls.record(bowl_settings)
+    aspect_shares = shares(
         part, chosen,
         rule=rule, launch=launch, probabilities=probabilities, fed=fed, seed=seed,
         progress=progress, before=before,
     )  # fmt: skip
-    found = known.aspects
-    rule = found.ranking if rule == RECOMMENDED else rule  # a card has no such answer
-    if rule not in found.chances:
-        names = ", ".join(found.chances)
+    aspects = aspect_shares.aspects
+    rule = aspects.ranking if rule == RECOMMENDED else rule  # a card has no such answer
+    if rule not in aspects.chances:
+        names = ", ".join(aspects.chances)
         raise ArgumentError(f"rule {rule}", "has no probabilities of this part", f"choose one of {names}")
     return ReportStudy(
-        resting=AspectsStudy(part, found),
-        settings=given,
+        resting=AspectsStudy(part, aspects),
+        settings=bowl_settings,
         bowl=chosen,
         path=path,
-        aspect=posture(part, found, found.likeliest if aspect is None else aspect).name,
+        aspect=posture(part, aspects, aspects.likeliest if aspect is None else aspect).name,
         heading=angle,
         rule=rule,
         gap=space,
         fill=fill,
         target=wanted,
         counted=aspect,
-        shares=known,
-        inputs=part.inputs | bowls.identity(path) | known.inputs,
+        shares=aspect_shares,
+        inputs=part.inputs | bowls.identity(path) | aspect_shares.inputs,
         command=command,
         sent=sent,
     )

@@ -36,7 +36,7 @@ ENTRY_SUFFIX = ".simulated"  # nothing else in the folder is touched
 PARTIAL_PREFIX = "tmp"  # of an entry that is being written
 PARTIAL_AGE_S = 3600.0  # older ones were left by a run that was killed
 MADE_WITH = ("numpy", "scipy", "numba")
-KINDS = {"float": "<f8", "int": "<i8", "bool": "|b1"}  # of arrays, by the name that an entry gives
+ARRAY_KINDS = {"float": "<f8", "int": "<i8", "bool": "|b1"}  # of arrays, by the name that an entry gives
 OPEN_FLAGS = (
     os.O_RDONLY
     | getattr(os, "O_NOFOLLOW", 0)
@@ -62,9 +62,10 @@ def read(key: Mapping[str, str]) -> dict[str, np.ndarray] | None:
         Arrays of float, int or bool, closed to writing. None where there is no entry, or one that is
         damaged, too large, of another key, no regular file, or in a folder that others may write to.
     """
-    folder, full = _folder(), _full(key)
+    folder = _folder()
     if folder is None or refusal() is not None:
         return None
+    full = _full(key)
     data = _content(folder / _name(full))
     return None if data is None else _decoded(data, full)
 
@@ -78,9 +79,13 @@ def write(key: Mapping[str, str], arrays: Arrays) -> None:
     arrays : dict of str to array
         Of float, int or bool.
     """
-    folder, full = _folder(), _full(key)
-    data = _encoded(arrays, full)
-    if folder is None or len(data) > MAX_ENTRY_BYTES:
+    folder = _folder()
+    if folder is None:
+        return
+    full = _full(key)
+    held = {name: _packed(np.asarray(array)) for name, array in arrays.items()}
+    data = _line({"key": full, "arrays": held, "sha256": hashlib.sha256(_line([full, held])).hexdigest()})
+    if len(data) > MAX_ENTRY_BYTES:
         return
     with contextlib.suppress(OSError):
         if not folder.is_dir():
@@ -176,7 +181,7 @@ def _entries(folder: Path) -> Iterator[tuple[float, Path]]:
 
 
 def _full(key: Mapping[str, str]) -> dict[str, str]:
-    return {**key, "code": _code()}
+    return {**key, "code": library_digest()}
 
 
 def _name(full: Mapping[str, str]) -> str:
@@ -187,14 +192,9 @@ def _line(value: Any) -> bytes:
     return json.dumps(value, sort_keys=True).encode()
 
 
-def _encoded(arrays: Arrays, full: Mapping[str, str]) -> bytes:
-    held = {name: _packed(np.asarray(array)) for name, array in arrays.items()}
-    return _line({"key": full, "arrays": held, "sha256": hashlib.sha256(_line([full, held])).hexdigest()})
-
-
 def _packed(array: np.ndarray) -> dict[str, Any]:
     kind = {"f": "float", "i": "int", "b": "bool"}[array.dtype.kind]
-    data = np.ascontiguousarray(array).astype(KINDS[kind]).tobytes()
+    data = np.ascontiguousarray(array).astype(ARRAY_KINDS[kind]).tobytes()
     return {"kind": kind, "shape": list(array.shape), "data": base64.b64encode(data).decode()}
 
 
@@ -207,23 +207,23 @@ def _decoded(data: bytes, full: Mapping[str, str]) -> dict[str, np.ndarray] | No
         held = entry["arrays"]
         if hashlib.sha256(_line([full, held])).hexdigest() != entry["sha256"]:
             return None
-        return {str(name): _unpacked(**one) for name, one in held.items()}
+        return {str(name): _unpacked(**array) for name, array in held.items()}
     except (ValueError, TypeError, LookupError, AttributeError, RecursionError, binascii.Error):
         return None
 
 
 def _unpacked(kind: str, shape: list[int], data: str) -> np.ndarray:
     """An array of plain numbers; raises ValueError where its data are not of its shape."""
-    flat = np.frombuffer(base64.b64decode(data, validate=True), KINDS[kind])
+    flat = np.frombuffer(base64.b64decode(data, validate=True), ARRAY_KINDS[kind])
     if not all(type(size) is int and 0 <= size <= MAX_ENTRY_BYTES for size in shape):
         raise ValueError("no shape of an array")
     return flat.reshape(shape)  # of bytes: closed to writing
 
 
 @functools.cache
-def _code() -> str:
+def library_digest() -> str:
     """Digest of the library's sources and of what they run on: what other code made is not taken."""
-    library = Path(__file__).parents[2]
+    library = Path(__file__).parents[1]
     digest = hashlib.sha256(sys.version.encode())
     for name in MADE_WITH:
         digest.update(importlib.metadata.version(name).encode())

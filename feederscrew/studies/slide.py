@@ -16,15 +16,15 @@ from feederscrew.records import ReadableRecord
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
 
-STEPS = (1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # round numbers within a decade
+ROUND_STEPS = (1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # round numbers within a decade
 PLAIN_TOP = 3.0  # G that every sliding map reaches
-FARTHEST = 1e6  # G of a hop that no bowl within the limits of its keys reaches: it is left off the map
-MARGIN = 1.25  # how far past the hop, and past the bowl's own G, it reaches
-ROWS = 32  # of a map, computed at a time: some dozen arrays are made of each
+MAX_RATIO = 1e6  # G of a hop that no bowl within the limits of its keys reaches: it is left off the map
+RATIO_MARGIN = 1.25  # how far past the hop, and past the bowl's own G, it reaches
+MIN_MAP_ROWS = 32  # of a map, computed at a time: some dozen arrays are made of each
 FINE_STEP, MOST_STEPS = 0.05, 200  # of G, in a map that is printed
-WIDEST = np.radians(89.9)  # of a surface: at 90 deg [4.27] is 0/0 on the hop line
-SHEET = 61  # points of a surface in either direction
-NOISE = 12  # decimals of a limit; cos(90 deg) leaves 6e-17
+MAX_ANGLE = np.radians(89.9)  # of a surface: at 90 deg [4.27] is 0/0 on the hop line
+MAP_COLUMNS = 61  # points of a surface in either direction
+RATIO_DECIMALS = 12  # decimals of a limit; cos(90 deg) leaves 6e-17
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,9 +54,9 @@ class SlideMap(ReadableRecord):
         alpha_minus_theta, ratio, friction : (S, S) float [rad, 1, 1]
         """
         first, last = -np.pi / 2.0, np.pi / 2.0
-        angles = WIDEST * np.sin(np.linspace(first, last, SHEET))[:, None]  # dense where it is steep
+        angles = MAX_ANGLE * np.sin(np.linspace(first, last, MAP_COLUMNS))[:, None]  # dense where it is steep
         edge = np.minimum(self.level_line(highest, angles), self.grid.second.values[-1])
-        ratio = edge * np.linspace(0.0, 1.0, SHEET)
+        ratio = edge * np.linspace(0.0, 1.0, MAP_COLUMNS)
         friction = np.minimum(
             limits.published_limit(ratio, self.beta, angles), highest
         )  # rounding at the pole
@@ -88,7 +88,7 @@ class SlideStudy(ReadableRecord):
         tuple of SlideMap
             Without the negative branch of [4.27].
         """
-        return tuple(sliding_map(self.bowl, one.beta, shape=shape) for one in self.maps)
+        return tuple(sliding_map(self.bowl, slide_map.beta, shape=shape) for slide_map in self.maps)
 
 
 @with_settings
@@ -166,7 +166,7 @@ def sliding_map(
     first, second = _headings(direction), _ratios(beta, ratio)
     if shape is not None:
         first, second = _resampled(first, shape[0]), _resampled(second, shape[1])
-    grid = evaluate(first, second, cells, limits.POINT_REGIMES, rows=ROWS)
+    grid = evaluate(first, second, cells, limits.POINT_REGIMES, rows=MIN_MAP_ROWS)
     point = {name: float(value) for name, value in cells(direction, ratio).items()}
     regime = limits.POINT_REGIMES[int(point.pop("regime"))]
     point["throw_number"] = float(limits.throw_number(ratio, beta, bowl.track.climb))
@@ -188,14 +188,16 @@ def _cells(
     pole = np.abs(ratio * np.sin(beta) - 1.0) <= limits.HOP_ROUNDING
     reversed_ = np.cos(alpha_minus_theta) < -limits.HOP_ROUNDING
     hidden = pole if as_published else limits.hops(ratio, beta) | reversed_
-    found = {
+    cells = {
         "mu_limit": np.where(hidden, np.nan, published),
         "mu_forward": limits.of_floor(limits.forward_limit(ratio, beta, alpha_minus_theta, climb), *wall),
         "mu_backward": limits.of_floor(limits.backward_limit(ratio, beta, alpha_minus_theta, climb), *wall),
     }
     held = limits.effective(bowl.friction.static, *wall)
     regimes = limits.regimes(ratio, beta, held, alpha_minus_theta, climb)
-    return {name: np.round(array, NOISE) + 0.0 for name, array in found.items()} | {"regime": regimes}
+    return {name: np.round(array, RATIO_DECIMALS) + 0.0 for name, array in cells.items()} | {
+        "regime": regimes
+    }
 
 
 def _onsets(bowl: Bowl, beta: float) -> dict[str, float]:
@@ -219,11 +221,11 @@ def _headings(direction: float) -> GridAxis:
 def _ratios(beta: float, ratio: float) -> GridAxis:
     """Return G from 0 past the hop and past the bowl's own, in round steps that grow with the range."""
     hop = float(limits.hop_ratio(beta)) if beta > 0.0 else 0.0
-    hop = hop if hop < FARTHEST else 0.0
-    top = _rounded_up(max(PLAIN_TOP, MARGIN * hop, MARGIN * ratio))
+    hop = hop if hop < MAX_RATIO else 0.0
+    top = _rounded_up(max(PLAIN_TOP, RATIO_MARGIN * hop, RATIO_MARGIN * ratio))
     step = max(FINE_STEP, _rounded_up(top / MOST_STEPS))
     return GridAxis(
-        "acceleration_ratio", check.frozen(np.round(np.arange(round(top / step) + 1) * step, NOISE))
+        "acceleration_ratio", check.frozen(np.round(np.arange(round(top / step) + 1) * step, RATIO_DECIMALS))
     )
 
 
@@ -235,4 +237,4 @@ def _resampled(axis: GridAxis, count: int) -> GridAxis:
 def _rounded_up(number: float) -> float:
     """Return the next round number: 3.65 gives 4, 0.125 gives 0.2."""
     decade = 10.0 ** np.floor(np.log10(number))
-    return float(next(step for step in STEPS if step * decade >= number * (1.0 - 1e-12)) * decade)
+    return float(next(step for step in ROUND_STEPS if step * decade >= number * (1.0 - 1e-12)) * decade)

@@ -36,7 +36,7 @@ STEEPEST_RAD = np.radians(
 )  # up to which it is sought: parts slide back from there on with most frictions
 
 
-def asked(
+def solid_options(
     settings: Sequence[Setting],
     *,
     solid: bool,
@@ -76,7 +76,7 @@ def asked(
     rules = bowls.record(settings).sizing
     if step:
         exact_body.check()
-    given = {s.key.name for s in settings if s.is_own}
+    user_keys = {s.key.name for s in settings if s.is_own}
     return SolidOptions(
         chord=chord,
         material=material,
@@ -86,7 +86,7 @@ def asked(
         left=rules.hand == "left",
         bolts=int(rules.bolts),
         bolt=rules.bolt_hole,
-        bolt_circle=rules.bolt_circle if "machine.bolt_circle" in given else 0.0,
+        bolt_circle=rules.bolt_circle if "machine.bolt_circle" in user_keys else 0.0,
         bolt_share=rules.bolt_share,
         drains=int(rules.drains),
         drain=rules.drain_hole,
@@ -123,32 +123,32 @@ def drawable_climb(bowl: Bowl, part: Part, coming: stream.Orientations) -> float
         outlet_height=rules.outlet_height,
         friction=bowl.friction.static,
     )
-    made = in_material(bowl, wanted)
+    thick = in_material(bowl, wanted)
     try:
-        _planned(made, size, part, coming, wanted)
+        _planned(thick, size, part, coming, wanted)
     except TrackTooLow:
-        return _least_climb(made, size, part, coming, wanted) or track.climb
+        return _least_climb(thick, size, part, coming, wanted) or track.climb
     except FeederError:  # another fault, which no climb mends
         return track.climb
     return track.climb
 
 
-def in_material(bowl: Bowl, asked: SolidOptions | None) -> Bowl:
+def in_material(bowl: Bowl, options: SolidOptions | None) -> Bowl:
     """Return the bowl with the thickness and density of what its solid is made of.
 
     Parameters
     ----------
     bowl : Bowl
-    asked : Asked or None
+    options : Asked or None
         Without one the bowl stays as it is.
 
     Returns
     -------
     Bowl
     """
-    if asked is None:
+    if options is None:
         return bowl
-    made_of = material(asked.material, bowl.sizing)
+    made_of = material(options.material, bowl.sizing)
     rules = replace(bowl.sizing, sheet=made_of.plate, sheet_density=made_of.density)
     return replace(bowl, sizing=rules)
 
@@ -158,7 +158,7 @@ def solid(
     size: Size,
     part: Part,
     coming: stream.Orientations,
-    asked: SolidOptions | None,
+    options: SolidOptions | None,
     counted: Mapping[str, Any],
 ) -> tuple[Size, BowlSolid | None]:
     """Return the size of a bowl and its solid.
@@ -171,7 +171,7 @@ def solid(
     part : Part
     coming : rates.stream.Orientations
         Of the part along that track and its devices.
-    asked : Asked or None
+    options : Asked or None
     counted : dict
         ``rule`` whose probabilities are taken and ``target``, aspect and heading that are wanted, or None.
 
@@ -189,46 +189,46 @@ def solid(
     FeederError
         If the track does not fit the bowl, or what falls through a cut does not reach the floor.
     """
-    if asked is None:
+    if options is None:
         return size, None
-    asked = replace(asked, friction=bowl.friction.static)
+    options = replace(options, friction=bowl.friction.static)
     try:
-        planned = _planned(bowl, size, part, coming, asked)
+        planned = _planned(bowl, size, part, coming, options)
     except TrackTooLow as fault:
-        climb = _least_climb(bowl, size, part, coming, asked)
+        climb = _least_climb(bowl, size, part, coming, options)
         raise (fault if climb is None else fault.needing(climb)) from None
-    made = body(planned)
-    wanted = 0.0 if asked.outlet_height > 0.0 else size.turns
-    made = replace(made, falls=ways_down(made), turns_of_sheet=float(wanted))
-    if asked.bed is not None:
-        made = replace(made, segments=segments.segments(made, asked.bed, asked.joint))
-        made = screwed(made, segments.WEIGHT)
-    if asked.step:
-        made = replace(made, step=exact_file.step_file(made))
-    own = {"depth": made.plan.outlet_height, "turns": made.plan.turns, "room": made.plan.room}
-    size = replace(size, **own, mass=made.mass, inertia=made.inertia, unbalance=made.unbalance)
-    return size, replace(made, riders=_riders(made.plan, bowl.devices, coming, counted))
+    closed = body(planned)
+    wanted = 0.0 if options.outlet_height > 0.0 else size.turns
+    closed = replace(closed, falls=ways_down(closed), turns_of_sheet=float(wanted))
+    if options.bed is not None:
+        closed = replace(closed, segments=segments.segments(closed, options.bed, options.joint))
+        closed = screwed(closed, segments.WEIGHT)
+    if options.step:
+        closed = replace(closed, step=exact_file.step_file(closed))
+    own = {"depth": closed.plan.outlet_height, "turns": closed.plan.turns, "room": closed.plan.room}
+    size = replace(size, **own, mass=closed.mass, inertia=closed.inertia, unbalance=closed.unbalance)
+    return size, replace(closed, riders=_riders(closed.plan, bowl.devices, coming, counted))
 
 
 def _planned(
-    bowl: Bowl, size: Size, part: Part, coming: stream.Orientations, asked: SolidOptions
+    bowl: Bowl, size: Size, part: Part, coming: stream.Orientations, options: SolidOptions
 ) -> BowlPlan:
     """The measures of the solid, its tooled stretch on the track that devices bank."""
     track = cuts.banked_height(bowl.track, bowl.devices, coming.lying)
     tooled = cuts.stretch(track, bowl.devices, coming.lying) if _tooled(bowl.devices) else None
     extents = np.ptp(np.asarray(part.vertices), axis=0)
-    return plan(size, track, material(asked.material, bowl.sizing), tooled, asked, extents=extents)
+    return plan(size, track, material(options.material, bowl.sizing), tooled, options, extents=extents)
 
 
 def _least_climb(
-    bowl: Bowl, size: Size, part: Part, coming: stream.Orientations, asked: SolidOptions
+    bowl: Bowl, size: Size, part: Part, coming: stream.Orientations, options: SolidOptions
 ) -> float | None:
     """The least climb [rad], in whole steps, at which the solid has its measures; None up to STEEPEST_RAD."""
     first = int(np.floor(bowl.track.climb / CLIMB_STEP_RAD + 1e-9)) + 1
     for step in range(first, round(STEEPEST_RAD / CLIMB_STEP_RAD) + 1):
         climb = step * CLIMB_STEP_RAD
         try:
-            _planned(replace(bowl, track=replace(bowl.track, climb=climb)), size, part, coming, asked)
+            _planned(replace(bowl, track=replace(bowl.track, climb=climb)), size, part, coming, options)
         except FeederError:
             continue
         return climb
@@ -253,7 +253,7 @@ def of_sheet(sheet: Any, settings: Sequence[Setting], aspects: Aspects) -> BowlS
     """
     order, bowl = sheet.order, sheet.bowl
     coming = stream.follow_orientations(order.part, aspects, bowl.track, bowl.devices)
-    wanted = asked(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
+    wanted = solid_options(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
     counted = {"rule": order.rule, "target": order.wanted}
     return solid(bowl, order.size, order.part, coming, wanted, counted)[1]
 
@@ -266,9 +266,13 @@ def _riders(
     if counted["target"] is not None:
         often = often * (np.array(coming.aspects) == counted["target"][0])
     leaving = often * coming.through
-    one = coming.lying[int(np.argmax(leaving if leaving.any() else often))]
+    most_frequent = coming.lying[int(np.argmax(leaving if leaving.any() else often))]
     spans = [device.span for device in devices if device.hangs]
-    return tuple(riding.riders(plan, one, hang(one, spans[-1]) if spans and neck(one) else None))
+    return tuple(
+        riding.riders(
+            plan, most_frequent, hang(most_frequent, spans[-1]) if spans and neck(most_frequent) else None
+        )
+    )
 
 
 def _tooled(devices: Sequence[Device]) -> bool:

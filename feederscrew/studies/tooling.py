@@ -27,14 +27,14 @@ from feederscrew.tooling.devices.kinds import KINDS, leaning, names
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import tracks
 from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, DesignConstraints
-from feederscrew.tooling.isolating.design import MARGIN_M, PLAY_M, TOLERANCE_M, place
+from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M, PLAY_M, TOLERANCE_M, place
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Design, Goal
 from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations, travel_speed
 from feederscrew.units import quantity_text
 
 SEARCH_SECONDS = 600.0  # [s] the last resort: a search that it ends may differ from machine to machine
-OUTCOMES = ("lying", "hanging", "any")
+OUTCOME_NAMES = ("lying", "hanging", "any")
 
 
 def _usable(
@@ -48,8 +48,8 @@ def _usable(
     **wishes: Any,
 ) -> DesignConstraints:
     """What a design may use, checked."""
-    if outcome not in OUTCOMES:
-        raise ArgumentError("outcome", f"{outcome!r} is unknown", f"choose {', '.join(OUTCOMES)}")
+    if outcome not in OUTCOME_NAMES:
+        raise ArgumentError("outcome", f"{outcome!r} is unknown", f"choose {', '.join(OUTCOME_NAMES)}")
     kinds = may_be_left_out(without)
     usable = DesignConstraints(outcome=outcome, without=kinds, up=may_be_up(part, aspects, up), **wishes)
     return replace(usable, separation=_separation(bowl, usable))
@@ -70,20 +70,20 @@ def may_be_left_out(without: str | Sequence[str]) -> tuple[str, ...]:
     return kinds
 
 
-def may_be_up(part: Part, found: Aspects, up: str | Sequence[str]) -> tuple[str, ...]:
+def may_be_up(part: Part, aspects: Aspects, up: str | Sequence[str]) -> tuple[str, ...]:
     """Return the names of aspects that may be up as well, checked."""
-    known = {name.casefold() for name in found.names}
+    known_names = {name.casefold() for name in aspects.names}
     for name in listed(up):
-        if name.casefold() not in known:
-            mend = f"choose one of {', '.join(found.names)}"
+        if name.casefold() not in known_names:
+            mend = f"choose one of {', '.join(aspects.names)}"
             raise ArgumentError("up", f"{part.name} has no aspect {quantity_text(name)}", mend)
     return listed(up)
 
 
-def _separation(bowl: Bowl, wishes: DesignConstraints) -> Device | None:
+def _separation(bowl: Bowl, constraints: DesignConstraints) -> Device | None:
     """The stretch that makes gaps in this bowl; None where it may not be used or makes none."""
     for kind in leaning():
-        steeper = kind.parting(DESIGN_KEY) if wishes.allows(kind.kind) else None
+        steeper = kind.parting(DESIGN_KEY) if constraints.allows(kind.kind) else None
         if steeper is not None and travel_speed(steeper.onward(bowl)) > travel_speed(bowl):
             return steeper
     return None
@@ -109,23 +109,23 @@ class ToolingStudy(ReadableRecord):
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
     play: float = PLAY_M  # [m] of the part from the wall, within the margin
     tolerance: float = TOLERANCE_M  # [m] of its size, within the margin
-    trials: tuple[Any, ...] = ()  # designing.own_trial.TriedDesign of what was tried, that of `design` first
+    trials: tuple[Any, ...] = ()  # of TriedDesign: what was tried, that of `design` first
 
     def trial_of(self, place: int) -> Any:
         """Return what the trial of an orientation's design said: its TriedDesign; None without one."""
-        return next((one for one in self.trials if one.wanted == place), None)
+        return next((trial for trial in self.trials if trial.wanted == place), None)
 
     def isolates(self, place: int) -> bool:
         """Return whether an orientation is isolated: what leaves is pure, by the rule and by its trial.
 
         Where no trial was made, what no verdict is sure to return counts as leaving.
         """
-        found, tried = self.designs[place], self.trial_of(place)
-        if found is None or not found.isolated:
+        design, tried = self.designs[place], self.trial_of(place)
+        if design is None or not design.isolated:
             return False
         if tried is not None:
             return not tried.faults
-        return not found.purity < found.least_purity  # also where nothing that comes leaves
+        return not design.purity < design.least_purity  # also where nothing that comes leaves
 
     @property
     def design(self) -> Design | None:
@@ -134,10 +134,10 @@ class ToolingStudy(ReadableRecord):
 
     def on_its_width(self, place: int) -> "ToolingStudy":
         """Return the study on the track that the design of an orientation asks for."""
-        found = self.designs[place]
-        if found is None or found.width is None:
+        design = self.designs[place]
+        if design is None or design.width is None:
             return self
-        bowl = replace(self.bowl, track=replace(self.bowl.track, width=found.width))
+        bowl = replace(self.bowl, track=replace(self.bowl.track, width=design.width))
         return replace(self, bowl=bowl, orientations=_coming(self.part, self.aspects, bowl))
 
     @property
@@ -148,7 +148,7 @@ class ToolingStudy(ReadableRecord):
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
-        late = any(one is not None and one.late for one in self.designs)
+        late = any(design is not None and design.late for design in self.designs)
         lines = (*self.aspects.warnings, *self.of_size, *remark(self.orientations))
         return (*lines, *([LATE] if late else []))
 
@@ -168,7 +168,7 @@ def tooling(
     *,
     heading: Quantity | None = None,
     rule: str = RECOMMENDED_RULE,
-    margin: Quantity = MARGIN_M,
+    margin: Quantity = DESIGN_MARGIN_M,
     purity: float = Goal.purity,
     efficiency: float = Goal.efficiency,
     outcome: str = DesignConstraints.outcome,
@@ -184,7 +184,7 @@ def tooling(
     seed: int = HoleSearch.seed,
     verdicts: int = HoleSearch.verdicts,
     seconds: Quantity = SEARCH_SECONDS,
-    known: Shares | Aspects | None = None,
+    aspect_shares: Shares | Aspects | None = None,
     progress: Callable[[int, int], None] | None = None,
     overrides: Overrides = (),
     **settings: Unpack[BowlSettings],
@@ -232,7 +232,7 @@ def tooling(
         The most in the search for the holes of one orientation.
     seconds : str or float [s]
         After which the search ends.
-    known : Shares or Aspects, optional
+    aspect_shares : Shares or Aspects, optional
         Of ``shares``.
     progress : callable, optional
         Called with how many orientations are done, and of how many.
@@ -258,17 +258,21 @@ def tooling(
     goal = Goal(arguments.share("purity", purity), arguments.share("efficiency", efficiency))
     check.of_an_aspect(aspect, angle)
     refuse_many_facets(part)
-    if known is None:
-        found = arriving(part, bowl, rule)
+    if aspect_shares is None:
+        aspects = arriving(part, bowl, rule)
     else:
-        found = known if isinstance(known, Aspects) else cast(Shares, the_shares(known)).aspects
-    every = _coming(part, found, bowl)
-    if rule not in found.chances:
-        raise ArgumentError(
-            f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
+        aspects = (
+            aspect_shares
+            if isinstance(aspect_shares, Aspects)
+            else cast(Shares, the_shares(aspect_shares)).aspects
         )
-    shares = np.nan_to_num([one.chances[rule] for one in every])
-    wanted = None if aspect is None else place(every, aspect, angle, part.source)
+    coming = _coming(part, aspects, bowl)
+    if rule not in aspects.chances:
+        raise ArgumentError(
+            f"rule {rule}", "has no probabilities of this part", hint(rule, list(aspects.chances))
+        )
+    shares = np.nan_to_num([orientation.chances[rule] for orientation in coming])
+    wanted = None if aspect is None else place(coming, aspect, angle, part.source)
     search = HoleSearch(
         seed=arguments.whole("seed", seed, 0),
         verdicts=arguments.whole("verdicts", verdicts),
@@ -276,30 +280,30 @@ def tooling(
     )
     clear += play + tolerance
     may_use = _usable(
-        part, bowl, found,
+        part, bowl, aspects,
         outcome=outcome, without=without, up=up, vary=bool(vary), turn=turn, air=air,
         step=arguments.amount("step", step, "length", SHOP_ROUNDING_M),
         cutter=arguments.amount("cutter", cutter, "length", 0.0),
     )  # fmt: skip
-    asked_of_each = {"goal": goal, "before": bowl.devices, "constraints": may_use}
-    asked_of_each |= {"margin": clear, "search": search}
-    asked = range(len(every)) if wanted is None else [wanted]
-    designs: list[Design | None] = [None] * len(every)
+    request = {"goal": goal, "before": bowl.devices, "constraints": may_use}
+    request |= {"margin": clear, "search": search}
+    places = range(len(coming)) if wanted is None else [wanted]
+    designs: list[Design | None] = [None] * len(coming)
     if progress is not None:
-        progress(0, len(asked))
-    cache: dict[float, _Track] = {bowl.track.width: _Track(bowl, every, shares, {})}
-    for done, k in enumerate(asked):
-        designs[k] = best = _best(part, found, rule, k, cache, asked_of_each)
+        progress(0, len(places))
+    cache: dict[float, _Track] = {bowl.track.width: _Track(bowl, coming, shares, {})}
+    for done, k in enumerate(places):
+        designs[k] = best = _best(part, aspects, rule, k, cache, request)
         check_written(best.devices, "tooling.yaml")
         if progress is not None:
-            progress(done + 1, len(asked))
+            progress(done + 1, len(places))
     study = ToolingStudy(
         part=part,
         bowl=bowl,
-        aspects=found,
+        aspects=aspects,
         rule=rule,
         margin=clear,
-        orientations=every,
+        orientations=coming,
         shares=shares,
         designs=tuple(designs),
         wanted=wanted,
@@ -321,34 +325,36 @@ class _Track:
 
 
 @functools.lru_cache(maxsize=32)
-def _coming(part: Part, found: Aspects, bowl: Bowl) -> tuple[Orientation, ...]:
+def _coming(part: Part, aspects: Aspects, bowl: Bowl) -> tuple[Orientation, ...]:
     """Every orientation of a part as it comes in a bowl."""
-    every, _ = marked(name_mirror_images(orientations(part, found, bowl.track)), bowl)
-    return at_entry(every, bowl.devices)
+    coming, _ = marked(name_mirror_images(orientations(part, aspects, bowl.track)), bowl)
+    return at_entry(coming, bowl.devices)
 
 
 def _best(
-    part: Part, found: Aspects, rule: str, wanted: int, cache: dict[float, _Track], asked: dict[str, Any]
+    part: Part, aspects: Aspects, rule: str, wanted: int, cache: dict[float, _Track], request: dict[str, Any]
 ) -> Design:
     """The design of an orientation on the bowl's track, or on one of another width that gives more."""
     own = next(iter(cache.values()))
-    best = _designed(own, wanted, asked)
-    if best.isolated or not asked["constraints"].vary or asked["before"]:
+    best = _designed(own, wanted, request)
+    if best.isolated or not request["constraints"].vary or request["before"]:
         return best
-    for width in tracks.widths(own.orientations, own.shares, wanted, asked["margin"]):
+    for width in tracks.widths(own.orientations, own.shares, wanted, request["margin"]):
         if width not in cache:
             bowl = replace(own.bowl, track=replace(own.bowl.track, width=width))
-            cache[width] = _Track(bowl, _coming(part, found, bowl), own.shares, {})
-        alike = [one.name for one in cache[width].orientations] == [one.name for one in own.orientations]
-        other = _designed(cache[width], wanted, asked) if alike else None
+            cache[width] = _Track(bowl, _coming(part, aspects, bowl), own.shares, {})
+        has_same_orientations = [orientation.name for orientation in cache[width].orientations] == [
+            orientation.name for orientation in own.orientations
+        ]
+        other = _designed(cache[width], wanted, request) if has_same_orientations else None
         if other is not None and tracks.gains(other, best):
-            best = replace(other, width=width, reasons=(*other.reasons, WIDER.format(1e3 * width)))
+            best = replace(other, width=width, remarks=(*other.remarks, WIDER.format(1e3 * width)))
     return best
 
 
-def _designed(there: _Track, wanted: int, asked: dict[str, Any]) -> Design:
-    given = there.orientations, there.shares, wanted, there.bowl
-    return tracks.design_with_track(*given, steady=steady, cache=there.cache, **asked)
+def _designed(there: _Track, wanted: int, request: dict[str, Any]) -> Design:
+    problem = there.orientations, there.shares, wanted, there.bowl
+    return tracks.design_with_track(*problem, steady=steady, cache=there.cache, **request)
 
 
 def tooling_without(
@@ -358,7 +364,7 @@ def tooling_without(
     aspect: str | None,
     *,
     without: str | Sequence[str] = (),
-    **asked: Any,
+    **request: Any,
 ) -> ToolingStudy:
     """Return the study of an orientation with fewer kinds of devices, at once: no holes are searched.
 
@@ -369,4 +375,4 @@ def tooling_without(
     part, bowl, aspect, asked
         As for ``tooling``.
     """
-    return tooling(part, bowl, aspect, without=(*listed(without), *kinds, *names(searched=True)), **asked)
+    return tooling(part, bowl, aspect, without=(*listed(without), *kinds, *names(searched=True)), **request)

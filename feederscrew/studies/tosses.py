@@ -12,10 +12,10 @@ from feederscrew.dropping.toss_runs import FACE_NAMES, LaunchFile
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.exact_tumbling import ground
+from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.studies.drop import check_run
 
-SURE = 0.95  # [1] from here on an answer is called sure
+SURE_SHARE = 0.95  # [1] from here on an answer is called sure
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,13 +23,13 @@ class Agreement(ReadableRecord):
     """What was computed of measured tosses, beside what happened."""
 
     tosses: int  # with an answer
-    told: float  # [1] share of them whose upper side was right
+    right_share: float  # [1] share of them whose upper side was right
     low: float  # [1] ends of its 95 % interval
     high: float
     at_release: float  # [1] share that the side nearest to the top at the launch tells
     expected: float  # [1] mean of ``p``: the share that was to be expected
     sure: int  # answers with a ``p`` of at least SURE
-    sure_told: float | None  # [1] share of those that were right; None without any
+    sure_right_share: float | None  # [1] share of those that were right; None without any
     median_off: float | None  # [m] from the place computed to the one measured; None where none was measured
 
 
@@ -47,9 +47,9 @@ class TossStudy(ReadableRecord):
     @property
     def p(self) -> np.ndarray:
         """Share (N,) of the settled runs that end as computed; NaN without any."""
-        found = self.result
-        best = np.take_along_axis(found.shares, np.maximum(found.faces, 0)[:, None], axis=1)[:, 0]
-        return np.where(found.faces >= 0, best, np.nan)
+        result = self.result
+        best = np.take_along_axis(result.shares, np.maximum(result.faces, 0)[:, None], axis=1)[:, 0]
+        return np.where(result.faces >= 0, best, np.nan)
 
     @property
     def intervals(self) -> tuple[np.ndarray, ...]:
@@ -69,21 +69,21 @@ class TossStudy(ReadableRecord):
         """What was computed beside what was measured; None where the file holds no upper sides."""
         if self.launches.faces is None:
             return None
-        found, p = self.result, self.p
+        result, p = self.result, self.p
         measured = np.array([FACE_NAMES.index(face) for face in self.launches.faces[: len(p)]])
-        right, known = found.faces == measured, found.faces >= 0
+        right, settled = result.faces == measured, result.faces >= 0
         low, high = wilson(right.sum(), len(right))
-        sure = known & (np.nan_to_num(p) >= SURE)
+        sure = settled & (np.nan_to_num(p) >= SURE_SHARE)
         return Agreement(
-            tosses=int(known.sum()),
-            told=float(right.mean()),
+            tosses=int(settled.sum()),
+            right_share=float(right.mean()),
             low=float(low),
             high=float(high),
-            at_release=float((found.released == measured).mean()),
+            at_release=float((result.released == measured).mean()),
             expected=float(np.nan_to_num(p).mean()),
             sure=int(sure.sum()),
-            sure_told=float(right[sure].mean()) if sure.any() else None,
-            median_off=None if self.off is None or not known.any() else float(np.nanmedian(self.off)),
+            sure_right_share=float(right[sure].mean()) if sure.any() else None,
+            median_off=None if self.off is None or not settled.any() else float(np.nanmedian(self.off)),
         )
 
 
@@ -131,15 +131,15 @@ def follow(
     check_run(runs, seed, jobs)
     read = toss_runs.read_launches(launches)
     aspects = find(part)
-    found = ground(part, aspects)
-    _, length = shape_of_part(part, found)
-    given = {key: (own or {}).get(key) for key in ("restitution", "friction")}
-    launch = launch_conditions.launch_of("feed", length, given)
+    grounded = require_ground(part, aspects)
+    _, length = shape_of_part(part, grounded)
+    ranges = {key: (own or {}).get(key) for key in ("restitution", "friction")}
+    launch = launch_conditions.launch_of("feed", length, ranges)
     surface = toss_runs.SurfaceRanges(launch.restitution, launch.friction)
     if before:
         before()
     result = toss_runs.follow(
-        part, found, read, surface, np.random.default_rng(seed),
+        part, grounded, read, surface, np.random.default_rng(seed),
         runs=runs or toss_runs.DEFAULT_RUNS, jobs=jobs, progress=progress,
     )  # fmt: skip
     return TossStudy(part, aspects, read, surface, seed, result)

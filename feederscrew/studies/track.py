@@ -46,7 +46,9 @@ class TrackStudy(ReadableRecord):
     opening: Opening
     bank_without_radial_friction: float  # [rad]
     held_across: bool  # at rest, by friction that the reactions of ``now`` do not show
-    laid: float | None  # [rad] heading as laid down; None for the most frequent that stays on the track
+    laid_heading: (
+        float | None
+    )  # [rad] heading as laid down; None for the most frequent that stays on the track
     why: str | None = None  # this aspect; None where it was asked for
     stands: tipping.Stands | None = None  # what the rate reckons with; None of a part card
     printed: ClassVar[Any] = None  # the upper reversal by print, in `thesis.motion`
@@ -70,7 +72,7 @@ class TrackStudy(ReadableRecord):
 
         def function(x: np.ndarray, y: np.ndarray) -> dict[str, np.ndarray]:
             bowl = limits.plain(bowls.swept(settings, {first.key.name: x, second.key.name: y}))
-            return motion_maps.track_cells(self.posture, bowl, self.laid)
+            return motion_maps.track_cells(self.posture, bowl, self.laid_heading)
 
         return grids.evaluate(grids.axis(first), grids.axis(second), function, motion_maps.TRACK_REGIMES)
 
@@ -113,7 +115,7 @@ def track(
     angle = arguments.angle("heading", heading)
     limits.plain(bowl)
     posture, why = standing(part, aspect, "track", partial(likeliest, bowl=bowl))
-    seat, found, row = motion_maps.seated(posture, bowl, angle)
+    seat, headings, row = motion_maps.seated(posture, bowl, angle)
     now, held_across = _from_rest(seat, bowl)
     cycle, course = track_balance.over_cycle(seat, bowl)
     return TrackStudy(
@@ -121,7 +123,7 @@ def track(
         posture=posture,
         bowl=bowl,
         seat=seat,
-        headings=found,
+        headings=headings,
         row=row,
         now=now,
         cycle=cycle,
@@ -129,17 +131,17 @@ def track(
         opening=first_to_open(seat, bowl),
         bank_without_radial_friction=bank_without_radial_friction(seat),
         held_across=held_across,
-        laid=angle,
+        laid_heading=angle,
         why=why,
-        stands=None if found is None else _stands(posture, found, row, bowl, cycle),
+        stands=None if headings is None else _stands(posture, headings, row, bowl, cycle),
     )
 
 
 def _stands(
-    posture: Posture, found: Headings, row: int, bowl: Bowl, cycle: track_balance.TrackMotion
+    posture: Posture, headings: Headings, row: int, bowl: Bowl, cycle: track_balance.TrackMotion
 ) -> tipping.Stands:
-    one = orientations.orientation_at(posture, found, row, {}, bowl.track)
-    return tipping.stands(one, bowl, bool((cycle.state == HOP).any()))
+    orientation = orientations.orientation_at(posture, headings, row, {}, bowl.track)
+    return tipping.stands(orientation, bowl, bool((cycle.state == HOP).any()))
 
 
 def _from_rest(seat: Seat, bowl: Bowl) -> tuple[track_balance.TrackMotion, bool]:

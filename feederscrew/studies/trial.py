@@ -30,10 +30,10 @@ from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.trial import course, outlet
 from feederscrew.trial import landing as landings
 from feederscrew.trial.outlet import Outlet
-from feederscrew.trial.queue import GAPS, QueuePlan, queue_of
+from feederscrew.trial.queue import MEAN_GAP_SHARE, QueuePlan, queue_of
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.shape import solid_of
-from feederscrew.trial.starts import PLAY
+from feederscrew.trial.starts import MAX_START_PLAY_M
 
 ENGINE = "feeder's own kernel"
 QUEUE_SECONDS = 10.0  # [s] for which a queue is followed
@@ -55,21 +55,21 @@ class TrialStudy(ReadableRecord):
     @property
     def answer(self) -> str:
         """Say whose shares parts arrive in: 'hops, launch feed', 'csa'."""
-        known = self.aspects.recommended
-        return known.rule if self.rule == RECOMMENDED_RULE and known is not None else self.rule
+        recommended = self.aspects.recommended
+        return recommended.rule if self.rule == RECOMMENDED_RULE and recommended is not None else self.rule
 
     @property
     def launch(self) -> str | None:
         """What is done to the parts: 'feed', 'drop'; None where a rule knows no launch."""
-        known = self.aspects.recommended
-        return known.launch if self.rule == RECOMMENDED_RULE and known is not None else None
+        recommended = self.aspects.recommended
+        return recommended.launch if self.rule == RECOMMENDED_RULE and recommended is not None else None
 
     def outlet(self, run: TrialRun) -> Outlet | None:
         """Return what left one run's queue by aspect, an Outlet; None without a queue."""
         if run.queue is None:
             return None
         columns = () if self.measured is None else self.measured.profiles
-        return outlet.outlet(run.queue, run.known.lying, run.shares, self.aspects.names, columns)
+        return outlet.outlet(run.queue, run.orientations.lying, run.shares, self.aspects.names, columns)
 
     @property
     def partial(self) -> bool:
@@ -86,12 +86,14 @@ class TrialStudy(ReadableRecord):
         """What a user must not overlook, a sentence each."""
         first = self.runs[0]
         listed = [*unknown_aspects(first.bowl.devices, self.aspects.names), *self.aspects.warnings]
-        listed += small_part_remarks(self.part, {"play at the wall": PLAY}, first.bowl.track.width)
+        listed += small_part_remarks(
+            self.part, {"play at the wall": MAX_START_PLAY_M}, first.bowl.track.width
+        )
         listed += () if self.measured is None else self.measured.warnings(self.part)
         several = len(self.runs) > 1
         for run in self.runs:
             lead = f"amplitude {1e3 * run.bowl.drive.amplitude:.4g} mm: " if several else ""
-            listed += [lead + one for one in run.remarks]
+            listed += [lead + remark for remark in run.remarks]
         if self.partial:
             parts = sum(len(run.course.entered) for run in self.runs)
             listed.append(f"partial: stopped after {parts} parts")
@@ -111,7 +113,7 @@ def trial(
     seconds: Quantity = QUEUE_SECONDS,
     frames: int = 0,
     rule: str = RECOMMENDED_RULE,
-    known: Shares | None = None,
+    aspect_shares: Shares | None = None,
     measured: profiles.Measured | None = None,
     seed: int = 1,
     jobs: int = 1,
@@ -142,7 +144,7 @@ def trial(
         For which the queue is followed.
     rule : str
         Whose probabilities say in which shares orientations come.
-    known : Shares, optional
+    aspect_shares : Shares, optional
         Of ``shares``.
     measured : Measured, optional
         What left a bowl, beside the profile of the queue: ``at_outlet`` reads it.
@@ -171,7 +173,7 @@ def trial(
     """
     part, aspect = arguments.a_part(part), arguments.an_aspect(aspect)
     driven = arguments.some_bowls(bowls, overrides, settings)
-    known = the_shares(known)
+    aspect_shares = the_shares(aspect_shares)
     parts, landing, queue = (
         arguments.count(name, value)
         for name, value in (("parts", parts), ("landing", landing), ("queue", queue))
@@ -179,75 +181,79 @@ def trial(
     followed = arguments.amount("seconds", seconds, "time", 0.0)
     seed, jobs = arguments.whole("seed", seed, 0), arguments.whole("jobs", jobs)
     solid_of(part)  # refuses a part without a surface before anything else
-    known = arriving(part, driven[0], rule=rule) if known is None else known
-    found = known.aspects
-    if rule not in found.chances:
+    aspect_shares = arriving(part, driven[0], rule=rule) if aspect_shares is None else aspect_shares
+    aspects = aspect_shares.aspects
+    if rule not in aspects.chances:
         raise ArgumentError(
-            f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
+            f"rule {rule}", "has no probabilities of this part", hint(rule, list(aspects.chances))
         )
     count = parts or (FEW if queue else PARTS)
-    launch = LAUNCH if found.recommended is None else found.recommended.launch
+    launch = LAUNCH if aspects.recommended is None else aspects.recommended.launch
     fall = None if landing is None else {"launch": launch, "parts": landing}
-    crowd = None if queue is None else QueuePlan(queue, followed, None if poured else GAPS, frames)
+    crowd = None if queue is None else QueuePlan(queue, followed, None if poured else MEAN_GAP_SHARE, frames)
     run = RunSettings(seed, jobs, progress)
-    made: list[TrialRun] = []
+    runs: list[TrialRun] = []
     stopped = False
     for bowl in driven:
         answer.answer(bowl)  # refuses a drive that cannot convey
-        ways = stream.follow_orientations(part, found, bowl.track, bowl.devices, bowl=bowl)
-        ways = arrivals.oriented(ways, known.measured)
-        tried = _tried(part, found, ways, aspect)
-        shares = _shares(ways, rule, tried)
-        here = replace(run, progress=_after(len(made), progress, len(driven)), before=before)
+        oriented = stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
+        oriented = arrivals.oriented(oriented, aspect_shares.measured)
+        tried = _tried(part, aspects, oriented, aspect)
+        shares = _shares(oriented, rule, tried)
+        here = replace(run, progress=_after(len(runs), progress, len(driven)), before=before)
         sent = course.Sending(tried, max(count, len(tried)))
         try:
-            seen = course.course(
-                part, bowl, ways.lying, sent, bowl.devices,
-                poses=ways.states, leaves=course.rightly(ways.leaving), run=here,
+            single_parts = course.course(
+                part, bowl, oriented.lying, sent, bowl.devices,
+                poses=oriented.states, leaves=course.rightly(oriented.leaving), run=here,
             )  # fmt: skip
             more: dict[str, Any] = {}
-            if not seen.partial:
-                more, stopped = _further(part, bowl, found, ways, shares, fall, crowd, run)
-            made.append(TrialRun(bowl, throw_number(bowl), ways, shares, seen, **more))
+            if not single_parts.partial:
+                more, stopped = _further(part, bowl, aspects, oriented, shares, fall, crowd, run)
+            runs.append(TrialRun(bowl, throw_number(bowl), oriented, shares, single_parts, **more))
         except KeyboardInterrupt:
-            if not made:
+            if not runs:
                 raise
             stopped = True
-        if stopped or made[-1].partial:
+        if stopped or runs[-1].partial:
             break
-    return TrialStudy(part, found, rule, seed, tuple(made), stopped, measured)
+    return TrialStudy(part, aspects, rule, seed, tuple(runs), stopped, measured)
 
 
 def _further(
     part: Part,
     bowl: Bowl,
-    found: Aspects,
-    ways: stream.Orientations,
+    aspects: Aspects,
+    oriented: stream.Orientations,
     shares: np.ndarray,
     fall: Mapping[str, Any] | None,
     crowd: QueuePlan | None,
     run: RunSettings,
 ) -> tuple[dict[str, Any], bool]:
     """Parts that fall onto the track and a queue, as far as asked for; and whether the user stopped them."""
-    made: dict[str, Any] = {}
+    results: dict[str, Any] = {}
     try:
         if fall:
-            made["landing"] = landings.landing(part, bowl, found, ways.lying, ways.states, **fall, run=run)
-        if crowd and not any(one.partial for one in made.values()):
-            made["queue"] = queue_of(part, bowl, found, ways.lying, ways.states, shares, crowd, run)
+            results["landing"] = landings.landing(
+                part, bowl, aspects, oriented.lying, oriented.states, **fall, run=run
+            )
+        if crowd and not any(result.partial for result in results.values()):
+            results["queue"] = queue_of(
+                part, bowl, aspects, oriented.lying, oriented.states, shares, crowd, run
+            )
     except KeyboardInterrupt:
-        return made, True
-    return made, False
+        return results, True
+    return results, False
 
 
-def at_outlet(counts: str | PathLike[str], known: Shares) -> profiles.Measured:
+def at_outlet(counts: str | PathLike[str], aspect_shares: Shares) -> profiles.Measured:
     """Read what was measured of parts that left a bowl.
 
     Parameters
     ----------
     counts : str or Path
         File of counts or shares, by aspect or by orientation.
-    known : Shares
+    aspect_shares : Shares
         Of the part.
 
     Returns
@@ -259,7 +265,7 @@ def at_outlet(counts: str | PathLike[str], known: Shares) -> profiles.Measured:
     FeederError
         Every fault of the file, each with its line.
     """
-    return profiles.read_profile(counts, list(known.aspects.names))
+    return profiles.read_profile(counts, list(aspect_shares.aspects.names))
 
 
 def _after(
@@ -269,17 +275,17 @@ def _after(
     return progress and (lambda done, total: progress(before * total + done, bowls * total))
 
 
-def _tried(part: Part, found: Aspects, known: stream.Orientations, aspect: str | None) -> list[int]:
+def _tried(part: Part, aspects: Aspects, oriented: stream.Orientations, aspect: str | None) -> list[int]:
     """Rows of the orientations that are laid down."""
     if aspect is None:
-        return list(range(len(known.lying)))
-    return rows(known.aspects, aspect, f"aspect of {part.source}", ArgumentError)
+        return list(range(len(oriented.lying)))
+    return rows(oriented.aspects, aspect, f"aspect of {part.source}", ArgumentError)
 
 
-def _shares(known: stream.Orientations, rule: str, tried: list[int]) -> np.ndarray:
+def _shares(oriented: stream.Orientations, rule: str, tried: list[int]) -> np.ndarray:
     """(M,) shares of the orientations tried; evenly where the rule gives none of them a chance."""
-    chances = np.zeros(len(known.lying))
-    chances[tried] = np.nan_to_num(known.rules[rule])[tried]
+    chances = np.zeros(len(oriented.lying))
+    chances[tried] = np.nan_to_num(oriented.rules[rule])[tried]
     if not chances.sum() > 0.0:
         chances[tried] = 1.0
     return chances / chances.sum()

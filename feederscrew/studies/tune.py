@@ -17,11 +17,11 @@ from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Path, Quantity, with_settings
-from feederscrew.studies.rate import LEAST, RECOMMENDED, Shares, shares, the_shares
+from feederscrew.studies.rate import MIN_POSITIVE, RECOMMENDED, Shares, shares, the_shares
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
 
-FEW = 200  # parts that lead to a setting; as many as `rate` feeds decide on it
+ROUGH_PARTS = 200  # parts that lead to a setting; as many as `rate` feeds decide on it
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +70,7 @@ def tune(
     probabilities: Path | None = None,
     fed: int | None = None,
     seed: int = 1,
-    known: Shares | None = None,
+    aspect_shares: Shares | None = None,
     arriving: Callable[[Bowl], Shares] | None = None,
     rough: Callable[[Bowl], Shares] | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -111,39 +111,39 @@ def tune(
         If the part never leaves in that orientation, or no setting gives the rate.
     """
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
-    wanted_rate = arguments.amount("target", target, "rate", LEAST)
+    wanted_rate = arguments.amount("target", target, "rate", MIN_POSITIVE)
     angle, space = arguments.angle("heading", heading), arguments.amount("gap", gap, "length", 0.0)
-    check.argument("fill", fill, LEAST, 1.0)
-    if (shared := the_shares(known)) is not None:
+    check.argument("fill", fill, MIN_POSITIVE, 1.0)
+    if (shared := the_shares(aspect_shares)) is not None:
         arriving, rough = (lambda driven: shared), None
     if arriving is None:
         own: dict[str, Any] = {"rule": rule, "launch": launch, "probabilities": probabilities, "seed": seed}
         arriving = partial(shares, part, fed=fed, **own)
         is_fed = rule == RECOMMENDED and launch is None and probabilities is None and fed is None
-        rough = partial(shares, part, fed=FEW, **own) if is_fed else None
+        rough = partial(shares, part, fed=ROUGH_PARTS, **own) if is_fed else None
     chain = bowl.devices if devices is None else tuple(devices)
-    ways = _DriveWays(part, bowl, chain, arriving)
+    drive_ways = _DriveWays(part, bowl, chain, arriving)
     lead = None if rough is None else _DriveWays(part, bowl, chain, rough)
-    found = ways.shares(bowl).aspects
-    wanted = well_oriented.wanted(part, found, bowl.track, aspect, angle)
+    aspects = drive_ways.shares(bowl).aspects
+    wanted = well_oriented.wanted(part, aspects, bowl.track, aspect, angle)
     # raises where none ever leaves so
-    well_oriented.parts_per_metre(ways.along(None), wanted, rule, gap=space, fill=fill)
-    well_oriented.holds(ways.along(bowl), wanted)
+    well_oriented.parts_per_metre(drive_ways.along(None), wanted, rule, gap=space, fill=fill)
+    well_oriented.holds(drive_ways.along(bowl), wanted)
 
-    def density(ways: _DriveWays, driven: Bowl | None) -> float:
-        return well_oriented.leaving_per_metre(ways.along(driven), wanted, rule, gap=space, fill=fill)
+    def density(drive_ways: _DriveWays, driven: Bowl | None) -> float:
+        return well_oriented.leaving_per_metre(drive_ways.along(driven), wanted, rule, gap=space, fill=fill)
 
     led = None if lead is None else partial(density, lead)
-    to_turn = bowl, wanted_rate, partial(density, ways)
-    made = knobs.solutions(*to_turn, rough=led, worst=worst, progress=progress)
+    to_turn = bowl, wanted_rate, partial(density, drive_ways)
+    solutions = knobs.solutions(*to_turn, rough=led, worst=worst, progress=progress)
     return TuneStudy(
         part=part,
         bowl=bowl,
-        aspects=found,
+        aspects=aspects,
         devices=chain,
         target=wanted_rate,
         worst=worst,
-        settings=tuple(_tuned(one, bowl, ways) for one in made),
+        settings=tuple(_tuned(solution, bowl, drive_ways) for solution in solutions),
     )
 
 
@@ -158,18 +158,24 @@ class _DriveWays:
 
     def _along(self, driven: Bowl | None) -> well_oriented.Orientations:
         """At a drive; None: at the bowl's own as if it turned nothing over."""
-        known = self.shares(driven or self.bowl)
-        every = orientations(self.part, known.aspects, self.bowl.track)
-        return arrivals.oriented(along(every, known.aspects, self.chain, bowl=driven), known.measured)
+        aspect_shares = self.shares(driven or self.bowl)
+        on_the_track = orientations(self.part, aspect_shares.aspects, self.bowl.track)
+        return arrivals.oriented(
+            along(on_the_track, aspect_shares.aspects, self.chain, bowl=driven), aspect_shares.measured
+        )
 
 
-def _tuned(solution: knobs.Solution, bowl: Bowl, ways: _DriveWays) -> Tuned:
+def _tuned(solution: knobs.Solution, bowl: Bowl, drive_ways: _DriveWays) -> Tuned:
     """Add to a solution what it gives if friction is a fifth lower or higher, and what it turns over."""
-    found, driven = solution.answer, knobs.turned(bowl, solution.key, solution.value)
+    answer_there, driven = solution.answer, knobs.turned(bowl, solution.key, solution.value)
     return Tuned(
         solution=solution,
         velocity=well_oriented.velocity(driven),
-        over=tuple(one.name for one in ways.along(driven).lying if one.turns_over),
-        several=bool(found.high - found.low > answer.COEXISTING_VELOCITY_GAP * found.speed),
+        over=tuple(
+            orientation.name for orientation in drive_ways.along(driven).lying if orientation.turns_over
+        ),
+        several=bool(
+            answer_there.high - answer_there.low > answer.COEXISTING_VELOCITY_GAP * answer_there.speed
+        ),
         driven=driven,
     )

@@ -131,7 +131,7 @@ def _curves(title: str, data: Curves) -> "Drawing":
     left, right = figure.subplots(1, 2)
     plots.tidy(left, title=title, x=slide.RATIO, y=slide.FRICTION)
     plots.tidy(right, title="The same, divided by G", x=slide.RATIO, y="limiting friction / G [1]")
-    shades = matplotlib.colormaps[slide.SHADES](np.linspace(0.05, 0.8, len(data.limits)))
+    shades = matplotlib.colormaps[slide.LEVEL_COLOURS](np.linspace(0.05, 0.8, len(data.limits)))
     for (beta, values), shade in zip(data.limits.items(), shades):
         left.plot(data.ratios, values, color=shade, linewidth=1.8, label=f"β = {beta:g}°")
         right.plot(data.ratios[1:], values[1:] / data.ratios[1:], color=shade, linewidth=1.8)
@@ -152,7 +152,7 @@ def _turning(beta: float) -> tuple[float, float]:
 def _limit_surface(title: str, data: FigureGrid) -> "Drawing":
     figure = plots.figure(6.4, 5.0)
     axes = figure.add_subplot(projection="3d", computed_zorder=False)
-    shades: dict[str, Any] = {"cmap": slide.SHADES, "vmin": 0.0, "vmax": slide.HIGHEST}
+    shades: dict[str, Any] = {"cmap": slide.LEVEL_COLOURS, "vmin": 0.0, "vmax": slide.HIGHEST}
     lines: dict[str, Any] = {"rcount": 34, "ccount": 46, "edgecolor": "white", "linewidth": 0.2}
     axes.plot_surface(np.degrees(data.x), data.y[:, None], data.values, **shades, **lines)
     _dress_3d(axes, title, (slide.ANGLE, slide.RATIO, slide.FRICTION))
@@ -166,7 +166,7 @@ def _contours(title: str, data: FigureGrid, beta: float) -> "Drawing":
     figure = plots.figure(6.6, 4.2)
     axes = plots.tidy(figure.add_subplot(), title=title, x=slide.ANGLE, y=slide.RATIO, grid="none")
     levels = [level for level in slide.LEVELS if level <= data.values.max()]
-    shades = matplotlib.colormaps[slide.SHADES](np.linspace(0.05, 0.75, len(levels)))
+    shades = matplotlib.colormaps[slide.LEVEL_COLOURS](np.linspace(0.05, 0.75, len(levels)))
     angles = np.linspace(-89.9, 89.9, 361)
     for level, shade in zip(levels, shades):
         ratios = published_ratio(level, beta, np.radians(angles))
@@ -190,7 +190,7 @@ def _acceleration(
         across,
         up,
         data.values,
-        cmap=slide.SHADES,
+        cmap=slide.LEVEL_COLOURS,
         rcount=46,
         ccount=46,
         edgecolor="white",
@@ -200,7 +200,7 @@ def _acceleration(
     flat = plots.tidy(
         figure.add_subplot(right), title="Where the part slides", x=x_label, y=y_label, grid="none"
     )
-    filled = flat.contourf(x, y, data.values, 14, cmap=slide.SHADES)
+    filled = flat.contourf(x, y, data.values, 14, cmap=slide.LEVEL_COLOURS)
     _hop_region(flat, x, y, data)
     _stick_region(flat, x, y, data)
     bar = figure.colorbar(filled, ax=flat, pad=0.02)

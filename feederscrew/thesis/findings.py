@@ -16,7 +16,7 @@ from feederscrew import bowl
 from feederscrew.mechanics import limits
 from feederscrew.resting.counts.deviation import deviation
 from feederscrew.thesis import figures, parts
-from feederscrew.thesis.motion import TrackAsPublished, track
+from feederscrew.thesis.motion import TrackAsPublished, floor, track
 from feederscrew.thesis.recompute import cells, rounded_shares
 from feederscrew.thesis.tables import TOTAL, chapter_4, table
 
@@ -394,6 +394,34 @@ def _wall_pulls() -> str:
     )
 
 
+@_evidence("normal-force-line")
+def _normal_force_line() -> str:
+    card, plain = parts.card("arc_chute"), bowl.read(None, SLIPS_ONE_WAY)
+    ahead = floor(card, plain, "5").now.offset[..., 0] / MILLI
+    return f"At the upper reversal N acts {float(ahead):.2f} mm ahead of the Arc Chute's centre of mass."
+
+
+@_evidence("seven-unknowns")
+def _seven_unknowns() -> str:
+    printed, complete = banked_arc_chute().printed, banked_arc_chute().now
+    radial, beside = (study.radial_friction / MILLI for study in (printed, complete))
+    return (
+        f"While the Arc Chute slides at 10 deg of bank the print has R3 = {radial:.2f} mN and no d_y;"
+        f" Coulomb's friction acts against the sliding, so R3 = {beside:.2f} mN and"
+        f" d_y = {complete.offset[..., 1] / MILLI:.3f} mm."
+    )
+
+
+@_evidence("one-instant")
+def _one_instant() -> str:
+    ratio, beta = 0.5, np.radians(20.0)
+    forward, backward = float(limits.published_limit(ratio, beta)), float(limits.backward_limit(ratio, beta))
+    return (
+        f"At G = {ratio:.1f} and beta 20 deg a part slips forward below {forward:.3f} and back below"
+        f" {backward:.3f}: between the two it slips one way only."
+    )
+
+
 @_evidence("dual-numbers")
 def _dual_numbers() -> str:
     a, b, c, d = 1.0, 2.0, 3.0, 4.0
@@ -422,9 +450,9 @@ def _equation_4_24() -> str:
     return "docs/equations.md has each printed equation with its function."
 
 
-def _gap(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+def _gap(profile: NDArray[np.float64], other: NDArray[np.float64]) -> float:
     """Total variation of two profiles [1]."""
-    return 0.5 * float(np.abs(one - other).sum())
+    return 0.5 * float(np.abs(profile - other).sum())
 
 
 @_evidence("conclusion-1")
@@ -465,10 +493,10 @@ def _conclusion_5() -> str:
 @_evidence("conclusion-8")
 def _conclusion_8() -> str:
     ratio, beta, turn = 0.5, np.radians(20.0), np.radians(60.0)
-    beside, free = (float(limits.published_limit(ratio, beta, angle)) for angle in (turn, 0.0))
+    at_wall, free = (float(limits.published_limit(ratio, beta, angle)) for angle in (turn, 0.0))
     return (
-        f"At G = {ratio:.1f}, beta 20 deg and alpha - theta 60 deg it says {beside:.3f}; the open floor needs"
-        f" {free:.3f}."
+        f"At G = {ratio:.1f}, beta 20 deg and alpha - theta 60 deg it says {at_wall:.3f}; the open floor"
+        f" needs {free:.3f}."
     )
 
 

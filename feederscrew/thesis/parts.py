@@ -15,7 +15,7 @@ from feederscrew.part import mass
 from feederscrew.part.record import CardAspect, Part
 from feederscrew.resting.aspects import find
 from feederscrew.thesis.tables import chapter_4, table
-from feederscrew.units import factor
+from feederscrew.units import MM, factor
 
 TABLES_OF = {  # of each part that is known by its tables only
     "arc_chute": {"csa": "3-2", "stability": "3-3", "experiment": "3-4", "pmi": "3-10", "deviation": "3-12"},
@@ -23,7 +23,6 @@ TABLES_OF = {  # of each part that is known by its tables only
 }
 G_MM2 = factor("g mm2", "inertia")
 MM2 = factor("mm2", "area")
-MM = factor("mm", "length")
 G = factor("g", "mass")
 
 T_WIDTH = 25.0e-3  # [m] over the head

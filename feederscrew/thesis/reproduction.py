@@ -38,7 +38,7 @@ BEARS_ON = {  # findings that no single cell carries
     "figure 3-7": ("figure-references",),
     "figure 3-8": ("drawings-lost", "csa-ratio"),
 }
-LOST = {  # drawings of which nothing survives but what other numbers give: no item has them
+LOST_DRAWINGS = {  # drawings of which nothing survives but what other numbers give: no item has them
     "3-1": "Axes of the T shape",
     "3-2": "Resting aspects of the T shape",
     "3-3": "Dimensions of the T shape",
@@ -161,11 +161,13 @@ def unexplained(items: Sequence[Item]) -> list[Item]:
 
 def overview(items: Sequence[Item]) -> Frame:
     """Return one row an item: its cells by verdict; then the lost drawings and the conclusions."""
-    others: dict[str, tuple[str, ...]] = {f"figure {number}": ("drawings-lost",) for number in LOST}
-    others |= {f"conclusion {number}": ids for number, ids in CONCLUSIONS.items()}
-    columns: dict[str, list] = {"item": [item.name for item in items] + list(others)}
-    columns |= {name: [item.counts[name] for item in items] + [0] * len(others) for name in COUNTS}
-    ids = [item.findings for item in items] + list(others.values())
+    without_cells: dict[str, tuple[str, ...]] = {
+        f"figure {number}": ("drawings-lost",) for number in LOST_DRAWINGS
+    }
+    without_cells |= {f"conclusion {number}": ids for number, ids in CONCLUSIONS.items()}
+    columns: dict[str, list] = {"item": [item.name for item in items] + list(without_cells)}
+    columns |= {name: [item.counts[name] for item in items] + [0] * len(without_cells) for name in COUNTS}
+    ids = [item.findings for item in items] + list(without_cells.values())
     return frame(columns | {"findings": ["; ".join(FINDING_OF[id].title for id in each) for each in ids]})
 
 
@@ -206,7 +208,7 @@ def document(items: Sequence[Item], files: Mapping[str, Sequence[str]]) -> dict[
     ]
     return {
         "items": rows,
-        "lost": [{"id": number, "kind": "figure", "caption": text} for number, text in LOST.items()],
+        "lost": [{"id": number, "kind": "figure", "caption": text} for number, text in LOST_DRAWINGS.items()],
         "conclusions": [
             {"id": f"conclusion {number}", "findings": ids} for number, ids in CONCLUSIONS.items()
         ],

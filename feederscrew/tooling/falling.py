@@ -258,7 +258,7 @@ FORCE_SHARE_TOLERANCE = 1e-12  # of a share of a force
 def may_rest(section, width, friction, wall=False) -> bool:
     """Return whether a part may come to rest between two edges, tilted some way.
 
-    Source: Coulomb's cones at two edges; docs/trial.md, "What other parts said of the rules".
+    Source: Coulomb's cones at two edges; docs/method/trial.md, "What other parts said of the rules".
 
     Parameters
     ----------

@@ -12,6 +12,7 @@ import shapely
 
 from feederscrew import check
 from feederscrew.geometry import polygons
+from feederscrew.geometry.compiled import zero_rows
 from feederscrew.geometry.polygons import turned
 from feederscrew.resting.posture import TOUCHING_SHARE
 from feederscrew.tooling.devices.openings import WALL_OVERCUT_M, gap
@@ -101,13 +102,13 @@ def _sector(start, end, middle) -> np.ndarray:
 
 def scratch(foot, hole):
     """Return arrays for the verdict of feet and holes no larger than these."""
-    from feederscrew.tooling.kernel.crossing import CUTS
+    from feederscrew.tooling.kernel.crossing import CUTS, STRETCH
     from feederscrew.tooling.kernel.passage import VerdictArrays
 
     rows = 6 * len(foot.sides) * len(hole.edges) + 1
     points = len(foot.corners) + rows + len(hole.nodes) + len(hole.edges)
     return VerdictArrays(
-        rows=np.empty((rows, 6)),
+        rows=zero_rows(rows, STRETCH),
         events=np.empty(2 * rows),
         bounds=np.empty(2 * rows),
         movements=np.empty(2 * rows),

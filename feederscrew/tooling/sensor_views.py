@@ -1,14 +1,14 @@
 """What a sensor sees of an orientation, and by how much two differ."""
 
 import functools
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-import shapely.affinity
 
 from feederscrew.geometry import shaded
 from feederscrew.geometry.polygons import turned
+from feederscrew.geometry.vectors import product
 
 BORDER_STEP_M = 1e-4  # [m] between places of a border at which two are compared
 VIEW_DETAIL_SHARE = 1e-4  # of the part's size: corners that stand out by less are left out
@@ -51,10 +51,10 @@ def difference(orientation, other, sees):
 
 @functools.lru_cache(maxsize=4096)
 def _difference(orientation, other, sees):
-    wanted = _outline(other, sees)
+    wanted = _outline_border(other, sees)
     if sees == "outline":
-        return fitted(_outline(orientation, sees), wanted)
-    return min(outline_distance(_outline(orientation, sees, by), wanted) for by in VIEW_TURNS_RAD)
+        return _fitted(_outline_border(orientation, sees), wanted, 0.0)
+    return min(border_distance(_outline_border(orientation, sees, by), wanted) for by in VIEW_TURNS_RAD)
 
 
 def askew(orientation, sees):
@@ -66,7 +66,8 @@ def askew(orientation, sees):
 
 @functools.lru_cache(maxsize=512)
 def _askew(lies, sees):
-    return max(outline_distance(_outline(lies, sees, by), _outline(lies, sees)) for by in VIEW_TURNS_RAD)
+    straight = _outline_border(lies, sees)
+    return max(border_distance(_outline_border(lies, sees, by), straight) for by in VIEW_TURNS_RAD)
 
 
 def _lies(orientation, line, sees) -> tuple[Any, ...]:
@@ -79,11 +80,12 @@ def fitted(view, wanted, enough=0.0):
 
     Once they differ by no more than ``enough`` [m], or by more at any turn, no better fit is sought.
     """
+    return _fitted(border(view), border(wanted), enough)
 
+
+def _fitted(view, wanted, enough):
     def off(turn):
-        other = shapely.affinity.rotate(view, turn, (0.0, 0.0), use_radians=True) if turn else view
-        _, low, front, _ = other.bounds
-        return outline_distance(shapely.affinity.translate(other, -front, -low), wanted)
+        return border_distance(_laid(view, turn), wanted)
 
     best = off(0.0)
     if best <= enough:
@@ -108,25 +110,53 @@ def fitted(view, wanted, enough=0.0):
     return min(best, here, there)
 
 
+def _laid(view, turn):
+    """A border turned about the middle, its front and its side laid where they were."""
+    places, sides = view.places, view.sides
+    if turn:
+        axes = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+        places = product(places, axes)
+        sides = np.concatenate([product(sides[:, :2], axes), product(sides[:, 2:], axes)], axis=1)
+    corner = np.array([places[:, 0].max(), places[:, 1].min()])
+    return Border(places - corner, sides - [*corner, 0.0, 0.0])
+
+
 def _between(view, step) -> float:
     """By how much [m] an area may fit better than at the nearest of turns that are a step [rad] apart.
 
     A turn by half a step moves no place of it by more than its distance from the middle times that, and its
     front and its side, to which it is laid, as far again, each across the other.
     """
-    far = np.sqrt((shapely.get_coordinates(view) ** 2).sum(axis=1)).max()
+    far = np.sqrt((view.places**2).sum(axis=1)).max()
     return float((1.0 + np.sqrt(2.0)) * far * 0.5 * step)
 
 
-def outline_distance(first, second):
+class Border(NamedTuple):
+    """The border of an area, with that of its holes."""
+
+    places: np.ndarray  # (P, 2) [m] at which it is compared, its corners among them
+    sides: np.ndarray  # (S, 4) [m] start and vector
+
+
+def border(area) -> Border:
+    """Return the border of an area, a shapely geometry."""
+    rings = area.boundary
+    places = shapely.get_coordinates(shapely.segmentize(rings, 10.0 * BORDER_STEP_M))
+    corners, ring = shapely.get_coordinates(shapely.get_parts(rings), return_index=True)
+    sides = np.concatenate([corners[:-1], corners[1:] - corners[:-1]], axis=1)
+    return Border(places, sides[(ring[1:] == ring[:-1]) & (sides[:, 2:] != 0.0).any(axis=1)])
+
+
+def border_distance(first, second) -> float:
+    """Return the greatest distance [m] from a place of either Border to the other one."""
+    from feederscrew.tooling.kernel.border_distance import farthest
+
+    return max(farthest(first.places, second.sides), farthest(second.places, first.sides))
+
+
+def outline_distance(first, second) -> float:
     """Return the greatest distance [m] from a place of either area's border to the other's."""
-    return max(_reach(first, second), _reach(second, first))
-
-
-def _reach(area, other) -> float:
-    """Greatest distance [m] of the places of an area's border from another area's, and of holes alike."""
-    places = shapely.get_coordinates(shapely.segmentize(area.boundary, 10.0 * BORDER_STEP_M))
-    return float(shapely.distance(shapely.points(places), other.boundary).max())
+    return border_distance(border(first), border(second))
 
 
 def outline(orientation, sees, line=0.0, by=0.0):
@@ -145,6 +175,11 @@ def outline(orientation, sees, line=0.0, by=0.0):
         By which it comes turned from its heading.
     """
     return _outline(_lies(orientation, line, sees), sees, by)
+
+
+@functools.lru_cache(maxsize=2048)
+def _outline_border(lies, sees, by=0.0):
+    return border(_outline(lies, sees, by))
 
 
 @functools.lru_cache(maxsize=2048)

@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import check
-from feederscrew.trial.kernel import jets
+from feederscrew.geometry.compiled import frozen_rows
+from feederscrew.tooling.devices.base import Sensor
+from feederscrew.trial.kernel.workspace import JET
 
 BLEND, OPENS = 0.25, 1.0  # of the part's size: way over which a lean of track, or of wall, becomes the next
 
@@ -17,7 +18,7 @@ class Watch:
 
     place: float  # [m] along the wall
     nozzles: float  # [m] where those jets are
-    sensor: object  # tooling.devices.base.Sensor
+    sensor: Sensor
     jets: slice  # rows of the stage's jets
     seconds: float  # [s] for which those blow
 
@@ -27,10 +28,12 @@ class Pulses:
 
     def __init__(self):
         self.spans = []  # (begin, end) of each, those that are over left out
+        self.log = []  # (begin, end) of all
 
     def set_off(self, begin, seconds) -> None:
         """Let the jets blow from a time on, for so long."""
         self.spans.append((begin, begin + seconds))
+        self.log.append((begin, begin + seconds))
 
     def next(self, now) -> tuple[Any, ...]:
         """Return when the jets next blow, from and to; what overlaps is one pulse, and (inf, inf) none."""
@@ -48,16 +51,16 @@ class Pulses:
 class Air:
     """What blows and leans along a stretch of track."""
 
-    jets: np.ndarray  # (J, 12) [m], [1], [m/s2], [s] as `trial.kernel.jets` names the columns
+    jets: np.recarray  # (J,) `trial.kernel.workspace.JET` [m], [1], [m/s2], [s]
     watches: tuple[Watch, ...]
     # [m] place, [rad] climb, bank and lean of the wall from there
     slopes: tuple[tuple[float, float | None, float | None, float | None], ...]
 
 
-STILL = Air(np.zeros((0, jets.END + 1)), (), ())
+STILL_AIR = Air(frozen_rows([], JET), (), ())
 
 
-def along(placed, track, every) -> Air:
+def along(placed, track, orientations) -> Air:
     """Return what blows and leans along a stretch of track.
 
     Parameters
@@ -65,7 +68,7 @@ def along(placed, track, every) -> Air:
     placed : sequence of (Standing, float [m], float [m])
         In the order parts meet them: where each begins along the wall, and its level.
     track : Track
-    every : sequence of Orientation
+    orientations : sequence of Orientation
         Of the part, which has one mass.
 
     Returns
@@ -73,7 +76,7 @@ def along(placed, track, every) -> Air:
     Air
     """
     rows: list[list[float]] = []
-    mass, watches, slopes = every[0].posture.mass, [], []
+    mass, watches, slopes = orientations[0].posture.mass, [], []
     for standing, start, level in placed:
         first = len(rows)
         rows += [_row(jet, start, level, track.radius, mass) for jet in standing.jets]
@@ -85,8 +88,8 @@ def along(placed, track, every) -> Air:
                     start + standing.sensor.at, start + standing.jets[0].at[0], standing.sensor, own, seconds
                 )
             )
-        slopes += [(start + one.begin, one.climb, one.bank, one.wall) for one in standing.slopes]
-    return Air(check.frozen(np.reshape(rows, (-1, jets.END + 1))), tuple(watches), tuple(slopes))
+        slopes += [(start + slope.begin, slope.climb, slope.bank, slope.wall) for slope in standing.slopes]
+    return Air(frozen_rows(rows, JET), tuple(watches), tuple(slopes))
 
 
 def _row(jet, start, level, radius, mass) -> list[Any]:
@@ -94,21 +97,23 @@ def _row(jet, start, level, radius, mass) -> list[Any]:
     x, y, z = jet.at
     theta, off = (start + x) / radius, radius - y
     ahead, inwards = (np.cos(theta), np.sin(theta), 0.0), (-np.sin(theta), np.cos(theta), 0.0)
-    up, size = (0.0, 0.0, 1.0), np.sqrt(sum(one * one for one in jet.towards))
-    way = [
-        sum(one * axis[k] for one, axis in zip(jet.towards, (ahead, inwards, up))) / size for k in range(3)
+    up, size = (0.0, 0.0, 1.0), np.sqrt(sum(part * part for part in jet.towards))
+    direction = [
+        sum(part * axis[k] for part, axis in zip(jet.towards, (ahead, inwards, up))) / size for k in range(3)
     ]
     mouth = off * ahead[1], radius - off * ahead[0], z + level
     times = (0.0, np.inf) if np.isinf(jet.seconds) else (np.inf, np.inf)
-    return [*mouth, *way, jet.radius, jet.spread, jet.thrust / mass, jet.reach, *times]
+    return [*mouth, *direction, jet.radius, jet.spread, jet.thrust / mass, jet.reach, *times]
 
 
 def blowing(rows, length, unit):
-    """Return jets (J, 12) without dimensions; ``length`` [m] and ``unit`` [s] are 1."""
-    out = np.array(rows, float)
-    out[:, [0, 1, 2, jets.RADIUS, jets.REACH]] /= length
-    out[:, jets.THRUST] *= unit**2 / length
-    out[:, [jets.BEGIN, jets.END]] /= unit
+    """Return jets (J,) without dimensions; ``length`` [m] and ``unit`` [s] are 1."""
+    out = rows.copy()
+    for name in ("mouth_x", "mouth_y", "mouth_z", "radius", "reach"):
+        out[name] /= length
+    out["thrust"] *= unit**2 / length
+    for name in ("begin", "end"):
+        out[name] /= unit
     return out
 
 
@@ -130,7 +135,7 @@ def leaning(slopes, climb, bank, size, length) -> np.ndarray:
     rows = [] if slopes else [(0.0, *here)]
     for place, *new in sorted(slopes, key=lambda one: one[0]):
         rows.append((place / length, *here))
-        before, here = here, tuple(old if given is None else given for old, given in zip(here, new))
+        before, here = here, tuple(old if value is None else value for old, value in zip(here, new))
         blend = BLEND if here[-1] == before[-1] else OPENS
         rows.append((place / length + blend * size / length, *here))
     return np.array([_lean(*row) for row in rows])

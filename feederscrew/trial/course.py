@@ -11,7 +11,7 @@ from feederscrew.conveying import answer
 from feederscrew.dropping.pool import gather
 from feederscrew.geometry import vectors
 from feederscrew.running import USUAL_RUN
-from feederscrew.trial import runs, sensed_rides, starts, stations, whereabouts
+from feederscrew.trial import part_poses, runs, sensed_rides, staging, starts
 from feederscrew.trial.looks import Looks
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
@@ -19,12 +19,12 @@ from feederscrew.trial.shape import solid_of
 PASSED, TURNED, RETURNED, HANGING, STOPPED, ROLLED_BACK, STUCK = range(7)
 FATES = ("passed", "turned", "returned", "hanging", "stopped", "rolled_back", "stuck")
 RUN_UP = 1.0  # of the part's size: how far it travels before the first device
-LOOKS = 300  # places noted of a part at a station
-SPARE = 3.0  # times what it should take: so long its places are noted
-SLOWEST = 1e-3  # [m/s] a slower bowl is given up after the time this takes
-GETS_ON = 0.03  # of the way it should come: a slower part does not get on
-BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs
-AT = 5e-4  # [m] from a device: a part that near is at it
+LOOKS_PER_STATION = 300  # places noted of a part at a station
+PATH_ROOM = 3.0  # times what it should take: so long its places are noted
+LEAST_SPEED_M_S = 1e-3  # [m/s] a slower bowl is given up after the time this takes
+LEAST_PROGRESS_SHARE = 0.03  # of the way it should come: a slower part does not get on
+HANGING_DEPTH_M = 1e-4  # [m] under the track: a part that reaches so deep hangs
+AT_DEVICE_M = 5e-4  # [m] from a device: a part that near is at it
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +65,7 @@ class Course:
     partial: bool
 
 
-def course(part, bowl, every, sent, devices, *, poses=None, leaves=None, run=USUAL_RUN):
+def course(part, bowl, orientations, sent, devices, *, poses=None, leaves=None, run=USUAL_RUN):
     """Send parts through a chain of devices.
 
     Parameters
@@ -73,13 +73,13 @@ def course(part, bowl, every, sent, devices, *, poses=None, leaves=None, run=USU
     part : Part
         From a mesh.
     bowl : Bowl
-    every : sequence of Orientation
+    orientations : sequence of Orientation
         Of the part, M of them.
     sent : Sending
     devices : sequence of Device
         In the order parts meet them.
     poses : sequence of Orientation, optional
-        S of them, those of ``every`` first, in which parts may be found; those of ``every`` without it.
+        S of them, the M first, in which parts may be found; the M without it.
     leaves : (M, S) bool, optional
         In which of them an orientation may leave and still be said to pass; as it came without it.
     run : RunSettings
@@ -96,75 +96,79 @@ def course(part, bowl, every, sent, devices, *, poses=None, leaves=None, run=USU
         If the part has no shape or the bowl conveys nothing at all.
     """
     solid, length, principal = solid_of(part)
-    solid = rounded(solid, axes(every, principal))
-    known, chain = runs.setting(solid, length, bowl), _chain(bowl, every, devices)
+    solid = rounded(solid, axes(orientations, principal))
+    part_in_bowl, chain = runs.setting(solid, length, bowl), _chain(bowl, orientations, devices)
     run.begin()
     states, times, entered = sent.on_track(
-        lambda rows: starts.laid_down(bowl, every, rows, solid, principal, length, run.seed)
+        lambda rows: starts.laid_down(bowl, orientations, rows, solid, principal, length, run.seed)
     )
-    looks = Looks(every if poses is None else poses, solid, length, principal, bowl.track.radius)
-    leaves = np.eye(len(every), len(looks.known), dtype=bool) if leaves is None else leaves
-    rides = [sensed_rides.past(known, station, **_limits(bowl, station, every)) for station in chain]
+    looks = Looks(orientations if poses is None else poses, solid, length, principal, bowl.track.radius)
+    leaves = np.eye(len(orientations), len(looks.reaches), dtype=bool) if leaves is None else leaves
+    rides = [
+        sensed_rides.past(part_in_bowl, station, **_limits(bowl, station, orientations)) for station in chain
+    ]
     rides[0](states[:0], times[:0])  # compiled here, if need be
 
     def through(n):
-        return _through(known, chain, rides, states[[n]], times[[n]])
+        return _through(part_in_bowl, chain, rides, states[[n]], times[[n]])
 
     def work(begin) -> None:
         for done, task in enumerate([begin(through, n) for n in range(len(entered))]):
             task.result()
             run.tell(done + 1, len(entered))
 
-    made, stopped = gather(work, run.jobs)
-    found = _Found(chain, entered[: len(made)], looks)
+    part_rides, stopped = gather(work, run.jobs)
+    collected = _CourseCollector(chain, entered[: len(part_rides)], looks)
     for place in range(len(chain)):
-        riders = np.flatnonzero([len(one) > place for one in made])
+        riders = np.flatnonzero([len(rode) > place for rode in part_rides])
         if len(riders):
-            found.add(place, runs.joined([made[n][place] for n in riders]), riders, bowl)
-    return found.course(length, principal, leaves, stopped)
+            collected.add(place, runs.joined([part_rides[n][place] for n in riders]), riders, bowl)
+    return collected.course(length, principal, leaves, stopped)
 
 
-def _through(known, chain, rides, state, time):
+def _through(part_in_bowl, chain, rides, state, time):
     """Send one part through the chain; what it did at each station that it came to."""
-    made = []
+    rides_done = []
     for place, station in enumerate(chain):
         ride = rides[place](state, time)
-        made.append(ride)
+        rides_done.append(ride)
         if ride.outcomes[0] != runs.PASSED or place + 1 == len(chain):
             break
-        state = _led_on(ride.states, station, chain[place + 1].begin, known)
+        state = _led_on(ride.states, station, chain[place + 1].begin, part_in_bowl)
         time = time + ride.seconds
-    return made
+    return rides_done
 
 
-def _led_on(states, station, begin, known):
+def _led_on(states, station, begin, part_in_bowl):
     """States (N, 13) behind a station, on the track at the begin [m] of the next one.
 
     What went down to a lower track goes on at its level; one that begins beside a ledge leads to the wall.
     """
-    states = whereabouts.moved(
-        states, begin / known.length - whereabouts.ways(states, known.radius), known.radius
+    states = part_poses.moved(
+        states,
+        begin / part_in_bowl.length - part_poses.ways_along_wall(states, part_in_bowl.radius),
+        part_in_bowl.radius,
     )
     if station.drop > 0.0:
         down = states[:, 2] < 0.0 if station.aside > 0.0 else np.ones(len(states), dtype=bool)
-        states[down, 2] += station.drop / known.length
-        out = states[:, :2] - [0.0, known.radius]
-        out *= 1.0 + down[:, None] * station.aside / known.length / vectors.length(out)[:, None]
-        states[:, :2] = out + [0.0, known.radius]
+        states[down, 2] += station.drop / part_in_bowl.length
+        out = states[:, :2] - [0.0, part_in_bowl.radius]
+        out *= 1.0 + down[:, None] * station.aside / part_in_bowl.length / vectors.length(out)[:, None]
+        states[:, :2] = out + [0.0, part_in_bowl.radius]
     return states
 
 
-def axes(every, principal) -> list[Any]:
+def axes(orientations, principal) -> list[Any]:
     """Return the axes (N, 3) about which a part rolls, along its principal axes."""
-    found = [
-        vectors.product(one.posture.axis, vectors.product(one.posture.axes[:2], principal))
-        for one in every
-        if one.kind == "rolling"
-        and one.posture.axis is not None
-        and not np.isfinite(one.posture.rolling_circle)
+    roll_axes = [
+        vectors.product(orientation.posture.axis, vectors.product(orientation.posture.axes[:2], principal))
+        for orientation in orientations
+        if orientation.kind == "rolling"
+        and orientation.posture.axis is not None
+        and not np.isfinite(orientation.posture.rolling_circle)
     ]
     values = {
-        tuple(np.round(axis if axis[np.argmax(np.abs(axis))] > 0.0 else -axis, 4)): axis for axis in found
+        tuple(np.round(axis if axis[np.argmax(np.abs(axis))] > 0.0 else -axis, 4)): axis for axis in roll_axes
     }
     return [vectors.unit(axis) for axis in values.values()]
 
@@ -181,36 +185,36 @@ def rightly(leaving):
     return right | (np.eye(len(right), right.shape[1], dtype=bool) & ~right.any(axis=1)[:, None])
 
 
-def _chain(bowl, every, devices) -> list[Any]:
+def _chain(bowl, orientations, devices) -> list[Any]:
     """The bare track, then each device that is no measured yield."""
-    size = max(one.length for one in every)
-    made, slopes, slot = [], stations.at_entry(devices, bowl.track, every), ()
+    size = max(orientation.length for orientation in orientations)
+    placed, slopes, slot = [], staging.at_entry(devices, bowl.track, orientations), ()
     first = slopes
     for device in devices:
         if device.placed:
-            standing = device.standing(bowl.track, every)
-            made.append(stations.station(device, bowl.track, every, slopes=slopes, slot=slot))
+            standing = device.standing(bowl.track, orientations)
+            placed.append(staging.stage(device, bowl.track, orientations, slopes=slopes, slot=slot))
             slopes, slot = (*slopes, *standing.slopes), standing.slot or slot
-    return [stations.plain(bowl.track, every, RUN_UP * size, first), *made]
+    return [staging.plain(bowl.track, orientations, RUN_UP * size, first), *placed]
 
 
-def _limits(bowl, station, every) -> dict[Any, Any]:
+def _limits(bowl, station, orientations) -> dict[Any, Any]:
     """How long a part has, and how often it is looked at, by the velocity of the point mass."""
-    found = answer.answer(bowl).velocity
-    speed = max(found if np.isfinite(found) else 0.0, SLOWEST)
-    way = station.exit - station.begin
-    size = max(one.length for one in every)
+    velocity = answer.answer(bowl).velocity
+    speed = max(velocity if np.isfinite(velocity) else 0.0, LEAST_SPEED_M_S)
+    distance = station.exit - station.begin
+    size = max(orientation.length for orientation in orientations)
     patience = max(0.5 * size / speed, 0.5)
-    seconds = way / (GETS_ON * speed) + 1.0  # what creeps is followed to the end
+    seconds = distance / (LEAST_PROGRESS_SHARE * speed) + 1.0  # what creeps is followed to the end
     period = 1.0 / bowl.drive.frequency
-    every_s = max(np.ceil(way / speed / LOOKS / period), 1.0) * period
+    every_s = max(np.ceil(distance / speed / LOOKS_PER_STATION / period), 1.0) * period
     return {
-        "limits": (seconds, patience, GETS_ON * patience * speed, 0.5 * size),
-        "every": every_s, "places": int(LOOKS * SPARE) + 60,
+        "limits": (seconds, patience, LEAST_PROGRESS_SHARE * patience * speed, 0.5 * size),
+        "interval": every_s, "places": int(LOOKS_PER_STATION * PATH_ROOM) + 60,
     }  # fmt: skip
 
 
-class _Found:
+class _CourseCollector:
     """Collects what became of the parts, station by station."""
 
     def __init__(self, chain, entered, looks):
@@ -234,7 +238,7 @@ class _Found:
         passed = ride.outcomes == runs.PASSED
         self.ended[riders] = np.where(passed, place + 1, place)
         self.fell[riders] = (
-            whereabouts.ways(ride.states, self.looks.radius) * bowl.track.radius / self.looks.radius
+            part_poses.ways_along_wall(ride.states, self.looks.radius) * bowl.track.radius / self.looks.radius
         )
         fates = [
             self._fate(self.chain[place], outcome, state, bowl.track.radius / self.looks.radius)
@@ -247,13 +251,11 @@ class _Found:
         """What became of a part that has not passed a station."""
         if outcome in (runs.RETURNED, runs.ROLLED):
             return RETURNED if outcome == runs.RETURNED else ROLLED_BACK
-        rear, front, low = (
-            np.array(whereabouts.extents(state, self.looks.corners, self.looks.radius)) * length
-        )
-        if outcome == runs.RUNNING and station.below and low < -BELOW - station.drop:
+        rear, front, low = np.array(part_poses.extents(state, self.looks.corners, self.looks.radius)) * length
+        if outcome == runs.RUNNING and station.below and low < -HANGING_DEPTH_M - station.drop:
             return HANGING
         first, last = station.cut
-        return STOPPED if front > first - AT and rear < last + AT else STUCK
+        return STOPPED if front > first - AT_DEVICE_M and rear < last + AT_DEVICE_M else STUCK
 
     def course(self, length, principal, leaves, partial) -> Course:
         """All of it as a record; what leaves as it should has passed, what else leaves was turned."""
@@ -275,12 +277,12 @@ class _Found:
 
 def velocities(ride, radius):
     """Return mean velocities (N,) [m/s], over the second half of each path; NaN of a short one."""
-    found = np.full(len(ride.paths), np.nan)
+    means = np.full(len(ride.paths), np.nan)
     for n, path in enumerate(ride.paths):
         count = int(np.isfinite(path[:, 0]).sum())
         if count < 4 or ride.outcomes[n] == runs.RETURNED:
             continue
-        way = radius * np.arctan2(path[:count, 1], radius - path[:count, 2])
+        along = radius * np.arctan2(path[:count, 1], radius - path[:count, 2])
         first = count // 2
-        found[n] = (way[-1] - way[first]) / (path[count - 1, 0] - path[first, 0])
-    return found
+        means[n] = (along[-1] - along[first]) / (path[count - 1, 0] - path[first, 0])
+    return means

@@ -7,9 +7,10 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.dropping.kernel import body
-from feederscrew.trial import air, runs, sensed_rides, staging, stations, whereabouts
-from feederscrew.trial.arrays import crowd_of, move_on
-from feederscrew.trial.kernel import crowd_records, jets, travel
+from feederscrew.geometry.compiled import zero_rows
+from feederscrew.trial import air, part_poses, runs, sensed_rides, staging
+from feederscrew.trial.arrays import forget, move_on, workspace_of
+from feederscrew.trial.kernel import travel, workspace
 
 PERIODS = 8  # over which a sensor takes the speed of a part: within one it may hop or be pushed
 TAIL = 1.2  # of the part's size: track behind the outlet, on which a whole part still lies as it leaves
@@ -26,13 +27,13 @@ class CrowdedTrack:
     outlet: float  # [m] behind the last of them
 
 
-def crowded(bowl, every, devices, room):
+def crowded(bowl, orientations, devices, room):
     """Return the track for a row of parts.
 
     Parameters
     ----------
     bowl : Bowl
-    every : sequence of Orientation
+    orientations : sequence of Orientation
         Of the part.
     devices : sequence of Device
         In the order parts meet them.
@@ -44,9 +45,9 @@ def crowded(bowl, every, devices, room):
     CrowdedTrack
     """
     track, place, level, windows, placed, blows = bowl.track, 0.0, 0.0, [], [], []
-    size = staging.size_of(every)
+    size = staging.size_of(orientations)
     for device in [device for device in devices if device.placed]:
-        standing, start = device.standing(track, every), place + (0.5 + staging.SPARE) * size
+        standing, start = device.standing(track, orientations), place + (0.5 + staging.SPARE_WAY) * size
         last = staging.passed(standing, start, size)
         placed.append((standing, start, last))
         blows.append((standing, start, level))
@@ -56,13 +57,13 @@ def crowded(bowl, every, devices, room):
     if placed:  # a ledge goes on behind the outlet
         placed[-1] = (*placed[-1][:2], place + TAIL * size)
     ends = -room - size, place + TAIL * size
-    blown = air.along(blows, track, every)
-    first = [replace(one, climb=None) for one in stations.at_entry(devices, track, every)]
+    blown = air.along(blows, track, orientations)
+    first = [replace(slope, climb=None) for slope in staging.at_entry(devices, track, orientations)]
     blown = replace(blown, slopes=(*staging.before(first), *blown.slopes))  # they come apart on a steeper way
-    made = staging.built(placed, track, size, ends)
+    geometry = staging.built(placed, track, size, ends)
     stage = staging.Stage(
-        stations.BARE,
-        *made,
+        staging.BARE_TRACK,
+        *geometry,
         begin=-room,
         exit=np.inf,
         air=blown,
@@ -85,22 +86,20 @@ class PartsOnTrack:
         Parts at most.
     """
 
-    def __init__(self, known, track, count) -> None:
-        self.known, self.solid, self.stage = known, known.solid, track.stage
-        self.hull = known.solid.corners[known.solid.outer]
+    def __init__(self, part_in_bowl, track, count) -> None:
+        self.part_in_bowl, self.solid, self.stage = part_in_bowl, part_in_bowl.solid, track.stage
+        self.hull = part_in_bowl.solid.corners[part_in_bowl.solid.outer]
         self.windows, self.levels = track.windows, track.levels
-        self.surface = runs.surface_of(known, track.stage)
-        self.arrays, self.on = crowd_of(known.solid, self.surface, count), np.zeros(count, bool)
-        self.period = 2.0 * np.pi / known.floor.rate
+        self.surface = runs.surface_of(part_in_bowl, track.stage)
+        self.arrays, self.on = workspace_of(part_in_bowl.solid, self.surface, count), np.zeros(count, bool)
+        self.period = 2.0 * np.pi / part_in_bowl.floor.rate
         self.passed = np.full((PERIODS, count), np.nan)  # ways of each, of the last periods
         self.pulses = [air.Pulses() for _ in track.stage.air.watches]
 
     def lay(self, n, state) -> None:
         """Put part n onto the track."""
         self.arrays.states[n] = state
-        # no list of it holds, and no impulse is known
-        self.arrays.made[n, crowd_records.REACHES] = self.arrays.lasted[n] = -1.0
-        self.arrays.blown[n, jets.AGAIN] = -1.0  # nor what blows on it
+        forget(self.arrays, n)
         self.passed[:, n] = np.nan
         self.on[n] = True
 
@@ -110,25 +109,25 @@ class PartsOnTrack:
 
     def ride(self, turn):
         """Move all through one period of the drive, the ``turn``-th; how deep anything was in anything."""
-        notes = np.zeros(travel.NOTES + 2)
-        steps = round(self.period / self.known.floor.step)
-        together = crowd_records.Together(self.on, turn * self.period, steps, notes)
-        move_on(self.known, self.surface, self.arrays, together)
-        return notes[travel.SUNK]
+        journals = zero_rows(1, workspace.JOURNAL)
+        steps = round(self.period / self.part_in_bowl.floor.step)
+        together = workspace.Together(self.on, turn * self.period, steps, journals)
+        move_on(self.part_in_bowl, self.surface, self.arrays, together)
+        return float(journals.depth[0])
 
     def slides_off(self, n) -> bool:
         """Return whether part n is beyond the free edge, or too fast towards it to stay on the track."""
         out = travel.slides_to(self.surface, self.arrays.states[n])
-        return bool(out > self.stage.width / self.known.length)
+        return bool(out > self.stage.width / self.part_in_bowl.length)
 
     def blown_off(self):
         """Return (N,) bool, which parts are beyond the free edge, where the track holds them no more."""
         states = self.arrays.states
-        x, y = states[:, body.X], self.known.radius - states[:, body.Y]
-        out = self.known.radius - np.sqrt(x * x + y * y)
-        return out > self.stage.width / self.known.length + runs.OVER * self.solid.radius
+        x, y = states[:, body.X], self.part_in_bowl.radius - states[:, body.Y]
+        out = self.part_in_bowl.radius - np.sqrt(x * x + y * y)
+        return out > self.stage.width / self.part_in_bowl.length + runs.OVER_EDGE_SHARE * self.solid.radius
 
-    def watch(self, lying, before, ways, turn) -> None:
+    def watch(self, lying, before, after, turn) -> None:
         """Let sensors look at the parts whose centres of mass have come past them in a period.
 
         What is nearer to a part than the sensor can tell is one with it. Jets that a part sets off blow as
@@ -138,29 +137,31 @@ class PartsOnTrack:
         self.passed[0] = before
         now = turn * self.period
         for watch, pulses in zip(self.stage.air.watches, self.pulses):
-            place = watch.place / self.known.length
-            for n in [n for n in lying if before[n] < place <= ways[n]]:
+            place = watch.place / self.part_in_bowl.length
+            for n in [n for n in lying if before[n] < place <= after[n]]:
                 states = self.arrays.states[[n, *self.near(n, lying, watch.sensor.resolution)]]
-                if sensed_rides.blows_off(watch.sensor, self.known, states, self.level(watch.place)):
-                    left = max(watch.nozzles / self.known.length - ways[n], 0.0)
-                    pulses.set_off(now + left / self.speed(n, ways[n]), watch.seconds / self.known.unit)
-            self.surface.jets[watch.jets, jets.BEGIN : jets.END + 1] = pulses.next(now)
+                if sensed_rides.blows_off(watch.sensor, self.part_in_bowl, states, self.level(watch.place)):
+                    left = max(watch.nozzles / self.part_in_bowl.length - after[n], 0.0)
+                    pulses.set_off(
+                        now + left / self.speed(n, after[n]), watch.seconds / self.part_in_bowl.unit
+                    )
+            self.surface.jets.begin[watch.jets], self.surface.jets.end[watch.jets] = pulses.next(now)
 
-    def speed(self, n, way):
+    def speed(self, n, along):
         """Return the mean speed of part n, that is at a way now, over the last periods."""
-        known = self.passed[np.isfinite(self.passed[:, n]), n]
-        return (way - known[-1]) / (len(known) * self.period)
+        noted = self.passed[np.isfinite(self.passed[:, n]), n]
+        return (along - noted[-1]) / (len(noted) * self.period)
 
     def near(self, n, lying, resolution):
         """Return the parts of a row that are one with part n for a sensor of some resolution [m]."""
         reach = self.reaches(lying)
-        found, rear, front = [], reach[n][0], reach[n][1]
-        wide = resolution / self.known.length
+        touching, rear, front = [], reach[n][0], reach[n][1]
+        wide = resolution / self.part_in_bowl.length
         for m in sorted(lying, key=lambda m: abs(reach[m][0] - reach[n][0])):
             if m != n and reach[m][0] < front + wide and reach[m][1] > rear - wide:
-                found.append(m)
+                touching.append(m)
                 rear, front = min(rear, reach[m][0]), max(front, reach[m][1])
-        return found
+        return touching
 
     def level(self, place) -> float:
         """Return the level [m] of the track at a place [m] along the wall."""
@@ -174,4 +175,4 @@ class PartsOnTrack:
     def reaches(self, rows) -> dict[Any, Any]:
         """Return, by part, how far it reaches along the wall, rear and front, and its lowest point."""
         states = self.arrays.states[list(rows)]
-        return dict(zip(rows, whereabouts.reaches(states, self.hull, self.known.radius).tolist()))
+        return dict(zip(rows, part_poses.reaches(states, self.hull, self.part_in_bowl.radius).tolist()))

@@ -9,12 +9,14 @@ from feederscrew import check
 from feederscrew.dropping.launch_conditions import named
 from feederscrew.dropping.plate_test import EXACT_PACE
 from feederscrew.running import USUAL_RUN
-from feederscrew.trial import course, runs, starts, stations, whereabouts
+from feederscrew.trial import course, part_poses, runs, staging, starts
 from feederscrew.trial.looks import OTHER, AspectsBelow
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
 
-MOST = 0.2  # of the bowl's circumference, to either side: further no part is thrown along the track
+MAX_THROW_SHARE = (
+    0.2  # of the bowl's circumference, to either side: further no part is thrown along the track
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +54,7 @@ class Landing:
         return float(self.leaving[:-1].max(initial=0) / self.left) if self.left else np.nan
 
 
-def landing(part, bowl, aspects, every, poses, *, launch, parts, run=USUAL_RUN) -> Landing:
+def landing(part, bowl, aspects, orientations, poses, *, launch, parts, run=USUAL_RUN) -> Landing:
     """Let parts fall onto the bare, moving track and send those that lie on it through the devices.
 
     Parameters
@@ -63,7 +65,7 @@ def landing(part, bowl, aspects, every, poses, *, launch, parts, run=USUAL_RUN) 
         With its devices.
     aspects : Aspects
         Of the part.
-    every, poses : sequence of Orientation
+    orientations, poses : sequence of Orientation
         Of the part, and those in which it may leave.
     launch : str
         A key of ``dropping.launch_conditions.PRESETS``: height, spin and speed.
@@ -82,54 +84,54 @@ def landing(part, bowl, aspects, every, poses, *, launch, parts, run=USUAL_RUN) 
     """
     below = AspectsBelow(part, aspects)
     run.begin()
-    ride, times = _fallen(part, bowl, every, below.shape, named(launch), parts, run)
+    ride, times = _fallen(part, bowl, orientations, below.shape, named(launch), parts, run)
     if ride.partial:
         raise KeyboardInterrupt
     entered = below.of(ride.states)
     on = (ride.outcomes == runs.RUNNING) & (entered != OTHER)
     if not on.any():
-        return _told(launch, parts, aspects, poses, None, below)
+        return _landing_record(launch, parts, aspects, poses, None, below)
     radius = bowl.track.radius / solid_of(part)[1]
-    states = whereabouts.moved(ride.states[on], -whereabouts.ways(ride.states[on], radius), radius)
+    states = part_poses.moved(ride.states[on], -part_poses.ways_along_wall(ride.states[on], radius), radius)
     leaves = np.ones((len(aspects.names), len(poses)), bool)
     sent = course.Sending(begun=(states, (times + ride.seconds)[on], entered[on]))
     own = {"poses": poses, "leaves": leaves, "run": replace(run, before=None)}
-    seen = course.course(part, bowl, every, sent, bowl.devices, **own)
-    return _told(launch, parts - int(on.sum()), aspects, poses, seen, below)
+    rode = course.course(part, bowl, orientations, sent, bowl.devices, **own)
+    return _landing_record(launch, parts - int(on.sum()), aspects, poses, rode, below)
 
 
-def _fallen(part, bowl, every, shape, launch, parts, run) -> tuple[Any, ...]:
+def _fallen(part, bowl, orientations, shape, launch, parts, run) -> tuple[Any, ...]:
     """Runs of parts from their launch to where they lie, and the times [s] at which they began."""
     solid, length, principal = solid_of(part)
-    solid = rounded(solid, course.axes(every, principal))
-    known = runs.setting(solid, length, bowl)
+    solid = rounded(solid, course.axes(orientations, principal))
+    part_in_bowl = runs.setting(solid, length, bowl)
     states, times = starts.falling(bowl, launch, shape, parts, length, run.seed)
     flight, fastest = np.sqrt(2.0 * launch.fall[1]), launch.speed[1]
     room = fastest * flight + fastest**2 / (2.0 * max(bowl.friction.kinetic, 0.05)) + solid.radius
-    room = min(length * room, MOST * 2.0 * np.pi * bowl.track.radius)
-    first = stations.at_entry(bowl.devices, bowl.track, every)
-    stage = replace(stations.plain(bowl.track, every, 2.0 * room, first), exit=np.inf)
-    seconds = known.unit * (flight + EXACT_PACE.settling)
+    room = min(length * room, MAX_THROW_SHARE * 2.0 * np.pi * bowl.track.radius)
+    first = staging.at_entry(bowl.devices, bowl.track, orientations)
+    stage = replace(staging.plain(bowl.track, orientations, 2.0 * room, first), exit=np.inf)
+    seconds = part_in_bowl.unit * (flight + EXACT_PACE.settling)
     limits = (seconds, 2.0 * seconds, 0.0, np.inf)
-    one = runs.past(known, stage, limits=limits, every=seconds, places=1)
-    begun = whereabouts.moved(states, room / length, known.radius)
-    ride = runs.ride(one, begun, times, jobs=run.jobs, progress=lambda done: run.tell(done, parts))
+    follow = runs.past(part_in_bowl, stage, limits=limits, interval=seconds, places=1)
+    begun = part_poses.moved(states, room / length, part_in_bowl.radius)
+    ride = runs.ride(follow, begun, times, jobs=run.jobs, progress=lambda done: run.tell(done, parts))
     return ride, times
 
 
-def _told(launch, lost, aspects, poses, seen, below) -> Landing:
-    """The record of what became of those that lay; ``seen`` is None where none did."""
+def _landing_record(launch, lost, aspects, poses, rode, below) -> Landing:
+    """The record of what became of those that lay; ``rode`` is None where none did."""
     fates = np.zeros((len(aspects.names), len(course.FATES)), int)
     leaving, velocity = np.zeros(len(poses) + 1, int), np.nan
-    if seen is not None:
-        left = np.isin(seen.fates, (course.PASSED, course.TURNED))
+    if rode is not None:
+        left = np.isin(rode.fates, (course.PASSED, course.TURNED))
         out = np.full(len(left), OTHER)
-        out[seen.riders[-1]] = below.of(seen.rides[-1].states)
-        becomes = np.where(left & (out != seen.entered), course.TURNED, seen.fates)
-        np.add.at(fates, (seen.entered, np.where(left & (out == seen.entered), course.PASSED, becomes)), 1)
-        np.add.at(leaving, seen.orientations[-1][left], 1)
-        travels = np.isfinite(seen.velocities)
-        velocity = float(seen.velocities[travels].mean()) if travels.any() else np.nan
+        out[rode.riders[-1]] = below.of(rode.rides[-1].states)
+        becomes = np.where(left & (out != rode.entered), course.TURNED, rode.fates)
+        np.add.at(fates, (rode.entered, np.where(left & (out == rode.entered), course.PASSED, becomes)), 1)
+        np.add.at(leaving, rode.orientations[-1][left], 1)
+        travels = np.isfinite(rode.velocities)
+        velocity = float(rode.velocities[travels].mean()) if travels.any() else np.nan
     return Landing(
         launch=launch,
         parts=lost + int(fates.sum()),
@@ -137,6 +139,6 @@ def _told(launch, lost, aspects, poses, seen, below) -> Landing:
         fates=check.frozen(fates),
         leaving=check.frozen(leaving),
         velocity=velocity,
-        depth=0.0 if seen is None else float(seen.depths.max()),
-        partial=seen is not None and seen.partial,
+        depth=0.0 if rode is None else float(rode.depths.max()),
+        partial=rode is not None and rode.partial,
     )

@@ -12,7 +12,7 @@ from feederscrew.conveying import answer
 from feederscrew.part.record import Part
 from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.tooling.orientations import Orientation
-from feederscrew.trial import course, runs, starts, stations, whereabouts
+from feederscrew.trial import course, part_poses, runs, staging, starts
 from feederscrew.trial.looks import OTHER, Looks
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
@@ -35,7 +35,7 @@ class RideOfTrack:
     entered: NDArray[np.int64]  # (N,) the orientation in which each began
     ended: NDArray[np.int64]  # (N,) in which it arrives at the tooling; LEFT of one that does not
     askew: NDArray[np.bool_]  # (N,) whether it lies so only nearly, away from the wall for instance
-    ways: NDArray[np.float64]  # (N,) [m] along the wall
+    distances: NDArray[np.float64]  # (N,) [m] along the wall
     seconds: NDArray[np.float64]  # (N,) [s]
 
     @property
@@ -46,9 +46,9 @@ class RideOfTrack:
     @property
     def counts(self) -> NDArray[np.int64]:
         """(M, M + 1) parts by the orientation in which they began and ended; the last column has left."""
-        found = np.zeros((len(self.names), len(self.names) + 1), int)
-        np.add.at(found, (self.entered, np.where(self.ended == LEFT, len(self.names), self.ended)), 1)
-        return found
+        counts = np.zeros((len(self.names), len(self.names) + 1), int)
+        np.add.at(counts, (self.entered, np.where(self.ended == LEFT, len(self.names), self.ended)), 1)
+        return counts
 
     @property
     def turned(self) -> NDArray[np.bool_]:
@@ -77,7 +77,7 @@ class RideOfTrack:
 def ride_of_track(
     part: Part,
     bowl: Bowl,
-    every: Sequence[Orientation],
+    orientations: Sequence[Orientation],
     rows: Sequence[int],
     *,
     each: int,
@@ -95,7 +95,7 @@ def ride_of_track(
         From a mesh.
     bowl : Bowl
         With its drive; of its devices those that lean the track at its entry count.
-    every : sequence of Orientation
+    orientations : sequence of Orientation
         M of them, on its track.
     rows : sequence of int
         Those that ride.
@@ -119,20 +119,20 @@ def ride_of_track(
     """
     distance = min(2.0 * np.pi * bowl.track.radius, RIDE_M) if distance is None else distance
     solid, length, principal = solid_of(part)
-    solid = rounded(solid, course.axes(every, principal))
-    known, looks = (
+    solid = rounded(solid, course.axes(orientations, principal))
+    part_in_bowl, looks = (
         runs.setting(solid, length, bowl),
-        Looks(every, solid, length, principal, bowl.track.radius),
+        Looks(orientations, solid, length, principal, bowl.track.radius),
     )
     run.begin()
     entered = np.repeat(np.asarray(rows, int), each)
     states, times = starts.laid_down(
-        bowl, every, entered, solid, principal, length, run.seed,
+        bowl, orientations, entered, solid, principal, length, run.seed,
         play=OFF_WALL_M, turn=OFF_HEADING, tilt=OFF_LEVEL,
     )  # fmt: skip
     count = max(round(distance / SEGMENT_M), 1)
-    follow = _segment(known, bowl, every, distance / count)
-    ways, seconds, going = np.zeros(len(entered)), np.zeros(len(entered)), np.ones(len(entered), bool)
+    follow = _segment(part_in_bowl, bowl, orientations, distance / count)
+    distances, seconds, going = np.zeros(len(entered)), np.zeros(len(entered)), np.ones(len(entered), bool)
     lost = np.zeros(len(entered), bool)
     for done in range(count):
         on = np.flatnonzero(going)
@@ -143,9 +143,9 @@ def ride_of_track(
             raise KeyboardInterrupt
         passed = rode.outcomes == runs.PASSED
         lost[on] = np.isin(rode.outcomes, (runs.RETURNED, runs.ROLLED))
-        ways[on] += rode.ways
+        distances[on] += rode.distances
         seconds[on] += rode.seconds
-        states[on] = whereabouts.moved(rode.states, -rode.ways / length, known.radius)
+        states[on] = part_poses.moved(rode.states, -rode.distances / length, part_in_bowl.radius)
         going[on] = passed & (seconds[on] < RIDE_S)
         run.tell(done + 1, count)
     ended = looks.of(states)
@@ -153,24 +153,27 @@ def ride_of_track(
     ended[askew] = looks.nearest(states[askew])
     ended[lost] = LEFT
     return RideOfTrack(
-        tuple(one.name for one in every), *map(check.frozen, (entered, ended, askew, ways, seconds))
+        tuple(orientation.name for orientation in orientations),
+        *map(check.frozen, (entered, ended, askew, distances, seconds)),
     )
 
 
 def joined(first: RideOfTrack, second: RideOfTrack) -> RideOfTrack:
     """Return two rides of the same orientations as one."""
-    names = ("entered", "ended", "askew", "ways", "seconds")
-    both = (np.concatenate([getattr(one, name) for one in (first, second)]) for name in names)
+    names = ("entered", "ended", "askew", "distances", "seconds")
+    both = (np.concatenate([getattr(ride, name) for ride in (first, second)]) for name in names)
     return RideOfTrack(first.names, *map(check.frozen, both))
 
 
 def _segment(
-    known: runs.BowlOfPart, bowl: Bowl, every: Sequence[Orientation], distance: float
+    part_in_bowl: runs.BowlOfPart, bowl: Bowl, orientations: Sequence[Orientation], distance: float
 ) -> Callable[[NDArray[np.float64], NDArray[np.float64]], runs.Runs]:
     """What follows parts along a segment of bare track."""
-    station = stations.plain(bowl.track, every, distance, stations.at_entry(bowl.devices, bowl.track, every))
-    found = answer.answer(bowl).velocity
-    speed = max(found if np.isfinite(found) else 0.0, course.SLOWEST)
-    size = max(one.length for one in every)
-    limits = (RIDE_S, STANDING_S, course.GETS_ON * STANDING_S * speed, 0.5 * size)
-    return runs.past(known, station, limits=limits, every=RIDE_S, places=1)
+    station = staging.plain(
+        bowl.track, orientations, distance, staging.at_entry(bowl.devices, bowl.track, orientations)
+    )
+    velocity = answer.answer(bowl).velocity
+    speed = max(velocity if np.isfinite(velocity) else 0.0, course.LEAST_SPEED_M_S)
+    size = max(orientation.length for orientation in orientations)
+    limits = (RIDE_S, STANDING_S, course.LEAST_PROGRESS_SHARE * STANDING_S * speed, 0.5 * size)
+    return runs.past(part_in_bowl, station, limits=limits, interval=RIDE_S, places=1)

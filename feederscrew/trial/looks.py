@@ -9,17 +9,21 @@ from feederscrew.dropping.kernel.one_drop import UNSETTLED, face_below
 from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.geometry import vectors
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.exact_tumbling import ground
+from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.resting.half_edges import half_edges
 from feederscrew.resting.walks import LOST_WALK, roll_from_corner, roll_from_facet
 from feederscrew.tooling.orientations import Hanging
-from feederscrew.trial import whereabouts
+from feederscrew.trial import part_poses
 
-ALIKE = 0.05  # of the part's size: a part whose outline is off by more lies in no known orientation
+SAME_REACH_SHARE = (
+    0.05  # of the part's size: a part whose outline is off by more lies in no known orientation
+)
 DIRECTIONS = 160
-ASKEW = np.radians(np.linspace(-10.0, 10.0, 11))  # by which a part may lie turned on the track and be known
-ROUND = np.radians(np.arange(0.0, 360.0, 2.0))  # the same where any heading of its aspect will do
-SWINGS = np.cos(np.radians(40.0))  # a part below the track that is no further from upright hangs
+ASKEW_ANGLES = np.radians(
+    np.linspace(-10.0, 10.0, 11)
+)  # by which a part may lie turned on the track and be known
+ALL_HEADINGS = np.radians(np.arange(0.0, 360.0, 2.0))  # the same where any heading of its aspect will do
+HANGING_COSINE = np.cos(np.radians(40.0))  # a part below the track that is no further from upright hangs
 OTHER = -1  # orientation: none of the known
 
 
@@ -35,27 +39,37 @@ class Looks:
     Parts that hang swing and turn about the vertical: they are known by what of them is up.
     """
 
-    def __init__(self, every, solid, length, principal, radius) -> None:
+    def __init__(self, orientations, solid, length, principal, radius) -> None:
         self.directions, self.corners = spread(DIRECTIONS), solid.corners[solid.outer]
         self.ups = {
-            k: vectors.product(principal.T, cast(np.ndarray, one.posture.axes)[2])
-            for k, one in enumerate(every)
-            if isinstance(one, Hanging)
+            k: vectors.product(principal.T, cast(np.ndarray, orientation.posture.axes)[2])
+            for k, orientation in enumerate(orientations)
+            if isinstance(orientation, Hanging)
         }
-        self.low = 0.5 * min(one.posture.height for one in every if not isinstance(one, Hanging)) / length
-        self.radius, self.near = radius / length, ALIKE * solid.radius
-        self.down = _gravity(every[0].track)
-        self.known = np.array([[self._standing(one, length, by) for by in ASKEW] for one in every])
+        self.low = (
+            0.5
+            * min(
+                orientation.posture.height
+                for orientation in orientations
+                if not isinstance(orientation, Hanging)
+            )
+            / length
+        )
+        self.radius, self.near = radius / length, SAME_REACH_SHARE * solid.radius
+        self.down = _gravity(orientations[0].track)
+        self.reaches = np.array(
+            [[self._standing(orientation, length, by) for by in ASKEW_ANGLES] for orientation in orientations]
+        )
         self.turned = {
-            k: np.array([self._standing(one, length, by) for by in ROUND])
-            for k, one in enumerate(every)
-            if one.any_heading
+            k: np.array([self._standing(orientation, length, by) for by in ALL_HEADINGS])
+            for k, orientation in enumerate(orientations)
+            if orientation.any_heading
         }
 
-    def _standing(self, one, length, by):
-        c, s = np.cos(one.heading + by), np.sin(one.heading + by)
+    def _standing(self, orientation, length, by):
+        c, s = np.cos(orientation.heading + by), np.sin(orientation.heading + by)
         turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-        corners = one.posture.corners - np.array([0.0, 0.0, one.posture.height])
+        corners = orientation.posture.corners - np.array([0.0, 0.0, orientation.posture.height])
         return vectors.product(vectors.product(corners, turn.T) / length, self.directions.T).max(axis=0)
 
     def of(self, states) -> np.ndarray:
@@ -68,31 +82,31 @@ class Looks:
 
     def _nearest(self, state) -> int:
         place = np.arctan2(state[0], self.radius - state[1])
-        turn = whereabouts.matrix(whereabouts.moved(state[None], -place * self.radius, self.radius)[0])
+        turn = part_poses.matrix(part_poses.moved(state[None], -place * self.radius, self.radius)[0])
         at_rest = self._at_rest(turn)
         reach = self._reach(turn if at_rest is None else at_rest)
-        return int(np.argmin(np.abs(self.known - reach).max(axis=2).min(axis=1)))
+        return int(np.argmin(np.abs(self.reaches - reach).max(axis=2).min(axis=1)))
 
     def _of(self, state):
         place = np.arctan2(state[0], self.radius - state[1])
-        level = whereabouts.moved(state[None], -place * self.radius, self.radius)[0]
-        turn = whereabouts.matrix(level)
+        level = part_poses.moved(state[None], -place * self.radius, self.radius)[0]
+        turn = part_poses.matrix(level)
         if self.ups and state[2] < self.low:
-            up = {k: float(vectors.dot(turn[2], one)) for k, one in self.ups.items()}
-            return max((k for k in up if up[k] > SWINGS), key=up.__getitem__, default=OTHER)
-        found = self._lying(self._reach(turn))
-        if found == OTHER and (at_rest := self._at_rest(turn)) is not None:
-            found = self._lying(self._reach(at_rest))
-        return found
+            up = {k: float(vectors.dot(turn[2], direction)) for k, direction in self.ups.items()}
+            return max((k for k in up if up[k] > HANGING_COSINE), key=up.__getitem__, default=OTHER)
+        row = self._lying(self._reach(turn))
+        if row == OTHER and (at_rest := self._at_rest(turn)) is not None:
+            row = self._lying(self._reach(at_rest))
+        return row
 
     def _reach(self, turn):
         """How far a part reaches in each direction."""
-        seen = vectors.product(self.corners, turn.T)
-        return vectors.product(seen, self.directions.T).max(axis=0)
+        corners = vectors.product(self.corners, turn.T)
+        return vectors.product(corners, self.directions.T).max(axis=0)
 
     def _lying(self, reach):
         """The orientation in which a part lies that reaches so far; OTHER where none."""
-        off = np.abs(self.known - reach).max(axis=2).min(axis=1)
+        off = np.abs(self.reaches - reach).max(axis=2).min(axis=1)
         best = int(np.argmin(off))
         return best if off[best] < self.near else self._turned(reach)
 
@@ -114,9 +128,9 @@ class Looks:
 
     def _turned(self, reach):
         """The orientation of which any heading counts that it lies in, turned the least; OTHER where none."""
-        away = np.minimum(ROUND, 2.0 * np.pi - ROUND)
-        off = {k: np.abs(one - reach).max(axis=1) for k, one in self.turned.items()}
-        by = {k: float(away[one < self.near].min(initial=np.inf)) for k, one in off.items()}
+        away = np.minimum(ALL_HEADINGS, 2.0 * np.pi - ALL_HEADINGS)
+        off = {k: np.abs(reaches - reach).max(axis=1) for k, reaches in self.turned.items()}
+        by = {k: float(away[reaches < self.near].min(initial=np.inf)) for k, reaches in off.items()}
         return min((k for k in by if np.isfinite(by[k])), key=by.__getitem__, default=OTHER)
 
 
@@ -139,13 +153,13 @@ class AspectsBelow:
     """Tells on which aspect a part lies, or would come to lie if let go as it is, whatever its heading."""
 
     def __init__(self, part, aspects) -> None:
-        found = ground(part, aspects)
-        self.shape, _ = shape_of_part(part, found)
-        self.rows = found.rows
+        faces = require_ground(part, aspects)
+        self.shape, _ = shape_of_part(part, faces)
+        self.rows = faces.rows
 
     def of(self, states) -> np.ndarray:
         """Return (N,) row of each state's aspect, OTHER where it would come to lie on none."""
-        return np.array([self._of(whereabouts.matrix(state)) for state in states], int)
+        return np.array([self._of(part_poses.matrix(state)) for state in states], int)
 
     def _of(self, turn):
         lowest = int(np.argmin(vectors.product(self.shape.vertices, turn[2])))

@@ -33,14 +33,14 @@ class Outlet:
         return np.array(wilson(self.counts, self.counts.sum()))
 
     @property
-    def apart(self) -> dict[Any, Any]:
+    def distances(self) -> dict[Any, Any]:
         """Return the root mean square difference and total variation [1] from each column, by its name."""
         own = self.shares
         return {
-            one.name: (deviation.deviation(own, mine), deviation.total_variation(own, mine))
-            for one in self.columns
+            profile.name: (deviation.deviation(own, mine), deviation.total_variation(own, mine))
+            for profile in self.columns
             if np.isfinite(own).all()
-            for mine in [one.fractions / one.fractions.sum()]
+            for mine in [profile.fractions / profile.fractions.sum()]
         }
 
 
@@ -63,7 +63,7 @@ def outlet(queue, lying, shares, aspects, columns=()) -> Outlet:
     Outlet
     """
     offered = np.zeros(len(aspects))
-    np.add.at(offered, [aspects.index(one.aspect) for one in lying], shares)
+    np.add.at(offered, [aspects.index(orientation.aspect) for orientation in lying], shares)
     return Outlet(
         aspects=tuple(aspects),
         offered=check.frozen(offered),

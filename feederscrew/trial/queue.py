@@ -10,22 +10,28 @@ from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.rates import stream
 from feederscrew.tooling.orientations import Hanging
-from feederscrew.trial import course, crowd, runs, starts, whereabouts
-from feederscrew.trial.kernel.motion import BEHIND, BELOW
+from feederscrew.trial import course, crowd, part_poses, runs, starts
+from feederscrew.trial.kernel.steps import BEHIND, BELOW
 from feederscrew.trial.looks import OTHER, AspectsBelow, Looks
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
 from feederscrew.trial.staging import Stage
 
-GAPS = 0.2  # of a part's length: mean free way between parts as they come in a row
-HOLD = 1.0  # [s] a part that stands at a device with nothing before it is taken out by hand after so long
-BACKED_UP = 0.5  # [s] a part that stands at a pressure break so long, and is pushed, has left the track
-MOVED = 0.05  # of the unit of length: a part that has come no further stands
+MEAN_GAP_SHARE = 0.2  # of a part's length: mean free way between parts as they come in a row
+JAM_SECONDS = (
+    1.0  # [s] a part that stands at a device with nothing before it is taken out by hand after so long
+)
+BACKED_UP_SECONDS = (
+    0.5  # [s] a part that stands at a pressure break so long, and is pushed, has left the track
+)
+STANDING_WAY = 0.05  # of the unit of length: a part that has come no further stands
 PART_OF_TURN = 0.5  # of the bowl's circumference, less two lengths: more parts than fit there wait to enter
-CARRIED = 0.1  # of its weight that other parts carry, and ...
-LIFTED = 0.02  # ... as high over the track: a part has climbed on others
-WHOLE = 1e-6  # of a period: a time that is so little longer than whole periods is that of them
-POURED = 1.05  # of the part's radius: apart along the track, and over it, where parts are poured
+CARRIED_SHARE = 0.1  # of its weight that other parts carry, and ...
+CLIMB_HEIGHT = 0.02  # ... as high over the track: a part has climbed on others
+WHOLE_PERIOD_TOLERANCE = (
+    1e-6  # of a period: a time that is so little longer than whole periods is that of them
+)
+POURED_SPACING = 1.05  # of the part's radius: apart along the track, and over it, where parts are poured
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +62,7 @@ class QueuedParts:
     poses: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 7)))
     moments: tuple[tuple[float, int, int], ...] = ()  # time [s], parts left and returned by then, of each
     stage: Stage | None = None  # the track with all its devices, on which they lie
+    pulses: tuple[tuple[tuple[float, float], ...], ...] = ()  # [s] begin and end of each, by sensor
 
     @property
     def rate(self):
@@ -81,11 +88,11 @@ class QueuePlan:
     seconds: float  # [s] at most
     # [1] mean free way between parts as they come in a row, over their length, beside the room that devices
     # need; 0 where they come touching. None: they fall onto the track in any attitude, not in a row
-    gaps: float | None = GAPS
+    gaps: float | None = MEAN_GAP_SHARE
     frames: int = 0  # poses of all parts that are noted for a film
 
 
-def queue_of(part, bowl, aspects, every, poses, shares, plan, run):
+def queue_of(part, bowl, aspects, orientations, poses, shares, plan, run):
     """Follow a queue of parts that come without end: what leaves is offered again at the end of the row.
 
     Parameters
@@ -96,7 +103,7 @@ def queue_of(part, bowl, aspects, every, poses, shares, plan, run):
         With its devices.
     aspects : Aspects
         Of the part, A of them.
-    every : sequence of Orientation
+    orientations : sequence of Orientation
         M of them.
     poses : sequence of Orientation
         S of them in which parts may leave: those, then those that hang.
@@ -116,13 +123,13 @@ def queue_of(part, bowl, aspects, every, poses, shares, plan, run):
         If the user stops it before the first period is done.
     """
     run.begin()
-    queue = PartsQueue(part, bowl, aspects, (every, shares), poses, plan, run.seed)
+    queue = PartsQueue(part, bowl, aspects, (orientations, shares), poses, plan, run.seed)
     try:
         queue.follow(plan.seconds, run.tell)
     except KeyboardInterrupt:
         if not queue.periods:
             raise
-    return queue.seen(partial=queue.periods < queue.periods_in(plan.seconds))
+    return queue.result(partial=queue.periods < queue.periods_in(plan.seconds))
 
 
 class PartsQueue:
@@ -138,23 +145,29 @@ class PartsQueue:
     """
 
     def __init__(self, part, bowl, aspects, offered, poses, plan, seed):
-        self.part, self.bowl, (every, shares), parts = part, bowl, offered, plan.parts
+        self.part, self.bowl, (orientations, shares), parts = part, bowl, offered, plan.parts
         solid, length, self.principal = solid_of(part)
-        solid = rounded(solid, course.axes(every, self.principal))
-        self.known = known = runs.setting(solid, length, bowl)
-        self.every, self.gaps, self.parts, self.chances = every, plan.gaps, parts, np.cumsum(shares)
+        solid = rounded(solid, course.axes(orientations, self.principal))
+        self.part_in_bowl = part_in_bowl = runs.setting(solid, length, bowl)
+        self.every, self.gaps, self.parts, self.chances = orientations, plan.gaps, parts, np.cumsum(shares)
         self.rng, self.tilts = (np.random.default_rng(key) for key in ((seed, parts), (seed, parts, 1)))
-        longest = max(one.length for one in every)
+        longest = max(orientation.length for orientation in orientations)
         turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # some rolls back
         room = min(1.5 * longest * parts + 2.0 * longest, max(turn, 2.0 * longest))
-        self.track = crowd.crowded(bowl, every, bowl.devices, room)
+        self.track = crowd.crowded(bowl, orientations, bowl.devices, room)
         self.placed = [device for device in bowl.devices if device.placed]
-        self.outlet, self.windows = self.track.outlet / known.length, self.track.windows / known.length
-        self.apart = stream.needed_spacing(bowl.devices, every, bowl) / known.length
-        self.crowd = crowd.PartsOnTrack(known, self.track, parts)
+        self.outlet, self.windows = (
+            self.track.outlet / part_in_bowl.length,
+            self.track.windows / part_in_bowl.length,
+        )
+        self.apart = stream.needed_spacing(bowl.devices, orientations, bowl) / part_in_bowl.length
+        self.crowd = crowd.PartsOnTrack(part_in_bowl, self.track, parts)
         self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
         self.mark, self.since, self.on_others = np.zeros(parts), np.zeros(parts), np.zeros(parts, bool)
-        self.below, self.hanging = AspectsBelow(part, aspects), [isinstance(one, Hanging) for one in poses]
+        self.below, self.hanging = (
+            AspectsBelow(part, aspects),
+            [isinstance(orientation, Hanging) for orientation in poses],
+        )
         self.left = np.zeros((len(poses) + 1, len(aspects.names) + 1), int)
         self.returned = self.jams = self.climbs = self.relieved = 0
         self.way, self.free, self.touch, self.depth = [], [], [], 0.0
@@ -171,7 +184,7 @@ class PartsQueue:
 
     def periods_in(self, seconds):
         """Return how many periods of the drive are followed in a time [s]: no less than the time, and one."""
-        return max(math.ceil(seconds * self.bowl.drive.frequency - WHOLE), 1)
+        return max(math.ceil(seconds * self.bowl.drive.frequency - WHOLE_PERIOD_TOLERANCE), 1)
 
     def follow(self, seconds, tell=None) -> None:
         """Go on until a time [s] since the queue began; what was followed before is not followed again.
@@ -185,7 +198,7 @@ class PartsQueue:
         Raises
         ------
         KeyboardInterrupt
-            If the user stops it: ``seen`` has the periods until then.
+            If the user stops it: ``result`` has the periods until then.
         """
         count = self.periods_in(seconds)
         while self.periods < count:
@@ -208,13 +221,15 @@ class PartsQueue:
         while self.waiting:
             self.coming = self.coming or self.fresh()
             state, gap = self.coming
-            rear, front, _ = whereabouts.extents(state, self.known.solid.corners, self.known.radius)
+            rear, front, _ = part_poses.extents(
+                state, self.part_in_bowl.solid.corners, self.part_in_bowl.radius
+            )
             place = min(end, 0.0) - gap - front
-            if place + rear < self.track.start / self.known.length:
+            if place + rear < self.track.start / self.part_in_bowl.length:
                 break
             self.coming = None
             n = self.waiting.pop(0)
-            self.crowd.lay(n, whereabouts.moved(state[None], place, self.known.radius)[0])
+            self.crowd.lay(n, part_poses.moved(state[None], place, self.part_in_bowl.radius)[0])
             self.mark[n], self.since[n], self.on_others[n] = place, self.time, False
             end = place + rear
         self.most = max(self.most, int(self.crowd.on.sum()))
@@ -222,46 +237,55 @@ class PartsQueue:
     def fresh(self):
         """A part that is about to enter: its state at the place 0, and the free way before it."""
         k = min(int(np.searchsorted(self.chances, self.rng.random() * self.chances[-1])), len(self.every) - 1)
-        one = self.every[k]
-        track = one.track
+        orientation = self.every[k]
+        track = orientation.track
         if self.gaps is not None:
-            play = starts.PLAY * self.rng.random()
-            state = whereabouts.laid(one, self.principal, self.known.length, track, place=0.0)
-            state = starts.tilted(state, self.known.solid.corners, self.tilts)
-            state = starts.clear(state, self.known.solid, track, self.known.length, play, one.wall_leans)
-            gap = self.apart + 2.0 * self.gaps * self.rng.random() * one.length / self.known.length
+            play = starts.MAX_START_PLAY_M * self.rng.random()
+            state = part_poses.pose_on_track(
+                orientation, self.principal, self.part_in_bowl.length, track, place=0.0
+            )
+            state = starts.tilted(state, self.part_in_bowl.solid.corners, self.tilts)
+            state = starts.clear(
+                state, self.part_in_bowl.solid, track, self.part_in_bowl.length, play, orientation.wall_leans
+            )
+            gap = (
+                self.apart
+                + 2.0 * self.gaps * self.rng.random() * orientation.length / self.part_in_bowl.length
+            )
             return state, gap
-        radius, state = self.known.solid.radius, np.zeros(body.STATE)
+        radius, state = self.part_in_bowl.solid.radius, np.zeros(body.STATE)
         turn = self.rng.standard_normal(4)
-        state[:3] = 0.0, radius * POURED, radius * POURED * (1.0 + self.rng.random())
+        state[:3] = 0.0, radius * POURED_SPACING, radius * POURED_SPACING * (1.0 + self.rng.random())
         state[body.Q : body.Q + 4] = turn / np.sqrt((turn**2).sum())
         return state, 0.0
 
     def ride(self, turn) -> None:
         """Move all for one period of the drive, and look what became of them."""
         lying = np.flatnonzero(self.crowd.on)
-        before = whereabouts.ways(self.crowd.arrays.states, self.known.radius)
+        before = part_poses.ways_along_wall(self.crowd.arrays.states, self.part_in_bowl.radius)
         self.depth = max(self.depth, self.crowd.ride(turn))
         self.periods += 1
-        ways = whereabouts.ways(self.crowd.arrays.states, self.known.radius)
-        self.crowd.watch(lying, before, ways, turn + 1)
+        after = part_poses.ways_along_wall(self.crowd.arrays.states, self.part_in_bowl.radius)
+        self.crowd.watch(lying, before, after, turn + 1)
         fallen = self.fallen()
         on = lying[~self.crowd.blown_off()[lying]]
         if len(on):
-            self.way.append((ways - before)[on].mean())
+            self.way.append((after - before)[on].mean())
         reach = self.crowd.reaches(lying)
-        order = lying[np.argsort(-ways[lying], kind="stable")].tolist()
+        order = lying[np.argsort(-after[lying], kind="stable")].tolist()
         self.free += [max(reach[a][0] - reach[b][1], 0.0) for a, b in itertools.pairwise(order)]
         self.touch.append((self.crowd.forces[lying, BEHIND] > 0.0).mean())
         self.carried(lying, reach)
         for n in order:
-            self.look(n, ways[n], reach, order, fallen[n])
+            self.look(n, after[n], reach, order, fallen[n])
         self.enter()
 
     def note(self) -> None:
         """Note where all parts are, for a film."""
         states = self.crowd.arrays.states
-        poses = np.concatenate([states[:, :3] * self.known.length, states[:, body.Q : body.Q + 4]], axis=1)
+        poses = np.concatenate(
+            [states[:, :3] * self.part_in_bowl.length, states[:, body.Q : body.Q + 4]], axis=1
+        )
         poses[~self.crowd.on] = np.nan
         self.poses.append(poses)
         self.moments.append((self.time, self.whole, self.returned))
@@ -269,11 +293,11 @@ class PartsQueue:
     def carried(self, lying, reach) -> None:
         """Count parts that have come to lie on others."""
         for n in lying:
-            on = self.crowd.forces[n, BELOW] > CARRIED and reach[n][2] > LIFTED
+            on = self.crowd.forces[n, BELOW] > CARRIED_SHARE and reach[n][2] > CLIMB_HEIGHT
             self.climbs += bool(on and not self.on_others[n])
             self.on_others[n] = on
 
-    def look(self, n, way, reach, order, fell) -> None:
+    def look(self, n, place, reach, order, fell) -> None:
         """What became of one part: left, fell, stands at a device, goes on."""
         rear, front, _ = reach[n]
         if self.first is None and front > self.outlet and not fell:
@@ -281,16 +305,16 @@ class PartsQueue:
             self.start = self.outside(rear, front)
         if rear > self.outlet and not fell and not self.crowd.slides_off(n):
             self.leave(n)
-            self.again(n)
-        elif fell or front < self.track.start / self.known.length:
+            self.send_back(n)
+        elif fell or front < self.track.start / self.part_in_bowl.length:
             self.returned += 1
-            self.again(n)
-        elif way - self.mark[n] > MOVED:
-            self.mark[n], self.since[n] = way, self.time
-        elif self.time - self.since[n] >= BACKED_UP and self.pushed_off(n, rear, front):
+            self.send_back(n)
+        elif place - self.mark[n] > STANDING_WAY:
+            self.mark[n], self.since[n] = place, self.time
+        elif self.time - self.since[n] >= BACKED_UP_SECONDS and self.pushed_off(n, rear, front):
             self.returned += 1
             self.relieved += 1
-            self.again(n)
+            self.send_back(n)
         else:
             self.stand(n, front, reach, order)
 
@@ -307,8 +331,8 @@ class PartsQueue:
         if not at or not self.crowd.forces[n, BEHIND] > 0.0:
             return False
         state = self.crowd.arrays.states[n]
-        across = whereabouts.reach(state, self.known.solid.corners, self.known.radius)
-        return bool(across * self.known.length > min(at))
+        across = part_poses.reach(state, self.part_in_bowl.solid.corners, self.part_in_bowl.radius)
+        return bool(across * self.part_in_bowl.length > min(at))
 
     def leave(self, n) -> None:
         """Count a part that has left: its orientation, and the aspect on which it lies."""
@@ -320,28 +344,28 @@ class PartsQueue:
 
     def stand(self, n, front, reach, order) -> None:
         """A part that stands: what pushes it, and whether it is what holds the others up."""
-        at = np.flatnonzero((self.windows[:, 0] < front) & (front < self.windows[:, 1] + MOVED))
+        at = np.flatnonzero((self.windows[:, 0] < front) & (front < self.windows[:, 1] + STANDING_WAY))
         if not len(at):
             return
         force = self.crowd.forces[n, BEHIND]
         self.pressure[at[0]] = max(self.pressure[at[0]], force)
         ahead = [reach[m][0] - front for m in order if m != n and self.crowd.on[m] and reach[m][1] > front]
-        if self.time - self.since[n] >= HOLD and min(ahead, default=np.inf) > GAPS:
+        if self.time - self.since[n] >= JAM_SECONDS and min(ahead, default=np.inf) > MEAN_GAP_SHARE:
             self.jams += 1
-            self.again(n)
+            self.send_back(n)
 
     def fallen(self):
         """Which parts, (N,) bool, have fallen off the track they are at, or were blown off it."""
-        heights = self.crowd.arrays.states[:, body.Z] * self.known.length
+        heights = self.crowd.arrays.states[:, body.Z] * self.part_in_bowl.length
         return self.crowd.blown_off() | (heights < self.track.levels.min() - self.deep)
 
     def at_outlet(self, n):
         """The state of a part as if the track were at the level at which it began."""
         state = np.array(self.crowd.arrays.states[n])
-        state[body.Z] -= self.track.levels[-1] / self.known.length
+        state[body.Z] -= self.track.levels[-1] / self.part_in_bowl.length
         return state
 
-    def again(self, n) -> None:
+    def send_back(self, n) -> None:
         """Take a part off the track; it waits to enter again."""
         self.crowd.take(n)
         self.waiting.append(n)
@@ -350,9 +374,9 @@ class PartsQueue:
         """How much of a part has left [1]."""
         return float(np.clip((front - self.outlet) / (front - rear), 0.0, 1.0))
 
-    def seen(self, partial=False) -> QueuedParts:
+    def result(self, partial=False) -> QueuedParts:
         """Return what the parts did so far, QueuedParts; ``partial`` where the user stopped it."""
-        length, seconds = self.known.length, self.time
+        length, seconds = self.part_in_bowl.length, self.time
         reach = self.crowd.reaches(np.flatnonzero(self.crowd.on))  # none of them has fallen
         part = sum(self.outside(rear, front) for rear, front, _ in reach.values())
         counted = 0.0 if self.first is None else seconds - self.first
@@ -377,4 +401,11 @@ class PartsQueue:
             poses=check.frozen(np.reshape(self.poses, (len(self.poses), self.parts, 7))),
             moments=tuple(self.moments),
             stage=self.track.stage,
+            pulses=tuple(
+                tuple(
+                    (begin * self.part_in_bowl.unit, end * self.part_in_bowl.unit)
+                    for begin, end in pulses.log
+                )
+                for pulses in self.crowd.pulses
+            ),
         )

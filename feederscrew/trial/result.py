@@ -19,25 +19,25 @@ from feederscrew.trial import course
 from feederscrew.trial.landing import Landing
 from feederscrew.trial.queue import QueuedParts
 
-CLEAR = 2.5e-4  # [m] margin from which a static verdict should hold
-HELD = 0.95  # [1] of the trials in which it should
-HOPS = (
+CLEAR_MARGIN_M = 2.5e-4  # [m] margin from which a static verdict should hold
+VERDICT_SHARE = 0.95  # [1] of the trials in which it should
+HOPS_TEXT = (
     "throw number {:.3g}: parts hop {:.2g} mm high and fly {:.2g} mm - margins of static verdicts are less "
     "that"
 )
-BOUNCES = (
+BOUNCES_TEXT = (
     "restitution of single impacts spreads from {:.3g} to {:.3g}: a point would travel at {:.4g} to {:.4g} "
     "mm/s - velocities and rates here are of the value between"
 )
-DEEP = (
+DEEP_TEXT = (
     "{}: up to {:.2g} mm deep in the track or a device, where corners and edges slipped past each other's "
     "contacts: do not go by this row"
 )
-WEDGES = (
+WEDGES_TEXT = (
     "{}: hangs with its head at the wall and its shank at a rail, and may wedge there, which rigid parts of "
     "a trial do not - put the rails {:.2g} mm farther from the wall"
 )
-ODD = "{}: {} of {} do what the static verdict says ({})"
+ODD_TEXT = "{}: {} of {} do what the static verdict says ({})"
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class TrialRun:
 
     bowl: Bowl
     throw_number: float  # [1]
-    known: stream.Orientations  # and what the static rule says of each
+    orientations: stream.Orientations  # and what the static rule says of each
     shares: np.ndarray  # (M,) [1] in which they are offered: of those tried, sums to 1
     course: course.Course
     queue: QueuedParts | None = None  # None where it was not asked for
@@ -55,14 +55,14 @@ class TrialRun:
     @property
     def partial(self) -> bool:
         """Say whether the user stopped it before all was done."""
-        return any(one.partial for one in (self.course, self.landing, self.queue) if one is not None)
+        return any(run.partial for run in (self.course, self.landing, self.queue) if run is not None)
 
     @cached_property
     def counts(self):
         """Return (M, 7) int, parts by the orientation laid down and by fate, columns as ``course.FATES``."""
-        found = np.zeros((len(self.shares), len(course.FATES)), int)
-        np.add.at(found, (self.course.entered, self.course.fates), 1)
-        return found
+        counts = np.zeros((len(self.shares), len(course.FATES)), int)
+        np.add.at(counts, (self.course.entered, self.course.fates), 1)
+        return counts
 
     @property
     def tried(self):
@@ -73,16 +73,16 @@ class TrialRun:
     def ends(self) -> np.ndarray:
         """Return (M, 2) [1] Wilson intervals of the share that passes; 0 to 1 where none was tried."""
         rows = zip(self.counts[:, course.PASSED], self.tried)
-        return np.array([[float(end[0]) for end in wilson([one], total)] for one, total in rows])
+        return np.array([[float(end[0]) for end in wilson([passes], total)] for passes, total in rows])
 
     @cached_property
     def matrix(self):
         """Return (M, S + 1) int, from orientation in to orientation out; the last column is unknown ones."""
-        found = np.zeros((len(self.shares), len(self.known.states) + 1), int)
+        counts = np.zeros((len(self.shares), len(self.orientations.states) + 1), int)
         out = self.course.orientations[-1]
         whole = np.isin(self.course.fates, (course.PASSED, course.TURNED))
-        np.add.at(found, (self.course.entered[whole], out[whole]), 1)  # OTHER is the last
-        return found
+        np.add.at(counts, (self.course.entered[whole], out[whole]), 1)  # OTHER is the last
+        return counts
 
     @property
     def leaving(self):
@@ -96,8 +96,8 @@ class TrialRun:
 
         What leaves in none of the known is many orientations, not one: it is never the wanted one.
         """
-        known = self.leaving[:-1]
-        return int(np.argmax(known)) if known.any() else None
+        shares = self.leaving[:-1]
+        return int(np.argmax(shares)) if shares.any() else None
 
     @property
     def efficiency(self) -> float:
@@ -126,11 +126,11 @@ class TrialRun:
 
     def _mean(self, which):
         """Mean velocity of some of the parts that do not stick on the bare track, by the shares."""
-        found = self.course
-        which &= ~((found.ended == 0) & np.isin(found.fates, (course.STOPPED, course.STUCK)))
-        weights = (self.shares / np.maximum(self.tried, 1))[found.entered][which]
+        course_run = self.course
+        which &= ~((course_run.ended == 0) & np.isin(course_run.fates, (course.STOPPED, course.STUCK)))
+        weights = (self.shares / np.maximum(self.tried, 1))[course_run.entered][which]
         total = weights.sum()
-        return float((weights * found.velocities[which]).sum() / total) if total > 0.0 else np.nan
+        return float((weights * course_run.velocities[which]).sum() / total) if total > 0.0 else np.nan
 
     @cached_property
     def rebound(self):
@@ -147,8 +147,8 @@ class TrialRun:
             return self.queue.rate
         if self.wanted is None or not self.velocity > 0.0:
             return 0.0
-        offered = self.velocity / float((self.shares * self.known.lengths).sum())
-        most = self.velocity / self.known.states[self.wanted].length
+        offered = self.velocity / float((self.shares * self.orientations.lengths).sum())
+        most = self.velocity / self.orientations.states[self.wanted].length
         return float(min(offered * self.efficiency, most))
 
     @property
@@ -161,7 +161,7 @@ class TrialRun:
     @property
     def predicted(self):
         """Return (M,) bool, whether the static rule lets an orientation pass."""
-        return self.known.through > 0.5
+        return self.orientations.through > 0.5
 
     @cached_property
     def holding(self):
@@ -175,8 +175,8 @@ class TrialRun:
     @property
     def margin(self):
         """Return (M,) [m] of the static verdict; NaN of none: nothing met, lost before, or not sure."""
-        lost = np.array([one.returned for one in self.known.lying])
-        return np.where(lost | ~self.sure, np.nan, self.known.margin)
+        lost = np.array([orientation.returned for orientation in self.orientations.lying])
+        return np.where(lost | ~self.sure, np.nan, self.orientations.margin)
 
     @cached_property
     def sure(self):
@@ -185,62 +185,69 @@ class TrialRun:
         What passes may rock where a device leaves little of its foot; what a hole does not carry may rest
         in it.
         """
-        lying, found = self.known.lying, self.known.sure.copy()
-        rows = np.flatnonzero(found & self.predicted)
-        found[rows] = steady(self.bowl.devices, [lying[k] for k in rows], self.bowl, CLEAR)
-        return found & is_surely_gone(self.bowl.devices, lying, self.known.passes)
+        lying, is_sure = self.orientations.lying, self.orientations.sure.copy()
+        rows = np.flatnonzero(is_sure & self.predicted)
+        is_sure[rows] = steady(self.bowl.devices, [lying[k] for k in rows], self.bowl, CLEAR_MARGIN_M)
+        return is_sure & is_surely_gone(self.bowl.devices, lying, self.orientations.passes)
 
     @property
     def differs(self):
         """Return (M,) bool, where fewer than ``HELD`` did what the static verdict says, sure of it or not."""
-        return (self.tried > 0) & (self.holding < HELD * self.tried)
+        return (self.tried > 0) & (self.holding < VERDICT_SHARE * self.tried)
 
     @property
     def odd(self):
         """Return (M,) bool, where fewer than ``HELD`` did what a verdict of a clear margin says."""
         margin = np.abs(np.nan_to_num(self.margin, nan=np.inf))
-        clear = (margin > CLEAR) & self.sure
+        clear = (margin > CLEAR_MARGIN_M) & self.sure
         return self.differs & clear
 
     @property
     def sorts(self) -> bool:
         """Say whether what shall pass leaves, nothing else does, and nothing stops: sure of it or not."""
         passed = self.counts[:, course.PASSED]
-        lost = self.predicted & (passed < HELD * self.tried)
-        kept = ~self.predicted & (self.tried - passed < HELD * self.tried)
-        return not (lost.any() or kept.any() or self.jams)
+        lost = self.predicted & (passed < VERDICT_SHARE * self.tried)
+        stays = ~self.predicted & (self.tried - passed < VERDICT_SHARE * self.tried)
+        return not (lost.any() or stays.any() or self.jams)
 
     @cached_property
     def wedging(self) -> np.ndarray:
         """Return (M,) [m], by how much too near to the wall the rails are between which each hung; else 0."""
         spans = [device.span for device in self.bowl.devices if device.hangs]
         hung = self.counts[:, [course.TURNED, course.HANGING]].any(axis=1)
-        necks = [neck(one) if own else None for one, own in zip(self.known.lying, hung)]
-        return np.array([max((too_near(one, span) for span in spans if one), default=0.0) for one in necks])
+        necks = [
+            neck(orientation) if own else None for orientation, own in zip(self.orientations.lying, hung)
+        ]
+        return np.array(
+            [
+                max((too_near(orientation, span) for span in spans if orientation), default=0.0)
+                for orientation in necks
+            ]
+        )
 
     @property
     def depths(self):
         """Return the deepest that a part of each orientation was in anything, (M,) [m]."""
-        found = np.zeros(len(self.shares))
-        np.maximum.at(found, self.course.entered, self.course.depths)
-        return found
+        deepest = np.zeros(len(self.shares))
+        np.maximum.at(deepest, self.course.entered, self.course.depths)
+        return deepest
 
     @property
     def remarks(self) -> Iterator[Any]:
         """Say what a user must not overlook, a sentence each."""
         if self.throw_number > 1.0:
-            known = hop(self.bowl)
-            yield HOPS.format(self.throw_number, 1e3 * known.height, 1e3 * known.flight)
+            hops = hop(self.bowl)
+            yield HOPS_TEXT.format(self.throw_number, 1e3 * hops.height, 1e3 * hops.flight)
             low, high = sensitivity.rebounds(self.bowl)
-            yield BOUNCES.format(low, high, 1e3 * self.rebound.less, 1e3 * self.rebound.more)
+            yield BOUNCES_TEXT.format(low, high, 1e3 * self.rebound.less, 1e3 * self.rebound.more)
         for k in np.flatnonzero(self.odd):
-            said = "passes" if self.predicted[k] else "is returned"
+            verdict = "passes" if self.predicted[k] else "is returned"
             if np.isfinite(self.margin[k]):  # the bare track gives none
-                said += f", margin {1e3 * self.margin[k]:.2f} mm"
-            yield ODD.format(self.known.lying[k].name, self.holding[k], self.tried[k], said)
+                verdict += f", margin {1e3 * self.margin[k]:.2f} mm"
+            yield ODD_TEXT.format(self.orientations.lying[k].name, self.holding[k], self.tried[k], verdict)
         for k in np.flatnonzero(self.wedging):
-            yield WEDGES.format(self.known.lying[k].name, 1e3 * self.wedging[k])
-        for k in np.flatnonzero(self.depths > CLEAR):
-            yield DEEP.format(self.known.lying[k].name, 1e3 * self.depths[k])
+            yield WEDGES_TEXT.format(self.orientations.lying[k].name, 1e3 * self.wedging[k])
+        for k in np.flatnonzero(self.depths > CLEAR_MARGIN_M):
+            yield DEEP_TEXT.format(self.orientations.lying[k].name, 1e3 * self.depths[k])
         if not self.velocity > 0.0:
             yield "the part does not travel up the track: see feeder convey"

@@ -6,15 +6,21 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.geometry import vectors
-from feederscrew.trial.shape import alone, boxes, on_hull, together
+from feederscrew.geometry.compiled import frozen_rows
+from feederscrew.trial.kernel import workspace
+from feederscrew.trial.shape import boxes, on_hull, singles_of, together
 
-FINE = np.radians(6.0)  # between two corners of a circle, for what it touches the borders of cuts with
-COARSEST = np.radians(45.0)  # corners further apart belong to a polygon, as of a hexagon's head, ...
-CLOSE = np.radians(10.0)  # ... and about an axis on which the part does not roll, these
-LEAST = 9  # corners of a circle
-BRIDGED = 0.01  # of the unit of length: a circle bulges so far at most where no surface joins its corners
-ALIKE = 2e-3  # of the unit of length: corners that far apart may be of one circle
-ALONG = 1.0 - 1e-6  # [1] cosine between axes that are one
+FINE_CORNERS_ANGLE = np.radians(
+    6.0
+)  # between two corners of a circle, for what it touches the borders of cuts with
+COARSE_CORNERS_ANGLE = np.radians(
+    45.0
+)  # corners further apart belong to a polygon, as of a hexagon's head, ...
+CLOSE_CORNERS_ANGLE = np.radians(10.0)  # ... and about an axis on which the part does not roll, these
+MIN_CIRCLE_CORNERS = 9  # corners of a circle
+MAX_BULGE = 0.01  # of the unit of length: a circle bulges so far at most where no surface joins its corners
+SAME_CIRCLE_DISTANCE = 2e-3  # of the unit of length: corners that far apart may be of one circle
+SAME_AXIS_COSINE = 1.0 - 1e-6  # [1] cosine between axes that are one
 
 
 def rounded(solid, axes):
@@ -33,21 +39,29 @@ def rounded(solid, axes):
         With these circles, and with points between corners of them that are far apart. The chords between
         the corners stay as edges; they lie inside the circles.
     """
-    straight = [one for one in np.eye(3) if not any(abs(vectors.dot(one, axis)) > ALONG for axis in axes)]
-    made = [(axis, COARSEST) for axis in axes] + [(axis, CLOSE) for axis in straight]
+    straight = [
+        principal
+        for principal in np.eye(3)
+        if not any(abs(vectors.dot(principal, axis)) > SAME_AXIS_COSINE for axis in axes)
+    ]
+    searches = [(axis, COARSE_CORNERS_ANGLE) for axis in axes] + [
+        (axis, CLOSE_CORNERS_ANGLE) for axis in straight
+    ]
     joined = joined_pairs(solid)
-    found = [ring for axis, gap in made for ring in circles(solid.corners, axis, gap, joined)]
-    found = [ring for ring in found if solid.outer[ring.corners].mean() > 0.5]
-    if not found:
+    circles_found = [ring for axis, gap in searches for ring in circles(solid.corners, axis, gap, joined)]
+    circles_found = [ring for ring in circles_found if solid.outer[ring.corners].mean() > 0.5]
+    if not circles_found:
         return solid
-    solid = _with_points(solid, found)
-    ringed = np.zeros(len(solid.corners), bool)
-    for ring in found:
-        ringed[ring.corners] = True
-    ringed[len(solid.corners) - sum(len(ring.points) for ring in found) :] = True
-    rims = np.array([[*ring.centre, *ring.axis, ring.radius] for ring in found])
+    solid = _with_points(solid, circles_found)
+    on_circle = np.zeros(len(solid.corners), bool)
+    for ring in circles_found:
+        on_circle[ring.corners] = True
+    on_circle[len(solid.corners) - sum(len(ring.points) for ring in circles_found) :] = True
+    rings = [(*ring.centre, *ring.axis, ring.radius) for ring in circles_found]
     return solid._replace(
-        rims=check.frozen(rims), ringed=check.frozen(ringed), **alone(solid.corners, ringed)
+        circles=frozen_rows(rings, workspace.CIRCLE),
+        on_circle=check.frozen(on_circle),
+        **singles_of(solid.corners, on_circle),
     )
 
 
@@ -66,7 +80,7 @@ def _with_points(solid, rings):
         vertices=check.frozen(vertices),
         corners=check.frozen(vertices[: count + more]),
         firsts=check.frozen(np.concatenate([solid.firsts, solid.firsts[-1] + 3 * (1 + np.arange(more))])),
-        beside=check.frozen(np.concatenate([solid.beside, own.ravel()])),
+        neighbours=check.frozen(np.concatenate([solid.neighbours, own.ravel()])),
         grouped=check.frozen(grouped),
         corner_blocks=check.frozen(boxes(vertices[grouped][:, None])),
         outer=check.frozen(on_hull(vertices[: count + more])),
@@ -89,10 +103,10 @@ class Circle(NamedTuple):
 def joined_pairs(solid) -> set[Any]:
     """Return which corners of a TrueSolid an edge of its surface joins, a set of (int, int)."""
     first = np.repeat(np.arange(len(solid.firsts) - 1), np.diff(solid.firsts))
-    return set(zip(first.tolist(), solid.beside.tolist()))
+    return set(zip(first.tolist(), solid.neighbours.tolist()))
 
 
-def circles(corners, axis, gap=COARSEST, joined=None):
+def circles(corners, axis, gap=COARSE_CORNERS_ANGLE, joined=None):
     """Return the circles (a list of Circle) through corners, about an axis through the origin.
 
     Between the tips of teeth, or at the sides of a slot, nothing is round: where the surface does not join
@@ -110,10 +124,10 @@ def circles(corners, axis, gap=COARSEST, joined=None):
     across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     across = vectors.unit(across)
     aside = np.cross(axis, across)
-    along, x, y = (vectors.product(corners, one) for one in (axis, across, aside))
+    along, x, y = (vectors.product(corners, direction) for direction in (axis, across, aside))
     away, turn = np.hypot(x, y), np.arctan2(y, x)
-    found = []
-    for ring in (ring for ring in _rings(along, away) if len(ring) >= LEAST):
+    rings = []
+    for ring in (ring for ring in _rings(along, away) if len(ring) >= MIN_CIRCLE_CORNERS):
         ring = ring[np.argsort(turn[ring])]
         gaps = np.diff(turn[ring], append=turn[ring[0]] + 2.0 * np.pi)
         if gaps.max() > gap:
@@ -122,21 +136,23 @@ def circles(corners, axis, gap=COARSEST, joined=None):
         solid = np.ones(len(ring), bool)
         if joined is not None:
             solid = np.array([pair in joined for pair in zip(ring.tolist(), np.roll(ring, -1).tolist())])
-        if radius * (1.0 - np.cos(0.5 * gaps[~solid].max(initial=0.0))) > BRIDGED:
+        if radius * (1.0 - np.cos(0.5 * gaps[~solid].max(initial=0.0))) > MAX_BULGE:
             continue
         points, ends = [np.empty((0, 3))], [np.empty((0, 2), int)]
         for k, wide in enumerate(gaps):
-            steps = int(np.ceil(wide / FINE)) if solid[k] else 1
+            steps = int(np.ceil(wide / FINE_CORNERS_ANGLE)) if solid[k] else 1
             at = turn[ring[k]] + wide * np.arange(1, steps)[:, None] / steps
             points.append(centre + radius * (np.cos(at) * across + np.sin(at) * aside))
             ends.append(np.tile([ring[k], ring[(k + 1) % len(ring)]], (steps - 1, 1)))
         between = np.concatenate(points), np.concatenate(ends)
-        found.append(Circle(ring, centre, np.array(axis, float), float(radius), *between))
-    return found
+        rings.append(Circle(ring, centre, np.array(axis, float), float(radius), *between))
+    return rings
 
 
 def _rings(along, away):
     """Corners that lie at one place along an axis and at one distance from it, a ring each."""
-    order = np.lexsort((away, np.round(along / ALIKE)))
-    apart = (np.abs(np.diff(along[order])) > ALIKE) | (np.abs(np.diff(away[order])) > ALIKE)
-    return np.split(order, np.flatnonzero(apart) + 1)
+    order = np.lexsort((away, np.round(along / SAME_CIRCLE_DISTANCE)))
+    breaks = (np.abs(np.diff(along[order])) > SAME_CIRCLE_DISTANCE) | (
+        np.abs(np.diff(away[order])) > SAME_CIRCLE_DISTANCE
+    )
+    return np.split(order, np.flatnonzero(breaks) + 1)

@@ -10,19 +10,21 @@ from feederscrew import check
 from feederscrew.dropping import plate_test
 from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.dropping.pool import in_batches
-from feederscrew.geometry.compiled import on_disk
+from feederscrew.geometry.compiled import on_disk, zero_rows
 from feederscrew.trial import air
-from feederscrew.trial.arrays import ALONE, crowd_of
-from feederscrew.trial.kernel import crowd_records, travel
+from feederscrew.trial.arrays import NO_CROWD, workspace_of
+from feederscrew.trial.kernel import travel, workspace
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = (
     travel.RUNNING, travel.PASSED, travel.RETURNED, travel.STANDS, travel.ROLLED,
 )  # fmt: skip
-OVER = 0.1  # of its size: a part whose centre of mass is so far over the free edge does not come back
+OVER_EDGE_SHARE = (
+    0.1  # of its size: a part whose centre of mass is so far over the free edge does not come back
+)
 PERIOD, HOPPING = 48, 96  # steps of a period of the drive, and where parts hop
 SWEEPS, CONVERGED = 60, 1e-4  # of the contact solver: at most, and what a sweep may still change
-ONWARDS = 5e-3  # of the unit of length: a border goes on so far where its corner is not convex
-BATCH = 5  # parts a core takes at a time
+BORDER_EXTENSION = 5e-3  # of the unit of length: a border goes on so far where its corner is not convex
+PARTS_PER_TASK = 5  # parts a core takes at a time
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,14 +34,14 @@ class Runs:
     outcomes: np.ndarray  # (N,) int: PASSED, RETURNED, STANDS, ROLLED or RUNNING
     states: np.ndarray  # (N, 13) at the end, without dimensions
     seconds: np.ndarray  # (N,) [s]
-    ways: np.ndarray  # (N,) [m] along the wall
+    distances: np.ndarray  # (N,) [m] along the wall
     depths: np.ndarray  # (N,) [m] the deepest that anything was in anything
     gains: np.ndarray  # (N,) [m] largest rise of the energy over what gravity and the drive gave, as a height
     paths: np.ndarray  # (N, K, 8) time [s], position [m], attitude; NaN after the end
     partial: bool  # stopped by the user before all parts were done
 
 
-COLUMNS = tuple(one.name for one in fields(Runs) if one.name != "partial")
+RUN_COLUMNS = tuple(field.name for field in fields(Runs) if field.name != "partial")
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,12 +92,12 @@ def setting(solid, length, bowl) -> BowlOfPart:
     )
 
 
-def ride(one, states, times, *, jobs=1, progress=None) -> Runs:
+def ride(follow, states, times, *, jobs=1, progress=None) -> Runs:
     """Follow parts past one station.
 
     Parameters
     ----------
-    one : function
+    follow : function
         Of ``past``: follows some of them, one after the other.
     states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
         At the start.
@@ -116,94 +118,103 @@ def ride(one, states, times, *, jobs=1, progress=None) -> Runs:
     KeyboardInterrupt
         If no batch was finished.
     """
-    one(states[:0], times[:0])  # compiled here, if need be
+    follow(states[:0], times[:0])  # compiled here, if need be
 
     def batch(cut) -> list[Any]:
-        made = one(states[cut], times[cut])
-        return [getattr(made, name) for name in COLUMNS]
+        runs = follow(states[cut], times[cut])
+        return [getattr(runs, name) for name in RUN_COLUMNS]
 
-    columns, stopped = in_batches(batch, len(states), BATCH, jobs, progress)
-    return Runs(**{name: check.frozen(value) for name, value in zip(COLUMNS, columns)}, partial=stopped)
+    columns, stopped = in_batches(batch, len(states), PARTS_PER_TASK, jobs, progress)
+    return Runs(**{name: check.frozen(value) for name, value in zip(RUN_COLUMNS, columns)}, partial=stopped)
 
 
-def past(known, station, *, limits, every, places):
+def past(part_in_bowl, station, *, limits, interval, places):
     """Return the function that follows parts past one station, one after the other.
 
     It takes states (N, 13) and times (N,) [s] and gives Runs.
 
     Parameters
     ----------
-    known : BowlOfPart
+    part_in_bowl : BowlOfPart
     station : Stage
     limits : (float [s], float [s], float [m], float [m])
         After how long a part is given up; the time in which it must get on, and how far; how far it may go
         back from where it began.
-    every : float [s]
+    interval : float [s]
         Between two places noted; whole steps.
     places : int
         Noted at most.
     """
-    surface, limits = surface_of(known, station), limits_of(known, station, limits)
+    surface, limits = surface_of(part_in_bowl, station), limits_of(part_in_bowl, station, limits)
     return partial(
-        _followed, known, surface, limits, (max(round(every / known.unit / known.floor.step), 1), places)
+        _followed,
+        part_in_bowl,
+        surface,
+        limits,
+        (max(round(interval / part_in_bowl.unit / part_in_bowl.floor.step), 1), places),
     )
 
 
 def joined(rides) -> Runs:
     """Return the Runs of several parts at one station as one."""
-    columns = {name: np.concatenate([getattr(ride, name) for ride in rides]) for name in COLUMNS}
+    columns = {name: np.concatenate([getattr(ride, name) for ride in rides]) for name in RUN_COLUMNS}
     return Runs(**{name: check.frozen(value) for name, value in columns.items()}, partial=False)
 
 
-def surface_of(known, station):
+def surface_of(part_in_bowl, station) -> workspace.Surface:
     """Return a station as the kernel takes it."""
-    plates, borders = np.array(station.plates), np.array(station.borders)
-    plates[:, [0, 1, 2, 12, 13]] /= known.length
-    borders[:, :4] /= known.length
-    spans = [slice(int(row[crowd_records.FIRST]), int(row[crowd_records.LAST])) for row in plates]
-    boxes = [[f(borders[own, k:4:2]) for k in (0, 1) for f in (np.min, np.max)] for own in spans]
-    return crowd_records.Surface(
-        radius=known.radius,
-        slopes=air.leaning(station.air.slopes, known.climb, known.bank, station.size, known.length),
-        plates=np.hstack([plates, boxes]),
-        borders=np.hstack([borders, onwards(borders, spans)]),
-        jets=air.blowing(station.air.jets, known.length, known.unit),
-        friction=known.friction,
-        restitution=known.restitution,
-        threshold=known.threshold,
+    length = part_in_bowl.length
+    plates, borders = station.plates.copy(), station.borders.copy()
+    box = ("least_x", "most_x", "least_y", "most_y")
+    for name in ("origin_x", "origin_y", "origin_z", "depth", "rounding", *box):
+        plates[name] /= length
+    for name in ("start_x", "start_y", "end_x", "end_y"):
+        borders[name] /= length
+    _extend_borders(plates, borders)
+    return workspace.Surface(
+        radius=part_in_bowl.radius,
+        slopes=air.leaning(station.air.slopes, part_in_bowl.climb, part_in_bowl.bank, station.size, length),
+        plates=plates,
+        borders=borders,
+        jets=air.blowing(station.air.jets, length, part_in_bowl.unit),
+        friction=part_in_bowl.friction,
+        restitution=part_in_bowl.restitution,
+        threshold=part_in_bowl.threshold,
         sweeps=SWEEPS,
         converged=CONVERGED,
     )
 
 
-def onwards(borders, spans):
-    """Return how far (B, 2) [1] borders go on within the solid before their starts and behind their ends.
+def _extend_borders(plates, borders) -> None:
+    """Write how far borders go on within the solid before their starts and behind their ends.
 
     At a corner that is not convex the solid goes on behind either border: a part's edge that comes
     down into it meets the one or the other.
     """
-    found = np.zeros((len(borders), 2))
-    length = np.hypot(*(borders[:, 2:4] - borders[:, :2]).T)
-    found[:, 0] = np.where(borders[:, crowd_records.BEND] > 0.5, 0.0, ONWARDS / length)
-    for own in spans:
-        starts, ends = borders[own, :2], borders[own, 2:4]
-        after = own.start + np.array([np.argmin(((starts - end) ** 2).sum(axis=1)) for end in ends])
-        found[own, 1] = np.where(borders[after, crowd_records.BEND] > 0.5, 0.0, ONWARDS / length[own])
-    return found
+    starts = np.column_stack([borders.start_x, borders.start_y])
+    ends = np.column_stack([borders.end_x, borders.end_y])
+    shares = BORDER_EXTENSION / np.hypot(*(ends - starts).T)
+    borders["onwards_start"] = np.where(borders.convex, 0.0, shares)
+    for plate in plates:
+        own = slice(plate.begin, plate.end)
+        after = plate.begin + np.array(
+            [np.argmin(((starts[own] - end) ** 2).sum(axis=1)) for end in ends[own]]
+        )
+        borders["onwards_end"][own] = np.where(borders.convex[after], 0.0, shares[own])
 
 
-def limits_of(known, station, limits):
+def limits_of(part_in_bowl, station, limits):
     """Return when a part is done with a station as the kernel takes it, with the limits of ``past``."""
-    return crowd_records.Limits(
-        exit=station.exit / known.length,
-        drop=station.drop / known.length,
-        under=-np.inf if station.below else -station.drop / known.length,
-        longest=limits[0] / known.unit,
-        patience=limits[1] / known.unit,
-        progress=limits[2] / known.length,
-        back=(station.begin - limits[3]) / known.length,
-        edge=station.width / known.length,
-        free=station.width / known.length + OVER * known.solid.radius,
+    return workspace.Limits(
+        exit=station.exit / part_in_bowl.length,
+        drop=station.drop / part_in_bowl.length,
+        under=-np.inf if station.below else -station.drop / part_in_bowl.length,
+        longest=limits[0] / part_in_bowl.unit,
+        patience=limits[1] / part_in_bowl.unit,
+        progress=limits[2] / part_in_bowl.length,
+        back_limit=(station.begin - limits[3]) / part_in_bowl.length,
+        edge=station.width / part_in_bowl.length,
+        free=station.width / part_in_bowl.length + OVER_EDGE_SHARE * part_in_bowl.solid.radius,
     )
 
 
@@ -212,18 +223,18 @@ def compiled():
     return on_disk(travel.ride)
 
 
-def _followed(known, surface, limits, looks, states, times) -> Runs:
+def _followed(part_in_bowl, surface, limits, looks, states, times) -> Runs:
     """What became of some parts, looked at each so many steps, so often at most."""
     stride, places = looks
     ends, count = np.array(states, float), len(states)
-    outcomes, notes = np.zeros(count, np.int64), np.zeros((count, travel.NOTES + 2))
+    outcomes, journals = np.zeros(count, np.int64), zero_rows(count, workspace.JOURNAL)
     paths = np.full((count, places, 8), np.nan)
-    sent = crowd_records.Sent(ends, np.asarray(times) / known.unit, stride, paths, notes, outcomes)
-    crowd = crowd_of(known.solid, surface, 1)
-    travel.ride(surface, limits, known.solid, known.floor, crowd, sent, ALONE)
-    paths *= np.array([known.unit, *[known.length] * 3, 1.0, 1.0, 1.0, 1.0])
+    sent = workspace.Sent(ends, np.asarray(times) / part_in_bowl.unit, stride, paths, journals, outcomes)
+    work = workspace_of(part_in_bowl.solid, surface, 1)
+    travel.ride(surface, limits, part_in_bowl.solid, part_in_bowl.floor, work, sent, NO_CROWD)
+    paths *= np.array([part_in_bowl.unit, *[part_in_bowl.length] * 3, 1.0, 1.0, 1.0, 1.0])
     return Runs(
-        outcomes=outcomes, states=ends, seconds=notes[:, travel.TIME] * known.unit,
-        ways=notes[:, travel.MOVED] * known.length, depths=notes[:, travel.SUNK] * known.length,
-        gains=notes[:, travel.WON] * known.length, paths=paths, partial=False,
+        outcomes=outcomes, states=ends, seconds=journals.time * part_in_bowl.unit,
+        distances=journals.way * part_in_bowl.length, depths=journals.depth * part_in_bowl.length,
+        gains=journals.gain * part_in_bowl.length, paths=paths, partial=False,
     )  # fmt: skip

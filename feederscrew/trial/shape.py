@@ -9,12 +9,14 @@ from feederscrew import check
 from feederscrew.dropping.rounded_hull import principal_axes
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
+from feederscrew.geometry.compiled import frozen_rows
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.size_limits import refuse_many_facets
-from feederscrew.trial.kernel.near_borders import BLOCK
+from feederscrew.trial.kernel import workspace
+from feederscrew.trial.kernel.plate_views import BLOCK
 
-FLAT = 2e-3  # [rad] facets that meet at a smaller angle are one face
-ONWARDS = 3e-3  # of the unit of length: an edge goes on so far where a hollow edge meets its end
+FLAT_ANGLE = 2e-3  # [rad] facets that meet at a smaller angle are one face
+EDGE_EXTENSION = 3e-3  # of the unit of length: an edge goes on so far where a hollow edge meets its end
 
 
 class TrueSolid(NamedTuple):
@@ -25,8 +27,8 @@ class TrueSolid(NamedTuple):
     edges: np.ndarray  # (E, 2) int, convex edges, both ends
     sides: np.ndarray  # (E, 6) in both faces of an edge, unit vectors away from it
     onwards: np.ndarray  # (E, 2) [1] how far an edge goes on within the body before its start, behind its end
-    firsts: np.ndarray  # (C + 1,) int, where the neighbours of each corner begin in ``beside``
-    beside: np.ndarray  # (N,) int, corners joined to a corner by an edge of the surface
+    firsts: np.ndarray  # (C + 1,) int, where the neighbours of each corner begin in ``neighbours``
+    neighbours: np.ndarray  # (N,) int, corners joined to a corner by an edge of the surface
     triangles: np.ndarray  # (T, 3) int, counter-clockwise from outside
     normals: np.ndarray  # (T, 3)
     outer: np.ndarray  # (C,) bool, corners of the hull: of a plane no other can touch
@@ -34,8 +36,8 @@ class TrueSolid(NamedTuple):
     corner_blocks: np.ndarray  # (ceil(C / BLOCK), 6) least and greatest place of so many corners
     edge_blocks: np.ndarray  # (ceil(E / BLOCK), 6) the same of edges
     face_blocks: np.ndarray  # (ceil(T / BLOCK), 6) and of triangles
-    rims: np.ndarray  # (K, 7) circles of its hull that touch as circles: centre, axis, radius
-    ringed: np.ndarray  # (C,) bool, corners on them
+    circles: np.recarray  # (K,) CIRCLE of its hull that touch as circles
+    on_circle: np.ndarray  # (C,) bool, corners on them
     singles: np.ndarray  # (S,) int, corners of the hull that are on no circle, grouped
     single_blocks: np.ndarray  # (ceil(S / BLOCK), 6) least and greatest place of so many
     inertia: np.ndarray  # (3,) principal moments at mass 1
@@ -63,7 +65,9 @@ def solid_of(part) -> tuple[Any, ...]:
     FeederError
         If the part has no surface, or one of very many facets.
     """
-    _check_surface(part)
+    if part.vertices is None:
+        raise FeederError(part.source, "has no surface, as a part card", "give the part as a mesh")
+    refuse_many_facets(part)
     hull = convex_hull(part.vertices, part.centre_of_mass, part.source)
     length = float(np.cbrt(hull.volume))
     moments, principal = principal_axes(part.inertia)
@@ -79,7 +83,7 @@ def solid_of(part) -> tuple[Any, ...]:
     corners = check.frozen(corners[order])
     order = together(corners[place[part.faces]].mean(axis=1))
     triangles, normals = place[part.faces][order], normals[order]
-    firsts, beside = neighbours(triangles, int(touches.sum()))
+    firsts, neighbours = join_neighbours(triangles, int(touches.sum()))
     return (
         TrueSolid(
             vertices=corners,
@@ -88,7 +92,7 @@ def solid_of(part) -> tuple[Any, ...]:
             sides=check.frozen(sides),
             onwards=check.frozen(onwards(corners, place, ends, hollow)),
             firsts=check.frozen(firsts),
-            beside=check.frozen(beside),
+            neighbours=check.frozen(neighbours),
             triangles=check.frozen(triangles),
             normals=check.frozen(normals),
             **_found_by(corners[: touches.sum()]),
@@ -100,13 +104,6 @@ def solid_of(part) -> tuple[Any, ...]:
         length,
         principal,
     )
-
-
-def _check_surface(part) -> None:
-    """Raise FeederError for a part without a surface, or with one of very many facets."""
-    if part.vertices is None:
-        raise FeederError(part.source, "has no surface, as a part card", "give the part as a mesh")
-    refuse_many_facets(part)
 
 
 def onwards(corners, place, ends, hollow):
@@ -123,7 +120,7 @@ def onwards(corners, place, ends, hollow):
         The same.
     """
     length = vectors.length(corners[place[ends[:, 1]]] - corners[place[ends[:, 0]]])
-    return np.where(np.isin(ends, hollow), ONWARDS / length[:, None], 0.0)
+    return np.where(np.isin(ends, hollow), EDGE_EXTENSION / length[:, None], 0.0)
 
 
 def _found_by(corners) -> dict[Any, Any]:
@@ -132,22 +129,23 @@ def _found_by(corners) -> dict[Any, Any]:
     return {
         "outer": check.frozen(on_hull(corners)), "grouped": check.frozen(grouped),
         "corner_blocks": check.frozen(boxes(corners[grouped][:, None])),
-        "rims": check.frozen(np.zeros((0, 7))), "ringed": check.frozen(none), **alone(corners, none),
+        "circles": frozen_rows([], workspace.CIRCLE), "on_circle": check.frozen(none),
+        **singles_of(corners, none),
     }  # fmt: skip
 
 
-def alone(corners, ringed) -> dict[Any, Any]:
+def singles_of(corners, on_circle) -> dict[Any, Any]:
     """Return ``singles``, ``single_blocks`` of corners (C, 3) [L] of which some are on circles, (C,) bool."""
-    own = np.flatnonzero(on_hull(corners) & ~ringed)
+    own = np.flatnonzero(on_hull(corners) & ~on_circle)
     own = own[together(corners[own])] if len(own) else own
     return {"singles": check.frozen(own), "single_blocks": check.frozen(boxes(corners[own][:, None]))}
 
 
 def on_hull(corners):
     """Return which corners (C, 3) are corners of their hull, (C,) bool."""
-    found = np.zeros(len(corners), bool)
-    found[ConvexHull(corners).vertices] = True
-    return found
+    outer = np.zeros(len(corners), bool)
+    outer[ConvexHull(corners).vertices] = True
+    return outer
 
 
 def together(points) -> np.ndarray:
@@ -155,23 +153,23 @@ def together(points) -> np.ndarray:
 
     They are halved across where they lie furthest apart, by whole blocks, over and over.
     """
-    found, waiting = [], [np.arange(len(points))]
+    groups, waiting = [], [np.arange(len(points))]
     while waiting:
         own = waiting.pop()
         if len(own) <= BLOCK:
-            found.append(own)
+            groups.append(own)
             continue
         axis = int(np.argmax(np.ptp(points[own], axis=0)))
         own = own[np.argsort(points[own, axis], kind="stable")]
         half = BLOCK * ((len(own) // BLOCK + 1) // 2)
         waiting += [own[half:], own[:half]]
-    return np.concatenate(found)
+    return np.concatenate(groups)
 
 
 def boxes(features):
     """Return the box (B, 6) [L], least places and greatest, around each block of features (N, K, 3) [L]."""
-    made = [features[k : k + BLOCK] for k in range(0, len(features), BLOCK)]
-    return np.array([[*one.min(axis=(0, 1)), *one.max(axis=(0, 1))] for one in made]).reshape(-1, 6)
+    blocks = [features[k : k + BLOCK] for k in range(0, len(features), BLOCK)]
+    return np.array([[*block.min(axis=(0, 1)), *block.max(axis=(0, 1))] for block in blocks]).reshape(-1, 6)
 
 
 def _normals(corners, faces):
@@ -182,7 +180,7 @@ def _normals(corners, faces):
     return normal / np.where(size > 0.0, size, 1.0)[:, None]
 
 
-def neighbours(triangles, count) -> tuple[Any, ...]:
+def join_neighbours(triangles, count) -> tuple[Any, ...]:
     """Return which of the first corners of a surface are joined by an edge of a triangle.
 
     Parameters
@@ -195,7 +193,7 @@ def neighbours(triangles, count) -> tuple[Any, ...]:
     -------
     firsts : (count + 1,) int
         Where the neighbours of each corner begin.
-    beside : (N,) int
+    neighbours : (N,) int
         All of them, one corner after the other.
     """
     ends = np.concatenate([triangles[:, [k, m]] for k in range(3) for m in range(3) if k != m])
@@ -228,10 +226,10 @@ def convex_edges(corners, faces, normals) -> tuple[Any, ...]:
     two = np.flatnonzero((key[1:] == key[:-1]).all(axis=1))
     ends, first, second = pairs[two], owners[two], owners[two + 1]
     along = corners[ends[:, 1]] - corners[ends[:, 0]]
-    one = np.cross(normals[first], along)  # into the first face: it runs the edge as given
-    other = -np.cross(normals[second], along)
+    into_first = np.cross(normals[first], along)  # into the first face: it runs the edge as given
+    into_second = -np.cross(normals[second], along)
     size = vectors.length(along)[:, None]
-    one, other = one / size, other / size
-    bend = np.arctan2(-vectors.dot(other, normals[first]), vectors.dot(normals[first], normals[second]))
-    keep = bend > FLAT
-    return ends[keep], np.hstack([one, other])[keep], np.unique(ends[bend < -FLAT])
+    into_first, into_second = into_first / size, into_second / size
+    bend = np.arctan2(-vectors.dot(into_second, normals[first]), vectors.dot(normals[first], normals[second]))
+    keep = bend > FLAT_ANGLE
+    return ends[keep], np.hstack([into_first, into_second])[keep], np.unique(ends[bend < -FLAT_ANGLE])

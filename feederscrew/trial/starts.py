@@ -7,16 +7,28 @@ import numpy as np
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.launch_conditions import sample
 from feederscrew.geometry import vectors
-from feederscrew.trial import whereabouts
+from feederscrew.trial import part_poses
 
-PLAY = 5e-5  # [m] from the wall, at most, where a part is laid down
-TURN = np.radians(0.1)  # [rad] of its heading, at most
-TILT = np.radians(0.2)  # [rad] out of level: standard deviation, about any axis along the track's surface
-CLEAR = 1.02  # of the part's radius: as near to the wall as its centre of mass may come down
+MAX_START_PLAY_M = 5e-5  # [m] from the wall, at most, where a part is laid down
+MAX_START_HEADING = np.radians(0.1)  # [rad] of its heading, at most
+START_TILT = np.radians(
+    0.2
+)  # [rad] out of level: standard deviation, about any axis along the track's surface
+WALL_CLEARANCE = 1.02  # of the part's radius: as near to the wall as its centre of mass may come down
 
 
 def laid_down(
-    bowl, every, entered, solid, principal, length, seed, *, play=PLAY, turn=TURN, tilt=TILT
+    bowl,
+    orientations,
+    entered,
+    solid,
+    principal,
+    length,
+    seed,
+    *,
+    play=MAX_START_PLAY_M,
+    turn=MAX_START_HEADING,
+    tilt=START_TILT,
 ) -> tuple[Any, ...]:
     """Return parts laid on the track, a little from the wall, askew and tilted, at any phase of the drive.
 
@@ -26,7 +38,7 @@ def laid_down(
     Parameters
     ----------
     bowl : Bowl
-    every : sequence of Orientation
+    orientations : sequence of Orientation
         Of the part.
     entered : (N,) int
         In which of them each is laid.
@@ -53,17 +65,19 @@ def laid_down(
     for n, k in enumerate(entered):
         rng = np.random.default_rng((seed, n))
         away, askew, phase = rng.random(3)
-        states[n] = whereabouts.laid(
-            every[k], principal, length, bowl.track, place=0.0,
+        states[n] = part_poses.pose_on_track(
+            orientations[k], principal, length, bowl.track, place=0.0,
             turn=turn * (2.0 * askew - 1.0),
         )  # fmt: skip
         states[n] = tilted(states[n], solid.corners, rng, tilt)
-        states[n] = clear(states[n], solid, every[k].track, length, play * away, every[k].wall_leans)
+        states[n] = clear(
+            states[n], solid, orientations[k].track, length, play * away, orientations[k].wall_leans
+        )
         times[n] = phase / bowl.drive.frequency
     return states, times
 
 
-def tilted(state, corners, rng, spread=TILT):
+def tilted(state, corners, rng, spread=START_TILT):
     """Return a part's state (13,) out of level about a level axis, its lowest corner on the track.
 
     Parameters
@@ -75,8 +89,8 @@ def tilted(state, corners, rng, spread=TILT):
     spread : float [rad]
         Standard deviation of how far it is out of level.
     """
-    angle, way = spread * rng.standard_normal(), 2.0 * np.pi * rng.random()
-    x, y, c, s = np.cos(way), np.sin(way), np.cos(angle), np.sin(angle)
+    angle, direction = spread * rng.standard_normal(), 2.0 * np.pi * rng.random()
+    x, y, c, s = np.cos(direction), np.sin(direction), np.cos(angle), np.sin(angle)
     turn = np.array(
         [
             [c + x * x * (1.0 - c), x * y * (1.0 - c), y * s],
@@ -85,7 +99,7 @@ def tilted(state, corners, rng, spread=TILT):
         ]
     )
     out = np.array(state)
-    out[body.Q : body.Q + 4] = whereabouts.quaternion(vectors.product(turn, whereabouts.matrix(state)))
+    out[body.Q : body.Q + 4] = part_poses.quaternion(vectors.product(turn, part_poses.matrix(state)))
     out[body.Z] -= lowest(corners, out)
     return out
 
@@ -95,7 +109,7 @@ def clear(state, solid, track, length, play, leans=0.0):
 
     The wall is upright, or ``leans`` [rad] back from that beside a groove.
     """
-    spots = state[:3] + vectors.product(solid.corners, whereabouts.matrix(state).T)
+    spots = state[:3] + vectors.product(solid.corners, part_poses.matrix(state).T)
     radius, off = track.radius / length, track.bank - leans
     lean, up = np.sin(off), np.cos(off)
     gap = up * (radius - np.hypot(spots[:, 0], radius - spots[:, 1])) - lean * spots[:, 2]
@@ -127,11 +141,11 @@ def falling(bowl, launch, shape, count, length, seed) -> tuple[Any, ...]:
     rng = np.random.default_rng((seed, count))
     states = np.array(sample(launch, shape, count, rng).states)
     place, phase = np.random.default_rng((seed, count, 1)).random((2, count))
-    near = CLEAR * shape.solid.radius
+    near = WALL_CLEARANCE * shape.solid.radius
     states[:, body.Y] = near + place * max(bowl.track.width / length - near, 0.0)
     return states, phase / bowl.drive.frequency
 
 
 def lowest(corners, state):
     """Return the height [L] of the lowest of the corners (C, 3) [L] of a part in a state (13,)."""
-    return state[body.Z] + vectors.product(corners, whereabouts.matrix(state)[2]).min()
+    return state[body.Z] + vectors.product(corners, part_poses.matrix(state)[2]).min()

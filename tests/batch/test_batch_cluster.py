@@ -8,11 +8,11 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
-from test_batch import TABLES_ONLY, Here, asked, block, ran, three, tree  # noqa: F401
+from test_batch import Here, asked, block, ran, three, tree  # noqa: F401
 
 from feederscrew import batch
-from feederscrew.batch import task
-from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.batch.work import work
+from feederscrew.errors import FeederError
 
 distributed = pytest.importorskip("distributed", reason="needs the extra dist")
 ROOT = Path(__file__).parents[2]
@@ -49,13 +49,17 @@ def cluster(folder, workers=2):
 
 
 @pytest.mark.long
-def test_a_cluster_may_lose_a_worker_and_says_when_it_loses_its_scheduler(tmp_path, three):  # noqa: F811
+def test_a_cluster_may_lose_a_worker_and_says_when_it_loses_its_scheduler(tmp_path, three, monkeypatch):  # noqa: F811
     """It gives the bytes of the processes. Without a scheduler: one line, and what is finished is kept."""
     for number in range(3):
         block(tmp_path / f"in/more_{number}.stl", 5.0 + number, 4.0, 3.0)
     requests = asked(tmp_path / "in")
-    ran(requests, tmp_path / "here", workers=Here())
+    ran(requests, tmp_path / "here", workers=Here(job=work))
     with cluster(tmp_path) as (address, running):
+        with monkeypatch.context() as older:
+            older.setattr("feederscrew.batch.workers.__version__", "0.0.1")
+            with pytest.raises(FeederError, match=r"has another version of feederscrew - "):
+                ran(requests, tmp_path / "there", workers=batch.Cluster(address))
         finished = []
 
         def lose_one(kept):
@@ -66,14 +70,19 @@ def test_a_cluster_may_lose_a_worker_and_says_when_it_loses_its_scheduler(tmp_pa
         ran(requests, tmp_path / "there", workers=batch.Cluster(address), tell=lose_one)
         assert len(finished) == 6 and tree(tmp_path / "there") == tree(tmp_path / "here")
         with pytest.raises(FeederError) as fault:
-            ran(three, tmp_path / "out", workers=batch.Cluster(address), tell=lambda kept: running[0].kill())
+            ran(
+                requests,
+                tmp_path / "out",
+                workers=batch.Cluster(address),
+                tell=lambda kept: running[0].kill(),
+            )
     assert fault.value.lines == (
         f"{address}: the scheduler is lost - mend it, then start this command again with `resume`:"
         " what is finished is kept",
     )
-    rest = Here()
-    ran(three, tmp_path / "out", workers=rest, resume=True)
-    assert len(rest.done) < 3
+    rest = Here(job=work)
+    ran(requests, tmp_path / "out", workers=rest, resume=True)
+    assert len(rest.done) < 6 and tree(tmp_path / "out") == tree(tmp_path / "here")
 
 
 class Held:
@@ -122,22 +131,14 @@ def test_what_a_worker_had_done_before_it_died_is_waited_for_again(monkeypatch):
     assert list(gathered) == ["b"]
 
 
-def test_no_scheduler_is_one_line(tmp_path, three, monkeypatch):  # noqa: F811
-    monkeypatch.setattr("feederscrew.batch.workers.CLUSTER_TIMEOUT_S", 1)
-    with pytest.raises(FeederError, match=r"^tcp://127.0.0.1:1: no scheduler answers"):
-        ran(three, tmp_path / "out", workers=batch.Cluster("tcp://127.0.0.1:1"))
-
-
-def test_what_is_no_address_is_one_line():
-    with pytest.raises(
-        ArgumentError, match=r"^scheduler: 'nonsense' is not an address of a scheduler - write it as tcp://"
-    ):
-        list(batch.Cluster("nonsense").outcomes([]))
-
-
-def test_workers_of_another_version_are_refused(tmp_path, three, monkeypatch):  # noqa: F811
-    with cluster(tmp_path, workers=1) as (address, _):
-        monkeypatch.setattr(task, "LIBRARIES", ("numpy",))
-        with pytest.raises(FeederError, match=r"has another version of feederscrew - "):
-            monkeypatch.setattr("feederscrew.batch.workers.__version__", "0.0.1")
-            ran(three, tmp_path / "out", workers=batch.Cluster(address), choices=TABLES_ONLY)
+@pytest.mark.parametrize(
+    ("address", "said"),
+    [
+        ("tcp://127.0.0.1:1", r"^tcp://127.0.0.1:1: no scheduler answers"),
+        ("nonsense", "^scheduler: 'nonsense' is not an address of a scheduler - write it as tcp://"),
+    ],
+)
+def test_no_scheduler_is_one_line(monkeypatch, address, said):
+    monkeypatch.setattr("feederscrew.batch.workers.CLUSTER_TIMEOUT_S", 0.3)
+    with pytest.raises(FeederError, match=said):
+        list(batch.Cluster(address).outcomes([]))

@@ -142,7 +142,8 @@ def test_the_schema_beside_it_is_as_the_program_has_it():
         ("gravity: 9 m/s2\ngravity: 8\n", "2:1: key 'gravity' is already in line 1 - keep one of them"),
         ("gravity: &g 9.81 m/s2\n", "1:10: anchor '&g' is not allowed - write the value alone"),
         ("drive:\n  <<: {frequency: 50 Hz}\n", "2:3: unknown key '<<' - known are amplitude, peak_to_peak, "
-         "frequency, vibration_angle, direction, phase, second_harmonic, second_harmonic_phase"),
+         "frequency, vibration_angle, direction, phase, second_harmonic, second_harmonic_phase, "
+         "second_harmonic_angle"),
         ("- 1\n- 2\n", "1:1: no 'key: value' line - start from 'feeder config init'"),
         ("just words\n", "1:1: no 'key: value' line - start from 'feeder config init'"),
     ],

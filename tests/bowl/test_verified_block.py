@@ -206,7 +206,7 @@ def test_a_trial_leads_for_its_own_orientation_only(tmp_path, wanted, leads):
     """The trial of A@0 was given as the rate of B."""
     part = replace(PART, sha256=BLOCK["part"].strip('"'))
     tried, own = block(tmp_path, up=None), {"parts_per_minute": 105.5}
-    document = proof.beside(own, tried, part, BOWL, wanted)
+    document = proof.with_trial(own, tried, part, BOWL, wanted)
     assert document["parts_per_minute"] == pytest.approx(12.0 if leads else 105.5)
     assert (document["verified"] is not None) == leads
     (said,) = proof.warnings(tried, part, BOWL, wanted)

@@ -12,7 +12,7 @@ from feederscrew import bowl as bowls
 from feederscrew import documents
 from feederscrew.bowl import devices
 from feederscrew.bowl.reading import settings_of_text
-from feederscrew.designing import proposals, pulses
+from feederscrew.designing import proposals
 from feederscrew.designing.record import DesignRequest, DesignStudy
 from feederscrew.errors import FeederError
 from feederscrew.output import designs
@@ -144,7 +144,7 @@ def test_play_pulse_and_slot_leave_all_others_as_they_are():
             assert devices.differences(other, read(other)) == []
             own = sorter if other.kind == "sorter" else rails
             assert devices.differences(own, read(other), {"where", "text", *changed}) == []
-    assert pulses.STEP > 0.0
+    assert proposals.PULSE_STEP_S > 0.0
 
 
 @pytest.mark.parametrize("text", ["11.3 mm", "{clearance: 11.3 mm, sweep: 31 deg}", "11.3", "[1 mm]"])

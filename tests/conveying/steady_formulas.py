@@ -105,11 +105,6 @@ def elliptical_velocity(throw, steepness=0.0):
     return math.cos(low)
 
 
-def velocity_bound(angle):
-    """Return the plate's greatest speed along the track [A w]: no steady motion up a climb is faster."""
-    return math.cos(angle)
-
-
 def _burst(p):
     """Start and end [rad] of a slip of relative acceleration sin t - p; nothing for p above 1."""
     if p >= 1.0:

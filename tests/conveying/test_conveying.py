@@ -7,8 +7,8 @@ import pytest
 import steady_formulas
 
 from feederscrew.conveying import answer, steady
-from feederscrew.conveying.operating_point import FLIGHT, FORWARD, STICK, checked, law, plain
-from feederscrew.conveying.point_motion import TALLY, State, at_rest, land, turn
+from feederscrew.conveying.operating_point import FLIGHT, FORWARD, checked, law, plain
+from feederscrew.conveying.point_motion import land
 from feederscrew.conveying.waves import PERIOD_RAD, Wave, gain, harmonic, onward, reached, travel, value
 from feederscrew.mechanics import limits
 
@@ -38,11 +38,6 @@ def test_two_burst_velocity(ratio, beta, climb, friction):
     assert found[steady.VELOCITY] == pytest.approx(wanted, rel=0, abs=1e-14)
 
 
-def test_two_bursts_that_meet_have_no_formula():
-    assert math.isnan(steady_formulas.two_burst_velocity(1.5, 20 * DEG, 0.0, 0.1))
-    assert math.isnan(steady_formulas.two_burst_velocity(2.5, 30 * DEG, 0.0, 0.3))
-
-
 @pytest.mark.parametrize(("periods", "throw"), [(0.5, 1.368461), (1, 3.296908), (2, 6.362265), (3, 9.477681)])
 def test_throw_number_of_a_whole_flight(periods, throw):
     assert answer.throw_of_flight(periods) == pytest.approx(throw, abs=5e-7)
@@ -52,20 +47,6 @@ def test_throw_number_of_a_whole_flight(periods, throw):
 def test_flight_of_a_throw_number(periods):
     found = travel_of(thrown_at(answer.throw_of_flight(periods)))
     assert found[steady.FLIGHT_TIME] == pytest.approx(periods, rel=1e-12)
-
-
-def test_flight_over_several_periods():
-    # from contact, k = 6.2 flies for 1.9 periods and k = 9.3 for 2.9: cut by no section of the drive
-    for low, high, throw in ((1.0, 2.0, 6.2), (2.0, 3.0, 9.3)):
-        rules = law(thrown_at(throw))
-        state, tally = State(rules.lift.rises[0], FLIGHT, 0.0, 0.0, 0.0, 0.0), np.zeros(TALLY)
-        while tally[5] == 0.0:
-            state = turn(rules, state, tally)
-        while high - low > 1e-14:
-            middle = 0.5 * (low + high)
-            longer = answer.throw_of_flight(middle) < throw
-            low, high = (middle, high) if longer else (low, middle)
-        assert tally[5] / PERIOD_RAD == pytest.approx(low, rel=1e-12)
 
 
 @pytest.mark.parametrize("above", [1e-4, 1e-6, 1e-8, 1e-10])
@@ -87,12 +68,6 @@ def test_ideal_throw(periods, climb):
     assert travel_of(setting)[steady.VELOCITY] == pytest.approx(velocity / setting.ratio, rel=1e-9)
 
 
-def test_ideal_throw_of_the_trade():
-    assert steady_formulas.ideal_throw_velocity(1.0, 30 * DEG, 0.0, 50.0, 9.81) == pytest.approx(
-        0.1699, abs=5e-5
-    )
-
-
 @pytest.mark.parametrize(
     ("restitution", "low", "high"),
     [(0.0, math.pi, 3.7242), (0.2, 2.094, 2.544), (0.3, 1.692, 2.127), (0.5, 1.047, 1.527)],
@@ -112,11 +87,6 @@ def settles_on_one_period(throw, restitution):
     rules, out = law(thrown_at(throw, restitution=restitution)), np.empty(steady.COLUMNS)
     steady.steady(rules, steady.thrown(rules, 0), out)
     return out[steady.PERIOD] == 1 and out[steady.FLIGHT_TIME] == pytest.approx(1.0, rel=1e-9)
-
-
-def test_no_regular_bounce_below_its_window():
-    rules = law(thrown_at(1.69, restitution=0.3))
-    assert steady.thrown(rules, 0).rising == 0.0
 
 
 def bisected(happens, low, high):
@@ -151,13 +121,6 @@ def test_friction_at_its_limit_still_rides():
     assert travel_of(plain(0.5, 30 * DEG, 0.0, friction * (1 - 1e-9)))[steady.VELOCITY] > 0.0
 
 
-def test_mirror():
-    """Down a slope with the motion along the track reversed, a part mirrors its motion."""
-    up = plain(1.4, 25 * DEG, 4 * DEG, 0.35)
-    down = up._replace(climb=-up.climb, lead=math.pi)
-    assert travel_of(down)[steady.VELOCITY] == pytest.approx(-travel_of(up)[steady.VELOCITY], rel=1e-12)
-
-
 def test_unequal_friction_both_ways_mirrors_as_well():
     up = plain(1.2, 25 * DEG, 2 * DEG, 0.35)._replace(static=0.3, kinetic=0.25)
     down = up._replace(
@@ -170,31 +133,6 @@ def test_bristles_carry_a_part_that_is_shaken_along_the_track_only():
     even = plain(0.8, 0.0, 0.0, 0.4)
     assert travel_of(even)[steady.VELOCITY] == pytest.approx(0.0, abs=1e-14)
     assert travel_of(even._replace(static=0.2, kinetic=0.2))[steady.VELOCITY] > 0.01
-
-
-def test_velocity_never_exceeds_the_plate():
-    rng = np.random.default_rng(5)
-    for ratio, beta, friction in rng.uniform((0.1, 5, 0.1), (6.0, 60, 1.0), (60, 3)):
-        found = travel_of(plain(ratio, beta * DEG, 2 * DEG, friction, 0.2))
-        assert found[steady.HIGH] <= steady_formulas.velocity_bound(beta * DEG)
-
-
-def test_best_throw_number_of_the_trade():
-    throws = np.linspace(1.5, 5.0, 141)
-    for angle, friction in ((20 * DEG, 0.3), (40 * DEG, 0.8)):
-        velocities = [travel_of(thrown_at(k, angle, 3 * DEG, friction))[steady.VELOCITY] for k in throws]
-        shares = np.array(velocities) / steady_formulas.velocity_bound(angle)
-        # per A w the best lies just below the flight of one period
-        assert 2.9 < throws[np.argmax(shares)] < 3.2
-        assert shares.max() > 0.85
-
-
-def test_steeper_than_friction_has_no_steady_state():
-    found = travel_of(plain(2.0, 30 * DEG, 20 * DEG, 0.3))
-    assert found[steady.STATUS] == steady.NO_STEADY_STATE
-    assert np.isnan(found[steady.VELOCITY])
-    just_held = travel_of(plain(2.0, 30 * DEG, math.atan(0.3) - 1e-3, 0.3))
-    assert just_held[steady.STATUS] != steady.NO_STEADY_STATE
 
 
 def test_several_velocities_at_one_setting():
@@ -230,10 +168,6 @@ def test_a_last_bounce_passes_on_a_plastic_impulse():
     after = land(rules, 0.0, 1.0, 1e-9)
     assert (after.phase, after.rising) == (FORWARD, 0.0)
     assert 1.0 - after.speed == pytest.approx(0.3e-9, rel=1e-6)
-
-
-def test_part_rides_from_rest():
-    assert at_rest(law(plain(0.1, 0.5, 0.0, 0.6))).phase == STICK
 
 
 @pytest.mark.parametrize("twofold", [(0.0, 0.0), (0.3, -0.4), (1.1, 0.2)])

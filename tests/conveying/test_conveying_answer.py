@@ -70,28 +70,6 @@ def test_margins_and_limits():
     assert sum(found.fractions.values()) == pytest.approx(1.0)
 
 
-def test_cells_are_the_answers():
-    settings = bowls.settings(None, ("drive.frequency=50 Hz",))
-    angles, strokes = np.array([15.0, 25.0])[:, None] * DEG, np.array([0.0, 0.2e-3, 0.5e-3])[None, :]
-    found = answer.cells(bowls.swept(settings, {"drive.vibration_angle": angles, "drive.amplitude": strokes}))
-    assert found["velocity"].shape == (2, 3)
-    assert (found["velocity"][:, 0] == 0.0).all()
-    one = bowls.read(
-        None, ("drive.frequency=50 Hz", "drive.vibration_angle=25 deg", "drive.amplitude=0.2 mm")
-    )
-    alone = answer.answer(one)
-    assert found["velocity"][1, 1] == pytest.approx(alone.velocity, rel=1e-12)
-    assert answer.SWEEP_REGIMES[found["regime"][1, 1]] == alone.regime
-    assert found["throw_number"][1, 1] == pytest.approx(alone.throw_number)
-
-
-def test_regime_of_a_climb_too_steep():
-    steep = bowl("track.climb=30 deg", "friction.static=0.3")
-    found = answer.answer(steep)
-    assert (found.status, found.regime) == ("no steady state", "no steady state")
-    assert np.isnan(found.velocity)
-
-
 def banked(*more):
     """The setting whose velocity independent code has by three-dimensional vectors: 15.28 mm/s."""
     drive = ("drive.amplitude=0.15 mm", "drive.frequency=50 Hz", "drive.vibration_angle=25 deg")
@@ -314,16 +292,6 @@ def test_cells_and_answers_agree_on_an_uneven_drive():
 def test_an_elliptical_drive_is_not_followed_inwards():
     with pytest.raises(ConfigError, match="not a screw motion"):
         answer.inwards(bowl("drive.phase=20 deg"))
-
-
-def test_trace_of_an_uneven_drive_rests_on_its_plate():
-    setting = plain(1.0, 0.5, 0.05, 0.3)._replace(second=0.4, second_phase=1.0, lead=0.3)
-    drawn = trace(setting)
-    gap = drawn.part_normal - drawn.plate_normal
-    assert (gap > -1e-12).all()
-    turn = 2.0 * np.pi * drawn.time
-    plate = np.sin(0.5) * (np.sin(turn) + 0.4 * np.sin(2.0 * turn + 1.0))
-    np.testing.assert_allclose(drawn.plate_normal, plate, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Every example of docs/conveying.md runs and prints what the page says; samples of what it computed hold."""
+"""Every example of docs/method/conveying.md prints what the page says; samples of what it computed hold."""
 
 import doctest
 import importlib.util
@@ -22,7 +22,7 @@ def computed():
 
 
 def test_the_page_is_true():
-    found = doctest.testfile(str(PAGE), module_relative=False)
+    found = doctest.testfile(str(DOCS / "method/conveying.md"), module_relative=False)
     assert found.attempted > 8
     assert found.failed == 0
 

@@ -49,14 +49,6 @@ def test_between_kinetic_and_static_friction_a_part_may_stick_and_slip_up():
     assert found[steady.FRACTIONS + FORWARD] == pytest.approx(0.53, abs=1e-2)
 
 
-@pytest.mark.parametrize("restitution", [0.0, 0.3])
-def test_a_climb_steeper_than_static_friction_has_none(restitution):
-    found = surveyed(sticky(2.0, 30, 20, 0.3, 0.2, restitution))
-    assert found[steady.STATUS] == steady.NO_STEADY_STATE
-    assert np.isnan(found[: steady.STATUS]).all()
-    assert np.isnan(found[steady.VELOCITY : steady.THROW]).all()
-
-
 @pytest.mark.parametrize(("beyond", "status"), [(-1e-3, steady.PERIODIC), (1e-3, steady.NO_STEADY_STATE)])
 def test_both_sides_of_one_friction(beyond, status):
     """With static and kinetic friction alike, climbs up to the angle of friction have a steady state."""
@@ -99,13 +91,6 @@ def test_a_start_from_rest_that_settles_slowly_settles(friction):
     other = at_rest(rules)._replace(speed=-state.speed)
     again, _ = steady.settle(rules, other._replace(phase=2 if other.speed < 0.0 else 1))
     assert again.speed == pytest.approx(state.speed, rel=0, abs=1e-8)
-
-
-def test_what_settles_slowly_is_what_patience_finds():
-    setting = plain(0.9 / math.sin(5 * DEG), 5 * DEG, 0.0, 0.02)._replace(lead=-1.2)
-    rules = law(setting)
-    found, _ = steady.settle(rules, at_rest(rules))
-    assert speeds(setting, 12_000)[-1] == pytest.approx(found.speed, rel=0, abs=1e-9)
 
 
 def patient(setting):

@@ -14,15 +14,6 @@ def settings():
     return np.array([plain(*row, restitution) for row in box for restitution in (0.0, 0.4)])
 
 
-def test_compiled_equals_plain(settings):
-    compiled = sweep.sweep(settings)
-    for row, setting in zip(compiled, settings, strict=True):
-        out = np.empty(steady.COLUMNS)
-        steady.survey(OperatingPoint(*setting.tolist()), out)
-        if out[steady.STATUS] == steady.PERIODIC and out[steady.HIGH] - out[steady.LOW] < 1e-9:
-            np.testing.assert_allclose(row, out, rtol=1e-9, atol=1e-11)
-
-
 def test_threads_change_nothing(settings):
     many = np.tile(settings, (8, 1))
     np.testing.assert_array_equal(sweep.sweep(many, workers=3), sweep.sweep(many, workers=1))

@@ -9,9 +9,9 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import exploring, loop, proposals
-from feederscrew.designing.alternatives import alternatives
+from feederscrew.designing.exploring import Search
+from feederscrew.designing.loop import alternatives
 from feederscrew.designing.record import Attempt, DesignRequest, DesignStudy, FilledQueue, RobustRun
-from feederscrew.designing.searching import Search
 from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
 from feederscrew.tooling.devices.kinds import make_device
@@ -88,7 +88,7 @@ def searching(monkeypatch):
     monkeypatch.setattr(exploring, "_promise", lambda search, track, row, way: shares[row])
 
     def proposed(search, track, row, way):
-        asked.append((round(np.degrees(track.made.bowl.track.bank)), row, way))
+        asked.append((round(np.degrees(track.plain_bowl.bowl.track.bank)), row, way))
         device = make_device("gap", "test", limit=5e-3 + 1e-3 * len(asked), text=f"{5 + len(asked)} mm")
         return proposals.Proposal(row, (), (device,), "test")
 
@@ -122,7 +122,7 @@ def test_a_class_uses_its_share_of_the_trials_and_the_next_has_the_rest(searchin
 
 def test_only_what_is_rare_is_worth_a_device_that_turns_others_into_it(searching):
     search, _ = searching
-    turning = next(way for way in proposals.ways_of(1, search.request) if way.turns)
+    turning = next(way for way in proposals.recipes_of(1, search.request) if way.turns)
     assert [exploring._worth(search, search.tracks[0], row, turning) for row in (0, 1)] == [False, True]
 
 
@@ -185,7 +185,7 @@ def test_what_is_impure_names_the_fill_and_the_device_that_others_came_through()
 def test_more_is_asked_of_a_chain_only_where_less_isolates(searching, monkeypatch, isolates):
     """First the least margin without a turning device; the rest only where that has a chain."""
     search, _ = searching
-    way = next(way for way in proposals.ways_of(1, search.request) if way.turns and way.margin == 5e-4)
+    way = next(way for way in proposals.recipes_of(1, search.request) if way.turns and way.margin == 5e-4)
     ways, chain = [], proposals.Proposal(0, (), (), "test")
     monkeypatch.setattr(
         exploring,

@@ -77,7 +77,7 @@ def test_no_drive_of_a_lower_hop_is_fast_enough(velocity):
 def test_above_2_the_friction_hardly_matters_and_below_1_it_does():
     fast, slow = calm_drive.driven(plain(), 0.1), calm_drive.driven(plain(), 0.012, hops=True)
     assert throw_number(fast) > 2.0 and throw_number(slow) <= calm_drive.CALM
-    assert calm_drive.kept(fast) > 0.9 and calm_drive.kept(slow) < 0.75
+    assert calm_drive.velocity_kept(fast) > 0.9 and calm_drive.velocity_kept(slow) < 0.75
 
 
 def test_the_mains_or_the_controller_give_the_frequencies():

@@ -9,7 +9,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import proposals, robust, trying
+from feederscrew.designing import proposals, robust, short_trials
 from feederscrew.designing.record import DesignRequest
 from feederscrew.part import load
 from feederscrew.rates import stream
@@ -35,7 +35,7 @@ def tried(ways, right, wrong, held, row):
     """A short trial of all orientations, two of each."""
     count = len(ways.lying)
     own = [np.array([2 * (k in some) for k in range(count)]) for some in (right, wrong, held)]
-    return trying.Tried(
+    return short_trials.Tried(
         ways, np.full(count, 1.0 / count), np.arange(count), np.full(count, 2), *own,
         places=tuple({"stopped at gap": 2} if k in held else {} for k in range(count)), velocity=0.05,
         state=row, states=(row,), deepest=0.0,
@@ -64,19 +64,19 @@ def test_nothing_is_changed_where_nothing_tells_them_apart(block):
 def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one(block):
     part, ways, names = block
     along, across = names["A@0"], names["A@90"]
-    assert proposals.alike(ways.lying, along, ()) == ()
-    same = proposals.alike(ways.lying, along, ("a",))
+    assert proposals.equivalent_rows(ways.lying, along, ()) == ()
+    same = proposals.equivalent_rows(ways.lying, along, ("a",))
     assert (
         along not in same and across in same and len(same) == sum(one.aspect == "A" for one in ways.lying) - 1
     )
-    states = trying.wanted_states(ways, (along, *same))
+    states = short_trials.wanted_states(ways, (along, *same))
     assert states[0] == ways.leaves_as[along] and ways.leaves_as[across] in states
     shares = np.arange(1.0, len(ways.lying) + 1.0)
-    assert trying.gain(ways, shares, states) == pytest.approx(shares[[along, *same]].sum())
+    assert short_trials.gain(ways, shares, states) == pytest.approx(shares[[along, *same]].sum())
     bowl = bowls.default()
     one = {"rows": (along, across), "each": 1, "run": RunSettings(1)}
-    alone = trying.single(part, bowl, ways, shares, along, **one)
-    both = trying.single(part, bowl, ways, shares, (along, *same), **one)
+    alone = short_trials.single(part, bowl, ways, shares, along, **one)
+    both = short_trials.single(part, bowl, ways, shares, (along, *same), **one)
     assert (list(alone.right), list(alone.wrong)) == ([1, 0], [0, 1])
     assert (list(both.right), list(both.wrong)) == ([1, 1], [0, 0])
     assert robust.faults(alone) and not robust.faults(both)
@@ -85,7 +85,7 @@ def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one(block):
 def test_of_what_counts_as_the_wanted_one_a_loss_is_no_fault_but_a_stop_is(block):
     _, ways, names = block
     along, across = names["A@0"], names["A@90"]
-    states = trying.wanted_states(ways, (along, across))
+    states = short_trials.wanted_states(ways, (along, across))
     lost = replace(tried(ways, {along}, (), (), along), states=states)
     assert not robust.faults(lost)
     assert robust.faults(replace(lost, right=0 * lost.right))  # the wanted one itself has to leave
@@ -133,7 +133,7 @@ def test_as_many_parts_of_each_are_sent_as_is_said(block):
     part, ways, names = block
     rows, shares = (names["A@0"], names["A@90"]), np.full(len(ways.lying), 1.0 / len(ways.lying))
     own = {"rows": rows, "run": RunSettings(1)}
-    seen = trying.single(part, bowls.default(), ways, shares, rows[0], each=np.array([3, 1]), **own)
+    seen = short_trials.single(part, bowls.default(), ways, shares, rows[0], each=np.array([3, 1]), **own)
     assert seen.parts.tolist() == [3, 1] and seen.right.tolist() == [3, 0]
 
 
@@ -169,7 +169,7 @@ def test_a_chain_costs_what_its_dearest_device_does():
 def test_a_cost_class_is_proposed_without_dearer_devices_and_the_widest_margin_comes_first(
     cost_class, dearer
 ):
-    ways = proposals.ways_of(cost_class, DesignRequest(target=1.0))
+    ways = proposals.recipes_of(cost_class, DesignRequest(target=1.0))
     assert all(dearer <= set(way.without) for way in ways)
     assert any("sorter" not in way.without for way in ways) == (cost_class == 3)
     margins = [way.margin for way in ways if not way.turns and not way.holes]
@@ -178,8 +178,8 @@ def test_a_cost_class_is_proposed_without_dearer_devices_and_the_widest_margin_c
 
 
 def test_no_way_is_left_of_a_class_whose_devices_are_not_to_be_used():
-    assert proposals.ways_of(3, DesignRequest(target=1.0, without=("sorter",))) == []
-    hung = proposals.ways_of(1, DesignRequest(target=1.0, outcome="hanging"))
+    assert proposals.recipes_of(3, DesignRequest(target=1.0, without=("sorter",))) == []
+    hung = proposals.recipes_of(1, DesignRequest(target=1.0, outcome="hanging"))
     assert {way.outcome for way in hung} == {"hanging"} and not any(way.turns for way in hung)
 
 
@@ -234,18 +234,18 @@ def test_what_comes_back_of_several_wanted_ones_is_no_fault_while_another_leaves
     seen = tried(both, {along}, (), (), along)
     back = {"returned at narrowed track": 2}
     seen = replace(seen, places=tuple(back if k == across else {} for k in range(len(both.lying))))
-    assert trying.spared_rows(seen) == (across,) and not list(robust.denied(seen))
+    assert short_trials.spared_rows(seen) == (across,) and not list(robust.denied(seen))
     stays = replace(seen, held=2 * (np.arange(len(both.lying)) == across))
-    assert trying.spared_rows(stays) == () and list(robust.denied(stays))
-    assert trying.spared_rows(replace(seen, right=0 * seen.right)) == ()  # none of them leaves
+    assert short_trials.spared_rows(stays) == () and list(robust.denied(stays))
+    assert short_trials.spared_rows(replace(seen, right=0 * seen.right)) == ()  # none of them leaves
 
 
 def test_what_is_tried_is_told_with_headings_in_whole_degrees():
     sorter = make_device("sorter", "test", text="{of: A@178.007, play: 3.65 mm, sees: outline}")
     gap = make_device("gap", "test", limit=9e-3, text="9 mm")
-    said = proposals.Proposal(0, (), (gap, sorter), "test").told
+    said = proposals.Proposal(0, (), (gap, sorter), "test").sentence
     assert said == "gap: 9 mm, sorter: {of: A@178, play: 3.65 mm, sees: outline}"
-    assert proposals.Proposal(0, (), (), "test").told == "no device"
+    assert proposals.Proposal(0, (), (), "test").sentence == "no device"
 
 
 def test_a_sensor_sees_something_of_every_drawn_part():
@@ -263,7 +263,7 @@ def test_a_sensor_sees_something_of_every_drawn_part():
 def test_a_row_with_gaps_for_a_sensor_delivers_less(block):
     _, ways, names = block
     seen = tried(ways, {names["A@0"]}, (), (), names["A@0"])
-    wide = replace(seen, apart=trying.GAP * float((seen.shares * ways.lengths).sum()))
+    wide = replace(seen, spacing=short_trials.GAP * float((seen.shares * ways.lengths).sum()))
     assert wide.rate == pytest.approx(0.5 * seen.rate)
 
 
@@ -298,7 +298,7 @@ def test_what_draws_carry_through_is_cut_by_more(block):
     drawn = robust.RobustRun(20, 18, "A@90 is carried through in 2 of 20")
     (before,), (after,) = proposal.cuts, proposals.better(proposal, seen, ways.lying, drawn).cuts
     middle = 0.5 * (before.device.limit + before.largest.limit)
-    assert after.device.limit == pytest.approx(middle, abs=proposals.STEP)
+    assert after.device.limit == pytest.approx(middle, abs=proposals.VALUE_STEP_M)
     assert after.margin_pass > 0.0 and "A@90" in after.returns
     other = replace(drawn, worst="A@0 is carried through in 2 of 20")  # nothing tells it from itself
     assert proposals.better(proposal, seen, ways.lying, other) is None
@@ -309,7 +309,7 @@ def test_what_left_a_queue_instead_is_cut_by_more(block):
     across, along = names["A@90"], names["A@0"]
     seen = tried(ways, {along}, {across}, (), along)
     proposal = proposals.better(proposals.Proposal(along, (), (), "no device"), seen, ways.lying)
-    candidate = SimpleNamespace(proposal=proposal, tried=seen, ways=ways)
+    candidate = SimpleNamespace(proposal=proposal, tried=seen, orientations=ways)
     changed = proposals.purer(candidate, (("in no known pose", 3), ("A@90", 2)))
     (before,), (after,) = proposal.cuts, changed.cuts
     assert abs(after.device.limit - after.largest.limit) < abs(before.device.limit - before.largest.limit)
@@ -321,7 +321,7 @@ def test_a_pressure_break_carries_what_is_wanted_and_lets_it_reach_over_the_ledg
     _, ways, names = block
     seen = tried(ways, {names["A@0"]}, (), (), names["A@0"])
     candidate = SimpleNamespace(
-        proposal=proposals.Proposal(names["A@0"], (), (), "test"), tried=seen, ways=ways
+        proposal=proposals.Proposal(names["A@0"], (), (), "test"), tried=seen, orientations=ways
     )
     changed = proposals.relieved(candidate)
     (cut,) = changed.cuts

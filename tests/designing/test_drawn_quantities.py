@@ -14,9 +14,9 @@ from scipy import stats
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
-from feederscrew.designing import exploring, proposals, robust, trying
+from feederscrew.designing import exploring, proposals, robust, short_trials
+from feederscrew.designing.exploring import Search
 from feederscrew.designing.record import Attempt, DesignRequest
-from feederscrew.designing.searching import Search
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
 
@@ -203,7 +203,9 @@ def test_a_bowl_is_driven_for_1_6_times_what_is_asked_for(block):
     mean = 0.25 * ways.lengths[0] + 0.75 * ways.lengths[1]
     for apart in (0.0, 7.0 * MM):
         needed = 1.6 * 0.5 * (1.5 * mean + apart) / 0.25
-        assert exploring.asked(search, ways, weights, 0.25, apart) == pytest.approx(needed, rel=1e-12)
+        assert exploring.required_velocity(search, ways, weights, 0.25, apart) == pytest.approx(
+            needed, rel=1e-12
+        )
 
 
 def test_a_row_brings_its_velocity_over_its_pitch_times_what_leaves(block):
@@ -214,13 +216,13 @@ def test_a_row_brings_its_velocity_over_its_pitch_times_what_leaves(block):
     shares[:2] = 0.25, 0.75
     own = {"velocity": 0.06, "state": 0, "states": (0,), "deepest": 0.0, "places": ({}, {})}
     counts = (np.array([2, 2]), np.array([2, 0]), np.array([0, 0]), np.array([0, 2]))
-    seen = trying.Tried(ways, shares, np.array([0, 1]), *counts, **own)
+    seen = short_trials.Tried(ways, shares, np.array([0, 1]), *counts, **own)
     mean = 0.25 * ways.lengths[0] + 0.75 * ways.lengths[1]
     assert seen.rate == pytest.approx(0.06 / (1.5 * mean) * 0.25, rel=1e-12)
-    assert replace(seen, apart=8.0 * MM).rate == pytest.approx(
+    assert replace(seen, spacing=8.0 * MM).rate == pytest.approx(
         0.06 / (1.5 * mean + 8.0 * MM) * 0.25, rel=1e-12
     )
-    all_right = replace(seen, right=np.array([2, 2]), apart=0.0)
+    all_right = replace(seen, right=np.array([2, 2]), spacing=0.0)
     for state in (0, 1):
         as_it_lies = replace(all_right, states=(state,)).rate
         longest = max(mean, ways.states[state].length)

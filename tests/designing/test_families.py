@@ -108,7 +108,7 @@ def test_the_widest_is_designed_first_and_its_kinds_are_offered_to_the_others(mo
         return replace(study, cuts=tuple(cuts), bowl=replace(study.bowl, devices=(cuts[0].device,)))
 
     monkeypatch.setattr(families.loop, "design", loop)
-    monkeypatch.setattr(families, "again", again)
+    monkeypatch.setattr(families, "prove_with_cuts", again)
     monkeypatch.setattr(families.proposals, "moved", lambda one, limit, every, row: replace(
         one, device=make_device("gap", "design", limit=limit, text=f"{1e3 * limit:g} mm")))  # fmt: skip
     study = families.family([SMALL, LARGE], BOWL, {"drive.phase"}, DesignRequest(0.5, without=("wiper",)))

@@ -9,7 +9,8 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying.hop import hop
-from feederscrew.designing import calm_drive, exploring, nearest, proposals, queues, trying
+from feederscrew.designing import calm_drive, exploring, nearest, proposals, queues, short_trials
+from feederscrew.designing.exploring import Candidate, Search
 from feederscrew.designing.record import (
     CAUSES,
     Attempt,
@@ -19,7 +20,6 @@ from feederscrew.designing.record import (
     NearestDesign,
     RobustRun,
 )
-from feederscrew.designing.searching import Candidate, Search
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
@@ -58,7 +58,7 @@ def attempt(rate=30.0, faults=(), cause="", wanted="A@0", **more):
 
 
 def candidate(ways, bowl=BOWL, fault=(), **more):
-    tried = trying.Tried(
+    tried = short_trials.Tried(
         ways, np.full(len(ways.lying), 1.0 / len(ways.lying)), np.array([0]), np.array([2]), np.array([2]),
         np.array([0]), np.array([0]), ({},), 0.1, 0, (0,), 0.0,
     )  # fmt: skip
@@ -152,7 +152,7 @@ def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_u
     """At the lively drive both wanted parts turn on the track; at the calmer one both pass."""
     search, _ = searching()
     made = calm_drive.PlainBowl(BOWL, frozenset(), None)
-    search.known = SimpleNamespace(aspects=find(PART), measured=None)
+    search.shares = SimpleNamespace(aspects=find(PART), measured=None)
     proposal, strokes = proposals.Proposal(0, (), (), "no device"), []
     monkeypatch.setattr(exploring.arrivals, "oriented", lambda known, _: known)
 
@@ -316,9 +316,9 @@ def test_any_heading_of_what_left_and_one_device_more_are_tried(monkeypatch, way
         exploring, "attempted", lambda _, made, proposal, *__: replace(candidate(ways), proposal=proposal)
     )
     heading, device = nearest.variants(search, [(impure, candidate(ways))])
-    assert heading.candidate.proposal.any_heading == ("A",) and not heading.asked
+    assert heading.candidate.proposal.any_heading == ("A",) and not heading.as_requested
     assert heading.search.request.up == ("A",) and "--up A" in heading.change
-    assert across in device.candidate.proposal.cuts[0].returns and device.asked
+    assert across in device.candidate.proposal.cuts[0].returns and device.as_requested
 
 
 def test_where_one_way_up_was_asked_for_others_are_tried_the_fast_ones_first(monkeypatch, ways):
@@ -334,7 +334,7 @@ def test_where_one_way_up_was_asked_for_others_are_tried_the_fast_ones_first(mon
     monkeypatch.setattr(exploring, "candidates", candidates)
     found = list(nearest.variants(search, []))
     assert [round(60.0 * one.candidate.attempt.rate) for one in found] == [900, 30, 20, 10]
-    assert all("another way up" in one.change and not one.asked for one in found)
+    assert all("another way up" in one.change and not one.as_requested for one in found)
     (free,) = asked
     assert (free.request.aspect, free.request.heading, free.request.target) == (None, None, 10.0)
     assert free.limit == len(search.attempts) + nearest.FREE_TRIALS and not search.passed

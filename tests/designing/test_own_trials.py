@@ -8,7 +8,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import own_trial
+from feederscrew.designing import tooling_trials
 from feederscrew.output import tooling_tables as tables
 from feederscrew.studies.tooling import tooling, tooling_without
 from feederscrew.tooling.devices.kinds import make_device
@@ -30,19 +30,19 @@ class Verdicts:
     def __call__(self, study, one, *_):
         self.denials -= 1
         faults = ("nothing leaves as wanted",) if self.denials >= 0 else ()
-        devices, name = own_trial._devices(one), study.orientations[one.wanted].name
-        return own_trial.TriedDesign(name, one.wanted, devices, one.efficiency, 0.0, np.nan, 6, faults)
+        devices, name = tooling_trials._devices(one), study.orientations[one.wanted].name
+        return tooling_trials.TriedDesign(name, one.wanted, devices, one.efficiency, 0.0, np.nan, 6, faults)
 
 
 def tried(monkeypatch, study, denials):
-    monkeypatch.setattr(own_trial, "_tried", Verdicts(denials))
+    monkeypatch.setattr(tooling_trials, "_tried", Verdicts(denials))
 
     def again(kinds):
         found = tooling_without(kinds, PART, study.bowl, "A", rule="csa", verdicts=1)
         assert not {cut.device.kind for cut in found.design.cuts} & set(kinds)
         return found
 
-    return own_trial.own_trials(study, again)
+    return tooling_trials.own_trials(study, again)
 
 
 def test_a_confirmed_design_is_said_to_isolate(monkeypatch, study):
@@ -55,7 +55,7 @@ def test_a_confirmed_design_is_said_to_isolate(monkeypatch, study):
 def test_what_the_trial_denies_is_not_isolated_and_the_next_best_are_tried(monkeypatch, study):
     found = tried(monkeypatch, study, 3)
     assert found.design is study.design
-    assert 2 <= len(found.trials) <= own_trial.TRIES
+    assert 2 <= len(found.trials) <= tooling_trials.TRIES
     told = tables.document(found)
     assert (told["status"], told["isolated"], told["isolated_static"]) == ("denied", False, True)
     assert found.isolates(found.wanted) is False
@@ -93,17 +93,17 @@ def test_of_those_that_hold_the_most_efficient_is_taken(monkeypatch, study):
         less = replace(found.design, cuts=(cut,), isolated=True, efficiency=share * study.design.efficiency)
         return replace(found, designs=tuple(less for _ in found.designs))
 
-    monkeypatch.setattr(own_trial, "_tried", Verdicts(1))
-    monkeypatch.setattr(own_trial, "_ways_on", lambda *_: [("wiper",)] * 3)
-    found = own_trial.own_trials(study, again)
+    monkeypatch.setattr(tooling_trials, "_tried", Verdicts(1))
+    monkeypatch.setattr(tooling_trials, "_ways_on", lambda *_: [("wiper",)] * 3)
+    found = tooling_trials.own_trials(study, again)
     assert len(asked) == 3 and len(found.trials) == 4
     assert found.design.efficiency == pytest.approx(0.9 * study.design.efficiency)
     assert [bool(one.faults) for one in found.trials] == [False, True, False, False]
 
 
 def test_of_a_chain_that_is_denied_as_well_less_is_tried(study):
-    first = own_trial._ways_on((), study.design)
-    assert all(("rails", *kinds) in own_trial._ways_on(("rails",), study.design) for kinds in first)
+    first = tooling_trials._ways_on((), study.design)
+    assert all(("rails", *kinds) in tooling_trials._ways_on(("rails",), study.design) for kinds in first)
 
 
 @pytest.mark.parametrize(("limit", "tries", "searches"), [("TRIES", 3, 2), ("SEARCHES", 4, 3)])
@@ -119,10 +119,10 @@ def test_the_search_for_another_chain_has_an_end(monkeypatch, study, limit, trie
         other = replace(study.design, cuts=(cut,), isolated=True)
         return replace(found, designs=tuple(other for _ in found.designs))
 
-    monkeypatch.setattr(own_trial, "_tried", Verdicts(99))
-    monkeypatch.setattr(own_trial, "_ways_on", lambda *_: [("wiper",)] * 3)
-    monkeypatch.setattr(own_trial, limit, 3)
-    found = own_trial.own_trials(study, again)
+    monkeypatch.setattr(tooling_trials, "_tried", Verdicts(99))
+    monkeypatch.setattr(tooling_trials, "_ways_on", lambda *_: [("wiper",)] * 3)
+    monkeypatch.setattr(tooling_trials, limit, 3)
+    found = tooling_trials.own_trials(study, again)
     assert (len(found.trials), len(asked)) == (tries, searches)
 
 

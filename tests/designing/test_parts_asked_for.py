@@ -5,7 +5,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import proposals, queues, robust, trying
+from feederscrew.designing import proposals, queues, robust, short_trials
 from feederscrew.designing.record import DesignRequest
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
@@ -79,8 +79,8 @@ def test_single_parts_and_draws_count_the_aspect_alike(block):
     shares = np.full(len(ways.lying), 1.0 / len(ways.lying))
     bowl, rows = bowls.default(), (names["A@0"], names["A@90"])
     own = {"rows": rows, "each": 1, "run": RunSettings(1), "aspects": aspects}
-    alone = trying.single(part, bowl, ways, shares, rows[0], **own)
-    free = trying.single(part, bowl, ways, shares, rows[0], any_heading=("A",), **own)
+    alone = short_trials.single(part, bowl, ways, shares, rows[0], **own)
+    free = short_trials.single(part, bowl, ways, shares, rows[0], any_heading=("A",), **own)
     assert (list(alone.wrong), list(free.wrong)) == ([0, 1], [0, 0])
     assert free.purity == 1.0
     only = np.zeros(len(shares))
@@ -96,7 +96,7 @@ def test_what_is_round_in_plan_counts_at_any_heading_unless_one_is_asked_for():
     lying = [k for k, one in enumerate(ways.lying) if one.kind == "flat"]
     assert lying
     for k in lying:
-        assert trying.aspects_at_any_heading(ways.lying, k, ()) == (ways.lying[k].aspect,)
-        assert trying.aspects_at_any_heading(ways.lying, k, (), heading_given=True) == ()
+        assert short_trials.aspects_at_any_heading(ways.lying, k, ()) == (ways.lying[k].aspect,)
+        assert short_trials.aspects_at_any_heading(ways.lying, k, (), heading_given=True) == ()
     request = DesignRequest(1.0, up=(ways.lying[lying[0]].aspect.lower(),), heading=None)
     assert proposals.free_headings(ways.lying, lying[0], request) == (ways.lying[lying[0]].aspect,)

@@ -7,7 +7,14 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import proposals, pulses, trying
+from feederscrew.designing import proposals, short_trials
+from feederscrew.designing.proposals import (
+    PULSE_RESERVE,
+    PULSE_STEP_S,
+    SHORTEST_PULSE_STEPS,
+    longer,
+    quickened,
+)
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.devices.pneumatics import PULSE
@@ -19,7 +26,7 @@ def tried(ways, right, wrong):
     """A short trial of all orientations, one of each, on their way to the first state."""
     count = len(ways.lying)
     own = [np.array([int(k in some) for k in range(count)]) for some in (right, wrong, ())]
-    return trying.Tried(
+    return short_trials.Tried(
         ways, np.full(count, 1.0 / count), np.arange(count), np.ones(count, int), *own,
         places=({},) * count, velocity=0.05, state=0, states=(0,), deepest=0.0,
     )  # fmt: skip
@@ -42,7 +49,7 @@ def wedge():
 def reserve(cut, every, time):
     """The least way [m] beyond the edge over which a share of a pulse carries what the cut returns."""
     gone = [DeviceEncounter(one, every) for one in every if one.name in cut.returns]
-    return min(met.blown(*cut.device.jet.push(met.orientation, every), time / pulses.RESERVE) for met in gone)
+    return min(met.blown(*cut.device.jet.push(met.orientation, every), time / PULSE_RESERVE) for met in gone)
 
 
 def weighing(every, times):
@@ -55,7 +62,7 @@ def test_a_pulse_is_the_shortest_with_its_reserve_and_the_file_says_so(wedge):
     found = []
     for times in (0.2, 0.9, 1.2, 50.0):
         every = weighing(ways.lying, times)
-        device = pulses.quickened(cut, every).device
+        device = quickened(cut, every).device
         found.append(device.time)
         if device.time < PULSE:
             assert reserve(cut, every, device.time) > 0.0
@@ -66,19 +73,19 @@ def test_a_pulse_is_the_shortest_with_its_reserve_and_the_file_says_so(wedge):
             assert device.gap(every[0], 0.2) == pytest.approx(
                 cut.device.gap(every[0], 0.2) - 0.2 * (PULSE - device.time)
             )
-        if device.time > pulses.STEP * pulses.LEAST:
-            assert reserve(cut, every, device.time - pulses.STEP) <= 0.0
-    assert found[0] == pulses.STEP * pulses.LEAST < found[1] < found[2] <= found[3] == PULSE
+        if device.time > PULSE_STEP_S * SHORTEST_PULSE_STEPS:
+            assert reserve(cut, every, device.time - PULSE_STEP_S) <= 0.0
+    assert found[0] == PULSE_STEP_S * SHORTEST_PULSE_STEPS < found[1] < found[2] <= found[3] == PULSE
 
 
 def test_what_is_carried_through_makes_the_pulse_longer_up_to_that_of_before(wedge):
     ways, cut = wedge
-    proposal = proposals.Proposal(0, (pulses.quickened(cut, weighing(ways.lying, 0.2)),), (), "test")
+    proposal = proposals.Proposal(0, (quickened(cut, weighing(ways.lying, 0.2)),), (), "test")
     slipped = next(k for k, one in enumerate(ways.lying) if one.name in cut.returns)
     seen, times = tried(ways, {0}, {slipped}), []
-    assert pulses.longer(proposal, tried(ways, {0}, ()), ways.lying) is None
+    assert longer(proposal, tried(ways, {0}, ()), ways.lying) is None
     for _ in range(3):
-        other = pulses.longer(proposal, seen, ways.lying)
+        other = longer(proposal, seen, ways.lying)
         if other is None:
             break
         assert proposals.better(proposal, seen, ways.lying).chain == other.chain

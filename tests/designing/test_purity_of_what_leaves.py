@@ -7,7 +7,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import own_trial, proposals, trying
+from feederscrew.designing import proposals, short_trials, tooling_trials
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import tooling_tables as tables
 from feederscrew.resting.aspects import find
@@ -44,7 +44,7 @@ def test_a_rare_orientation_is_not_isolated_by_others_that_are_rare_too(ways):
 def tried(ways, shares, rows, parts, right, wrong):
     every = (np.array(values) for values in (shares, rows, parts, right, wrong))
     none = np.zeros(len(rows), int)
-    return trying.Tried(ways, *every, none, tuple({} for _ in rows), 0.05, 0, (0,), 0.0)
+    return short_trials.Tried(ways, *every, none, tuple({} for _ in rows), 0.05, 0, (0,), 0.0)
 
 
 def test_the_shares_of_a_trial_are_of_all_that_is_offered_with_their_interval(ways):
@@ -52,13 +52,13 @@ def test_the_shares_of_a_trial_are_of_all_that_is_offered_with_their_interval(wa
     count = len(ways.lying)
     alone = np.zeros(count)
     alone[0] = 1.0
-    efficiency, purity = own_trial.shares_leaving(tried(ways, alone, [0], [20], [15], [5]))
+    efficiency, purity = tooling_trials.shares_leaving(tried(ways, alone, [0], [20], [15], [5]))
     low, high = (float(end[0]) for end in wilson([15], 20))
     assert efficiency == pytest.approx((0.75, low, high))
     assert purity[0] == pytest.approx(0.75) and purity[1] < 0.75 < purity[2]
     even = np.full(count, 1.0 / count)
     others = float((even * ways.leaves)[1:].sum())
-    efficiency, purity = own_trial.shares_leaving(tried(ways, even, [0], [20], [20], [0]))
+    efficiency, purity = tooling_trials.shares_leaving(tried(ways, even, [0], [20], [20], [0]))
     assert efficiency[0] == pytest.approx(1.0 / count)
     assert purity[0] == pytest.approx((1.0 / count) / (1.0 / count + others))
 
@@ -74,21 +74,21 @@ def test_the_interval_holds_the_true_shares_in_most_trials(ways):
     pure = true / (true + float((shares * wrong_chance).sum()))
     for _ in range(200):
         one = tried(ways, shares, rows, parts, rng.binomial(4, right_chance), rng.binomial(4, wrong_chance))
-        (_, low, high), (_, least, most) = own_trial.shares_leaving(one)
+        (_, low, high), (_, least, most) = tooling_trials.shares_leaving(one)
         held.append(low <= true <= high and least <= pure <= most)
     assert np.mean(held) >= 0.95
 
 
 def test_further_parts_go_with_the_shares_and_make_the_interval_narrower(ways):
     """Of 60, 30 and 10 %; with two of each the interval of a clean trial is 0.60 wide, then 0.24."""
-    counts = own_trial.further_parts(np.array([0.6, 0.3, 0.1]))
-    assert counts.tolist() == [12, 6, 2] and own_trial.further_parts(np.zeros(3)).tolist() == [0, 0, 0]
+    counts = tooling_trials.further_parts(np.array([0.6, 0.3, 0.1]))
+    assert counts.tolist() == [12, 6, 2] and tooling_trials.further_parts(np.zeros(3)).tolist() == [0, 0, 0]
     shares = np.zeros(len(ways.lying))
     shares[:3] = 0.6, 0.3, 0.1
     widths = []
     for parts in (np.full(3, 2), 2 + counts):
         one = tried(ways, shares, [0, 1, 2], parts, [parts[0], 0, 0], [0, 0, 0])
-        (_, low, high), _ = own_trial.shares_leaving(one)
+        (_, low, high), _ = tooling_trials.shares_leaving(one)
         widths.append(high - low)
     assert widths == pytest.approx([0.60, 0.24], abs=0.01)
 
@@ -104,15 +104,17 @@ def test_only_what_the_trial_does_not_deny_is_tried_with_more_parts(monkeypatch)
         right = np.where(rows == study.wanted, each, 0)
         state = int(ways.leaves_as[study.wanted])
         places = tuple({} for _ in rows)
-        return trying.Tried(ways, shares, rows, each, right, none, none, places, 0.05, state, (state,), 0.0)
+        return short_trials.Tried(
+            ways, shares, rows, each, right, none, none, places, 0.05, state, (state,), 0.0
+        )
 
-    monkeypatch.setattr(trying, "single", single)
-    (one,) = own_trial.own_trials(study, seed=3).trials
+    monkeypatch.setattr(short_trials, "single", single)
+    (one,) = tooling_trials.own_trials(study, seed=3).trials
     assert [seed for seed, _ in calls] == [3, 4] and 18 <= calls[1][1] <= 22
     assert one.parts == calls[0][1] + calls[1][1]
     calls.clear()
-    monkeypatch.setattr(own_trial, "denied", lambda _: ("nothing leaves as wanted",))
-    own_trial.own_trials(study, seed=3)
+    monkeypatch.setattr(tooling_trials, "denied", lambda _: ("nothing leaves as wanted",))
+    tooling_trials.own_trials(study, seed=3)
     assert [seed for seed, _ in calls] == [3]
 
 
@@ -125,7 +127,7 @@ def test_what_is_printed_is_the_trials_and_a_least_without_one():
     less = replace(study, designs=tuple(rolls for _ in study.designs))
     assert tables.document(less)["efficiency"] == pytest.approx(0.5 * found.efficiency)
     assert "at least" in tables.remarks(less)[0]
-    one = own_trial.TriedDesign(
+    one = tooling_trials.TriedDesign(
         "A@0", place, (), found.efficiency, 0.5 * found.efficiency, 0.99, 40, (),
         (0.4 * found.efficiency, 0.6 * found.efficiency), (0.97, 1.0),
     )  # fmt: skip
@@ -146,15 +148,15 @@ def test_a_trial_of_which_little_that_leaves_is_wanted_denies_the_design(monkeyp
         rows = np.array(rows)
         right = np.where(rows == study.wanted, 2, 0)
         wrong = np.where(rows == study.wanted, 0, 1)
-        return trying.Tried(
+        return short_trials.Tried(
             ways, shares, rows, np.full(len(rows), 2), right, wrong, np.zeros(len(rows), int),
             tuple({} for _ in rows), 0.05, int(ways.leaves_as[study.wanted]),
             (int(ways.leaves_as[study.wanted]),), 0.0,
         )  # fmt: skip
 
-    monkeypatch.setattr(trying, "single", single)
-    monkeypatch.setattr(own_trial, "denied", lambda _: ())
-    (one,) = own_trial.own_trials(study).trials
+    monkeypatch.setattr(short_trials, "single", single)
+    monkeypatch.setattr(tooling_trials, "denied", lambda _: ())
+    (one,) = tooling_trials.own_trials(study).trials
     assert one.purity < 0.98 and one.faults and not one.agrees
     made = tables.document(replace(study, trials=(one,)))
     assert made["isolated"] is False and made["status"] == "denied" and made["purity"] == one.purity

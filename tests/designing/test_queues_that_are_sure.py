@@ -131,7 +131,7 @@ class FakeQueue:
         self.time = seconds
         tell(self.periods, 0)
 
-    def seen(self, partial=False):
+    def result(self, partial=False):
         return SimpleNamespace(queue=self, partial=partial)
 
 
@@ -209,7 +209,7 @@ def test_touching_parts_come_as_they_entered_the_track(monkeypatch):
         "PartsQueue",
         lambda part, bowl, aspects, parts, poses, plan, seed: offered.update({plan.gaps: parts[1]}),
     )
-    monkeypatch.setattr(queues.trying, "counted", lambda *_: ())
+    monkeypatch.setattr(queues.short_trials, "counted", lambda *_: ())
     known, arriving, entering = SimpleNamespace(lying=()), np.array([0.9, 0.1]), np.array([0.5, 0.5])
     made = queues.FollowedRow(None, None, None, known, arriving, (0,), 1, touching=entering)
     for _, gaps in queues.FILLS:

@@ -10,8 +10,8 @@ import shapes
 from scipy.stats import binom
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import accepting, calm_drive, loop, queues
-from feederscrew.designing.hazards.risks import Risk
+from feederscrew.designing import acceptance_sheet, calm_drive, loop, queues
+from feederscrew.designing.hazards import Risk
 from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import (
     Attempt,
@@ -242,7 +242,7 @@ def test_no_jam_is_at_most_three_in_the_time_it_was_looked_for():
 def proofs_of(monkeypatch, first, second, results):
     """Prove a candidate whose studies are known by their bowls; the studies, and what was tried meanwhile."""
     tried, proofs = [], []
-    search = SimpleNamespace(least=0.0, given=frozenset(), request=DesignRequest(1.0), spent=False)
+    search = SimpleNamespace(least=0.0, kept_keys=frozenset(), request=DesignRequest(1.0), spent=False)
 
     def attempted(search, made, proposal, weights, driven=None):
         tried.append((proposal, driven, search.least))
@@ -260,7 +260,9 @@ def candidates_of(bowl, other, proposal="rails"):
     """A candidate at a drive, and one that is clean at another drive."""
     clean, ways = SimpleNamespace(clean=True, faults=()), SimpleNamespace(lying=())
     chain = SimpleNamespace(cuts=(), devices=(), name=proposal)
-    first = SimpleNamespace(bowl=bowl, proposal=chain, weights=None, tried=None, ways=ways, attempt=clean)
+    first = SimpleNamespace(
+        bowl=bowl, proposal=chain, weights=None, tried=None, orientations=ways, attempt=clean
+    )
     return first, SimpleNamespace(**vars(first) | {"bowl": replace(bowl, drive=other)})
 
 
@@ -332,22 +334,22 @@ def test_what_stays_at_a_blade_is_tried_at_a_livelier_drive(monkeypatch, fault, 
 @pytest.mark.parametrize("measured", ["nan", "inf", "1_0", "\u0663", "many", "1e999"])
 def test_a_sheet_holds_plain_numbers(tmp_path, measured):
     path = tmp_path / "sheet.csv"
-    head = ",".join(accepting.HEAD)
+    head = ",".join(acceptance_sheet.HEAD)
     path.write_text(f"{head}\njams,low,0,0,1,1,{measured},100\n")
-    assert accepting.is_sheet(path)
+    assert acceptance_sheet.is_sheet(path)
     with pytest.raises(FeederError, match=r"sheet\.csv:2"):
-        accepting.sheet(path)
+        acceptance_sheet.sheet(path)
 
 
 def test_a_sheet_is_read_within_bounds(tmp_path):
     path = tmp_path / "sheet.csv"
     line = "\x1b[31mjams,low,0,0,1,1,2,100\n"
-    path.write_text(",".join(accepting.HEAD) + "\n" + line)
-    (found,) = accepting.sheet(path)
+    path.write_text(",".join(acceptance_sheet.HEAD) + "\n" + line)
+    (found,) = acceptance_sheet.sheet(path)
     assert found.quantity.isprintable() and found.measured == 2.0
-    path.write_text(",".join(accepting.HEAD) + "\n" + 20_000 * line)
+    path.write_text(",".join(acceptance_sheet.HEAD) + "\n" + 20_000 * line)
     with pytest.raises(FeederError, match="kB"):
-        accepting.sheet(path)
+        acceptance_sheet.sheet(path)
     path.write_bytes(b"\xff\xfe" + path.read_bytes()[:100])
     with pytest.raises(FeederError, match="UTF-8"):
-        accepting.sheet(path)
+        acceptance_sheet.sheet(path)

@@ -9,7 +9,7 @@ import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
-from feederscrew.designing.hazards import risks, wedging
+from feederscrew.designing import hazards
 from feederscrew.designing.record import FilledQueue
 from feederscrew.output import designs
 from feederscrew.resting.aspects import find
@@ -34,7 +34,7 @@ def found(one, friction, queues=(), width=1.0):
     plain = bowls.default()
     rubbed = replace(plain.friction, static=friction, kinetic=friction, wall=friction)
     bowl = replace(plain, friction=rubbed, track=replace(plain.track, width=width))
-    return list(risks.risks(one, bowl, queues))
+    return list(hazards.risks(one, bowl, queues))
 
 
 def lathe(outline):
@@ -45,12 +45,12 @@ def lathe(outline):
 def wedge_of(part, kind="flat"):
     """[deg] of the part's lowest orientation of a kind."""
     some = [one for one in orientations(part, find(part), LEVEL) if one.kind == kind]
-    return np.degrees(risks.wedge(min(some, key=lambda one: one.height)))
+    return np.degrees(hazards.wedge(min(some, key=lambda one: one.height)))
 
 
 def test_a_foot_under_sides_that_rise_wedges_by_the_flatter_one_whichever_leads(keel):
     for one in keel:
-        assert np.degrees(risks.wedge(one)) == pytest.approx(20.0, abs=1e-6)
+        assert np.degrees(hazards.wedge(one)) == pytest.approx(20.0, abs=1e-6)
         (said,) = found(one, 0.6)
         assert said.text == (
             f"{one.name} may shingle: where one lies 0.25 mm higher than the next it is pushed up a side of "
@@ -81,7 +81,7 @@ def test_a_taper_wedges_on_its_large_face_and_on_its_small_one():
         taper = lathe([(0.0, 0.0), (low, 0.0), (high, rise), (0.0, rise)])
         ways = [one for one in orientations(taper, find(taper), LEVEL) if one.kind == "flat"]
         assert len(ways) >= 1
-        assert all(np.degrees(risks.wedge(one)) == pytest.approx(25.0, abs=0.2) for one in ways)
+        assert all(np.degrees(hazards.wedge(one)) == pytest.approx(25.0, abs=0.2) for one in ways)
 
 
 def test_round_sides_meet_half_way_up_whatever_their_facets():
@@ -90,8 +90,8 @@ def test_round_sides_meet_half_way_up_whatever_their_facets():
         pin = shapes.part(shapes.cylinder(3.0, 20.0, sections))
         across = [one for one in orientations(pin, find(pin), LEVEL) if one.kind == "rolling"]
         shortest = min(across, key=lambda one: one.length)
-        exact = 90.0 - np.degrees(np.arcsin(risks.LIFT / 6e-3))
-        assert np.degrees(risks.wedge(shortest)) == pytest.approx(exact, abs=180.0 / sections)
+        exact = 90.0 - np.degrees(np.arcsin(hazards.LIFT / 6e-3))
+        assert np.degrees(hazards.wedge(shortest)) == pytest.approx(exact, abs=180.0 / sections)
 
 
 def test_what_climbed_in_the_queue_is_said(keel):
@@ -104,8 +104,8 @@ def test_the_one_that_shingles_is_drawn_touching_the_next_and_higher(keel):
     for one in keel:
         (said,) = found(one, 0.6)
         along, aside, up = said.pair.axes @ said.pair.place
-        assert aside == pytest.approx(0.0, abs=1e-9) and abs(up) == pytest.approx(risks.LIFT, abs=1e-9)
-        reach = risks.LIFT / np.tan(np.radians(20.0))
+        assert aside == pytest.approx(0.0, abs=1e-9) and abs(up) == pytest.approx(hazards.LIFT, abs=1e-9)
+        reach = hazards.LIFT / np.tan(np.radians(20.0))
         whole = np.ptp(one.outline[:, 0])
         assert along == pytest.approx(whole - reach, abs=1e-6)  # they lap by what the flatter side gives
 
@@ -119,12 +119,12 @@ def test_a_strut_between_walls_is_held_up_to_the_angle_of_friction(heading):
     ]
     one = replace(one, heading=one.heading + heading)
     longest = np.hypot(30e-3, 12e-3)
-    low, high = wedging.walls_between(one, 0.5)
+    low, high = hazards.walls_between(one, 0.5)
     breadth = np.ptp(one.outline[:, 1])
     assert high == pytest.approx(longest, rel=1e-9)
     assert low == pytest.approx(max(longest / np.sqrt(1.0 + 0.5**2), breadth), rel=1e-9)
     width = 0.5 * (low + high)
-    turn = wedging.strut(one, width)
+    turn = hazards.strut(one, width)
     x, y = one.outline.T
     assert np.ptp(np.sin(turn) * x + np.cos(turn) * y) == pytest.approx(width, rel=5e-3)
     (said,) = found(one, 0.5, width=width)
@@ -135,13 +135,13 @@ def test_a_strut_between_walls_is_held_up_to_the_angle_of_friction(heading):
 def test_what_is_as_broad_whichever_way_it_is_turned_is_no_strut():
     disc = lathe([(0.0, 0.0), (6.0, 0.0), (6.0, 3.0), (0.0, 3.0)])
     (lying, *_) = [one for one in orientations(disc, find(disc), LEVEL) if one.height < 3.1e-3]
-    assert wedging.walls_between(lying, 0.6) is None
+    assert hazards.walls_between(lying, 0.6) is None
 
 
 @pytest.mark.parametrize("kind", ["shingles", "wedges"])
 def test_each_pair_is_drawn_without_one_in_the_other(keel, kind):
     (one, _) = keel
-    width = np.mean(wedging.walls_between(one, 0.6))
+    width = np.mean(hazards.walls_between(one, 0.6))
     said = next(some for some in found(one, 0.6, width=width) if some.kind == kind)
     first, second = designs.bodies(one.posture.solid, said.pair)
     bodies = [trimesh.Trimesh(*some) for some in (first, second)]

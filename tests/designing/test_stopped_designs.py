@@ -8,7 +8,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import families, loop, proposals, queues, trying
+from feederscrew.designing import families, loop, proposals, queues, short_trials
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.robust import robust_run
 from feederscrew.resting.aspects import find
@@ -47,7 +47,7 @@ def stopping(word):
 )
 def test_it_hands_over_what_was_proved_so_far_and_no_verdict(word, why, bowl):
     said, told = stopping(word)
-    found = loop.design(CUBE, bowls.default(), frozenset(), REQUEST, told=told)
+    found = loop.design(CUBE, bowls.default(), frozenset(), REQUEST, tell=told)
     assert found.partial and found.status == "not proved" and why in found.why
     assert (found.bowl is not None) == bowl and len(found.attempts) == bowl
     assert word in said[-1] and said[0] == "trial 1 of at most 16: A@0, no device"
@@ -56,7 +56,7 @@ def test_it_hands_over_what_was_proved_so_far_and_no_verdict(word, why, bowl):
 def test_a_family_is_stopped_with_the_parts_that_were_reached():
     _, told = stopping("draws:")
     other = replace(CUBE, name="other")
-    found = families.family([CUBE, other], bowls.default(), frozenset(), REQUEST, told=told)
+    found = families.family([CUBE, other], bowls.default(), frozenset(), REQUEST, tell=told)
     assert found.partial and len(found.members) == 1 and found.status == "not proved"
 
 
@@ -80,8 +80,8 @@ def test_parts_that_a_stopped_trial_has_not_tried_are_no_verdict(monkeypatch):
     ways = proposals.known_through(CUBE, find(CUBE), bowls.default())
     shares = np.full(len(ways.lying), 1.0 / len(ways.lying))
     seen = SimpleNamespace(partial=True, orientations=np.zeros((1, 1)), fates=np.zeros(1))
-    monkeypatch.setattr(trying.course, "course", lambda *_, **__: seen)
+    monkeypatch.setattr(short_trials.course, "course", lambda *_, **__: seen)
     with pytest.raises(KeyboardInterrupt):
-        trying.single(CUBE, bowls.default(), ways, shares, 0, rows=(0,), each=2, run=RunSettings(1))
+        short_trials.single(CUBE, bowls.default(), ways, shares, 0, rows=(0,), each=2, run=RunSettings(1))
     drawn = robust_run(CUBE, bowls.default(), ways, shares, 0, draws=3, tolerance=1e-5, run=RunSettings(1))
     assert drawn.partial and drawn.draws == 0

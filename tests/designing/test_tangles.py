@@ -6,7 +6,7 @@ import shapely
 import shapes
 import trimesh
 
-from feederscrew.designing.hazards import nesting, tangling
+from feederscrew.designing import hazards
 from feederscrew.geometry import vectors
 from feederscrew.geometry.lattice import cells, chords, handles
 
@@ -42,7 +42,7 @@ def angle():
 def hooked():
     """A ring with a slit of 30 degrees, and how two of them hook."""
     part = split_ring(30.0)
-    return part, tangling.tangle(part, RUBBED)
+    return part, hazards.tangle(part, RUBBED)
 
 
 def test_split_rings_hook_through_their_slit_and_only_where_the_wire_goes_through(hooked):
@@ -51,7 +51,7 @@ def test_split_rings_hook_through_their_slit_and_only_where_the_wire_goes_throug
     assert 1e3 * found.opening == pytest.approx(slit, abs=0.25)
     assert 1e3 * found.section == pytest.approx(1.2, abs=0.25)
     assert found.share > 0.8
-    assert tangling.tangle(split_ring(8.0), RUBBED) is None  # 0.75 mm wide, for 1.2 mm of wire
+    assert hazards.tangle(split_ring(8.0), RUBBED) is None  # 0.75 mm wide, for 1.2 mm of wire
 
 
 def test_the_pair_that_hooks_does_not_overlap_and_each_goes_through_the_other(hooked):
@@ -75,21 +75,21 @@ def test_the_pair_that_hooks_does_not_overlap_and_each_goes_through_the_other(ho
     ids=["block", "pin", "washer", "angle", "straight cup"],
 )
 def test_what_never_comes_together_or_comes_apart_by_itself_is_no_risk(part):
-    assert tangling.tangle(part, RUBBED) is None
-    assert nesting.stack(part, 0.6) is None
+    assert hazards.tangle(part, RUBBED) is None
+    assert hazards.stack(part, 0.6) is None
 
 
 @pytest.mark.parametrize("sections", [24, 60])
 def test_cups_nest_where_their_sides_are_steeper_than_friction_holds(sections):
     """The inside of one meets the next one's foot, of 6 mm, where it is as wide: 4.32 mm up."""
     part = cup(6.0, 9.0, sections=sections)
-    found = nesting.stack(part, 0.6)
+    found = hazards.stack(part, 0.6)
     apart = 0.8 + 0.8 * 13.2 / 3.0
     assert 1e3 * found.height == pytest.approx(14.0, rel=1e-6)
     assert 1e3 * (found.height - found.depth) == pytest.approx(apart, rel=0.05)
     assert np.degrees(found.side) == pytest.approx(np.degrees(np.arctan(3.0 / 13.2)), abs=0.3)
-    assert nesting.stack(part, np.tan(np.radians(11.0))) is None
-    assert nesting.stack(cup(3.0, 17.0), 0.6) is None  # 45 deg: it lets go
+    assert hazards.stack(part, np.tan(np.radians(11.0))) is None
+    assert hazards.stack(cup(3.0, 17.0), 0.6) is None  # 45 deg: it lets go
 
 
 def test_handles_and_chords_of_plain_bodies():

@@ -24,7 +24,7 @@ CUBE = shapes.part(shapes.box(10, 10, 10))
 def test_design_refuses_it_before_anything_is_tried(asked, said):
     tried = []
     with pytest.raises(FeederError) as fault:
-        loop.design(CUBE, bowls.default(), frozenset(), DesignRequest(0.5, **asked), told=tried.append)
+        loop.design(CUBE, bowls.default(), frozenset(), DesignRequest(0.5, **asked), tell=tried.append)
     assert said in str(fault.value) and not tried
 
 

@@ -1,6 +1,5 @@
 """Round sides as round sides: the rims of a hull, and drops that do not depend on its sections."""
 
-import drop_bodies
 import numpy as np
 import pytest
 import shapes
@@ -181,8 +180,3 @@ def test_principal_axes_are_those_of_the_matrix(rng):
         moments, axes = principal_axes(matrix)
         assert moments == pytest.approx(np.linalg.eigvalsh(matrix)) and np.linalg.det(axes) > 0.0
         assert axes @ np.diag(moments) @ axes.T == pytest.approx(matrix, abs=1e-12)
-
-
-def test_a_box_is_what_it_was():
-    shape, _ = drop_bodies.box((1.0, 1.3, 1.7))
-    assert len(shape.solid.rims) == 0 and not shape.solid.inner.any() and shape.solid.sag == 0.0

@@ -14,7 +14,6 @@ from feederscrew.output import drop, style, tables
 from feederscrew.output.tables import data_frame
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
-from feederscrew.running import RunSettings
 from feederscrew.studies.drop import DropStudy
 
 PARTS = Path(__file__).parents[2] / "parts"
@@ -179,17 +178,6 @@ def test_the_table_is_what_was_followed(bracket):
         assert np.einsum("ni,ni->n", unit[1:], unit[:-1]).min() > 0.0
 
 
-def test_the_same_seed_gives_the_same_bytes(bracket):
-    part, aspects, result = bracket
-    again = followed(PARTS / "lbracket_30x20x15.stl", drops=20, run=RunSettings(jobs=2))[2]
-    one, two = (tables.text(drop.traces(DropStudy(part, aspects, r)), "csv") for r in (result, again))
-    assert one == two
-    shown = telling(result.traces)
-    assert style.png(drop.strip(part, aspects, shown, "a")) == style.png(
-        drop.strip(part, aspects, telling(again.traces), "a")
-    )
-
-
 def test_the_drop_shown_tumbles_if_one_does(bracket):
     _, _, result = bracket
     shown = telling(result.traces)
@@ -222,10 +210,3 @@ def test_the_curve_shows_energy_over_the_heights_it_comes_down_to(bracket):
     assert (energy.get_ydata() >= height.get_ydata() - 1e-9).all()
     saddle = next(line for line in drop.references(trace, aspects) if "tips" in line[1])
     assert saddle[0] == pytest.approx((aspects.heights + aspects.barriers)[trace.row] / MM)
-
-
-@pytest.mark.parametrize(
-    ("longest", "step"), [(1.0, 1.0), (1.9, 1.0), (2.0, 2.0), (7.0, 5.0), (10.0, 10.0), (0.3, 0.2)]
-)
-def test_the_grid_has_round_steps(longest, step):
-    assert drop.grid_step(longest * MM) == pytest.approx(step * MM)

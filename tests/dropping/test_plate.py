@@ -9,7 +9,6 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.dropping import plate_test
-from feederscrew.dropping.kernel.one_drop import UNSETTLED
 from feederscrew.dropping.launch_conditions import PRESETS, sample
 from feederscrew.dropping.occupancy import lasting, limit_of, occupancy
 from feederscrew.dropping.plate_test import PARTS_A_BATCH, ride
@@ -35,18 +34,6 @@ def test_every_transition_is_counted_once():
     assert found.counts.tolist() == [[1, 2], [1, 1]]  # 1 -> 0 and 2 -> 3 stay within their class
     assert found.times.tolist() == [0.5 * 7, 0.5 * 6]  # the last look spends nothing
     assert found.rates == pytest.approx(found.counts / found.times[:, None])
-
-
-def test_restitution_scatters_where_the_plate_throws_parts_up():
-    """A value of the bowl file stood as it was, 0.2 for all; a range as typed stays what it is."""
-
-    def came(amplitude, pace=plate_test.EXACT_PACE, **own):
-        bowl = bowls.read(None, (f"drive.amplitude={amplitude} mm",))
-        return plate_test._surfaced(PRESETS["feed"], bowl, own, pace).restitution
-
-    assert came(0.4) == pytest.approx((0.1446, 0.2554), abs=1e-4)
-    assert came(0.2) == (0.2, 0.2) and came(0.4, plate_test.PlatePace()) == (0.2, 0.2)
-    assert came(0.4, restitution="0.2:0.2") == PRESETS["feed"].restitution  # as it came, with that range
 
 
 def test_shares_fill_each_look():
@@ -197,11 +184,6 @@ def test_looks_are_whole_periods_apart(frequency, seconds, apart):
 def test_the_throw_number_of_a_plate():
     given = bowl("drive.amplitude=0.3 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")
     assert plate_test.throw_number(given) == pytest.approx(0.3e-3 * (120 * np.pi) ** 2 * 0.5 / 9.81)
-
-
-def test_a_part_that_never_lies_counts_for_no_class():
-    found = counted([[UNSETTLED] * 8, [0] * 8])
-    assert found.course.sum(axis=1) == pytest.approx(np.full(8, 0.5))
 
 
 def test_the_start_is_what_each_part_lay_on_first():

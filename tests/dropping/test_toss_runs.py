@@ -93,10 +93,10 @@ def test_filmed_tosses_of_a_cube_end_as_they_did(tmp_path):
     shapes.box(104.8, 104.8, 104.8).export(tmp_path / "cube.stl")
     study = follow(load(tmp_path / "cube.stl"), tmp_path / "some.csv", CUBE, runs=9)
     found = study.agreement
-    assert found.tosses == 72 and found.told > 0.72 and found.at_release < 0.5
+    assert found.tosses == 72 and found.right_share > 0.72 and found.at_release < 0.5
     assert found.median_off < 0.045
-    assert found.expected - found.told < 0.06, "p must not promise far more than it keeps"
-    assert found.told - found.expected < 0.06, "nor far less"
+    assert found.expected - found.right_share < 0.06, "p must not promise far more than it keeps"
+    assert found.right_share - found.expected < 0.06, "nor far less"
 
 
 def test_more_is_uncertain_where_more_is_unknown(tmp_path):

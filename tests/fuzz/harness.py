@@ -169,7 +169,7 @@ def _few():
     from feederscrew.dropping import arrival
     from feederscrew.studies import aspects
 
-    aspects.MOST = arrival.FIRST_PARTS = arrival.MAX_ARRIVALS = arrival.LONGER_TIME_PARTS = 20
+    aspects.MAX_DROPS = arrival.FIRST_PARTS = arrival.MAX_ARRIVALS = arrival.LONGER_TIME_PARTS = 20
 
 
 def _child(context):

@@ -23,7 +23,7 @@ def kernel():
 
 
 def test_a_kernel_gives_what_its_source_does(monkeypatch):
-    monkeypatch.setattr(door, "_fingerprint", lambda: "own")
+    monkeypatch.setattr(door, "_fingerprint", lambda module: "own")
     numbers, out, plain = np.linspace(0.5, 2.0, 7), np.empty(7), np.empty(7)
     both = kernel()
     both(numbers, out)
@@ -37,7 +37,7 @@ def test_a_kernel_runs_where_no_folder_can_be_written(monkeypatch):
 
     door._can_keep.cache_clear()
     monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
-    monkeypatch.setattr(door, "_fingerprint", lambda: "nowhere")
+    monkeypatch.setattr(door, "_fingerprint", lambda module: "nowhere")
     try:
         numbers, out, plain = np.linspace(0.5, 2.0, 7), np.empty(7), np.empty(7)
         both = kernel()

@@ -10,15 +10,6 @@ GROUPS = st.lists(st.lists(st.integers(0, 99), min_size=1).map(np.array), min_si
 
 
 @given(GROUPS)
-def test_groups_joined_and_split_are_what_they_were(given_groups):
-    members, owners = graphs.join_groups(given_groups)
-    for before, after in zip(
-        given_groups, graphs.split_groups(members, owners, len(given_groups)), strict=True
-    ):
-        np.testing.assert_array_equal(after, before)
-
-
-@given(GROUPS)
 def test_sums_are_of_each_group(given_groups):
     members, owners = graphs.join_groups(given_groups)
     both = np.stack([members, 2 * members])

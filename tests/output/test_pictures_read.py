@@ -17,7 +17,7 @@ from feederscrew.output import floor as floor_output
 from feederscrew.output import headings as headings_output
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page
-from feederscrew.output.trial.shown import ShownRide
+from feederscrew.output.trial.rides import DeviceRide
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.exact_tumbling import Transition
@@ -162,7 +162,7 @@ def test_the_point_of_the_bowl_among_the_curves_is_named():
 
     found = study(read(), (0.3, 0.6))
     labels = [text.get_text() for text in slide_output.curves(found.maps).legends[0].get_texts()]
-    assert slide_output.OWN in labels
+    assert slide_output.OWN_LABEL in labels
 
 
 def test_a_long_name_leaves_the_scale_bar_alone():
@@ -232,7 +232,7 @@ def test_a_ride_is_named_by_its_device_and_a_single_value():
     devices = [SimpleNamespace(name="gap", short="9 mm"), SimpleNamespace(name="cut-out", short="[[0 mm]]")]
     devices.append(SimpleNamespace(name="vision reject", short="{of: A@90, play: 0.2 mm}"))
     found = SimpleNamespace(stations=[SimpleNamespace(device=one) for one in devices])
-    said = [ShownRide(place, "A@0", "rolled_back", np.zeros((1, 8))).title(found) for place in range(3)]
+    said = [DeviceRide(place, "A@0", "rolled_back", np.zeros((1, 8))).title(found) for place in range(3)]
     assert said == [f"A@0 at {name}: rolled back" for name in ("gap 9 mm", "cut-out", "vision reject")]
 
 

@@ -96,7 +96,7 @@ def test_figures_leave_no_global_state():
 
 def test_methods_keep_their_colour_and_others_get_a_spare_one():
     assert style.method("csa") == ("CSA", "#e69f00")
-    assert style.method("MDBT_80", 1) == ("MDBT 80", style.SPARE[1])
+    assert style.method("MDBT_80", 1) == ("MDBT 80", style.SPARE_COLOURS[1])
 
 
 @pytest.mark.parametrize("name", ["$dollar^_{x}$", "$\\mathdefault{$", "部品\t", "bad\udcff\udcfe", r"a\$b"])

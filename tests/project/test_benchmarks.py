@@ -1,12 +1,17 @@
 """The benchmarks still run: a body of those that calibrate, and every small change that is tried applies."""
 
 import ast
+import importlib
+import inspect
 import shlex
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 import shapes
+
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture
@@ -14,6 +19,43 @@ def root(request, monkeypatch):
     """The folder of the project, whose benchmarks can be imported."""
     monkeypatch.setattr(sys, "path", [*sys.path, str(request.config.rootpath / "benchmarks")])
     return request.config.rootpath
+
+
+SCRIPTS = [path for folder in ("benchmarks", "docs") for path in sorted((ROOT / folder).glob("*.py"))]
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: f"{path.parent.name}/{path.stem}")
+def test_a_script_asks_modules_for_names_that_they_have(path):
+    """A function that was renamed left a benchmark behind, which nobody ran."""
+    tree, modules = ast.parse(path.read_text()), {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("feederscrew"):
+            home = importlib.import_module(node.module)
+            for name in node.names:
+                value = getattr(home, name.name, None) or importlib.import_module(
+                    f"{node.module}.{name.name}"
+                )
+                if inspect.ismodule(value):
+                    modules[name.asname or name.name] = value
+    missing = [
+        ast.unparse(node)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute) and not _is_there(node, modules)
+    ]
+    assert not missing
+
+
+def _is_there(node, modules):
+    """Whether a module has an attribute; what is no module's is there."""
+    home = _value(node.value, modules)
+    return not inspect.ismodule(home) or hasattr(home, node.attr)
+
+
+def _value(node, modules):
+    if isinstance(node, ast.Name):
+        return modules.get(node.id)
+    home = _value(node.value, modules) if isinstance(node, ast.Attribute) else None
+    return getattr(home, node.attr, None) if inspect.ismodule(home) else None
 
 
 @pytest.mark.usefixtures("root")

@@ -1,6 +1,7 @@
 """The Makefile, driven in a copy of the tree with a stand-in for the program; nothing is installed."""
 
 import os
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -111,6 +112,17 @@ def test_test_formats_lints_and_tests(tree):
     steps = make(tree, "-n", "test")
     for step in ("ruff format --check .", "ruff check .", "-m mypy", "pytest -n 2"):
         assert step in steps
+
+
+def test_the_site_has_every_page_once_and_no_other(tree):
+    """Its configuration lies where mkdocs looks for it; a page that nobody can reach was built once."""
+    [build] = [step for step in make(tree, "-n", "site").splitlines() if "mkdocs build" in step]
+    assert "--strict" in build and "--config-file" not in build
+    config = (ROOT / "mkdocs.yml").read_text()
+    pages = re.findall(r"- ([\w/]+\.md)$", config.partition("\nnav:")[2], re.MULTILINE)
+    made = ["api.md", "changelog.md", "overview.md"]  # by docs/site/pages.py
+    there = [path.relative_to(ROOT / "docs").as_posix() for path in (ROOT / "docs").rglob("*.md")]
+    assert sorted(pages) == sorted([*made, *(page for page in there if not page.startswith("measured"))])
 
 
 def test_ci_runs_what_a_newcomer_runs_before_it_installs_more():

@@ -39,7 +39,7 @@ fs.headings(part, bowl, width="30 mm")
 
 known: fs.Shares = fs.shares(part, bowl, launch="feed", fed=200, seed=2)
 devices: tuple[Device, ...] = bowl.devices
-rate: fs.Rate = fs.rate(part, bowl, "A", devices=devices, gap="2 mm", known=known, climb="2 deg").rate
+rate: fs.Rate = fs.rate(part, bowl, "A", devices=devices, gap="2 mm", aspect_shares=known, climb="2 deg").rate
 fs.tune(part, bowl, "A", "15/min", worst=True, rule="csa")
 fs.size_bowl(part, 1.0, "A", path="b.yaml", overrides="track.width=30 mm", hand="left")
 fs.tooling(part, bowl, "A", margin="0.1 mm", purity=0.98, without=["wiper"], seconds="2 min", width="30 mm")

@@ -38,7 +38,7 @@ def test_counts_are_the_answer_with_wilsons_interval(part, plain, tmp_path):
     assert answer.rule == f"{path}, 100 parts" and list(known.inputs) == [path]
     assert answer.low[2] == pytest.approx(0.0552, abs=1e-4)  # Wilson's for 10 of 100
     assert answer.high[2] == pytest.approx(0.1744, abs=1e-4)
-    found = study.rate(part, plain, known=known)
+    found = study.rate(part, plain, aspect_shares=known)
     ways, total = found.rate.orientations, dict.fromkeys("ABC", 0.0)
     for one, share in zip(ways.lying, ways.rules["recommended"], strict=True):
         total[one.aspect] += share
@@ -50,14 +50,14 @@ def test_orientations_that_were_counted_stand_as_they_are(part, plain, tmp_path)
     a, b = (next(one for one in known.lying if one.aspect == name) for name in "AB")
     text = f"orientation,track\n{a.name},30\n{b.name},10\nC@0,0\n"
     shares = study.shares(part, plain, probabilities=counts(tmp_path, text))
-    found = study.rate(part, plain, known=shares).rate.orientations
+    found = study.rate(part, plain, aspect_shares=shares).rate.orientations
     taken = dict(zip([one.name for one in found.lying], found.rules["recommended"]))
     assert taken.pop(a.name) == 0.75 and taken.pop(b.name) == 0.25 and not any(taken.values())
     row = [one.name for one in found.lying].index(a.name)
     assert found.interval[row, 0] < 0.75 < found.interval[row, 1]
     nowhere = counts(tmp_path, f"orientation,track\nA@47,30\n{b.name},10\nC@0,0\n")
     with pytest.raises(FeederError, match=r"counts orientation A@47, which the part does not have - known"):
-        study.rate(part, plain, known=study.shares(part, plain, probabilities=nowhere))
+        study.rate(part, plain, aspect_shares=study.shares(part, plain, probabilities=nowhere))
 
 
 def test_several_columns_are_refused(part, plain, tmp_path):

@@ -36,7 +36,7 @@ def pin(size):
 
 def studied(size, aspect=None, bowl=BOWL):
     part, found = pin(size)
-    return rate(part, bowl, aspect, rule="csa", known=Shares(found))
+    return rate(part, bowl, aspect, rule="csa", aspect_shares=Shares(found))
 
 
 def tilts(size, bowl=BOWL):
@@ -104,14 +104,14 @@ def test_a_ball_rolls_back_and_does_not_tip():
 def test_what_rolls_back_is_not_counted_but_for_the_highest_rate():
     ball = shapes.part(shapes.ball(5.0, 3))
     known = Shares(find(ball))
-    made = rate(ball, BOWL, "A", rule="csa", known=known).rate
+    made = rate(ball, BOWL, "A", rule="csa", aspect_shares=known).rate
     assert (made.parts.value, made.parts.low) == (0.0, 0.0)
     assert made.parts.high == pytest.approx(made.offered.high)
     told = {"rule": "csa", "arriving": lambda bowl: known}
     with pytest.raises(FeederError, match=r"aspect A, heading .*: lies on its round side and rolls back"):
         tune(ball, BOWL, "A", 1.0, **told)
     with pytest.raises(FeederError, match=r"track\.climb: the part lies on its round side and rolls back"):
-        sized(bowls.settings(None), ball, 1.0, rule="csa", known=known.aspects)
+        sized(bowls.settings(None), ball, 1.0, rule="csa", aspects=known.aspects)
 
 
 def test_a_banked_wall_holds_what_would_roll_back():
@@ -120,14 +120,14 @@ def test_a_banked_wall_holds_what_would_roll_back():
     at = np.arctan(np.tan(BOWL.track.climb) / BOWL.friction.wall)
     for share, back in ((0.99, True), (1.01, False)):
         bowl = replace(BOWL, track=replace(BOWL.track, bank=float(share * at)))
-        made = rate(ball, bowl, "A", rule="csa", known=Shares(find(ball))).rate
+        made = rate(ball, bowl, "A", rule="csa", aspect_shares=Shares(find(ball))).rate
         assert made.orientations.rolls_back.all() == back
         assert (made.parts.value == 0.0) == back
 
 
 def test_a_lying_pin_along_the_wall_is_not_in_the_way_of_those_across_it():
     part = shapes.part(shapes.cylinder(3.0, 20.0, 48))
-    made = rate(part, BOWL, "A", heading=0.0, rule="csa", known=Shares(find(part))).rate
+    made = rate(part, BOWL, "A", heading=0.0, rule="csa", aspect_shares=Shares(find(part))).rate
     back = made.orientations.rolls_back
     assert back.any() and not back[made.row]
     chance, on = made.orientations.rules["csa"], made.orientations.stays > 0.0
@@ -138,7 +138,7 @@ def test_a_lying_pin_along_the_wall_is_not_in_the_way_of_those_across_it():
 
 def test_it_is_said_how_many_must_come_where_few_stay_on_the_track(monkeypatch):
     part = shapes.part(shapes.cylinder(3.0, 20.0, 48))
-    study = rate(part, BOWL, "A", heading=0.0, rule="csa", known=Shares(find(part)))
+    study = rate(part, BOWL, "A", heading=0.0, rule="csa", aspect_shares=Shares(find(part)))
     share = float((study.rate.orientations.rules["csa"] * study.rate.orientations.stays).sum())
     assert 0.0 < share < 1.0
     assert not any("at the entry" in line for line in rate_output.remarks(study))
@@ -163,7 +163,7 @@ def test_tune_gives_the_rate_that_rate_gives_at_each_setting():
     assert any(one.over == () for one in study.settings)
     for one in study.settings:
         driven = knobs.turned(BOWL, one.solution.key, one.solution.value)
-        again = rate(part, driven, "A", rule="csa", known=Shares(found)).rate
+        again = rate(part, driven, "A", rule="csa", aspect_shares=Shares(found)).rate
         assert again.parts.value == pytest.approx(400.0 / 60.0, rel=knobs.ACCEPTED_RATE_ERROR)
         assert again.parts.value == pytest.approx(one.solution.rate, rel=1e-9)
 
@@ -176,7 +176,7 @@ def test_tune_leaves_out_what_turns_the_wanted_orientation_over():
 
 def test_tooling_and_the_passages_of_a_report_return_what_tips_over():
     part, found = pin(1)
-    study = tooling(part, BOWL, rule="csa", known=found)
+    study = tooling(part, BOWL, rule="csa", aspect_shares=found)
     assert study.warnings == (SAID,)
     isolated = {one.name: made for one, made in zip(study.orientations, study.designs)}
     assert isolated["B@0"].reasons == ("B@0 can tip over on the track at this drive",)
@@ -188,7 +188,7 @@ def test_tooling_and_the_passages_of_a_report_return_what_tips_over():
 def test_the_bowl_for_a_rate_reckons_without_what_its_drive_turns_over():
     part, found = pin(1)
     given = bowls.settings(None, (*ROUGH, "drive.frequency=50 Hz", "track.radius=60 mm"))
-    sheet = sized(given, part, 8.0, rule="csa", known=found)
+    sheet = sized(given, part, 8.0, rule="csa", aspects=found)
     ways = follow_orientations(part, found, sheet.bowl.track, bowl=sheet.bowl)
     on = ways.rules["csa"][ways.stays > 0.0]
     assert sheet.order.flow.share == pytest.approx(1.0)  # of what stays on the track, all of it leaves

@@ -9,14 +9,14 @@ from feederscrew.errors import MeshError
 from feederscrew.output import aspects as aspects_output
 from feederscrew.output import tables, tipping_graph
 from feederscrew.resting.aspects import find
-from feederscrew.resting.exact_tumbling import exact, ground, transitions
+from feederscrew.resting.exact_tumbling import exact, require_ground, transitions
 from feederscrew.studies.aspects import AspectsStudy
 
 
 def everything(mesh, **exponent):
     part = shapes.part(mesh)
     aspects = find(part)
-    found = ground(part, aspects)
+    found = require_ground(part, aspects)
     return part, aspects, found, exact(found, part, aspects, **exponent)
 
 
@@ -159,4 +159,4 @@ def test_a_card_has_no_shape():
 
     card = parts.card("magnet")
     with pytest.raises(MeshError, match=r"is a part card, it has no shape to tumble - give a mesh file$"):
-        ground(card, find(card))
+        require_ground(card, find(card))

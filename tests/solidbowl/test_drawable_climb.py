@@ -9,8 +9,8 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew import units
 from feederscrew.designing import calm_drive, exploring, proposals
+from feederscrew.designing.exploring import Search
 from feederscrew.designing.record import DesignRequest
-from feederscrew.designing.searching import Search
 from feederscrew.resting.aspects import find
 from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME, TrackTooLow
 from feederscrew.studies import bowl as machines
@@ -42,8 +42,8 @@ def drawn(tmp_path, track, climb):
     lines = [f"track.radius={1e3 * track.radius} mm", f"track.width={1e3 * track.width} mm"]
     lines += [] if climb is None else [f"track.climb={np.degrees(climb)} deg"]
     settings = bowls.settings(tmp_path / "bowl.yaml", lines)
-    wanted = solidbowl.asked(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
-    return machines.bowl(settings, PART, 0.05, known=ASPECTS, solid=wanted, rule="csa")
+    wanted = solidbowl.solid_options(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
+    return machines.bowl(settings, PART, 0.05, aspects=ASPECTS, solid=wanted, rule="csa")
 
 
 def test_it_is_the_one_that_the_bowl_takes_by_itself_and_a_step_less_is_refused(tmp_path, spaced):
@@ -77,9 +77,9 @@ def test_a_design_tries_its_chain_on_the_track_that_can_be_drawn(spaced, monkeyp
         bowls_tried.append(bowl)
         raise Stop
 
-    monkeypatch.setattr(exploring.trying, "single", single)
+    monkeypatch.setattr(exploring.short_trials, "single", single)
     search = Search(PART, DesignRequest(10.0 / units.MINUTE), made.bowl, frozenset(given), print)
-    search.known = shares(PART, made.bowl, rule="csa")
+    search.shares = shares(PART, made.bowl, rule="csa")
     _, ways = on_track(made, devices)
     weights = np.full(len(ways.lying), 1.0 / len(ways.lying))
     cuts = tuple(Cut(one, np.nan, np.nan, one, one, ()) for one in devices)

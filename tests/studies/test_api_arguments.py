@@ -44,7 +44,10 @@ LAUNCHES = "give one of place, drop, flip, roll, feed"
         (lambda part: fs.load(part), "source: is a Part - give the path of a file"),
         (lambda part: fs.convey(None), "bowl: is None - give a Bowl, as read_bowl returns it"),
         (lambda part: fs.rate(BOWL, part), "part: is a Bowl - give a Part, as load returns it"),
-        (lambda part: fs.rate(part, BOWL, "C", known=3), "known: is 3 - give what shares returned"),
+        (
+            lambda part: fs.rate(part, BOWL, "C", aspect_shares=3),
+            "aspect_shares: is 3 - give what shares returned",
+        ),
         (lambda part: fs.shake(part, [BOWL], drops=-5), "drops: is -5 - give a number from 1"),
         (lambda part: fs.shake(part, [BOWL], seconds=-1), "seconds: is -1 - give a number from 1e-06"),
         (

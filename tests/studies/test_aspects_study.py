@@ -8,7 +8,7 @@ from feederscrew.errors import FeederError
 from feederscrew.output import aspects as aspects_output
 from feederscrew.output import offers
 from feederscrew.part import load
-from feederscrew.studies.aspects import MOST, aspects
+from feederscrew.studies.aspects import MAX_DROPS, aspects
 from feederscrew.studies.drop import drop
 
 CARD = "parts/arc_chute.yaml"
@@ -27,7 +27,7 @@ def test_a_drop_test_is_the_answer_and_made_once_in_a_run():
     begun = []
     part = shapes.part(shapes.box(10.0, 20.0, 31.0))
     study, again = (aspects(part, before=begun.append, jobs=jobs) for jobs in (1, 2))
-    assert begun == [MOST] and again.tally is study.tally
+    assert begun == [MAX_DROPS] and again.tally is study.tally
     assert study.tally.widest <= 0.01 and study.tally.unsettled == 0
     assert study.recommended.rule == "drop test, launch feed"
     np.testing.assert_array_equal(study.aspects.chances["recommended"], study.tally.p)

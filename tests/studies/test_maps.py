@@ -1,6 +1,5 @@
 """Grids over two quantities, and the sliding map against [4.27] and its own regimes."""
 
-import dataclasses
 import math
 
 import numpy as np
@@ -57,14 +56,14 @@ def test_a_range_of_the_bowl_becomes_an_axis():
     axis = grids.axis(span)
     assert axis.column == "amplitude_mm"
     assert axis.values == pytest.approx([1e-4, 2e-4, 3e-4], rel=1e-14)
-    assert axis.shown == pytest.approx([0.1, 0.2, 0.3], rel=1e-14)
+    assert axis.in_unit == pytest.approx([0.1, 0.2, 0.3], rel=1e-14)
 
 
 @pytest.mark.parametrize("beta", [1, 5, 10, 20, 40, 60, 90])
 def test_every_map_reaches_past_the_hop_and_over_the_published_range(beta):
     found = slide(beta)
     assert found.grid.shares()["hop"] > 0.1
-    assert found.grid.first.shown[[0, -1]] == pytest.approx([-90, 90])
+    assert found.grid.first.in_unit[[0, -1]] == pytest.approx([-90, 90])
     assert found.grid.second.values[0] == 0.0
     assert found.grid.second.values[-1] >= 3.0
 
@@ -72,14 +71,8 @@ def test_every_map_reaches_past_the_hop_and_over_the_published_range(beta):
 def test_every_map_holds_the_bowls_own_point():
     found = slide(20, "drive.amplitude=1 mm", "drive.frequency=60 Hz", "drive.direction=-120 deg")
     assert found.grid.second.values[-1] > found.ratio > 14
-    assert found.grid.first.shown[0] == pytest.approx(-180)
+    assert found.grid.first.in_unit[0] == pytest.approx(-180)
     assert found.regime == "hop"
-
-
-def test_ratios_print_as_round_numbers():
-    for beta in (3, 10, 20, 40):
-        ratios = slide(beta).grid.second.values
-        assert all(float(f"{ratio:.6g}") == ratio for ratio in ratios)
 
 
 def test_nothing_hops_at_zero_vibration_angle():
@@ -105,26 +98,19 @@ def test_as_published_keeps_what_is_negative():
     complete, published = (slide(20, as_published=flag).grid for flag in (False, True))
     assert np.nanmin(complete.values["mu_limit"]) == 0.0
     past = complete.codes == limits.HOP
-    at_pole_angle = np.isclose(np.abs(complete.first.shown), 90, rtol=1e-12, atol=0)
+    at_pole_angle = np.isclose(np.abs(complete.first.in_unit), 90, rtol=1e-12, atol=0)
     assert (published.values["mu_limit"][past & ~at_pole_angle[:, None]] < 0).all()
     assert published.unanswered("mu_limit") == 0
     below = ~np.isnan(complete.values["mu_limit"])
     assert (published.values["mu_limit"][below] == complete.values["mu_limit"][below]).all()
 
 
-def test_as_published_leaves_the_pole_itself_empty():
-    # beta 30 deg and G = 2: 1 - G sin(beta) is zero but for rounding
-    grid = slide(30, as_published=True).grid
-    at_pole = grid.values["mu_limit"][:, np.flatnonzero(grid.second.values == 2.0)]
-    assert np.isnan(at_pole).all()
-
-
 def test_a_reversed_drive_swaps_forward_and_backward_on_a_level_track():
     grid = slide(25, "drive.direction=180 deg", "track.climb=0 deg", "friction.static=0.4").grid
-    along, against = (grid.codes[np.flatnonzero(np.isclose(grid.first.shown, x))[0]] for x in (0, 180))
+    along, against = (grid.codes[np.flatnonzero(np.isclose(grid.first.in_unit, x))[0]] for x in (0, 180))
     swap = np.array([limits.RIDE, limits.BACKWARD, limits.FORWARD, limits.BOTH, limits.HOP])
     assert (along == swap[against]).all()
-    assert np.isnan(grid.values["mu_limit"][np.flatnonzero(np.isclose(grid.first.shown, 180))]).all()
+    assert np.isnan(grid.values["mu_limit"][np.flatnonzero(np.isclose(grid.first.in_unit, 180))]).all()
 
 
 def test_regimes_follow_from_the_limits():
@@ -149,22 +135,6 @@ def test_the_bowls_own_point_is_a_cell_like_any_other():
     assert found.onsets["forward"] < found.ratio < found.onsets["backward"] < found.onsets["hop"]
 
 
-def test_a_finer_map_covers_the_same_ground():
-    coarse, fine = slide(20), slide(20, shape=(7, 9))
-    assert fine.grid.codes.shape == (7, 9)
-    for axis in ("first", "second"):
-        ends = [getattr(one.grid, axis).values[[0, -1]] for one in (coarse, fine)]
-        assert ends[0] == pytest.approx(ends[1], rel=1e-15)
-
-
-def test_gravity_scales_out():
-    light = bowl.read(None, ["gravity=1.62 m/s2"])
-    there = dataclasses.replace(
-        light, drive=dataclasses.replace(light.drive, amplitude=light.drive.amplitude * 1.62 / 9.81)
-    )
-    assert sliding_map(there, 0.4).ratio == pytest.approx(slide(20).ratio, rel=1e-14)
-
-
 @given(st.floats(0.0, 90.0), st.floats(0.05, 2.0))
 @settings(max_examples=30, deadline=None)
 def test_the_surface_rises_from_zero_to_its_cut(beta, highest):
@@ -179,10 +149,3 @@ def test_the_surface_rises_from_zero_to_its_cut(beta, highest):
     cut = one.level_line(highest, angles[middle, 0])
     if cut < top and beta < 89.0:
         assert friction[middle, -1] == pytest.approx(highest, rel=1e-9)
-
-
-@pytest.mark.parametrize("beta", [1e-300, 1e-9])
-def test_a_hop_out_of_reach_is_left_off_the_map(beta):
-    one = slide(beta)
-    assert one.grid.second.values[-1] < 10.0
-    assert one.grid.shares()["hop"] == 0.0

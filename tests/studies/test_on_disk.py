@@ -60,7 +60,7 @@ def test_what_differs_is_simulated_anew(runs, other):
 
 def test_other_code_does_not_find_it(runs, monkeypatch):
     runs()
-    monkeypatch.setattr(simulation_cache, "_code", lambda: "another edition")
+    monkeypatch.setattr(simulation_cache, "library_digest", lambda: "another edition")
     assert runs()[1] == 2
 
 
@@ -318,3 +318,17 @@ def test_a_drop_test_is_checked_as_well(tmp_path, monkeypatch):
         rewritten(entry, lambda held, wrong=wrong: held["arrays"].update(faces=wrong))
         assert (run().counts == first.counts).all()
     assert len(made) == 5
+
+
+def test_the_digest_reads_the_library_alone(monkeypatch, tmp_path):
+    """A file of another package beside the library takes no time and changes no entry."""
+    library, read_bytes, paths = Path(simulation_cache.__file__).parents[1], Path.read_bytes, []
+    monkeypatch.setattr(Path, "read_bytes", lambda path: paths.append(path) or read_bytes(path))
+    simulation_cache.library_digest.cache_clear()
+    monkeypatch.setenv(simulation_cache.VARIABLE, "")
+    simulation_cache.write({"kind": "none"}, {"shares": np.ones(1)})
+    assert not paths  # nothing is digested where nothing is kept
+    monkeypatch.setenv(simulation_cache.VARIABLE, str(tmp_path / "kept"))
+    simulation_cache.write({"kind": "none"}, {"shares": np.ones(1)})
+    assert library.name == "feederscrew" and library / "units.py" in paths
+    assert all(path.is_relative_to(library) for path in paths)

@@ -106,11 +106,14 @@ def test_quantities_are_texts_or_numbers_in_si_units(part):
             lambda part: fs.rate(part, BOWL, "A", gap="2 s"),
             "gap: '2 s' is a time, not a length - give it in mm",
         ),
-        (lambda part: fs.rate(part, BOWL, "A", known=3), "known: is 3 - give what shares returned"),
+        (
+            lambda part: fs.rate(part, BOWL, "A", aspect_shares=3),
+            "aspect_shares: is 3 - give what shares returned",
+        ),
         (lambda part: fs.tune(part, BOWL, "A", "60"), "target: '60' has no unit - write 60 /min"),
         (
             lambda part: fs.posture(part, 3, "A"),
-            "found: is 3 - give Aspects, as find_aspects returns them",
+            "aspects: is 3 - give Aspects, as find_aspects returns them",
         ),
         (lambda part: fs.size_bowl(part, "60/min", path=3), "path: is 3 - give the path of a file"),
     ],

@@ -7,7 +7,7 @@ import pytest
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
-from feederscrew.trial import course, result, runs, whereabouts
+from feederscrew.trial import course, part_poses, result, runs
 from feederscrew.trial.course import HANGING, PASSED, RETURNED, ROLLED_BACK, STOPPED, STUCK, TURNED
 from feederscrew.trial.result import TrialRun
 
@@ -38,7 +38,9 @@ def trial(parts=PARTS, through=(1.0, 0.0, 0.0), lengths=(20e-3, 12e-3, 15e-3)):
         depths=1e-3 * depths,
     )  # fmt: skip
     bowl = SimpleNamespace(devices=(), drive=None)
-    return TrialRun(bowl, throw_number=0.8, known=known, shares=np.array([0.5, 0.3, 0.2]), course=course)
+    return TrialRun(
+        bowl, throw_number=0.8, orientations=known, shares=np.array([0.5, 0.3, 0.2]), course=course
+    )
 
 
 def driven(*velocities):
@@ -129,10 +131,10 @@ def test_what_creeps_is_followed_to_the_end_and_its_places_are_noted_for_three_t
     assert seconds == pytest.approx(way / (0.03 * speed) + 1.0)
     assert patience == pytest.approx(20e-3 / speed) and patience > 0.5 and back == pytest.approx(20e-3)
     assert least == pytest.approx(0.03 * patience * speed)
-    periods = found["every"] * bowl.drive.frequency
+    periods = found["interval"] * bowl.drive.frequency
     assert periods == pytest.approx(round(periods)) and periods >= 1.0
-    assert 300 * (found["every"] - 1.0 / bowl.drive.frequency) <= way / speed <= 300 * found["every"]
-    assert found["places"] * found["every"] >= 3.0 * way / speed
+    assert 300 * (found["interval"] - 1.0 / bowl.drive.frequency) <= way / speed <= 300 * found["interval"]
+    assert found["places"] * found["interval"] >= 3.0 * way / speed
 
 
 def test_a_velocity_is_the_mean_over_the_second_half_of_a_path_round_the_bowl():
@@ -163,11 +165,11 @@ def test_a_velocity_is_the_mean_over_the_second_half_of_a_path_round_the_bowl():
 )
 def test_where_a_part_stands_says_what_became_of_it(outcome, rear, front, low, fate, monkeypatch):
     """In units of 10 mm; the track behind the device is 3 mm lower."""
-    monkeypatch.setattr(whereabouts, "extents", lambda *_: (0.1 * rear, 0.1 * front, 0.1 * low))
+    monkeypatch.setattr(part_poses, "extents", lambda *_: (0.1 * rear, 0.1 * front, 0.1 * low))
     looks = SimpleNamespace(corners=None, radius=15.0)
     for below in (True, False):
         station = SimpleNamespace(below=below, drop=3e-3, cut=(0.1, 0.13))
-        found = course._Found._fate(SimpleNamespace(looks=looks), station, outcome, None, 10e-3)
+        found = course._CourseCollector._fate(SimpleNamespace(looks=looks), station, outcome, None, 10e-3)
         assert found == (STOPPED if fate == HANGING and not below else fate)
 
 
@@ -175,7 +177,7 @@ def test_what_leaves_otherwise_than_it_may_was_turned_wherever_it_turned():
     """Two stations; all come to the last one as they were laid down, and one leaves it as none is known."""
     for may, fates in (([[1, 0], [0, 1]], [PASSED, TURNED, PASSED, TURNED, RETURNED]),
                        ([[0, 1], [0, 1]], [TURNED, PASSED, PASSED, TURNED, RETURNED])):  # fmt: skip
-        found = course._Found((None, None), np.array([0, 0, 1, 1, 0]), None)
+        found = course._CourseCollector((None, None), np.array([0, 0, 1, 1, 0]), None)
         assert (found.orientations[0] == [0, 0, 1, 1, 0]).all() and (found.orientations[1:] < UNKNOWN).all()
         found.orientations[1] = [0, 0, 1, 1, 0]
         found.orientations[2] = [0, 1, 1, UNKNOWN, GONE]

@@ -44,7 +44,7 @@ def test_rate_says_of_each_setting_what_tune_says(block, arriving, worst):
     assert len(found.settings) >= 2
     for one in found.settings:
         there = drive_settings.turned(BOWL, one.solution.key, one.solution.value)
-        back = rate(block, there, "A", known=arriving(there)).rate
+        back = rate(block, there, "A", aspect_shares=arriving(there)).rate
         assert back.velocity.all == pytest.approx(one.velocity.all, rel=1e-12)
         speed = back.velocity.low if worst else back.velocity.value
         met = back.parts.value * speed / back.velocity.value

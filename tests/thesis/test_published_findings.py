@@ -56,6 +56,9 @@ EVIDENCE = {
     "wall-tangent": [4.8e-05, 0.00043],
     "track-moments": [0.007, 0.00025, 19.4],
     "wall-pulls": [-1.12, 0.06],
+    "normal-force-line": [1.99],  # h mu of a part that slides: 3.31 mm by 0.6
+    "seven-unknowns": [10, -2.20, 0.00, 0.033],
+    "one-instant": [0.5, 20, 0.567, 0.401],  # G cos b / (1 - G sin b), G cos b / (1 + G sin b)
     "dual-numbers": [10.0, 0.2222, -2.0, -0.2222],  # ad + bc, (bc - ad)/c^2
     "momentum-cross": [1.982],
     "equation-4-24": [],

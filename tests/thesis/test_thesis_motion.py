@@ -326,10 +326,10 @@ def test_every_contract_quantity_names_its_term():
     from feederscrew.output import track as track_output
 
     extra = {"stable_heading_deg", "friction_N", "greatest_friction_N", "normal_line_offset_y_mm", "tips"}
-    quantities = set(floor.LABELS) - extra
+    quantities = set(floor.FLOOR_LABELS) - extra
     assert quantities == set(FLOOR_TERMS)
     extra = {"normal_line_offset_y_mm", "acceleration_y_m_s2", "turning_rad_s2", "tips"}
-    assert set(track_output.LABELS) - extra == set(TRACK_TERMS)
+    assert set(track_output.TRACK_LABELS) - extra == set(TRACK_TERMS)
 
 
 def test_levers_of_a_mesh_are_its_contact_points():

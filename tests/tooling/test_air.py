@@ -243,10 +243,35 @@ def test_an_outline_is_turned_until_it_fits_and_no_further():
     assert sensor_views.fitted(askew(3.0), other) == pytest.approx(1e-3, abs=5e-5)
 
 
+def test_borders_are_compared_as_shapely_does_where_holes_and_pieces_are_not_alike():
+    """Random stars with holes, and two pieces: places every millimetre, to the nearest of all borders."""
+    rng = np.random.default_rng(5)
+
+    def star(count):
+        turn = np.sort(rng.uniform(0.0, 2.0 * np.pi, count))
+        far = 0.01 * rng.uniform(0.4, 1.0, (count, 1))
+        whole = shapely.Polygon(
+            far * np.column_stack([np.cos(turn), np.sin(turn)]) + rng.normal(0.0, 2e-3, 2)
+        )
+        return whole.buffer(0.0).difference(shapely.box(-2e-3, -1e-3, 1e-3, 1e-3))
+
+    for _ in range(20):
+        first, second = star(9), star(5).union(shapely.box(0.02, 0.0, 0.025, 0.003))
+        reached = [
+            max(
+                shapely.Point(place).distance(other.boundary)
+                for place in shapely.get_coordinates(shapely.segmentize(area.boundary, 1e-3))
+            )
+            for area, other in ((first, second), (second, first))
+        ]
+        assert sensor_views.outline_distance(first, second) == pytest.approx(max(reached), rel=1e-12)
+        assert sensor_views.outline_distance(second, first) == sensor_views.outline_distance(first, second)
+
+
 def test_what_fits_at_no_turn_is_not_turned_any_further(monkeypatch):
     """Bent bars of several sizes: the answer is that of the whole search, and most need a third of it."""
-    calls, apart = [], sensor_views.outline_distance
-    monkeypatch.setattr(sensor_views, "outline_distance", lambda *both: calls.append(both) or apart(*both))
+    calls, distance = [], sensor_views.border_distance
+    monkeypatch.setattr(sensor_views, "border_distance", lambda *both: calls.append(both) or distance(*both))
     bent = shapely.Polygon(
         [(0, 0), (-0.023, 0), (-0.023, 0.014), (-0.019, 0.014), (-0.019, 0.006), (0, 0.006)]
     )
@@ -266,7 +291,11 @@ def test_what_fits_at_no_turn_is_not_turned_any_further(monkeypatch):
     moved = shapely.affinity.rotate(bent, 0.5 * step, (0.0, 0.0), use_radians=True)
     laid = shapely.affinity.translate(moved, -moved.bounds[2], -moved.bounds[1])
     first = shapely.affinity.translate(bent, -bent.bounds[2], -bent.bounds[1])
-    assert apart(laid, first) <= sensor_views._between(first, step) < 4.0 * apart(laid, first)
+    off, most = (
+        sensor_views.outline_distance(laid, first),
+        sensor_views._between(sensor_views.border(first), step),
+    )
+    assert off <= most < 4.0 * off
 
 
 def test_what_is_seen_from_the_side_may_come_askew():

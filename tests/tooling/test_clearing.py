@@ -24,7 +24,7 @@ from feederscrew.tooling.falling import falls_through, may_lay_aside
 from feederscrew.tooling.fates import course
 from feederscrew.tooling.footprints import Footprint
 from feederscrew.tooling.isolating import chain, hole_search
-from feederscrew.tooling.isolating.design import MARGIN_M
+from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
 from feederscrew.tooling.isolating.proposal import design_task, propose
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.verdicts import verdict
@@ -186,9 +186,9 @@ def test_play_and_tolerance_are_added_to_every_margin():
     part = shapes.part(shapes.box(22, 13, 6))
     own = {"rule": "csa", "without": "cut_out"}
     loose = tooling(part, BOWL, "A", play=2e-4, tolerance=1e-4, **own)
-    assert loose.margin == pytest.approx(MARGIN_M + 3e-4)
+    assert loose.margin == pytest.approx(DESIGN_MARGIN_M + 3e-4)
     ends = [end for cut in loose.design.cuts for end in (cut.margin_pass, cut.margin_reject)]
-    assert min(end for end in ends if end == end) >= MARGIN_M + 3e-4 - 1e-9
+    assert min(end for end in ends if end == end) >= DESIGN_MARGIN_M + 3e-4 - 1e-9
 
 
 def test_a_sorter_of_a_design_has_a_separation_before_it():
@@ -279,7 +279,7 @@ def test_what_is_not_sure_to_be_returned_counts_against_a_chain():
     known = shares(part, bowl, rule="csa")
     lying = next(one for one in every if one.length > 0.019)
     found = rate(
-        part, bowl, lying.aspect, heading=lying.heading, rule="csa", known=known, devices=(low,)
+        part, bowl, lying.aspect, heading=lying.heading, rule="csa", aspect_shares=known, devices=(low,)
     ).rate
     chance = found.orientations.rules["csa"]
     leaves = chance[~tall] @ found.orientations.leaves[~tall]

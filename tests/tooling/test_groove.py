@@ -106,8 +106,8 @@ def test_both_faces_hold_what_rolls_along_them_only(dowel):
 def test_a_round_part_is_sure_in_a_groove_and_counts_in_full(dowel):
     part, _ = dowel
     arriving = shares(part, BOWL, rule="csa")
-    level = rate(part, BOWL, "A", rule="csa", known=arriving).rate
-    in_groove = rate(part, BOWL, "A", rule="csa", known=arriving, devices=(groove(30.0),)).rate
+    level = rate(part, BOWL, "A", rule="csa", aspect_shares=arriving).rate
+    in_groove = rate(part, BOWL, "A", rule="csa", aspect_shares=arriving, devices=(groove(30.0),)).rate
     row = next(k for k, one in enumerate(level.orientations.lying) if one.name == "A@0")
     assert not level.orientations.sure[row] and in_groove.orientations.sure[row]
     assert in_groove.velocity.value > level.velocity.value

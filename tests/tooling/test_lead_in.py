@@ -69,7 +69,7 @@ def test_the_screw_is_fed_between_rails_and_its_trial_agrees(devices):
     assert 0.2e-3 < rails.span[1] - rails.span[0] - 6.643e-3 < 0.6e-3
     assert rails.lead[0] < rails.span[0] and rails.lead[1] > rails.span[1]
     run = trial.trial(part, [devices(f"rails: {rails.text}")], rule="csa", parts=10, jobs=1).runs[0]
-    rows = [k for k, one in enumerate(run.known.lying) if one.name in ("A@188", "A@354")]
+    rows = [k for k, one in enumerate(run.orientations.lying) if one.name in ("A@188", "A@354")]
     assert run.counts[rows, 0].tolist() == run.tried[rows].tolist()
 
 
@@ -81,7 +81,7 @@ def test_a_trial_says_where_a_head_at_the_wall_may_wedge(devices, tmp_path):
     for near in (2.2, 3.0):
         bowl = devices(f"rails: {{from: {near} mm, to: {near + 5.4} mm}}")
         run = trial.trial(part, [bowl], rule="csa", parts=6, jobs=1).runs[0]
-        row = next(k for k, one in enumerate(run.known.lying) if one.name == "A@189")
+        row = next(k for k, one in enumerate(run.orientations.lying) if one.name == "A@189")
         assert run.counts[row, course.TURNED] > 0  # it hangs and goes on
         told.append((run.wedging[row], [line for line in run.remarks if "may wedge" in line]))
     (near, said), (far, nothing) = told

@@ -9,7 +9,7 @@ from scipy import stats
 from feederscrew.geometry import vectors
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import starts, whereabouts
+from feederscrew.trial import part_poses, starts
 from feederscrew.trial.shape import solid_of
 
 PARTS = 1200
@@ -41,7 +41,7 @@ def test_parts_begin_within_the_play_of_the_wall_evenly(laid):
     radius = BOWL.track.radius / length
     gaps = []
     for state in states:
-        spots = state[:3] + vectors.product(solid.corners, whereabouts.matrix(state).T)
+        spots = state[:3] + vectors.product(solid.corners, part_poses.matrix(state).T)
         gaps.append(radius - np.hypot(spots[:, 0], radius - spots[:, 1]).max())
     assert is_even(np.array(gaps) * length, 0.0, 5e-5)
 
@@ -49,8 +49,8 @@ def test_parts_begin_within_the_play_of_the_wall_evenly(laid):
 def test_parts_begin_turned_and_tilted_a_little(laid):
     """Headings evenly to 0.1 deg either way; tilts of 0.2 deg about an axis in any direction."""
     states, _, _, length, principal = laid
-    exact = whereabouts.matrix(whereabouts.laid(EVERY[FLAT], principal, length, BOWL.track, place=0.0))
-    turns = [vectors.product(whereabouts.matrix(state), exact.T) for state in states]
+    exact = part_poses.matrix(part_poses.pose_on_track(EVERY[FLAT], principal, length, BOWL.track, place=0.0))
+    turns = [vectors.product(part_poses.matrix(state), exact.T) for state in states]
     yaws = np.degrees([np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]) for turn in turns])
     assert is_even(yaws, -0.1, 0.1)
     axes = np.degrees([(turn[2, 1], -turn[2, 0]) for turn in turns])  # angle times direction of the axis

@@ -13,7 +13,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import course, crowd, runs, shape, stations, whereabouts
+from feederscrew.trial import course, crowd, part_poses, runs, shape, staging
 from feederscrew.trial.looks import Looks
 
 OWN = [
@@ -43,7 +43,7 @@ def test_a_pin_across_a_climb_rolls_back_as_a_solid_cylinder_does():
     seen = course.course(pin, bowl, every, course.Sending(across[:1], 1), (), run=RunSettings(1))
     assert seen.fates[0] == course.ROLLED_BACK and seen.ended[0] == 0
     ride, rolls = seen.rides[0], 2.0 / 3.0 * bowl.gravity * np.sin(climb)
-    assert ride.ways[0] == pytest.approx(-0.5 * rolls * ride.seconds[0] ** 2, rel=0.02)
+    assert ride.distances[0] == pytest.approx(-0.5 * rolls * ride.seconds[0] ** 2, rel=0.02)
     assert seen.velocities[0] == pytest.approx(-0.75 * rolls * ride.seconds[0], rel=0.05)
 
 
@@ -53,16 +53,16 @@ def headed(laid):
     still = replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0), track=replace(BOWL.track, climb=0.0))
     every = orientations(part, find(part), still.track)
     solid, length, principal = shape.solid_of(part)
-    known, stage = runs.setting(solid, length, still), stations.station(RAILS, still.track, every)
+    known, stage = runs.setting(solid, length, still), staging.stage(RAILS, still.track, every)
     lying = next(k for k in every if k.height < 6e-3 and k.length > 0.016)
     along = replace(lying, heading=np.pi, distance=6e-3)
-    state = whereabouts.laid(along, principal, length, still.track, place=0.02, aside=laid)
+    state = part_poses.pose_on_track(along, principal, length, still.track, place=0.02, aside=laid)
     ride = runs.ride(
-        runs.past(known, stage, limits=(0.3, 1.0, 0.0, 1.0), every=0.1, places=1), state[None], np.zeros(1)
+        runs.past(known, stage, limits=(0.3, 1.0, 0.0, 1.0), interval=0.1, places=1), state[None], np.zeros(1)
     )
     assert ride.outcomes[0] == runs.RUNNING
     looks = Looks(every, solid, length, principal, still.track.radius)
-    found = course._Found((stage,), np.zeros(1, int), looks)
+    found = course._CourseCollector((stage,), np.zeros(1, int), looks)
     found.add(0, ride, np.zeros(1, int), still)
     return found.fates[0], length * ride.states[0][body.Z]
 
@@ -85,7 +85,7 @@ def test_a_headed_part_whose_time_is_up_between_rails_hangs_there():
 )
 def test_a_part_hangs_where_it_reaches_below_the_track_it_has_come_to(drop, low, fate):
     corners = np.array([[-1.0, 0.0, -0.5], [1.0, 0.0, 0.5]])
-    found = course._Found((), np.zeros(1, int), SimpleNamespace(corners=corners, radius=100.0))
+    found = course._CourseCollector((), np.zeros(1, int), SimpleNamespace(corners=corners, radius=100.0))
     state = np.zeros(body.STATE)
     state[:3], state[body.Q] = (2.0, 0.0, low / 4.0 + 0.5), 1.0  # of a unit of 4 mm
     station = SimpleNamespace(below=True, drop=1e-3 * drop, cut=(3e-3, 9e-3))
@@ -136,10 +136,10 @@ def test_a_jet_behind_a_step_blows_at_what_lies_on_the_lower_track():
     line = crowd.crowded(still, EVERY, (make_device("step", "s", limit=8e-3), jet), 0.1)
     solid, length, principal = shape.solid_of(PART)
     known = replace(runs.setting(solid, length, still), friction=np.zeros(5))
-    x, y, z = line.stage.air.jets[0, :3]
+    x, y, z = (line.stage.air.jets[f"mouth_{e}"][0] for e in "xyz")
     assert z == pytest.approx(2.5e-3 - 8e-3) and y < 1e-3
     parts = crowd.PartsOnTrack(known, line, 1)
-    state = whereabouts.laid(EVERY[ALONG], principal, length, track, place=x, aside=1e-3)
+    state = part_poses.pose_on_track(EVERY[ALONG], principal, length, track, place=x, aside=1e-3)
     state[body.Z] -= 8e-3 / length
     parts.lay(0, state)
     parts.ride(0)

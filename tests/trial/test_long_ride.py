@@ -59,16 +59,16 @@ def test_a_flat_block_rides_on_as_the_point_mass_and_stays_as_it_is(monkeypatch)
     monkeypatch.setattr(long_ride, "RIDE_S", 60.0)
     ride = long_ride.ride_of_track(PART, BOWL, EVERY, [FLAT], each=2, distance=0.55, run=RunSettings(3))
     assert ride.ended.tolist() == [FLAT, FLAT] and not ride.askew.any()
-    assert ride.ways == pytest.approx(0.55, abs=0.01)
-    assert ride.ways.min() / BOWL.track.radius > np.pi
+    assert ride.distances == pytest.approx(0.55, abs=0.01)
+    assert ride.distances.min() / BOWL.track.radius > np.pi
     along_the_wall = answer.answer(BOWL).velocity * 150.0 / (150.0 - 6.0)  # its middle is 6 mm off the wall
-    assert ride.ways / ride.seconds == pytest.approx(along_the_wall, rel=0.05)
+    assert ride.distances / ride.seconds == pytest.approx(along_the_wall, rel=0.05)
 
 
 def test_a_slow_part_is_looked_at_when_its_time_is_up(monkeypatch):
     monkeypatch.setattr(long_ride, "RIDE_S", 1.5)
     ride = long_ride.ride_of_track(PART, BOWL, EVERY, [FLAT], each=1)
-    assert ride.ended.tolist() == [FLAT] and ride.ways[0] < long_ride.RIDE_M - 0.3
+    assert ride.ended.tolist() == [FLAT] and ride.distances[0] < long_ride.RIDE_M - 0.3
     assert 1.5 <= ride.seconds[0] < 4.0
 
 
@@ -79,7 +79,7 @@ def test_what_rolls_back_or_over_the_free_edge_has_left():
     lying = orientations(roller, find(roller), steep.track)
     across = [k for k, one in enumerate(lying) if one.kind == "rolling" and one.length < 9e-3]
     ride = long_ride.ride_of_track(roller, steep, lying, across[:1], each=3, distance=0.2)
-    assert ride.ended.tolist() == [LEFT] * 3 and (ride.ways < 0.0).all()
+    assert ride.ended.tolist() == [LEFT] * 3 and (ride.distances < 0.0).all()
 
 
 def test_a_ride_that_the_user_stops_decides_nothing():

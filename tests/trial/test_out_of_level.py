@@ -14,7 +14,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import course, runs, starts, stations, whereabouts
+from feederscrew.trial import course, part_poses, runs, staging, starts
 from feederscrew.trial.looks import OTHER, Looks
 from feederscrew.trial.shape import solid_of
 
@@ -32,7 +32,7 @@ def tilted(state, angle, heading=0.0):
     pitch = np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
     turn = vectors.product(np.array([[a, -b, 0.0], [b, a, 0.0], [0.0, 0.0, 1.0]]), pitch)
     out = np.array(state)
-    out[body.Q : body.Q + 4] = whereabouts.quaternion(vectors.product(turn, whereabouts.matrix(state)))
+    out[body.Q : body.Q + 4] = part_poses.quaternion(vectors.product(turn, part_poses.matrix(state)))
     return out
 
 
@@ -40,12 +40,12 @@ def highest_rise(degrees):
     """How far [m] the centre of mass of the tall block rises after it came down on its foot out of level."""
     solid, length, principal = solid_of(TALL)
     known, one = runs.setting(solid, length, STILL), EVERY[UPRIGHT]
-    state = whereabouts.laid(one, principal, length, STILL.track, place=0.0, aside=5e-3)
+    state = part_poses.pose_on_track(one, principal, length, STILL.track, place=0.0, aside=5e-3)
     state = tilted(state, np.radians(degrees))
     state[body.Z] -= starts.lowest(solid.corners, state) - 1e-9
     state[body.VZ] = -FALL / np.sqrt(STILL.gravity * length)
-    stage = stations.plain(STILL.track, EVERY, 0.1)
-    follow = runs.past(known, stage, limits=(0.08, 1.0, 0.0, 1.0), every=1e-3, places=90)
+    stage = staging.plain(STILL.track, EVERY, 0.1)
+    follow = runs.past(known, stage, limits=(0.08, 1.0, 0.0, 1.0), interval=1e-3, places=90)
     path = runs.ride(follow, state[None], np.zeros(1)).paths[0]
     return np.nanmax(path[:, 3]) - HIGH
 
@@ -61,18 +61,6 @@ def test_a_block_that_comes_down_out_of_level_rocks_as_far_as_two_impacts_let_it
     assert highest_rise(degrees) == pytest.approx(rise, rel=0.15)
 
 
-def test_parts_begin_a_little_out_of_level_on_their_lowest_corner():
-    solid, length, principal = solid_of(TALL)
-    entered = np.full(200, UPRIGHT)
-    states, _ = starts.laid_down(BOWL, EVERY, entered, solid, principal, length, 3)
-    again, _ = starts.laid_down(BOWL, EVERY, entered, solid, principal, length, 3)
-    np.testing.assert_array_equal(states, again)
-    up = vectors.product(principal.T, EVERY[UPRIGHT].posture.axes[2])
-    tilts = np.arccos([min(vectors.dot(whereabouts.matrix(state)[2], up), 1.0) for state in states])
-    assert np.degrees(np.sqrt(np.mean(tilts**2))) == pytest.approx(0.2, rel=0.2)
-    assert max(abs(starts.lowest(solid.corners, state)) for state in states) < 1e-12
-
-
 @pytest.mark.parametrize(
     ("degrees", "heading", "up", "right"),
     [(0.0, 0.0, 0.0, True), (20.0, 0.0, 0.0, True), (-20.0, 8.0, 0.5, True), (12.0, 30.0, 0.1, False)],
@@ -81,7 +69,7 @@ def test_what_rocks_or_flies_is_named_by_the_face_on_which_it_comes_to_lie(degre
     """The block tips at atan(8 / 20), 21.8 deg; a heading counts to 10 deg."""
     solid, length, principal = solid_of(TALL)
     looks = Looks(EVERY, solid, length, principal, BOWL.track.radius)
-    state = whereabouts.laid(EVERY[UPRIGHT], principal, length, BOWL.track, place=0.03, aside=2e-3)
+    state = part_poses.pose_on_track(EVERY[UPRIGHT], principal, length, BOWL.track, place=0.03, aside=2e-3)
     state = tilted(state, np.radians(degrees), np.radians(heading))
     state[body.Z] += up
     assert looks.of([state]).tolist() == [UPRIGHT if right else OTHER]

@@ -14,7 +14,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.base import Sensor
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import course, queue, runs, sensed_rides, shape, starts, stations, whereabouts
+from feederscrew.trial import course, part_poses, queue, runs, sensed_rides, shape, staging, starts
 
 BOWL = awkward.bowl()
 PART, ASPECTS = awkward.part()
@@ -47,21 +47,21 @@ def test_a_skew_body_slides_round_the_bowl_until_floor_and_wall_have_stopped_it(
     track = replace(BOWL.track, climb=0.0)
     still = replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0), track=track)
     one = next(one for one in EVERY if one.aspect == aspect)
-    known, stage = runs.setting(SOLID, LENGTH, still), stations.plain(track, EVERY, 0.5)
-    state = whereabouts.laid(one, PRINCIPAL, LENGTH, track, place=0.2)
+    known, stage = runs.setting(SOLID, LENGTH, still), staging.plain(track, EVERY, 0.5)
+    state = part_poses.pose_on_track(one, PRINCIPAL, LENGTH, track, place=0.2)
     state[body.Z] -= starts.lowest(SOLID.corners, state)
     state = starts.clear(state, SOLID, track, LENGTH, 0.0)
     x, y = LENGTH * state[0], track.radius - LENGTH * state[1]
-    off, up = np.hypot(x, y), whereabouts.matrix(state)[2]
+    off, up = np.hypot(x, y), part_poses.matrix(state)[2]
     state[body.VX : body.VX + 2] = ahead * np.array([y, x]) / off * known.unit / LENGTH
     state[body.W : body.W + 3] = up * ahead / off * known.unit
     limits = (0.25, 1.0, 0.0, 10.0)
-    ride = runs.ride(runs.past(known, stage, limits=limits, every=1.0, places=1), state[None], np.zeros(1))
+    ride = runs.ride(runs.past(known, stage, limits=limits, interval=1.0, places=1), state[None], np.zeros(1))
     turning = 1.0 + (up**2 * SOLID.inertia).sum() * LENGTH**2 / off**2  # of its inertia, over its mass
     wall = 0.27 * track.radius / off  # it rubs farther out than the centre of mass is
     braked = 9.81 * (friction / np.cos(track.bank) + wall * np.tan(track.bank))
     way = 0.5 * off / wall * turning * np.log(1.0 + wall / off * ahead**2 / braked)
-    assert ride.ways[0] * off / track.radius == pytest.approx(np.sign(ahead) * way, rel=0.012)
+    assert ride.distances[0] * off / track.radius == pytest.approx(np.sign(ahead) * way, rel=0.012)
 
 
 @pytest.mark.parametrize("radius", [50.0, 0.15])
@@ -88,7 +88,7 @@ def test_a_sensor_tells_orientations_of_a_skew_body_apart_anywhere_round_the_bow
     for like in EVERY[::7]:
         seen = {sees: Sensor(place, sees, (like,), 3e-4, 1e-4) for sees in ("height", "outline", "side")}
         for one in EVERY:
-            state = whereabouts.laid(one, PRINCIPAL, LENGTH, BOWL.track, place=place)
+            state = part_poses.pose_on_track(one, PRINCIPAL, LENGTH, BOWL.track, place=place)
             state[body.Z] += level / LENGTH
             blown = {sees: sensed_rides.blows_off(of, known, state[None], level) for sees, of in seen.items()}
             assert blown["height"] == (abs(one.height - like.height) > 3e-4)

@@ -10,6 +10,7 @@ from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.dropping.launch_conditions import named
 from feederscrew.geometry import vectors
+from feederscrew.geometry.compiled import frozen_rows
 from feederscrew.output.trial import tables
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
@@ -17,18 +18,8 @@ from feederscrew.running import RunSettings
 from feederscrew.studies import rate
 from feederscrew.studies import trial as studies
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import (
-    course,
-    landing,
-    looks,
-    rounding,
-    runs,
-    shape,
-    starts,
-    stations,
-    whereabouts,
-)
-from feederscrew.trial.kernel import circles_met
+from feederscrew.trial import course, landing, looks, part_poses, rounding, runs, shape, staging, starts
+from feederscrew.trial.kernel import plate_views, workspace
 
 OWN = [
     "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
@@ -112,26 +103,12 @@ def left(part, bowl, one, place, aside=0.0):
     still = replace(bowl, drive=replace(bowl.drive, amplitude=0.0), track=replace(bowl.track, climb=0.0))
     solid, length, principal = shape.solid_of(part)
     known = runs.setting(solid, length, still)
-    cut = stations.station(bowl.devices[0], still.track, orientations(part, find(part), still.track))
-    state = whereabouts.laid(one, principal, length, still.track, place=place, aside=aside)
+    cut = staging.stage(bowl.devices[0], still.track, orientations(part, find(part), still.track))
+    state = part_poses.pose_on_track(one, principal, length, still.track, place=place, aside=aside)
     ride = runs.ride(
-        runs.past(known, cut, limits=(0.6, 1.0, 0.0, 1.0), every=0.01, places=9), state[None], np.zeros(1)
+        runs.past(known, cut, limits=(0.6, 1.0, 0.0, 1.0), interval=0.01, places=9), state[None], np.zeros(1)
     )
     return ride.states[0][2] * length
-
-
-def test_a_batch_of_parts_is_followed_once(monkeypatch):
-    part, bowl, followed = shapes.part(shapes.box(20, 12, 5)), bowls.read(None, []), []
-    solid, length, principal = shape.solid_of(part)
-    known, every = runs.setting(solid, length, bowl), orientations(part, find(part), bowl.track)
-    states = [whereabouts.laid(every[0], principal, length, bowl.track, place=0.0)] * (runs.BATCH + 2)
-    plain, own = stations.plain(bowl.track, every, 0.02), runs._followed
-    monkeypatch.setattr(runs, "_followed", lambda *how: followed.append(len(how[-1])) or own(*how))
-    limits = (0.01, 0.01, 0.0, 1.0)
-    ride = runs.ride(
-        runs.past(known, plain, limits=limits, every=0.01, places=1), np.array(states), np.zeros(len(states))
-    )
-    assert followed == [0, runs.BATCH, 2] and len(ride.outcomes) == runs.BATCH + 2
 
 
 @pytest.mark.parametrize("over", [-1e-4, 1e-4])
@@ -177,7 +154,7 @@ def test_a_headed_part_laid_over_rails_hangs_between_shank_and_head(bowl, width,
 def test_blades_are_alike_and_a_pressure_break_is_a_ledge(bowl):
     def drawn(line):
         made = bowl(line)
-        return stations.station(made.devices[0], made.track, orientations(PART, find(PART), made.track))
+        return staging.stage(made.devices[0], made.track, orientations(PART, find(PART), made.track))
 
     alike = [
         ("wiper: 6 mm", "height_bar: 6 mm", "hold_down: 6 mm"),
@@ -186,13 +163,14 @@ def test_blades_are_alike_and_a_pressure_break_is_a_ledge(bowl):
     for first, *others in alike:
         for other in others:
             for name in ("plates", "borders"):
-                np.testing.assert_array_equal(getattr(drawn(first), name), getattr(drawn(other), name))
+                one, same = (getattr(drawn(line), name).tolist() for line in (first, other))
+                np.testing.assert_equal(one, same)
 
 
 def test_what_a_pressure_break_carries_passes_it_alone(bowl):
     run = studies.trial(PART, [bowl("pressure_break: 8 mm")], "A", parts=4, seed=1).runs[0]
     for k in np.flatnonzero(run.tried):  # along, its weight is on the ledge; across, it is not
-        along = run.known.lying[k].length > 0.015
+        along = run.orientations.lying[k].length > 0.015
         assert run.margin[k] == pytest.approx(2e-3 if along else -2e-3, abs=5e-6)
     assert not run.odd.any()
 
@@ -213,21 +191,23 @@ def test_a_round_side_touches_with_points_on_its_circle():
     fine = rounding.rounded(solid, [axis])
     across = fine.corners - np.einsum("ci,i->c", fine.corners, axis)[:, None] * axis
     assert len(fine.corners) == 2 * 24 * 3  # 15 degrees in parts of at most 6
-    assert fine.ringed.all() and not len(fine.singles)
-    np.testing.assert_allclose(fine.rims[:, 6] * length, 5e-3, rtol=1e-5)
-    np.testing.assert_allclose(np.sort(vectors.product(fine.rims[:, :3], axis)) * length, [-4e-3, 4e-3])
+    assert fine.on_circle.all() and not len(fine.singles)
+    np.testing.assert_allclose(fine.circles.radius * length, 5e-3, rtol=1e-5)
+    middles = np.column_stack([fine.circles.x, fine.circles.y, fine.circles.z])
+    np.testing.assert_allclose(np.sort(vectors.product(middles, axis)) * length, [-4e-3, 4e-3])
     np.testing.assert_allclose(np.linalg.norm(across, axis=1) * length, 5e-3, rtol=1e-5)
     np.testing.assert_array_equal(fine.vertices[fine.triangles], solid.vertices[solid.triangles])
     box = rounding.rounded(shape.solid_of(PART)[0], [axis])
-    assert len(box.corners) == 8 and not len(box.rims)  # a box has no circle
+    assert len(box.corners) == 8 and not len(box.circles)  # a box has no circle
 
 
 def test_a_circle_touches_at_its_lowest_point_and_lying_flat_furthest_out():
-    rim = np.array([0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 2.0])  # about z, half over the middle, of radius 2
+    # about z, half over the middle, of radius 2
+    (rim,) = frozen_rows([(0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 2.0)], workspace.CIRCLE)
     for tilt in (0.0, 0.3, np.pi / 2):
         c, s = np.cos(tilt), np.sin(tilt)
         frame = np.array([c, 0.0, s, 0.0, 1.0, 0.0, -s, 0.0, c, 0.0, 0.0, 3.0])
-        low, sine = circles_met.lowest(frame, rim)
+        low, sine = plate_views.circle_height(frame, rim)
         turn = np.linspace(0.0, 2.0 * np.pi, 2001)
         circle = np.column_stack([2.0 * np.cos(turn), 2.0 * np.sin(turn), np.full(2001, 0.5)])
         assert low == pytest.approx(
@@ -242,15 +222,6 @@ def test_a_washer_lies_on_a_few_points_of_its_rim():
     seen = course.course(washer, bowl, every, course.Sending([flat], 1), ())
     assert seen.fates[0] == course.PASSED and seen.depths[0] < 1e-5 and seen.gains[0] < 1e-6
     assert seen.velocities[0] == pytest.approx(answer.answer(bowl).velocity, rel=0.05)
-
-
-def test_a_bridge_stands_on_its_legs():
-    arch = shapes.prism([(-10, 0), (-7, 0), (-7, 4), (7, 4), (7, 0), (10, 0), (10, 8), (-10, 8)], 12)
-    solid, length, _ = shape.solid_of(shapes.part(arch))
-    bottom = 1e3 * length * solid.vertices
-    assert len(solid.edges) == 22  # 24 edges; both under the arch turn inwards
-    assert len(solid.corners) == 16
-    assert np.ptp(bottom, axis=0).max() == pytest.approx(20.0)
 
 
 def test_the_sides_of_an_edge_lie_in_its_faces():
@@ -302,13 +273,15 @@ def test_a_study_tells_what_the_static_rule_says_beside(bowl):
     assert (run.holding[tried] == run.tried[tried]).all()
     assert run.jams and not run.sorts  # what lies across hangs in the gap
     assert run.purity == 1.0 and 0.0 < run.efficiency < 1.0
-    assert run.parts <= run.velocity / run.known.lengths[run.wanted]
+    assert run.parts <= run.velocity / run.orientations.lengths[run.wanted]
     low, high = run.ends[tried].T
     assert ((low <= 1.0) & (high >= 0.0) & (low < high)).all()
     assert not any("hop" in told or "deep" in told for told in found.warnings)
     sunk = replace(run.course, depths=np.where(run.course.entered == tried[0], 7e-4, 2e-4))
     (said,) = replace(run, course=sunk).remarks
-    assert said.startswith(f"{run.known.lying[tried[0]].name}: up to 0.7 mm deep in the track or a device")
+    assert said.startswith(
+        f"{run.orientations.lying[tried[0]].name}: up to 0.7 mm deep in the track or a device"
+    )
 
 
 def test_orientations_arrive_as_the_launch_gives_them(bowl):
@@ -316,8 +289,8 @@ def test_orientations_arrive_as_the_launch_gives_them(bowl):
     found = {}
     for launch in ("place", "feed"):
         known = rate.shares(PART, one, launch=launch)
-        found[launch] = studies.trial(PART, [one], known=known, parts=12).runs[0]
-        given = found[launch].known.rules["recommended"]
+        found[launch] = studies.trial(PART, [one], aspect_shares=known, parts=12).runs[0]
+        given = found[launch].orientations.rules["recommended"]
         np.testing.assert_allclose(found[launch].shares, given / given.sum())
         leaving = found[launch].shares * found[launch].counts[:, course.PASSED] / found[launch].tried
         assert found[launch].efficiency <= leaving.sum() + 1e-12
@@ -334,15 +307,6 @@ def test_a_hop_over_the_tooling_is_said(bowl):
     assert len(spread) == 1 and spread[0].startswith("amplitude 0.4 mm")
     calm, thrown = (run["point_restitution_doubt"] for run in tables.document(found)["drives"])
     assert calm is None and thrown["velocity_less_mm_s"] > 1.05 * thrown["velocity_more_mm_s"] > 0.0
-
-
-def test_a_station_is_drawn_with_its_hole():
-    bowl = bowls.read(None, OWN)
-    every = orientations(PART, find(PART), bowl.track)
-    made = stations.plain(bowl.track, every, 0.05)
-    assert made.plates.shape == (1, 17) and made.exit == 0.05
-    real = made.borders[made.borders[:, 7] < 0.5]
-    np.testing.assert_allclose(real[:, 1], 0.06, atol=1e-4)  # the free edge alone is a border
 
 
 def test_a_corner_that_slides_along_the_wall_does_not_slip_past_a_gate(bowl):
@@ -378,7 +342,7 @@ def test_parts_that_fall_anywhere_over_the_track_clear_the_wall():
     below = looks.AspectsBelow(PART, aspects)
     states, times = starts.falling(bowl, named("feed"), below.shape, 40, shape.solid_of(PART)[1], 3)
     for state in states:
-        corners = state[:3] + np.einsum("ij,cj->ci", whereabouts.matrix(state), below.shape.vertices)
+        corners = state[:3] + np.einsum("ij,cj->ci", part_poses.matrix(state), below.shape.vertices)
         assert corners[:, 1].min() > 0.0 and corners[:, 2].min() > 1.99
     assert (states[:, 1] < bowl.track.width / shape.solid_of(PART)[1]).all()
     assert ((times >= 0.0) & (times < 1.0 / bowl.drive.frequency)).all()
@@ -387,7 +351,7 @@ def test_parts_that_fall_anywhere_over_the_track_clear_the_wall():
 def test_what_else_leaves_is_no_sorting_however_unsure(bowl):
     run = studies.trial(PART, [bowl("gap: 2 mm")], "A", parts=4, seed=1).runs[0]
     row = int(np.flatnonzero(run.counts[:, course.PASSED])[0])
-    passes, margins = run.known.passes.copy(), np.full_like(run.known.margins, np.nan)
+    passes, margins = run.orientations.passes.copy(), np.full_like(run.orientations.margins, np.nan)
     passes[row] = 0.0  # it is said to be returned, by no margin
-    other = replace(run, known=replace(run.known, passes=passes, margins=margins))
+    other = replace(run, orientations=replace(run.orientations, passes=passes, margins=margins))
     assert run.sorts and not other.sorts and not other.predicted[row]

@@ -12,15 +12,20 @@ from PIL import Image
 from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
 from feederscrew.output.trial import film
+from feederscrew.output.trial.figures import unrolled
+from feederscrew.output.trial.rides import rides_to_show
 from feederscrew.studies.trial import trial
 
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
     file = tmp_path_factory.mktemp("film") / "bowl.yaml"
-    file.write_text("track: {climb: 0 deg}\ndevices:\n  - gap: 9 mm\n")
+    file.write_text(
+        "track: {climb: 0 deg, width: 30 mm}\ndevices:\n"
+        "  - sorter: {of: A@0, play: 2 mm, sees: outline, jet: {time: 25 ms}}\n"
+    )
     block = shapes.part(shapes.box(20, 12, 5))
-    return trial(block, [bowls.read(file)], "A", parts=4, queue=3, seconds=0.4, frames=5)
+    return trial(block, [bowls.read(file)], "A", parts=6, queue=3, seconds=0.4, frames=5)
 
 
 @pytest.fixture
@@ -36,6 +41,38 @@ def test_poses_of_the_queue_are_evenly_in_time_and_on_the_track(study):
     assert queue.poses.shape == (5, 3, 7)
     assert np.nanmin(queue.poses[..., 2]) == pytest.approx(2.5e-3, abs=2e-4)  # half the height of the block
     np.testing.assert_allclose(np.linalg.norm(queue.poses[..., 3:], axis=-1), 1.0, atol=1e-9)
+
+
+def test_air_is_drawn_while_the_sensor_lets_it_blow(study, small):
+    """The part that lies across is blown off: its jets blow as it comes to them at its own speed."""
+    run = study.runs[0]
+    passing, rejected = rides_to_show(study.part, run)
+    assert (passing.fate, passing.blows) == ("passed", None) and rejected.fate == "returned"
+    stage, radius = run.course.stations[rejected.place], run.bowl.track.radius
+    (watch,), (begin, end) = stage.air.watches, rejected.blows
+    ways, _ = unrolled(rejected.path, radius)
+    where = np.interp([rejected.looked, begin], rejected.path[:, 0], ways)
+    np.testing.assert_allclose(where, [watch.place, watch.nozzles], atol=5e-4)
+    assert end - begin == pytest.approx(0.025)
+    times = film.still_times(rejected, 0.012)
+    assert len(times) == film.STILLS and rejected.looked in times
+    assert begin < times[-1] <= 0.5 * (begin + end)  # it is gone before the air is
+    scene = film.FilmSet(study.part, run, stage, rejected.path[:, 1:4])
+    pose, steel = rejected.path[:1, 1:], [np.ones(3)]
+    still, blown = (scene.drawn(pose, steel, [blows] * len(scene.air)) for blows in (False, True))
+    bluer = (blown - still)[..., 2] - (blown - still)[..., 0] > 0.1
+    mouth = scene.camera.project(np.array([[stage.air.jets[f"mouth_{e}"][0] for e in "xyz"]]) - scene.centre)[
+        0
+    ]
+    column = (mouth[0] - scene.across[0]) / (scene.across[1] - scene.across[0])
+    assert bluer.sum() > 10 and np.abs(np.nonzero(bluer)[1] - column).min() < 3.0
+
+
+def test_every_part_that_is_blown_off_a_queue_has_had_a_pulse(study):
+    queue = study.runs[0].queue
+    (pulses,) = queue.pulses
+    assert len(pulses) >= queue.returned
+    assert [end - begin for begin, end in pulses] == pytest.approx([0.025] * len(pulses))
 
 
 def test_a_part_is_drawn_where_it_is(study, small):

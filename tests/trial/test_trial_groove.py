@@ -13,7 +13,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.orientations import orientations, travelling
-from feederscrew.trial import air, course, crowd, rounding, runs, shape, starts, stations, whereabouts
+from feederscrew.trial import air, course, crowd, part_poses, rounding, runs, shape, staging, starts
 
 DOWEL = load(Path(__file__).resolve().parents[2] / "parts" / "dowel_6x20.stl")
 BOWL = bowls.read(None, ["friction.wall=0.9", "track.width=30 mm", "track.climb=0 deg"])
@@ -28,16 +28,16 @@ def in_groove(bowl, angle, radius=50.0):
     one = next(one for one in every if one.name == "A@0")
     solid, length, principal = shape.solid_of(DOWEL)
     solid = rounding.rounded(solid, course.axes(every, principal))
-    state = whereabouts.laid(one, principal, length, one.track, place=0.0)
+    state = part_poses.pose_on_track(one, principal, length, one.track, place=0.0)
     state[body.Z] -= starts.lowest(solid.corners, state)
     state = starts.clear(state, solid, one.track, length, 0.0, one.wall_leans)
-    way = stations.plain(bowl.track, every, min(1.0, radius), stations.at_entry(chain, bowl.track, every))
+    way = staging.plain(bowl.track, every, min(1.0, radius), staging.at_entry(chain, bowl.track, every))
     return bowl, every, runs.setting(solid, length, bowl), way, state
 
 
 def gone(known, way, state, seconds):
     limits = (seconds, 2.0 * seconds, 0.0, 10.0)
-    return runs.ride(runs.past(known, way, limits=limits, every=1.0, places=1), state[None], np.zeros(1))
+    return runs.ride(runs.past(known, way, limits=limits, interval=1.0, places=1), state[None], np.zeros(1))
 
 
 @pytest.mark.parametrize("angle", [20.0, 45.0])
@@ -49,7 +49,7 @@ def test_both_faces_brake_as_friction_over_the_cosine(angle):
     state[body.VX] = 0.8
     ride = gone(known, way, state, 0.3)
     friction = BOWL.friction.kinetic / np.cos(angle * DEG)
-    assert ride.ways[0] == pytest.approx(known.length * 0.5 * 0.64 / friction, rel=0.03)
+    assert ride.distances[0] == pytest.approx(known.length * 0.5 * 0.64 / friction, rel=0.03)
     assert ride.depths[0] < 2e-5
 
 

@@ -14,7 +14,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import queue, whereabouts
+from feederscrew.trial import part_poses, queue
 from feederscrew.trial.shape import solid_of
 
 OWN = [
@@ -46,7 +46,7 @@ def blocks(bowl, *planned):
 
 def ways(row):
     """How far along the wall its parts are [m]."""
-    return whereabouts.ways(row.crowd.arrays.states, row.known.radius) * LENGTH
+    return part_poses.ways_along_wall(row.crowd.arrays.states, row.part_in_bowl.radius) * LENGTH
 
 
 @pytest.mark.parametrize("parts", [1, 3])
@@ -57,7 +57,7 @@ def test_a_row_pushes_what_a_blade_holds_with_its_weight_down_the_slope(parts):
     row.pressure[:], row.touch = 0.0, []  # without the impact
     for turn in range(30, 40):
         row.ride(turn)
-    found, weight = row.seen(), PART.mass * 9.81
+    found, weight = row.result(), PART.mass * 9.81
     assert found.pressure[0] == pytest.approx((parts - 1) * weight * np.sin(SLOPE), abs=1e-3 * weight)
     assert found.touching == pytest.approx(1.0 - 1.0 / parts)
     assert found.jams == found.returned == 0
@@ -68,7 +68,7 @@ def test_the_gap_of_a_row_is_the_mean_free_way_between_its_blocks():
     row = blocks(replace(BOWL, drive=still, track=level), 5, 1.0, 0.5)
     row.ride(0)
     free = -np.diff(ways(row)) - 0.02  # [m] from block to block, each 20 mm long
-    assert free.min() > 0.0 and row.seen().gap == pytest.approx(free.mean(), rel=0.01)
+    assert free.min() > 0.0 and row.result().gap == pytest.approx(free.mean(), rel=0.01)
 
 
 def test_what_stands_at_a_blade_for_a_second_is_taken_out():
@@ -85,7 +85,7 @@ def test_nothing_of_a_driven_row_passes_a_blade_under_which_it_does_not_go():
     row = blocks(replace(BOWL, devices=(BLADE,)), 3, 7.0)
     for turn in range(420):
         row.ride(turn)
-    found = row.seen()
+    found = row.result()
     assert found.jams >= 1 and found.returned == 0 and found.delivered == 0.0
     assert found.touching > 0.03 and found.pressure[0] > 0.0
 
@@ -99,7 +99,7 @@ def test_poured_parts_come_to_lie_and_travel():
         row.ride(turn)
     velocities = ways(row) - before  # [m/s] over the last second
     onwards = velocities > 0.0  # not one that left and was poured again
-    assert onwards.sum() >= 2 and row.seen().poured
+    assert onwards.sum() >= 2 and row.result().poured
     assert velocities[onwards] == pytest.approx(answer.answer(BOWL).velocity, rel=0.05)
     heights = row.crowd.arrays.states[onwards, body.Z] * LENGTH
     assert np.abs(heights[:, None] - [2.5e-3, 6e-3, 10e-3]).min(axis=1).max() < 1e-5  # on a face

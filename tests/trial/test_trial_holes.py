@@ -12,8 +12,7 @@ from feederscrew.solidbowl import cuts
 from feederscrew.tooling.devices.openings import beyond_borders
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.verdicts import verdict
-from feederscrew.trial import course, stations
-from feederscrew.trial.kernel import crowd_records
+from feederscrew.trial import course, staging
 
 SLANTED = [(0.0, 6.75), (2.05, 0.0), (19.55, 0.0), (23.5, 7.35), (16.85, 9.1), (12.85, 9.25)]  # [mm]
 PART = shapes.part(shapes.box(21.62, 11.89, 7.12))
@@ -47,9 +46,9 @@ def test_what_ends_at_a_border_goes_straight_on_behind_it():
 def test_the_trial_has_the_hole_that_is_drawn(slanted):
     """Area of the track that it takes, about the bowl's axis, between the wall and the free edge."""
     every = orientations(PART, find(PART), slanted.track)
-    stage = stations.station(slanted.devices[0], slanted.track, every)
-    first, last = (int(stage.plates[0][k]) for k in (crowd_records.FIRST, crowd_records.LAST))
-    ring = np.array(stage.borders[first:last])[:, :2]
+    stage = staging.stage(slanted.devices[0], slanted.track, every)
+    borders = stage.borders[stage.plates[0].begin : stage.plates[0].end]
+    ring = np.column_stack([borders.start_x, borders.start_y])
     radius, track = slanted.track.radius, slanted.track
     theta = np.arctan2(ring[:, 0], radius - ring[:, 1])
     floor = shapely.Polygon(

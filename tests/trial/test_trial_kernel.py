@@ -15,7 +15,7 @@ from feederscrew.geometry import vectors
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import looks, rounding, runs, shape, stations, whereabouts
+from feederscrew.trial import looks, part_poses, rounding, runs, shape, staging
 
 BOWL = bowls.read(
     None,
@@ -44,17 +44,17 @@ def rode(block, one, bowl, state, seconds, every=None):
     part, all_of_it = block
     solid, length, _ = shape.solid_of(part)
     known = runs.setting(solid, length, bowl)
-    way = stations.plain(bowl.track, all_of_it, 1.0)
+    way = staging.plain(bowl.track, all_of_it, 1.0)
     period = 1.0 / bowl.drive.frequency
     limits = (seconds, 2.0 * seconds, 0.0, 10.0)
     return known, runs.ride(
-        runs.past(known, way, limits=limits, every=every or period, places=2000), state[None], np.zeros(1)
+        runs.past(known, way, limits=limits, interval=every or period, places=2000), state[None], np.zeros(1)
     )
 
 
 def laid(block, one, bowl, **own):
     _, length, principal = shape.solid_of(block[0])
-    return whereabouts.laid(one, principal, length, bowl.track, place=0.0, aside=1e-3, **own)
+    return part_poses.pose_on_track(one, principal, length, bowl.track, place=0.0, aside=1e-3, **own)
 
 
 def test_a_flat_part_slides_as_the_point_mass(block):
@@ -75,7 +75,7 @@ def test_a_part_at_rest_slides_beyond_its_friction_angle(block, climb, slides):
     one = flat(block[1], 0.02)
     _, ride = rode(block, one, bowl, laid(block, one, bowl), 0.5)
     steep = np.sin(track.climb) - 0.4 * np.cos(track.climb)
-    assert ride.ways[0] == pytest.approx(
+    assert ride.distances[0] == pytest.approx(
         -0.5 * bowl.gravity * steep * 0.25 if slides else 0.0, abs=2e-6, rel=0.02
     )
 
@@ -86,7 +86,7 @@ def test_a_sliding_part_stops_where_friction_says(block):
     state = laid(block, one, bowl)
     state[body.VX] = 1.0
     known, ride = rode(block, one, bowl, state, 0.3)
-    assert ride.ways[0] == pytest.approx(known.length * 0.5 / 0.4, rel=5e-3)  # v2 / (2 mu g)
+    assert ride.distances[0] == pytest.approx(known.length * 0.5 / 0.4, rel=5e-3)  # v2 / (2 mu g)
 
 
 def test_a_corner_hit_rebounds_by_its_restitution(block):
@@ -144,12 +144,10 @@ def test_the_state_of_a_part_turns_about_the_axis_of_the_bowl(block):
     one = flat(block[1], 0.012)
     state = laid(block, one, BOWL)[None]
     radius = BOWL.track.radius / shape.solid_of(block[0])[1]
-    there = whereabouts.moved(state, 30.0, radius)
-    assert whereabouts.ways(there, radius)[0] == pytest.approx(30.0)
-    np.testing.assert_allclose(whereabouts.moved(there, -30.0, radius), state, atol=1e-9)
-    np.testing.assert_allclose(
-        whereabouts.quaternion(whereabouts.matrix(state[0])), state[0][6:10], atol=1e-12
-    )
+    there = part_poses.moved(state, 30.0, radius)
+    assert part_poses.ways_along_wall(there, radius)[0] == pytest.approx(30.0)
+    np.testing.assert_allclose(part_poses.moved(there, -30.0, radius), state, atol=1e-9)
+    np.testing.assert_allclose(part_poses.quaternion(part_poses.matrix(state[0])), state[0][6:10], atol=1e-12)
 
 
 def lies_on_the_plate(part, bowl, launched, settled):
@@ -169,12 +167,12 @@ def lies_on_the_track(part, bowl, launched, settled):
     ride = runs.ride(
         runs.past(
             known,
-            stations.plain(bowl.track, every, 1.0),
+            staging.plain(bowl.track, every, 1.0),
             limits=(seconds, 2.0 * seconds, 0.0, np.inf),
-            every=seconds,
+            interval=seconds,
             places=1,
         ),
-        whereabouts.moved(states, 0.5 / length, known.radius),
+        part_poses.moved(states, 0.5 / length, known.radius),
         np.zeros(len(states)),
     )
     return looks.AspectsBelow(part, find(part)).of(ride.states)
@@ -207,24 +205,24 @@ def test_nothing_passes_the_edges_below_the_surface(block, axes, place, speed, l
     bowl = replace(BOWL, track=track, drive=replace(BOWL.drive, amplitude=0.0))
     solid, length, principal = shape.solid_of(block[0])
     known = runs.setting(solid, length, bowl)
-    stage = stations.station(make_device("gap", "9 mm", limit=9e-3), track, block[1])
+    stage = staging.stage(make_device("gap", "9 mm", limit=9e-3), track, block[1])
     u, v = (vectors.unit(np.array(axis)) for axis in axes)
     state = np.zeros(body.STATE)
-    state[body.Q : body.Q + 4] = whereabouts.quaternion(np.column_stack([u, v, np.cross(u, v)]) @ principal)
+    state[body.Q : body.Q + 4] = part_poses.quaternion(np.column_stack([u, v, np.cross(u, v)]) @ principal)
     state[:3] = 1e-3 * np.array(place) / length
     state[body.VX : body.VX + 2] = np.array(speed) / length * known.unit
     points = 1e-3 * np.linspace(*np.array(line), 61)
     inside, half = 0.0, 0.5e-3 * np.array([20.0, 12.0, 5.0])
     for _ in range(12):
         ride = runs.ride(
-            runs.past(known, stage, limits=(2e-3, 1.0, 0.0, 1.0), every=1.0, places=1),
+            runs.past(known, stage, limits=(2e-3, 1.0, 0.0, 1.0), interval=1.0, places=1),
             state[None],
             np.zeros(1),
         )
         state = np.array(ride.states[0])
-        own = (points - length * state[:3]) @ whereabouts.matrix(state) @ principal.T
+        own = (points - length * state[:3]) @ part_poses.matrix(state) @ principal.T
         inside = max(inside, float((half - np.abs(own)).min(axis=1).max()))
-    assert ride.ways[0] < 3e-4  # [m] of the last 2 ms, of 4e-4 without the edge
+    assert ride.distances[0] < 3e-4  # [m] of the last 2 ms, of 4e-4 without the edge
     assert inside < 5e-5
 
 
@@ -234,7 +232,7 @@ def test_a_round_part_is_held_where_the_free_edge_cuts_off_the_lowest_of_its_cir
     pin = shapes.part(shapes.cylinder(1.62, 6.0, 24))
     solid, length, principal = shape.solid_of(pin)
     known = runs.setting(rounding.rounded(solid, [np.eye(3)[0]]), length, bowl)
-    stage = stations.plain(track, orientations(pin, find(pin), track), 1.0)
+    stage = staging.plain(track, orientations(pin, find(pin), track), 1.0)
     turn, lowest = np.radians(50.0), []
     for beyond in np.linspace(-0.03, 0.03, 13):  # [mm] that the lowest of its end lies beyond the edge
         along, aside = [np.cos(turn), np.sin(turn), 0.0], np.array([-np.sin(turn), np.cos(turn), 0.0])
@@ -242,10 +240,10 @@ def test_a_round_part_is_held_where_the_free_edge_cuts_off_the_lowest_of_its_cir
             across = np.cos(roll) * aside + [0.0, 0.0, np.sin(roll)]
             state = np.zeros(body.STATE)
             axes = np.column_stack([across, np.cross(along, across), along])
-            state[body.Q : body.Q + 4] = whereabouts.quaternion(axes @ principal)
+            state[body.Q : body.Q + 4] = part_poses.quaternion(axes @ principal)
             state[:3] = np.array([0.0, 60.0 + beyond - 3.0 * np.sin(turn), 1.62]) * 1e-3 / length
             ride = runs.ride(
-                runs.past(known, stage, limits=(0.02, 1.0, 0.0, 1.0), every=1.0, places=1),
+                runs.past(known, stage, limits=(0.02, 1.0, 0.0, 1.0), interval=1.0, places=1),
                 state[None],
                 np.zeros(1),
             )

@@ -9,7 +9,7 @@ import shapes
 from feederscrew.bowl.record import Track
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import whereabouts
+from feederscrew.trial import part_poses
 from feederscrew.trial.looks import OTHER, Looks
 from feederscrew.trial.shape import solid_of
 
@@ -23,7 +23,8 @@ def test_a_part_that_lies_turned_by_up_to_ten_degrees_is_in_its_orientation(degr
     solid, length, principal = solid_of(part)
     looks = Looks(every, solid, length, principal, TRACK.radius)
     states = [
-        whereabouts.laid(one, principal, length, TRACK, place=0.01, turn=np.radians(degrees)) for one in every
+        part_poses.pose_on_track(one, principal, length, TRACK, place=0.01, turn=np.radians(degrees))
+        for one in every
     ]
     assert looks.of(states).tolist() == (list(range(len(every))) if known else [OTHER] * len(every))
 
@@ -35,7 +36,8 @@ def test_a_part_that_lies_askew_is_on_an_aspect_of_which_any_heading_counts():
     solid, length, principal = solid_of(part)
     looks = Looks(free, solid, length, principal, TRACK.radius)
     states = [
-        whereabouts.laid(one, principal, length, TRACK, place=0.01, turn=np.radians(33.0)) for one in every
+        part_poses.pose_on_track(one, principal, length, TRACK, place=0.01, turn=np.radians(33.0))
+        for one in every
     ]
     found = looks.of(states)
     assert {one.aspect for one in every} > {"A"}

@@ -14,7 +14,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import runs, shape, stations, whereabouts
+from feederscrew.trial import part_poses, runs, shape, staging
 from feederscrew.trial.queue import QueuePlan, queue_of
 
 CORNERS = [(-5, -5, 5), (5, 5, 5), (5, -5, -5), (-5, 5, 5), (-5, -5, -5), (5, 5, -5), (5, -5, 5), (-5, 5, -5)]
@@ -39,15 +39,15 @@ def test_a_cube_stands_over_an_edge_whatever_order_its_corners_have(order, speed
     bowl = replace(bowl, drive=replace(bowl.drive, amplitude=0.0))
     every = orientations(part, find(part), bowl.track)
     solid, length, principal = shape.solid_of(part)
-    edge = stations.station(make_device("gap", "here", limit=0.03), bowl.track, every)
-    state = whereabouts.laid(every[0], principal, length, bowl.track, place=-8e-3, aside=5e-3)
+    edge = staging.stage(make_device("gap", "here", limit=0.03), bowl.track, every)
+    state = part_poses.pose_on_track(every[0], principal, length, bowl.track, place=-8e-3, aside=5e-3)
     state[body.VX] = speed
     known = runs.setting(solid, length, bowl)
-    past = runs.past(known, edge, limits=(0.5, 1.0, 0.0, 10.0), every=1.0, places=1)
+    past = runs.past(known, edge, limits=(0.5, 1.0, 0.0, 10.0), interval=1.0, places=1)
     end = runs.ride(past, state[None], np.zeros(1))
     assert (end.states[0, body.Z] < 0.0) == falls
     if not falls:
-        assert end.ways[0] == pytest.approx(length * speed**2 / (2.0 * 0.4), rel=1e-3)
+        assert end.distances[0] == pytest.approx(length * speed**2 / (2.0 * 0.4), rel=1e-3)
 
 
 def test_every_cube_of_a_queue_on_a_bare_track_leaves():

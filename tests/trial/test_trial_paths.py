@@ -5,9 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from feederscrew.geometry.compiled import zero_rows
 from feederscrew.output.trial import figures
 from feederscrew.trial import course, runs
 from feederscrew.trial.air import Watch
+from feederscrew.trial.kernel import workspace
 
 RADIUS = 0.15  # [m] of the wall
 
@@ -22,7 +24,7 @@ def over(ways, off):
 def station(end, *watches):
     device = SimpleNamespace(name="device", value_words="")
     air = SimpleNamespace(watches=watches)
-    bare = {"plates": np.zeros((1, 17)), "borders": np.zeros((0, 10))}
+    bare = {"plates": zero_rows(1, workspace.PLATE_RECORD), "borders": zero_rows(0, workspace.BORDER)}
     return SimpleNamespace(device=device, begin=0.0, exit=end, air=air, **bare)
 
 

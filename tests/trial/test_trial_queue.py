@@ -13,9 +13,9 @@ from feederscrew.resting.aspects import find
 from feederscrew.resting.counts import profiles
 from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import crowd, looks, outlet, queue, runs, shape, whereabouts
+from feederscrew.trial import crowd, looks, outlet, part_poses, queue, runs, shape
 from feederscrew.trial.kernel import travel
-from feederscrew.trial.kernel.motion import BEHIND, BELOW
+from feederscrew.trial.kernel.steps import BEHIND, BELOW
 
 OWN = [
     "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
@@ -37,7 +37,7 @@ def parts_on(bowl, *places, heights=None, friction=None):
         known = replace(known, friction=np.full(5, friction))
     on = crowd.PartsOnTrack(known, crowd.crowded(bowl, EVERY, (), 0.5), len(places))
     for n, place in enumerate(places):
-        state = whereabouts.laid(FLAT, PRINCIPAL, LENGTH, bowl.track, place=place, aside=1e-3)
+        state = part_poses.pose_on_track(FLAT, PRINCIPAL, LENGTH, bowl.track, place=place, aside=1e-3)
         state[body.Z] += 0.0 if heights is None else heights[n] / LENGTH
         on.lay(n, state)
     return on
@@ -97,7 +97,7 @@ def test_falling_over_each_other_wins_no_energy():
     ("gaps", "seconds", "near"),
     [
         (0.0, 3.0, 0.02),
-        (queue.GAPS, 12.0, 0.05),
+        (queue.MEAN_GAP_SHARE, 12.0, 0.05),
     ],  # so few uneven gaps are off by 1 mm in the mean
 )
 def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings(gaps, seconds, near):
@@ -108,7 +108,7 @@ def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings(gaps, seconds
     assert found.jams == found.returned == found.climbs == 0 and found.depth < 5e-6
 
 
-@pytest.mark.parametrize("gaps", [0.0, queue.GAPS])
+@pytest.mark.parametrize("gaps", [0.0, queue.MEAN_GAP_SHARE])
 def test_a_row_that_hops_travels_as_the_point_mass_touching_or_not(gaps):
     """Throw number 2.27 at 100 Hz, no rebound: 83.2 mm/s; nothing climbs, and the rate is its pitch's."""
     own = ("drive.amplitude=0.1647 mm", "drive.frequency=100 Hz", "drive.vibration_angle=20 deg")
@@ -128,7 +128,7 @@ def test_a_row_that_reaches_round_the_bowl_stays_on_the_track():
     assert found.returned == found.jams == 0
 
 
-@pytest.mark.parametrize("gaps", [queue.GAPS, 0.5, 0.0, None])
+@pytest.mark.parametrize("gaps", [queue.MEAN_GAP_SHARE, 0.5, 0.0, None])
 def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is_asked_for(gaps):
     """In a row they are even from 0 to twice the mean; parts that are poured or come touching have none."""
     shares = np.array([one is FLAT for one in EVERY], float)
@@ -160,12 +160,12 @@ def test_a_part_is_as_far_from_the_wall_all_round_the_bowl():
     for angle in np.radians([0.0, 80.0, 100.0, 170.0, -100.0]):
         state = np.zeros(body.STATE)
         state[:2] = 9.0 * np.sin(angle), 10.0 - 9.0 * np.cos(angle)
-        assert travel.across(tight, state) == pytest.approx(1.0, abs=1e-12)
+        assert travel.distance_from_wall(tight, state) == pytest.approx(1.0, abs=1e-12)
 
 
 def test_what_blew_on_a_part_does_not_blow_on_the_next_in_its_place():
     on = parts_on(STILL, -0.1)
-    on.arrays.blown[0] = [5.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]  # as far as that time
+    on.arrays.blown[0, 0], on.arrays.blown_until[0] = 5.0, 1.0
     on.lay(0, np.array(on.arrays.states[0]))
     on.ride(0)
     assert abs(on.arrays.states[0, body.VX]) < 1e-3
@@ -189,10 +189,9 @@ def test_the_track_of_a_queue_has_every_hole_once(tmp_path):
     assert len(made.windows) == 3 and made.outlet == made.windows[-1, 1]
     assert (made.windows[1:, 0] == made.windows[:-1, 1]).all()
     assert len(made.stage.plates) == 2  # the track in one piece, and the blade
-    first, last = made.stage.plates[0, 14:16].astype(int)
-    sides = made.stage.borders[first:last]
-    sides = sides[(np.abs(sides[:, 3] - sides[:, 1]) > 0.03) & (sides[:, 7] < 0.5)]  # across the track
-    assert np.ptp(sides[:, 0]) == pytest.approx(9e-3, abs=1e-4) and len(sides) == 2
+    sides = made.stage.borders[made.stage.plates[0].begin : made.stage.plates[0].end]
+    sides = sides[(np.abs(sides.end_y - sides.start_y) > 0.03) & ~sides.drawn_end]  # across the track
+    assert np.ptp(sides.start_x) == pytest.approx(9e-3, abs=1e-4) and len(sides) == 2
 
 
 def test_the_track_goes_on_lower_behind_a_step(tmp_path):
@@ -201,7 +200,7 @@ def test_the_track_goes_on_lower_behind_a_step(tmp_path):
     bowl = bowls.read(path, OWN)
     made = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
     assert made.levels == pytest.approx([0.0, -8e-3, -8e-3])
-    assert made.stage.plates[:, 2] == pytest.approx([0.0, -8e-3])
+    assert made.stage.plates.origin_z == pytest.approx([0.0, -8e-3])
 
 
 def test_what_left_stands_beside_what_was_measured():
@@ -213,7 +212,7 @@ def test_what_left_stands_beside_what_was_measured():
     assert seen.offered.sum() == pytest.approx(1.0)
     low, high = seen.ends
     assert (low <= seen.shares).all() and (seen.shares <= high).all()
-    deviation, total = seen.apart["MDFT"]
+    deviation, total = seen.distances["MDFT"]
     assert total == pytest.approx(0.25)
     assert deviation == pytest.approx(np.sqrt((0.25**2 + 0.05**2 + 0.2**2) / 3.0))
 
@@ -221,7 +220,7 @@ def test_what_left_stands_beside_what_was_measured():
 def test_a_part_lies_on_its_aspect_at_any_heading():
     below = looks.AspectsBelow(PART, ASPECTS)
     for one in EVERY:
-        laid = [whereabouts.laid(replace(one, heading=turn), PRINCIPAL, LENGTH, BOWL.track, place=0.0)
+        laid = [part_poses.pose_on_track(replace(one, heading=turn), PRINCIPAL, LENGTH, BOWL.track, place=0.0)
                 for turn in (0.0, 1.0, 4.0)]  # fmt: skip
         assert [ASPECTS.names[row] for row in below.of(laid)] == [one.aspect] * 3
 
@@ -236,7 +235,9 @@ def test_what_has_no_room_yet_comes_next_however_long_it_is():
         row.enter()
         assert row.coming is waits and row.waiting == came
     on = np.flatnonzero(row.crowd.on)
-    last = on[np.argsort(whereabouts.ways(row.crowd.arrays.states, row.known.radius)[on])][:3]
+    last = on[np.argsort(part_poses.ways_along_wall(row.crowd.arrays.states, row.part_in_bowl.radius)[on])][
+        :3
+    ]
     for n in last:
         row.crowd.take(int(n))
     row.enter()
@@ -249,12 +250,12 @@ def test_a_queue_that_is_followed_bit_by_bit_is_that_of_one_go():
     bits = queue.PartsQueue(PART, BOWL, ASPECTS, (EVERY, shares), EVERY, queue.QueuePlan(2, 9.0), 3)
     for seconds in (0.2, 0.2, 0.41):
         bits.follow(seconds, lambda *row: told.append(row))
-    first, whole = bits.seen(), queued(BOWL, 2, 0.41, run=RunSettings(3))
+    first, whole = bits.result(), queued(BOWL, 2, 0.41, run=RunSettings(3))
     assert first.seconds == whole.seconds == pytest.approx(25 / 60) and not first.partial
     assert (first.velocity, first.gap, first.depth) == (whole.velocity, whole.gap, whole.depth)
     assert told == [(k, 12) for k in range(1, 13)] + [(k, 25) for k in range(13, 26)]
     bits.follow(1.0)
-    assert first.seconds < bits.seen().seconds == pytest.approx(1.0)
+    assert first.seconds < bits.result().seconds == pytest.approx(1.0)
 
 
 def test_parts_reach_as_far_together_as_alone_all_round_the_bowl():

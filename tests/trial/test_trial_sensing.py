@@ -14,7 +14,7 @@ from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.devices.pneumatics import Nozzles, thrust
 from feederscrew.tooling.orientations import orientations, travel_speed, travelling
 from feederscrew.tooling.verdicts import verdict
-from feederscrew.trial import air, course, crowd, runs, stations, whereabouts
+from feederscrew.trial import air, course, crowd, part_poses, runs, staging
 from feederscrew.trial.kernel import jets
 from feederscrew.trial.queue import QueuePlan, queue_of
 from feederscrew.trial.shape import solid_of
@@ -53,12 +53,14 @@ def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
     jet = make_device("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
     solid, length, principal = solid_of(PART)
     known = runs.setting(solid, length, replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0)))
-    station = stations.station(jet, BOWL.track, EVERY)
-    state = whereabouts.laid(ALONG, principal, length, BOWL.track, place=station.begin, aside=3e-3)
+    station = staging.stage(jet, BOWL.track, EVERY)
+    state = part_poses.pose_on_track(ALONG, principal, length, BOWL.track, place=station.begin, aside=3e-3)
     state[body.Z] += 20e-3 / length
     state[body.VX], state[body.W : body.W + 3] = 2.0, (20.0, 33.0, 27.0)
     limits = (0.5, 1.0, 0.0, 10.0)
-    ride = runs.ride(runs.past(known, station, limits=limits, every=0.1, places=9), state[None], np.zeros(1))
+    ride = runs.ride(
+        runs.past(known, station, limits=limits, interval=0.1, places=9), state[None], np.zeros(1)
+    )
     assert 0.0 < ride.gains[0] < 1e-6
 
 
@@ -115,7 +117,7 @@ def test_what_flies_past_the_outlet_on_its_way_off_the_track_has_not_left():
     solid, length, principal = solid_of(PART)
     known = runs.setting(solid, length, BOWL)
     parts = crowd.PartsOnTrack(known, line, 1)
-    state = whereabouts.laid(ALONG, principal, length, BOWL.track, place=0.05)
+    state = part_poses.pose_on_track(ALONG, principal, length, BOWL.track, place=0.05)
     parts.lay(0, state)
     assert not parts.slides_off(0)
     out = (40e-3 - 6e-3) / length  # to the free edge
@@ -139,13 +141,13 @@ def test_jets_blow_as_a_part_comes_to_them_at_its_own_speed():
     assert watch.nozzles > watch.place
     across = next(one for one in EVERY if one.length < 0.0121 and one.height < 0.0051)
     own = solid_of(PART)[2]
-    state = whereabouts.laid(across, own, length, BOWL.track, place=watch.place + 1e-3)
+    state = part_poses.pose_on_track(across, own, length, BOWL.track, place=watch.place + 1e-3)
     parts.lay(0, state)
-    now, moved = whereabouts.ways(state[None], known.radius), 4e-3 / length
+    now, moved = part_poses.ways_along_wall(state[None], known.radius), 4e-3 / length
     parts.watch([0], now - moved, now, 7)
     left = (watch.nozzles / length - now[0]) / moved  # in periods
-    assert parts.surface.jets[watch.jets, jets.BEGIN] == pytest.approx((7.0 + left) * parts.period)
-    blows = parts.surface.jets[watch.jets, jets.END] - parts.surface.jets[watch.jets, jets.BEGIN]
+    assert parts.surface.jets.begin[watch.jets] == pytest.approx((7.0 + left) * parts.period)
+    blows = parts.surface.jets.end[watch.jets] - parts.surface.jets.begin[watch.jets]
     assert blows * known.unit == pytest.approx(watch.seconds)
 
 
@@ -171,7 +173,7 @@ def test_a_part_that_is_held_up_as_it_is_seen_is_blown_at_by_its_mean_speed():
     parts = crowd.PartsOnTrack(known, line, 1)
     (watch,) = line.stage.air.watches
     across = next(one for one in EVERY if one.length < 0.0121 and one.height < 0.0051)
-    parts.lay(0, whereabouts.laid(across, own, length, BOWL.track, place=watch.place))
+    parts.lay(0, part_poses.pose_on_track(across, own, length, BOWL.track, place=watch.place))
     place, moved = np.array([watch.place / length]), 2e-3 / length
     for step in range(3, 0, -1):  # three periods of 2 mm, then one of 0.2 mm past the sensor
         parts.watch([0], place - (step + 0.05) * moved, place - (step - 0.95) * moved, 10 - step)
@@ -179,4 +181,4 @@ def test_a_part_that_is_held_up_as_it_is_seen_is_blown_at_by_its_mean_speed():
     mean = 3.1 * moved / (4 * parts.period)
     left = watch.nozzles / length - (place[0] + 0.05 * moved)
     begin = 10 * parts.period + left / mean
-    assert parts.surface.jets[watch.jets, jets.BEGIN] == pytest.approx(begin)
+    assert parts.surface.jets.begin[watch.jets] == pytest.approx(begin)

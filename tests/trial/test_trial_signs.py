@@ -8,11 +8,12 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.dropping.kernel import body
+from feederscrew.geometry.compiled import zero_rows
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import runs, shape, starts, stations, whereabouts
-from feederscrew.trial.arrays import crowd_of
-from feederscrew.trial.kernel import corners_met, crowd_records, jets, motion, travel
+from feederscrew.trial import part_poses, runs, shape, staging, starts
+from feederscrew.trial.arrays import workspace_of
+from feederscrew.trial.kernel import steps, track_contacts, travel, workspace
 
 OWN = [
     "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
@@ -32,10 +33,10 @@ def still(**track):
 def gone(bowl, state, seconds):
     """What becomes of one part from a state on the bare track."""
     every = orientations(PART, find(PART), bowl.track)
-    known, stage = runs.setting(SOLID, LENGTH, bowl), stations.plain(bowl.track, every, 0.5)
+    known, stage = runs.setting(SOLID, LENGTH, bowl), staging.plain(bowl.track, every, 0.5)
     limits = (seconds, 2.0 * seconds, 0.0, 10.0)
     return known, runs.ride(
-        runs.past(known, stage, limits=limits, every=1.0, places=1), state[None], np.zeros(1)
+        runs.past(known, stage, limits=limits, interval=1.0, places=1), state[None], np.zeros(1)
     )
 
 
@@ -43,7 +44,7 @@ def lying(bowl, aside=None):
     """The part flat on the track at the wall, or that far off it."""
     every = orientations(PART, find(PART), bowl.track)
     one = min(every, key=lambda one: one.height)
-    state = whereabouts.laid(one, PRINCIPAL, LENGTH, bowl.track, place=0.1, aside=aside or 0.0)
+    state = part_poses.pose_on_track(one, PRINCIPAL, LENGTH, bowl.track, place=0.1, aside=aside or 0.0)
     return state if aside else starts.clear(state, SOLID, bowl.track, LENGTH, 0.0)
 
 
@@ -53,7 +54,7 @@ def test_a_part_slides_as_far_as_the_friction_of_its_direction_lets_it(ahead, fr
     state = lying(bowl, aside=5e-3)
     state[body.VX] = ahead
     known, ride = gone(bowl, state, 0.3)
-    assert ride.ways[0] == pytest.approx(ahead * known.length * 0.5 / friction, rel=0.01)
+    assert ride.distances[0] == pytest.approx(ahead * known.length * 0.5 / friction, rel=0.01)
 
 
 @pytest.mark.parametrize("wall", [0.0, 0.7])
@@ -66,14 +67,14 @@ def test_floor_and_upright_wall_brake_on_a_bank(wall):
     state[body.VX] = 0.8
     known, ride = gone(bowl, state, 0.3)
     friction = 0.4 / np.cos(bank) + wall * np.tan(bank)
-    assert ride.ways[0] == pytest.approx(known.length * 0.5 * 0.64 / friction, rel=0.03)
+    assert ride.distances[0] == pytest.approx(known.length * 0.5 * 0.64 / friction, rel=0.03)
 
 
 @pytest.mark.parametrize("bank", [-10.0, 0.0, 10.0])
 def test_the_wall_stands_upright(bank):
     """A part touches it with its upper edge where the track falls towards it, else with its lower."""
     bowl = still(bank=np.radians(bank))
-    spots = lying(bowl)[:3] + SOLID.corners @ whereabouts.matrix(lying(bowl)).T
+    spots = lying(bowl)[:3] + SOLID.corners @ part_poses.matrix(lying(bowl)).T
     off = BOWL.track.radius - LENGTH * np.hypot(spots[:, 0], BOWL.track.radius / LENGTH - spots[:, 1])
     height = LENGTH * spots[:, 2]
     gap = off - height * np.tan(np.radians(bank))
@@ -88,7 +89,7 @@ def test_a_part_in_the_air_keeps_its_attitude_while_the_bowl_turns():
     quarter = 0.25 / BOWL.drive.frequency
     known, ride = gone(BOWL, state, quarter)
     end = ride.states[0]
-    rates = whereabouts.matrix(end) @ end[body.W : body.W + 3] / known.unit
+    rates = part_poses.matrix(end) @ end[body.W : body.W + 3] / known.unit
     drive, track = BOWL.drive, BOWL.track
     speed = drive.amplitude * 2.0 * np.pi * drive.frequency * np.cos(drive.vibration_angle)
     theta = np.arctan2(state[0], track.radius / LENGTH - state[1])
@@ -103,15 +104,15 @@ def test_a_part_comes_to_a_stand_as_soon_as_friction_has_taken_its_speed(ahead, 
     bowl = still(climb=0.0, bank=0.0, radius=50.0)
     known = runs.setting(SOLID, LENGTH, bowl)
     every = orientations(PART, find(PART), bowl.track)
-    surface, step = runs.surface_of(known, stations.plain(bowl.track, every, 0.5)), known.floor.step
-    one = crowd_of(SOLID, surface, 1)
-    one.states[0], one.order[0], one.knowns[0] = lying(bowl, aside=5e-3), 0, 0
-    one.states[0, body.VX] = ahead * share * friction * step  # what friction takes in that share of a step
-    one.lasted[0] = one.made[0, -1] = -1.0  # nothing is known of a step before
-    motion.ready(surface, one, (0, 1))
-    corners_met.found(surface, SOLID, one, 0, motion.ahead(SOLID, one.states[0], step))
-    found = motion.pushed(surface, SOLID, known.floor, one, (0, 1), 0.0, step)
-    assert found[2] == pytest.approx(share, rel=0.02)
+    surface, step = runs.surface_of(known, staging.plain(bowl.track, every, 0.5)), known.floor.step
+    work = workspace_of(SOLID, surface, 1)
+    work.states[0] = lying(bowl, aside=5e-3)
+    work.states[0, body.VX] = ahead * share * friction * step  # what friction takes in that share of a step
+    steps.begin_step(surface, work, (0, 1))
+    reach = steps.reach_ahead(SOLID, work.states[0], step)
+    track_contacts.find_contacts(surface, SOLID, work, 0, reach)
+    _, _, stands = steps.push_island(surface, SOLID, known.floor, work, (0, 1), 0.0, step)
+    assert stands == pytest.approx(share, rel=0.02)
 
 
 def test_energy_is_reckoned_along_the_way_that_a_part_goes(monkeypatch):
@@ -119,17 +120,17 @@ def test_energy_is_reckoned_along_the_way_that_a_part_goes(monkeypatch):
     bowl = still(climb=0.0, bank=0.0, radius=50.0)
     known = runs.setting(SOLID, LENGTH, bowl)
     every = orientations(PART, find(PART), bowl.track)
-    surface, step = runs.surface_of(known, stations.plain(bowl.track, every, 0.5)), known.floor.step
-    one, told = crowd_of(SOLID, surface, 1), []
-    one.states[0] = lying(bowl, aside=5e-3)
-    one.states[0, body.Z] += 2e-3  # it strikes, then slides
-    one.states[0, body.VX] = 0.3
-    one.lasted[0] = one.made[0, crowd_records.REACHES] = one.blown[0, jets.AGAIN] = -1.0
-    move = motion.moved
-    monkeypatch.setattr(motion, "_no_more_than_given", lambda *given: told.append(("guard", given[-1])))
-    monkeypatch.setattr(motion, "moved", lambda *given: (told.append(("moved", given[2])), move(*given)))
+    surface, step = runs.surface_of(known, staging.plain(bowl.track, every, 0.5)), known.floor.step
+    work, calls = workspace_of(SOLID, surface, 1), []
+    work.states[0] = lying(bowl, aside=5e-3)
+    work.states[0, body.Z] += 2e-3  # it strikes, then slides
+    work.states[0, body.VX] = 0.3
+    move = steps.move_island
+    monkeypatch.setattr(steps, "limit_energy_to_work", lambda *args: calls.append(("limit", args[-1])))
+    monkeypatch.setattr(steps, "move_island", lambda *args: (calls.append(("move", args[2])), move(*args)))
+    journal = zero_rows(1, workspace.JOURNAL)
     for k in range(60):
-        travel.over(surface, SOLID, known.floor, one, (0, 1), k * step, np.zeros(travel.NOTES + 2))
-    solved = [k for k, (what, _) in enumerate(told) if what == "guard" and told[k + 1][0] == "moved"]
-    assert {told[k][1] for k in solved} == {0.5, 1.0}
-    assert all(told[k][1] == told[k + 1][1] for k in solved)
+        travel.step_island(surface, SOLID, known.floor, work, (0, 1), k * step, journal[0])
+    solved = [k for k, (what, _) in enumerate(calls) if what == "limit" and calls[k + 1][0] == "move"]
+    assert {calls[k][1] for k in solved} == {0.5, 1.0}
+    assert all(calls[k][1] == calls[k + 1][1] for k in solved)

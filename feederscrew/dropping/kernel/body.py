@@ -20,6 +20,30 @@ def keep(source, target):
 
 
 @compiled
+def velocity(state):
+    """Return the velocity (3,) [sqrt(g L)] of a state (13,)."""
+    return state[VX], state[VY], state[VZ]
+
+
+@compiled
+def set_velocity(state, u, v, w):
+    """Write the velocity [sqrt(g L)] of a state (13,)."""
+    state[VX], state[VY], state[VZ] = u, v, w
+
+
+@compiled
+def moves_of(state):
+    """Return the velocity [sqrt(g L)] and the rates [sqrt(g/L)] of a state (13,), (6,)."""
+    return state[VX], state[VY], state[VZ], state[W], state[W + 1], state[W + 2]
+
+
+@compiled
+def set_moves(state, moves):
+    """Write the velocity [sqrt(g L)] and the rates [sqrt(g/L)] (6,) of a state (13,)."""
+    state[VX], state[VY], state[VZ], state[W], state[W + 1], state[W + 2] = moves
+
+
+@compiled
 def rotation(state, turn):
     """Fill ``turn`` (9,) [1] with the rotation matrix of a state (13,), row by row."""
     a, b, c, d = state[Q], state[Q + 1], state[Q + 2], state[Q + 3]
@@ -69,7 +93,7 @@ def moving_energy(state, inertia):
 
     Source: Newton and Euler for a rigid body; docs/resting.md, "The drop test".
     """
-    u, v, w = state[VX], state[VY], state[VZ]
+    u, v, w = velocity(state)
     return spin_energy(state, inertia) + 0.5 * (u * u + v * v + w * w)
 
 
@@ -156,10 +180,11 @@ def tumble(state, inertia, dt):
 @compiled
 def fly(state, inertia, dt):
     """Fly a state (13,) over dt [sqrt(L/g)]."""
-    state[X] += dt * state[VX]
-    state[Y] += dt * state[VY]
-    state[Z] += dt * (state[VZ] - 0.5 * dt)
-    state[VZ] -= dt
+    u, v, w = velocity(state)
+    state[X] += dt * u
+    state[Y] += dt * v
+    state[Z] += dt * (w - 0.5 * dt)
+    set_velocity(state, u, v, w - dt)
     tumble(state, inertia, dt)
 
 
@@ -210,15 +235,15 @@ def bottom(solid, turn, corner):
 def slow_down(state, inertia, limit):
     """Scale velocities so that the kinetic energy is at most ``limit``; those along the floor last."""
     moving = moving_energy(state, inertia)
-    along = 0.5 * (state[VX] * state[VX] + state[VY] * state[VY])
+    u, v, w = velocity(state)
+    along = 0.5 * (u * u + v * v)
     if moving <= limit:
         return
     if along > limit:
         scale = math.sqrt(max(limit, 0.0) / along)
-        state[VX] *= scale
-        state[VY] *= scale
+        u, v = scale * u, scale * v
     left = max(limit - along, 0.0)
     scale = math.sqrt(left / (moving - along)) if moving > along else 0.0
-    state[VZ] *= scale
+    set_velocity(state, u, v, scale * w)
     for k in range(3):
         state[W + k] *= scale

@@ -8,10 +8,12 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping.kernel import body, floor_contacts, impulses, touch
 from feederscrew.dropping.kernel import floor_motion as floors
-from feederscrew.dropping.kernel.body import VX, VZ, W, X, Z
-from feederscrew.geometry.compiled import compiled, shared
+from feederscrew.dropping.kernel.body import VX, W, X, Z
+from feederscrew.geometry.compiled import compiled, shared, zero_rows
 
-CREEP = 1e-4  # speed at which a point that touches may go on falling: a step errs by less, landings do not
+CREEP_SPEED = (
+    1e-4  # speed at which a point that touches may go on falling: a step errs by less, landings do not
+)
 
 
 class Scratch(NamedTuple):
@@ -22,11 +24,11 @@ class Scratch(NamedTuple):
     ahead: np.ndarray  # (STATE,)
     turn: np.ndarray  # (9,)
     later: np.ndarray  # (9,)
-    seen: np.ndarray  # (V,) bool
-    found: np.ndarray  # (V,)
+    visited: np.ndarray  # (V,) bool, corners of the flood
+    queue: np.ndarray  # (V,) int, corners in the order of the flood
     spots: np.ndarray  # (V + QUARTERS R, 3) points that touch the floor, in body axes
     owners: np.ndarray  # (V + QUARTERS R,) int: rim of each of them, CORNER for none
-    contacts: np.ndarray  # (MOST, WIDTH)
+    contacts: np.recarray  # (MAX_CONTACTS,) FLOOR_CONTACT
     pressed: np.ndarray  # (2,) points of the last step if it was on the floor, else 0; how long it was
     trace: np.ndarray  # (N, 14) time and state at the start of each step, until it is full
     rows: np.ndarray  # (1,) int: how many rows of it are filled
@@ -35,18 +37,18 @@ class Scratch(NamedTuple):
 def scratch(shape, rows=0) -> Scratch:
     """Make working arrays for a shape, with a trace of so many rows."""
     size = len(shape.vertices)
-    room = size + touch.QUARTERS * len(shape.solid.rims)
+    room = size + touch.FLAT_RIM_POINTS * len(shape.solid.rims)
     return Scratch(
         state=np.zeros(body.STATE),
         saved=np.zeros(body.STATE),
         ahead=np.zeros(body.STATE),
         turn=np.zeros(9),
         later=np.zeros(9),
-        seen=np.zeros(size, bool),
-        found=np.zeros(size, int),
+        visited=np.zeros(size, bool),
+        queue=np.zeros(size, int),
         spots=np.zeros((room, 3)),
         owners=np.zeros(room, int),
-        contacts=np.zeros((touch.MOST, floor_contacts.WIDTH)),
+        contacts=zero_rows(touch.MAX_CONTACTS, floor_contacts.FLOOR_CONTACT),
         pressed=np.zeros(2),
         trace=np.zeros((rows, 1 + body.STATE)),
         rows=np.zeros(1, int),
@@ -91,7 +93,7 @@ class Launched(NamedTuple):
 
 def launched_one(state, restitution, friction) -> Launched:
     """Return one body that is let go in a state (STATE,): Launched, of arrays as the kernels know them."""
-    return Launched(*(check.frozen(np.array([one], float)) for one in (state, restitution, friction)))
+    return Launched(*(check.frozen(np.array([value], float)) for value in (state, restitution, friction)))
 
 
 @compiled
@@ -107,8 +109,8 @@ def gap_after(solid, work, floor, time, corner, dt):
     state[X] -= ahead
     state[Z] -= rise
     ahead, rise = floors.quickening(floor, time, dt)
-    state[VX] -= ahead
-    state[VZ] -= rise
+    u, v, w = body.velocity(state)
+    body.set_velocity(state, u - ahead, v, w - rise)
     body.rotation(state, work.turn)
     corner, level = body.bottom(solid, work.turn, corner)
     return corner, state[Z] + level
@@ -121,7 +123,7 @@ def approach(solid, work, floor, time, corner, gap, steps):
     No point comes down faster than ``down``, and what gravity adds, whatever way the body turns.
     """
     state = work.state
-    down = body.quickest(state, solid.inertia) * solid.radius - state[VZ]
+    down = body.quickest(state, solid.inertia) * solid.radius - body.velocity(state)[2]
     soonest = math.sqrt(down * down + 2.0 * max(gap, 0.0)) - down
     dt = min(max(soonest, steps.flight), steps.turn / (body.rate(state) + 1e-9))
     dt = min(min(dt, 0.5), floor.step)
@@ -172,14 +174,14 @@ def press_on(solid, work, floor, time, corner, count, friction, steps):
     body.keep(state, work.saved)
     floor_contacts.levers_ahead(solid, work, count, whole)
     body.turn_freely(state, solid.inertia, whole)
-    state[VX] -= ahead
-    state[VZ] -= whole + rise
+    u, v, w = body.velocity(state)
+    body.set_velocity(state, u - ahead, v, w - (whole + rise))
     share = whole / work.pressed[1] if count == work.pressed[0] else 0.0
     impulses.hold(state, work.contacts, count, friction, steps, share)
     work.pressed[0], work.pressed[1] = count, whole
     lever = steps.pivot
     for n in range(count):
-        if work.owners[n] != touch.CORNER:
+        if work.owners[n] != touch.CORNER_OWNER:
             lever = steps.rolling
     resist(state, solid.inertia, lever, whole)
     early, late, dt = 0.0, whole, whole
@@ -235,13 +237,13 @@ def advance(solid, work, floor, time, corner, gap, pairing, steps):
         floor_contacts.arms(work, count)
         rise = impulses.steepest(state, contacts, count)
         struck = rise < -steps.threshold
-        if struck or rise < -CREEP:
+        if struck or rise < -CREEP_SPEED:
             floor_contacts.levers(solid.inertia, work, count)
         if struck:
             impulses.strike(solid.inertia, state, work.saved, contacts, count, restitution, friction, steps)
             rise = impulses.steepest(state, contacts, count)
             work.pressed[0] = 0.0
-        elif rise < -CREEP:
+        elif rise < -CREEP_SPEED:
             impulses.hold(state, contacts, count, friction, steps, 0.0)
             rise = work.pressed[0] = 0.0
     if rise > steps.threshold:

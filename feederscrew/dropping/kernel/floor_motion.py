@@ -1,7 +1,7 @@
 """How the floor moves: at rest, or vibrating in a straight line or an ellipse.
 
 Everything is in the floor's frame: a floor that moves is a force on the body that changes with time. The
-floor moves along its x axis and along its normal z, each as s(rate t) with the second harmonic of the drive.
+floor moves along its x axis and along its normal z, each harmonically, with a second harmonic.
 """
 
 import math
@@ -13,15 +13,16 @@ from feederscrew.geometry.compiled import compiled
 class Floor(NamedTuple):
     """Motion of the floor, without dimensions: lengths over L, times over sqrt(L / g).
 
-    It is ``along`` s(rate t + lead) ahead and ``up`` s(rate t) high, with s(x) = sin x + second
-    sin(2 x + second_phase).
+    It is ``along`` sin x + ``second_along`` sin(2 x + second_phase) ahead, at x = rate t + lead, and
+    ``up`` sin x + ``second_up`` sin(2 x + second_phase) high, at x = rate t.
     """
 
     rate: float  # angular frequency of the drive; 0 for a floor at rest
     along: float  # amplitudes
     up: float
     lead: float  # [rad]
-    second: float  # of the first harmonic
+    second_along: float  # amplitudes of the second harmonic
+    second_up: float
     second_phase: float  # [rad]
     step: float  # longest step in time: a small part of the period
 
@@ -29,26 +30,26 @@ class Floor(NamedTuple):
 @compiled
 def at_rest():
     """Return the floor of a drop test."""
-    return Floor(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, math.inf)
+    return Floor(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, math.inf)
 
 
 @compiled
-def place(floor, amplitude, angle):
+def place(floor, amplitude, second, angle):
     """Return where the floor is along one axis [L], at a phase [rad] of its motion.
 
     Source: a harmonic drive; docs/conveying.md, "The model".
     """
-    return amplitude * (math.sin(angle) + floor.second * math.sin(2.0 * angle + floor.second_phase))
+    return amplitude * math.sin(angle) + second * math.sin(2.0 * angle + floor.second_phase)
 
 
 @compiled
-def speed(floor, amplitude, angle):
+def speed(floor, amplitude, second, angle):
     """Return how fast the floor moves along one axis [sqrt(g L)], at a phase [rad] of its motion.
 
     Source: a harmonic drive; docs/conveying.md, "The model".
     """
-    turned = math.cos(angle) + 2.0 * floor.second * math.cos(2.0 * angle + floor.second_phase)
-    return amplitude * floor.rate * turned
+    first, rate = amplitude * floor.rate * math.cos(angle), 2.0 * floor.rate
+    return first + second * rate * math.cos(2.0 * angle + floor.second_phase)
 
 
 @compiled
@@ -60,8 +61,9 @@ def quickening(floor, time, dt):
     if floor.rate == 0.0:
         return 0.0, 0.0
     now, then = floor.rate * time, floor.rate * (time + dt)
-    ahead = speed(floor, floor.along, then + floor.lead) - speed(floor, floor.along, now + floor.lead)
-    return ahead, speed(floor, floor.up, then) - speed(floor, floor.up, now)
+    along, up = (floor.along, floor.second_along), (floor.up, floor.second_up)
+    ahead = speed(floor, *along, then + floor.lead) - speed(floor, *along, now + floor.lead)
+    return ahead, speed(floor, *up, then) - speed(floor, *up, now)
 
 
 @compiled
@@ -71,6 +73,7 @@ def gained(floor, time, dt):
         return 0.0, 0.0
     now, then = floor.rate * time, floor.rate * (time + dt)
     a, b = now + floor.lead, then + floor.lead
-    ahead = place(floor, floor.along, b) - place(floor, floor.along, a) - dt * speed(floor, floor.along, a)
-    rise = place(floor, floor.up, then) - place(floor, floor.up, now) - dt * speed(floor, floor.up, now)
+    along, up = (floor.along, floor.second_along), (floor.up, floor.second_up)
+    ahead = place(floor, *along, b) - place(floor, *along, a) - dt * speed(floor, *along, a)
+    rise = place(floor, *up, then) - place(floor, *up, now) - dt * speed(floor, *up, now)
     return ahead, rise

@@ -1,37 +1,48 @@
-"""Compiled impulses of all contacts together: at impacts, and in steps on the floor."""
+"""Compiled impulses of all contacts together: at impacts, and in steps on the floor.
+
+Of one or two contacts that press and slip a few steps suffice where sweeps take many. While the directions of
+the slips are known, so is the friction of each contact as a share of what presses it, and the latter solves
+linear equations. A step on the floor changes a slip by little beside itself: the directions settle at once.
+There ``last`` of a contact holds its impulse (x, y, z) for a unit of what presses it, and ``change`` the
+rates that this gives; where impulses are swept for, its impulse a sweep ago and what the one before changed.
+"""
 
 import math
 
-from feederscrew.dropping.kernel.body import VX, VZ, W, energy, keep
+from feederscrew.dropping.kernel.body import energy, keep, moves_of, set_moves
 from feederscrew.dropping.kernel.floor_contacts import (
-    CHANGE,
-    IMPULSE,
-    LAST,
-    LEVER,
-    MASS,
-    RATE,
-    WANTED,
-    WIDTH,
+    ahead_lever,
+    ahead_rate,
+    aside_lever,
+    aside_rate,
     coupling,
     masses,
+    point_speed,
     push,
-    speed,
+    speeds,
+    spun,
+    up_lever,
+    up_rate,
+    up_speed,
 )
-from feederscrew.dropping.kernel.slipping import slide
-from feederscrew.geometry.compiled import apart, compiled
+from feederscrew.geometry.compiled import compiled, outlined
 
-EVERY = 6  # sweeps from one leap to the next
-STRAIGHT = 0.95**2  # squared cosine between two changes that lead the same way
-FURTHEST = 1000.0  # a leap, in changes of a sweep
+MAX_DIRECTION_CHANGES = 6  # after which the sweeps take over
+SWEEPS_PER_LEAP = 6  # sweeps from one leap to the next
+STRAIGHT_COSINE2 = 0.95**2  # squared cosine between two changes that lead the same way
+MAX_LEAP = 1000.0  # a leap, in changes of a sweep
 
 
 @compiled
 def stick(state, row, friction):
-    """Hold one contact, a row (WIDTH,), still by an impulse [sqrt(g L)]; return whether friction can."""
-    u, v, w = -speed(state, row, 0), -speed(state, row, 1), row[WANTED] - speed(state, row, 2)
-    xx, yy, zz = 1.0 + coupling(row, 0, 0), 1.0 + coupling(row, 1, 1), 1.0 + coupling(row, 2, 2)
-    xy, xz, yz = coupling(row, 0, 1), coupling(row, 0, 2), coupling(row, 1, 2)
-    yx, zx, zy = coupling(row, 1, 0), coupling(row, 2, 0), coupling(row, 2, 1)
+    """Hold one contact still by an impulse [sqrt(g L)]; return whether friction can."""
+    ahead, aside, rise = speeds(state, row)
+    u, v, w = -ahead, -aside, row.wanted - rise
+    x, y, z = ahead_lever(row), aside_lever(row), up_lever(row)
+    p, q, r = ahead_rate(row), aside_rate(row), up_rate(row)
+    xx, yy, zz = 1.0 + coupling(x, p), 1.0 + coupling(y, q), 1.0 + coupling(z, r)
+    xy, xz, yz = coupling(x, q), coupling(x, r), coupling(y, r)
+    yx, zx, zy = coupling(y, p), coupling(z, p), coupling(z, q)
     a, b, c = yy * zz - yz * zy, yz * zx - yx * zz, yx * zy - yy * zx
     whole = xx * a + xy * b + xz * c
     along = (a * u + (xz * zy - xy * zz) * v + (xy * yz - xz * yy) * w) / whole
@@ -40,59 +51,41 @@ def stick(state, row, friction):
     most = friction * up
     holds = up >= 0.0 and along * along + across * across <= most * most
     if holds:
-        push(state, row, 0, along)
-        push(state, row, 1, across)
-        push(state, row, 2, up)
+        push(state, row, along, across, up)
     return holds
 
 
 @compiled
-def along(c, n, k, v, p, q, r):
-    """Return the velocity [sqrt(g L)] of contact n: of the centre, and of the rates on the lever at k.
-
-    Source: v + w x r of a rigid body.
-    """
-    return v + c[n, k] * p + c[n, k + 1] * q + c[n, k + 2] * r
-
-
-@compiled
-def spun(c, n, k, impulse, p, q, r):
-    """Return the rates [sqrt(g/L)] after an impulse [sqrt(g L)] along the axis whose RATE column is k.
-
-    Source: I w = r x p of a rigid body.
-    """
-    return p + c[n, k] * impulse, q + c[n, k + 1] * impulse, r + c[n, k + 2] * impulse
-
-
-@compiled
-def relax(c, n, friction, moves):
-    """Do one projected Gauss-Seidel step on contact n; return velocities [sqrt(g L)] and rates (6,)."""
+def relax(row, friction, moves):
+    """Do one projected Gauss-Seidel step on a contact; return velocities [sqrt(g L)] and rates (6,)."""
     u, v, w, p, q, r = moves
-    x, y, z = c[n, IMPULSE], c[n, IMPULSE + 1], c[n, IMPULSE + 2]
-    up = max(z + c[n, MASS + 2] * (c[n, WANTED] - along(c, n, LEVER + 6, w, p, q, r)), 0.0)
+    x, y, z = row.ahead_impulse, row.aside_impulse, row.up_impulse
+    up = max(z + row.up_mass * (row.wanted - point_speed(w, up_lever(row), (p, q, r))), 0.0)
     w += up - z
-    p, q, r = spun(c, n, RATE + 6, up - z, p, q, r)
-    ahead = x - c[n, MASS] * along(c, n, LEVER, u, p, q, r)
-    aside = y - c[n, MASS + 1] * along(c, n, LEVER + 3, v, p, q, r)
+    p, q, r = spun((p, q, r), up_rate(row), up - z)
+    ahead = x - row.floor_mass * point_speed(u, ahead_lever(row), (p, q, r))
+    aside = y - row.floor_mass * point_speed(v, aside_lever(row), (p, q, r))
     size, most = ahead * ahead + aside * aside, friction * up
     if size > most * most:
         scale = most / math.sqrt(size)
         ahead, aside = scale * ahead, scale * aside
     u += ahead - x
-    p, q, r = spun(c, n, RATE, ahead - x, p, q, r)
+    p, q, r = spun((p, q, r), ahead_rate(row), ahead - x)
     v += aside - y
-    p, q, r = spun(c, n, RATE + 3, aside - y, p, q, r)
-    c[n, IMPULSE], c[n, IMPULSE + 1], c[n, IMPULSE + 2] = ahead, aside, up
+    p, q, r = spun((p, q, r), aside_rate(row), aside - y)
+    row.ahead_impulse, row.aside_impulse, row.up_impulse = ahead, aside, up
     return u, v, w, p, q, r
 
 
 @compiled
-def noted(contacts, count):
-    """Keep what the last sweep changed of impulses [sqrt(g L)] of contacts (N, WIDTH), and the impulses."""
+def note_change(contacts, count):
+    """Keep what the last sweep changed of the impulses [sqrt(g L)] of contacts (N,), and the impulses."""
     for n in range(count):
-        for e in range(3):
-            contacts[n, CHANGE + e] = contacts[n, IMPULSE + e] - contacts[n, LAST + e]
-            contacts[n, LAST + e] = contacts[n, IMPULSE + e]
+        row = contacts[n]
+        row.ahead_change = row.ahead_impulse - row.ahead_last
+        row.aside_change = row.aside_impulse - row.aside_last
+        row.up_change = row.up_impulse - row.up_last
+        row.ahead_last, row.aside_last, row.up_last = row.ahead_impulse, row.aside_impulse, row.up_impulse
 
 
 @compiled
@@ -103,24 +96,25 @@ def leap(contacts, count):
     corners side by side the impulse creeps from one to the other, by as much in every sweep.
     """
     both = before = now = 0.0
-    most = FURTHEST
+    most = MAX_LEAP
     for n in range(count):
-        for e in range(3):
-            change = contacts[n, IMPULSE + e] - contacts[n, LAST + e]
-            last = contacts[n, CHANGE + e]
-            both += change * last
-            before += last * last
-            now += change * change
-        if change < 0.0:
-            most = min(most, -contacts[n, IMPULSE + 2] / change)
-    if both <= 0.0 or both * both < STRAIGHT * before * now:
+        row = contacts[n]
+        a, b = row.ahead_impulse - row.ahead_last, row.aside_impulse - row.aside_last
+        c = row.up_impulse - row.up_last
+        both = both + a * row.ahead_change + b * row.aside_change + c * row.up_change
+        before = before + row.ahead_change * row.ahead_change + row.aside_change * row.aside_change
+        before += row.up_change * row.up_change
+        now = now + a * a + b * b + c * c
+        if c < 0.0:
+            most = min(most, -row.up_impulse / c)
+    if both <= 0.0 or both * both < STRAIGHT_COSINE2 * before * now:
         return 0.0
     return min(most, both / (before - both)) if both < before else most
 
 
-@apart
+@outlined
 def solve(state, contacts, count, friction, sweeps, converged):
-    """Give contacts (N, WIDTH) impulses [sqrt(g L)] with Coulomb friction: they leave as wanted or faster.
+    """Give contacts (N,) impulses [sqrt(g L)] with Coulomb friction: they leave as wanted or faster.
 
     One or two contacts directly where that goes; else swept from the impulses that the contacts hold, until
     a whole sweep changes the body's velocities by no more than ``converged`` of what presses it: between many
@@ -133,51 +127,127 @@ def solve(state, contacts, count, friction, sweeps, converged):
 
 
 @compiled
-def sweep(state, contacts, count, friction, sweeps, converged):
-    """Give contacts (N, WIDTH) impulses [sqrt(g L)] by projected Gauss-Seidel sweeps, from what they hold."""
+def slide(state, contacts, count, friction, converged):
+    """Give impulses [sqrt(g L)] to one or two contacts (N,) that press and slip; say if they settle."""
+    first, last = contacts[0], contacts[count - 1]
     for n in range(count):
-        masses(contacts[n])
-        for e in range(3):
-            push(state, contacts[n], e, contacts[n, IMPULSE + e])
-    u, v, w = state[VX], state[VX + 1], state[VZ]
-    p, q, r = state[W], state[W + 1], state[W + 2]
+        ahead, aside, _ = speeds(state, contacts[n])
+        aim(contacts[n], friction, ahead, aside)
+    for _ in range(MAX_DIRECTION_CHANGES):
+        press, other_press = presses(state, first, last, count)
+        if not (press >= 0.0 and other_press >= 0.0):
+            return False
+        change = 0.0
+        for n in range(count):
+            by = press if n == 0 else other_press
+            change += by * aim_again(state, contacts[n], first, last, press, other_press, friction)
+        if change <= converged * (press + other_press):
+            for n in range(count):
+                row, by = contacts[n], press if n == 0 else other_press
+                push(state, row, by * row.ahead_last, by * row.aside_last, by * row.up_last)
+            return True
+    return False
+
+
+@compiled
+def aim(row, friction, ahead, aside):
+    """Note the impulse of a contact that slips with a velocity [sqrt(g L)]; return how far it turned [1]."""
+    size = math.sqrt(ahead * ahead + aside * aside)
+    if size == 0.0:
+        return math.inf
+    x, y = -friction * ahead / size, -friction * aside / size
+    change = abs(x - row.ahead_last) + abs(y - row.aside_last)
+    row.ahead_last, row.aside_last, row.up_last = x, y, 1.0
+    row.ahead_change = x * row.ahead_rate_x + y * row.aside_rate_x + row.up_rate_x
+    row.aside_change = x * row.ahead_rate_y + y * row.aside_rate_y + row.up_rate_y
+    row.up_change = x * row.ahead_rate_z + y * row.aside_rate_z + row.up_rate_z
+    return change
+
+
+@compiled
+def unit_rates(row):
+    """Return the rates (3,) [1/L] that a unit of what presses a contact gives, with its friction."""
+    return row.ahead_change, row.aside_change, row.up_change
+
+
+@compiled
+def presses(state, first, last, count):
+    """Return the impulse [sqrt(g L)] that makes each contact leave as wanted; 0 where there is no second.
+
+    Source: own; docs/resting.md, "The drop test".
+    """
+    a = point_speed(first.up_last, up_lever(first), unit_rates(first))
+    here = first.wanted - up_speed(state, first)
+    if count == 1:
+        return here / a, 0.0
+    b = point_speed(last.up_last, up_lever(first), unit_rates(last))
+    c = point_speed(first.up_last, up_lever(last), unit_rates(first))
+    d = point_speed(last.up_last, up_lever(last), unit_rates(last))
+    there = last.wanted - up_speed(state, last)
+    whole = a * d - b * c
+    return (d * here - b * there) / whole, (a * there - c * here) / whole
+
+
+@compiled
+def aim_again(state, row, first, last, press, other_press, friction):
+    """Aim a contact along the slip that the impulses of both leave; return how far it turned [1].
+
+    Source: own; docs/resting.md, "The drop test".
+    """
+    ahead, aside, _ = speeds(state, row)
+    x, y, rates = ahead_lever(row), aside_lever(row), unit_rates(first)
+    ahead += press * point_speed(first.ahead_last, x, rates)
+    aside += press * point_speed(first.aside_last, y, rates)
+    rates = unit_rates(last)
+    ahead += other_press * point_speed(last.ahead_last, x, rates)
+    aside += other_press * point_speed(last.aside_last, y, rates)
+    return aim(row, friction, ahead, aside)
+
+
+@compiled
+def sweep(state, contacts, count, friction, sweeps, converged):
+    """Give contacts (N,) impulses [sqrt(g L)] by projected Gauss-Seidel sweeps, from what they hold."""
+    for n in range(count):
+        row = contacts[n]
+        masses(row)
+        push(state, row, row.ahead_impulse, row.aside_impulse, row.up_impulse)
+    u, v, w, p, q, r = moves_of(state)
     for turn in range(sweeps):
-        if turn % EVERY >= EVERY - 2:
-            noted(contacts, count)
-        state[VX], state[VX + 1], state[VZ] = u, v, w
-        state[W], state[W + 1], state[W + 2] = p, q, r
+        if turn % SWEEPS_PER_LEAP >= SWEEPS_PER_LEAP - 2:
+            note_change(contacts, count)
+        a, b, c, d, e, f = u, v, w, p, q, r
         size = 0.0
         for n in range(count):
-            u, v, w, p, q, r = relax(contacts, n, friction, (u, v, w, p, q, r))
-            size += contacts[n, IMPULSE + 2]
-        change = abs(u - state[VX]) + abs(v - state[VX + 1]) + abs(w - state[VZ])
-        change += abs(p - state[W]) + abs(q - state[W + 1]) + abs(r - state[W + 2])
+            u, v, w, p, q, r = relax(contacts[n], friction, (u, v, w, p, q, r))
+            size += contacts[n].up_impulse
+        change = abs(u - a) + abs(v - b) + abs(w - c)
+        change += abs(p - d) + abs(q - e) + abs(r - f)
         if change <= converged * size:
             break
-        if turn % EVERY == EVERY - 1:
+        if turn % SWEEPS_PER_LEAP == SWEEPS_PER_LEAP - 1:
             on = leap(contacts, count)
             for n in range(count):
-                for k in range(IMPULSE, LAST):
-                    contacts[n, k] += on * (contacts[n, k] - contacts[n, k + 3])
-            u, v, w = u + on * (u - state[VX]), v + on * (v - state[VX + 1]), w + on * (w - state[VZ])
-            p, q = p + on * (p - state[W]), q + on * (q - state[W + 1])
-            r += on * (r - state[W + 2])
-    state[VX], state[VX + 1], state[VZ] = u, v, w
-    state[W], state[W + 1], state[W + 2] = p, q, r
+                row = contacts[n]
+                row.ahead_impulse += on * (row.ahead_impulse - row.ahead_last)
+                row.aside_impulse += on * (row.aside_impulse - row.aside_last)
+                row.up_impulse += on * (row.up_impulse - row.up_last)
+            u, v, w = u + on * (u - a), v + on * (v - b), w + on * (w - c)
+            p, q, r = p + on * (p - d), q + on * (q - e), r + on * (r - f)
+    set_moves(state, (u, v, w, p, q, r))
 
 
 @compiled
 def strike(inertia, state, saved, contacts, count, restitution, friction, steps):
-    """Do an impact: contacts (N, WIDTH) that approach faster than the threshold [sqrt(g L)] rebound."""
+    """Do an impact: contacts (N,) that approach faster than the threshold [sqrt(g L)] rebound."""
     before = energy(state, inertia)
     keep(state, saved)
     for trial in range(4):
         bounce = restitution * (1.0 - trial / 3.0)  # less where friction would make Newton's rule win energy
         for n in range(count):
             row = contacts[n]
-            fall = speed(state, row, 2)
-            row[WANTED] = -bounce * fall if fall < -steps.threshold else 0.0
-            row[IMPULSE] = row[IMPULSE + 1] = row[IMPULSE + 2] = 0.0
+            fall = up_speed(state, row)
+            row.wanted = -bounce * fall if fall < -steps.threshold else 0.0
+            row.ahead_impulse = row.aside_impulse = row.up_impulse = 0.0
         solve(state, contacts, count, friction, steps.sweeps, steps.converged)
         if energy(state, inertia) <= before + 1e-12:
             return
@@ -186,20 +256,22 @@ def strike(inertia, state, saved, contacts, count, restitution, friction, steps)
 
 @compiled
 def steepest(state, contacts, count):
-    """Return the upward speed [sqrt(g L)] of that of the contacts (N, WIDTH) which falls fastest."""
+    """Return the upward speed [sqrt(g L)] of that of the contacts (N,) which falls fastest."""
     fall = math.inf
     for n in range(count):
-        fall = min(fall, speed(state, contacts[n], 2))
+        fall = min(fall, up_speed(state, contacts[n]))
     return fall
 
 
 @compiled
 def hold(state, contacts, count, friction, steps, share):
-    """Give contacts (N, WIDTH) impulses [sqrt(g L)] that let nothing fall further, without rebound."""
+    """Give contacts (N,) impulses [sqrt(g L)] that let nothing fall further, without rebound."""
     for n in range(count):
-        contacts[n, WANTED] = 0.0
-        for k in range(IMPULSE, LAST):
-            contacts[n, k] *= share
-        for k in range(LAST, WIDTH):
-            contacts[n, k] = 0.0
+        row = contacts[n]
+        row.wanted = 0.0
+        row.ahead_impulse *= share
+        row.aside_impulse *= share
+        row.up_impulse *= share
+        row.ahead_last = row.aside_last = row.up_last = 0.0
+        row.ahead_change = row.aside_change = row.up_change = 0.0
     solve(state, contacts, count, friction, steps.sweeps, steps.converged)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.dropping.kernel import body
-from feederscrew.dropping.kernel.body import VX, VY, VZ, W, Z
+from feederscrew.dropping.kernel.body import W, Z
 from feederscrew.dropping.kernel.falling import (
     Launched,
     Pairing,
@@ -20,12 +20,23 @@ from feederscrew.dropping.kernel.floor_motion import at_rest
 from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.resting.walks import LOST_WALK, roll_from_corner, roll_from_facet
 
-__all__ = ["STEADY", "UNSETTLED", "Launched", "Steps", "face_below", "scratch", "settle", "settle_all"]
+__all__ = [
+    "STEADY_ROLL_SHARE",
+    "UNSETTLED",
+    "Launched",
+    "Steps",
+    "face_below",
+    "scratch",
+    "settle",
+    "settle_all",
+]
 
 UNSETTLED = -1
-STILL = 1e-6  # kinetic energy below which a part does not move
-BALANCED = 32  # steps it must not move: at the turning point of a slow rocking it stands still for fewer
-STEADY = 0.3  # of the barrier: what a steadily rolling part may have beside its rolling energy
+REST_ENERGY = 1e-6  # kinetic energy below which a part does not move
+BALANCED_STEPS = (
+    32  # steps it must not move: at the turning point of a slow rocking it stands still for fewer
+)
+STEADY_ROLL_SHARE = 0.3  # of the barrier: what a steadily rolling part may have beside its rolling energy
 
 
 @compiled
@@ -46,8 +57,9 @@ def rolling_energy(shape, state, turn, face):
     x = turn[0] * a[0] + turn[1] * a[1] + turn[2] * a[2]
     y = turn[3] * a[0] + turn[4] * a[1] + turn[5] * a[2]
     flat = math.sqrt(x * x + y * y)
+    u, v, _ = body.velocity(state)
     about = state[W] * a[0] + state[W + 1] * a[1] + state[W + 2] * a[2]
-    across = (state[VX] * y - state[VY] * x) / flat if flat > 0.5 else 0.0
+    across = (u * y - v * x) / flat if flat > 0.5 else 0.0
     inertia = shape.solid.inertia
     moment = inertia[0] * a[0] * a[0] + inertia[1] * a[1] * a[1] + inertia[2] * a[2] * a[2]
     return 0.5 * (moment * about * about + across * across)
@@ -57,10 +69,10 @@ def rolling_energy(shape, state, turn, face):
 def slides_flat(shape, state, turn, face, friction):
     """Tell whether the body of a state (13,) lies flat and friction [1] cannot tip it while it slides."""
     around = state[W] * turn[6] + state[W + 1] * turn[7] + state[W + 2] * turn[8]
-    quick = body.rate(state)
+    quick, rise = body.rate(state), abs(body.velocity(state)[2])
     rocking = quick * quick - around * around
-    flat = state[Z] - shape.heights[face] < 2e-3 and rocking < 1e-4 and abs(state[VZ]) < 1e-2
-    still = rocking < 1e-8 and abs(state[VZ]) < 1e-4
+    flat = state[Z] - shape.heights[face] < 2e-3 and rocking < 1e-4 and rise < 1e-2
+    still = rocking < 1e-8 and rise < 1e-4
     most = (0.98 if still else 0.9) * shape.margins[face]  # that the centre of pressure may be off
     return flat and friction * shape.heights[face] < most
 
@@ -74,7 +86,7 @@ def decided(shape, state, turn, corner, count, friction, quiet, steps):
     face = face_below(shape, turn, corner)
     if face == UNSETTLED:
         return UNSETTLED
-    if quiet >= BALANCED:
+    if quiet >= BALANCED_STEPS:
         return face  # balanced on an edge by rolling resistance
     if not steps.early:
         still = total - shape.heights[face] < min(1e-3, 0.02 * shape.barriers[face])
@@ -84,7 +96,7 @@ def decided(shape, state, turn, corner, count, friction, quiet, steps):
         return face
     if shape.rolls[face] and count >= 2:
         above -= rolling_energy(shape, state, turn, face)
-        return face if above < STEADY * shape.barriers[face] - steps.margin else UNSETTLED
+        return face if above < STEADY_ROLL_SHARE * shape.barriers[face] - steps.margin else UNSETTLED
     return face if count >= 3 and slides_flat(shape, state, turn, face, friction) else UNSETTLED
 
 
@@ -119,7 +131,7 @@ def settle_all(shape, work, launched, steps, faces, times):
             if count == 0:
                 continue
             rests = 0 if struck else rests + 1
-            quiet = quiet + 1 if body.moving_energy(work.state, shape.solid.inertia) < STILL else 0
+            quiet = quiet + 1 if body.moving_energy(work.state, shape.solid.inertia) < REST_ENERGY else 0
             if rests % (2 if count >= 3 else 8) == 0:
                 face = decided(shape, work.state, work.turn, corner, count, pairing.friction, quiet, steps)
                 if face != UNSETTLED:

@@ -6,18 +6,18 @@ from typing import NamedTuple
 import numpy as np
 
 from feederscrew.dropping.kernel import body
-from feederscrew.dropping.kernel.body import VX, VY, W, X, Y
+from feederscrew.dropping.kernel.body import W, X, Y
 from feederscrew.dropping.kernel.falling import Pairing, advance, launched_one, start
-from feederscrew.dropping.kernel.one_drop import STEADY, UNSETTLED, face_below, rolling_energy
+from feederscrew.dropping.kernel.one_drop import STEADY_ROLL_SHARE, UNSETTLED, face_below, rolling_energy
 from feederscrew.geometry.compiled import compiled, entry
 
-SURE = 0.5  # of the barrier: what tilt and spin of a part that lies on a face may hold together
-CALM = 3  # periods for which a part must lie on one face to stay, on a floor that throws nothing up
-ROLLING = 15  # ... and on a face on which it rolls
-PATIENCE = 50  # steps for each that a floor without events would take
+SURE_BARRIER_SHARE = 0.5  # of the barrier: what tilt and spin of a part that lies on a face may hold together
+CALM_PERIODS = 3  # periods for which a part must lie on one face to stay, on a floor that throws nothing up
+CALM_ROLLING_PERIODS = 15  # ... and on a face on which it rolls
+MAX_STEPS_FACTOR = 50  # steps for each that a floor without events would take
 
 
-class Seen(NamedTuple):
+class RideLooks(NamedTuple):
     """What is seen of N bodies at K looks."""
 
     looks: np.ndarray  # (K,) times at which to look, ascending
@@ -28,10 +28,10 @@ class Seen(NamedTuple):
     )  # (N,) int, looks taken; fewer than K only where the motion took far more steps than due
 
 
-def unseen(count, looks) -> Seen:
+def empty_looks(count, looks) -> RideLooks:
     """Return what is to be filled in of so many bodies: Seen."""
     faces = np.full((count, len(looks)), UNSETTLED)
-    return Seen(looks, faces, np.full((*faces.shape, 2), np.nan), np.zeros(count, int))
+    return RideLooks(looks, faces, np.full((*faces.shape, 2), np.nan), np.zeros(count, int))
 
 
 @compiled
@@ -44,7 +44,7 @@ def lying(shape, state, turn, corner):
     held = rocking_energy(shape, state, turn) - level - shape.heights[face]
     if shape.rolls[face]:
         held -= rolling_energy(shape, state, turn, face)
-    return face if held < SURE * shape.barriers[face] else UNSETTLED
+    return face if held < SURE_BARRIER_SHARE * shape.barriers[face] else UNSETTLED
 
 
 @compiled
@@ -67,7 +67,7 @@ def held_fast(shape, state, turn, corner, kick):
     face = face_below(shape, turn, corner)
     if face == UNSETTLED:
         return UNSETTLED
-    share = STEADY if shape.rolls[face] else 1.0
+    share = STEADY_ROLL_SHARE if shape.rolls[face] else 1.0
     above = total - shape.heights[face]
     if shape.rolls[face]:
         above -= rolling_energy(shape, state, turn, face)
@@ -77,20 +77,20 @@ def held_fast(shape, state, turn, corner, kick):
 @compiled
 def calm_enough(shape, floor, face, calm):
     """Tell whether a part that lay on a face for so many periods stays, on a floor that throws nothing up."""
-    if face == UNSETTLED or floor.up * floor.rate * floor.rate >= 1.0:
+    if face == UNSETTLED or (floor.up + 4.0 * floor.second_up) * floor.rate * floor.rate >= 1.0:
         return False
-    return calm >= (ROLLING if shape.rolls[face] else CALM)
+    return calm >= (CALM_ROLLING_PERIODS if shape.rolls[face] else CALM_PERIODS)
 
 
 @entry
-def ride_all(shape, work, floor, launched, steps, seen, kick):
+def ride_all(shape, work, floor, launched, steps, record, kick):
     """Let all N bodies that are launched ride, and fill in what is seen of them.
 
     With a finite ``kick``, a part that so much energy cannot tip any more, or that has come to lie still on
     a floor that throws nothing up, stays on its face and where it is at all looks that are left.
     """
-    state, looks = work.state, seen.looks
-    most = int(PATIENCE * looks[-1] / min(steps.contact, floor.step))
+    state, looks = work.state, record.looks
+    most = int(MAX_STEPS_FACTOR * looks[-1] / min(steps.contact, floor.step))
     period = 2.0 * math.pi / floor.rate if floor.rate > 0.0 else math.inf
     for n in range(len(launched.states)):
         pairing = Pairing(launched.restitutions[n], launched.frictions[n])
@@ -107,10 +107,11 @@ def ride_all(shape, work, floor, launched, steps, seen, kick):
                     stays = face
             while look < len(looks) and (time >= looks[look] or stays != UNSETTLED):
                 here = stays != UNSETTLED
-                seen.faces[n, look] = stays if here else lying(shape, state, work.turn, corner)
+                record.faces[n, look] = stays if here else lying(shape, state, work.turn, corner)
                 late = 0.0 if here else time - looks[look]
-                seen.places[n, look, 0] = state[X] - late * state[VX]
-                seen.places[n, look, 1] = state[Y] - late * state[VY]
+                u, v, _ = body.velocity(state)
+                record.places[n, look, 0] = state[X] - late * u
+                record.places[n, look, 1] = state[Y] - late * v
                 look += 1
             if look == len(looks):
                 break
@@ -121,7 +122,7 @@ def ride_all(shape, work, floor, launched, steps, seen, kick):
             rests = 0 if struck else rests + min(count, 1)
             if kick < math.inf and count > 0 and rests % (2 if count >= 3 else 8) == 0:
                 stays = held_fast(shape, state, work.turn, corner, kick)
-        seen.taken[n] = look
+        record.taken[n] = look
 
 
 def ride(shape, work, floor, pairing, steps, looks):
@@ -145,6 +146,6 @@ def ride(shape, work, floor, pairing, steps, looks):
     Seen
         Of the one body.
     """
-    seen = unseen(1, looks)
-    ride_all(shape, work, floor, launched_one(work.state, *pairing), steps, seen, math.inf)
-    return seen
+    record = empty_looks(1, looks)
+    ride_all(shape, work, floor, launched_one(work.state, *pairing), steps, record, math.inf)
+    return record

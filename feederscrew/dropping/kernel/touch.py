@@ -5,10 +5,10 @@ import math
 from feederscrew.dropping.kernel.body import rim_level
 from feederscrew.geometry.compiled import compiled
 
-MOST = 12  # contacts solved together; of more, the lowest and those furthest out in the other directions
-QUARTERS = 4  # points of a rim that lies flat
-CORNER = -1  # owner of a point that is a corner of the body; else its rim
-LEVEL = 1e-9  # [1] sine of the tilt below which a rim has no lowest point
+MAX_CONTACTS = 12  # solved together; of more, the lowest and those furthest out in the other directions
+FLAT_RIM_POINTS = 4  # points of a rim that lies flat
+CORNER_OWNER = -1  # owner of a point that is a corner of the body; else its rim
+LEVEL_RIM_SINE = 1e-9  # [1] sine of the tilt below which a rim has no lowest point
 
 
 @compiled
@@ -25,34 +25,34 @@ def touching(solid, work, height, corner, reach):
     if count == 0:
         for i in range(3):
             work.spots[0, i] = solid.vertices[corner, i]
-        work.owners[0] = CORNER
+        work.owners[0] = CORNER_OWNER
         return 1
-    return thin_out(work.spots, work.owners, work.turn, count) if count > MOST else count
+    return thin_out(work.spots, work.owners, work.turn, count) if count > MAX_CONTACTS else count
 
 
 @compiled
 def flooded(solid, work, height, corner, reach):
-    """Write touching corners to ``work.spots``; ``work.seen`` (V,) is all False before and after."""
-    points, links, seen, found = solid.vertices, solid.links, work.seen, work.found
+    """Write touching corners to ``work.spots``; ``work.visited`` (V,) is all False before and after."""
+    points, links, visited, queue = solid.vertices, solid.links, work.visited, work.queue
     a, b, c = work.turn[6], work.turn[7], work.turn[8]
-    found[0], seen[corner] = corner, True
+    queue[0], visited[corner] = corner, True
     count, done, spots = 1, 0, 0
     while done < count:
-        here = found[done]
+        here = queue[done]
         done += 1
         for k in range(links[here], links[here + 1]):
             other = links[k]
             level = a * points[other, 0] + b * points[other, 1] + c * points[other, 2]
-            if not seen[other] and height + level <= reach + solid.sag:
-                found[count], seen[other] = other, True
+            if not visited[other] and height + level <= reach + solid.sag:
+                queue[count], visited[other] = other, True
                 count += 1
     for k in range(count):
-        p = points[found[k]]
-        seen[found[k]] = False
-        if not solid.inner[found[k]] and height + a * p[0] + b * p[1] + c * p[2] <= reach:
+        p = points[queue[k]]
+        visited[queue[k]] = False
+        if not solid.inner[queue[k]] and height + a * p[0] + b * p[1] + c * p[2] <= reach:
             for i in range(3):
                 work.spots[spots, i] = p[i]
-            work.owners[spots] = CORNER
+            work.owners[spots] = CORNER_OWNER
             spots += 1
     return spots
 
@@ -67,7 +67,7 @@ def lowest_on(rims, k, turn):
     along = turn[6] * r[3] + turn[7] * r[4] + turn[8] * r[5]
     x, y, z = along * r[3] - turn[6], along * r[4] - turn[7], along * r[5] - turn[8]
     steep = math.sqrt(x * x + y * y + z * z)
-    if steep < LEVEL:
+    if steep < LEVEL_RIM_SINE:
         return r[7], r[8], r[9], steep
     return x / steep, y / steep, z / steep, steep
 
@@ -81,14 +81,14 @@ def on_rim(rims, k, work, height, reach, count):
     level = turn[6] * r[0] + turn[7] * r[1] + turn[8] * r[2]
     flat = height + level + r[6] * steep <= reach
     cos, sin = 1.0, 0.0
-    for _ in range(QUARTERS if flat else 1):
+    for _ in range(FLAT_RIM_POINTS if flat else 1):
         px, py, pz = cos * x + sin * u, cos * y + sin * v, cos * z + sin * w
         cos, sin = -sin, cos
         if r[10] > -1.0 and px * r[7] + py * r[8] + pz * r[9] < r[10]:
             continue
         spots[count, 0], spots[count, 1] = r[0] + r[6] * px, r[1] + r[6] * py
         spots[count, 2] = r[2] + r[6] * pz
-        work.owners[count] = CORNER if flat else k
+        work.owners[count] = CORNER_OWNER if flat else k
         count += 1
     return count
 
@@ -102,14 +102,14 @@ def thin_out(spots, owners, turn, count):
         if level < best:
             best, first = level, k
     swap(spots, owners, 0, first)
-    kept = 1
-    for m in range(1, MOST):
-        angle = 2.0 * math.pi * m / (MOST - 1)
+    chosen = 1
+    for m in range(1, MAX_CONTACTS):
+        angle = 2.0 * math.pi * m / (MAX_CONTACTS - 1)
         k = furthest(spots, turn, count, math.cos(angle), math.sin(angle))
-        if k >= kept:
-            swap(spots, owners, kept, k)
-            kept += 1
-    return kept
+        if k >= chosen:
+            swap(spots, owners, chosen, k)
+            chosen += 1
+    return chosen
 
 
 @compiled

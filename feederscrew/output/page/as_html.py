@@ -17,6 +17,7 @@ from feederscrew.output.page import blocks as kinds
 from feederscrew.output.page.numbers import NOTHING, cells
 
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
+LINKED_PICTURES = " 'self' file:"  # what the policy of a page allows as well whose pictures lie beside it
 CSS_DPI = 96  # pixels of a page to the inch
 HALF = 700  # [px] a broader picture is not put beside another
 NARROW = 6  # columns of a table that is put beside something else
@@ -59,10 +60,13 @@ def html(page) -> str:
     views = any(isinstance(block, kinds.Views) for block in every)
     sortable = any(isinstance(block, kinds.Matrix) and block.sortable for block in every)
     knobs = any(isinstance(block, kinds.Knobs) for block in every)
+    rows = (row for block in every if isinstance(block, kinds.Matrix) for row in block.rows)
+    linked = any(entry.picture and entry.picture.link for row in rows for entry in row)
+    policy = POLICY + LINKED_PICTURES * linked
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
-            f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
+            f'<meta http-equiv="Content-Security-Policy" content="{policy}">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             f"<title>{escape(': '.join(filter(None, (page.title, page.kind))))}</title>",
             f"<style>\n{_asset('page.css')}</style>\n</head>\n<body>",
@@ -276,7 +280,9 @@ def _entry(entry) -> str:
     mark = f' class="{entry.mark}"' if entry.mark else ""
     body = escape(entry.text)
     if entry.picture:
-        body += f'<img src="{_data("image/png", entry.picture.content)}" alt="{escape(entry.picture.alt)}">'
+        picture = entry.picture
+        source = escape(picture.link) if picture.link else _data("image/png", picture.content)
+        body += f'<img src="{source}" alt="{escape(picture.alt)}"{" loading=lazy" * bool(picture.link)}>'
     if entry.link:
         body = f'<a href="{escape(entry.link)}">{body}</a>'
     return f"<td{mark}>{body}</td>"

@@ -56,6 +56,7 @@ class Picture:
     content: bytes
     alt: str
     printed: bool = False
+    link: str = ""  # of a cell's picture that is not within the page: its address; ``content`` is empty
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,11 @@
 """The drive of a bowl as knobs: what the script of the page needs to compute velocity, regime and rate."""
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.output.convey import REGIMES
+from feederscrew.output.convey import CONVEY_COLOURS
 from feederscrew.output.page.blocks import Knob, Knobs, Text
+from feederscrew.output.words import regime_words
 from feederscrew.rates.well_oriented import Rate, fed
-from feederscrew.studies.report import ROOM, ReportStudy
+from feederscrew.studies.report import STROKE_RANGE, ReportStudy
 from feederscrew.units import DEG, MM
 
 LEAST_TOP_MM = 1.0  # to which the slider of the amplitude goes at least
@@ -33,7 +34,7 @@ def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
     if case.bowl.drive.second_harmonic:
         return [Text(TWO_WAVES, quiet=True)]
     drive, friction, climb = case.bowl.drive, case.bowl.friction.static, case.bowl.track.climb
-    top = max(ROOM * drive.amplitude / MM, LEAST_TOP_MM)
+    top = max(STROKE_RANGE * drive.amplitude / MM, LEAST_TOP_MM)
     sliders = (
         Knob("amplitude", "amplitude", "mm", 0.01, top, drive.amplitude / MM),
         _knob("frequency", "frequency", "Hz", 20.0, 150.0, drive.frequency),
@@ -45,7 +46,7 @@ def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
     values = {
         "bowl": bowl_values(case.bowl),
         "rate": None if rate is None else rate_values(rate),
-        "regimes": [[name, colour, words] for name, (colour, words) in REGIMES.items()],
+        "regimes": [[name, colour, regime_words(name)] for name, colour in CONVEY_COLOURS.items()],
         "top": top,
     }
     return [Text(LEAD, quiet=True, printed=False), Knobs(sliders, values)]

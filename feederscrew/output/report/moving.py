@@ -18,6 +18,7 @@ from feederscrew.output.page.blocks import Chapter, Notes, Picture, Table, Text,
 from feederscrew.output.page.numbers import NOTHING, SHORT, number, percent
 from feederscrew.output.report.knobs import knobs
 from feederscrew.output.report.on_the_track import on_track
+from feederscrew.output.words import REGIME_WORDS
 from feederscrew.units import MM
 
 HEADINGS = {  # columns of the table, and their names here
@@ -30,13 +31,7 @@ HEADINGS = {  # columns of the table, and their names here
     "overhang_mm": "overhang_mm",
     "falls_off": "falls off",
 }
-WORDS = {  # of a regime, for a tile
-    "stick": "sticks, does not travel",
-    "forward": "slips forward only",
-    "backward": "slips back only",
-    "both": "slips both ways",
-    "hop": "hops",
-}
+WORDS = REGIME_WORDS | {"stick": "sticks, does not travel"}  # of a regime, for a tile
 
 
 def slide(case) -> Chapter:
@@ -111,7 +106,7 @@ def rate(case) -> Chapter:
     found = case.rate
     tried = bowls.verified(case.path)
     own = case.part, case.bowl, found.rate.orientations.lying[found.rate.row].name
-    document = proof.beside(rate_output.document(found), tried, *own)
+    document = proof.with_trial(rate_output.document(found), tried, *own)
     lead = Text(
         "The chain from velocity to rate. The range in brackets is over all starts, friction a fifth off, "
         "restitution where the part hops, and the interval of the shares. The second table has what the "

@@ -41,7 +41,7 @@ def matrix(run):
     """
     rows = [k for k in np.argsort(-run.shares, kind="stable") if run.tried[k]][:MOST]
     out = [m for m in range(run.matrix.shape[1]) if run.matrix[rows, m].any()]
-    names = [one.name for one in run.known.states] + ["other"]
+    names = [one.name for one in run.orientations.states] + ["other"]
     lost = [fate for fate in range(course.RETURNED, len(course.FATES)) if run.counts[rows, fate].any()]
     counts = np.column_stack([run.matrix[rows][:, out], run.counts[rows][:, lost]])
     shown = counts / run.tried[rows][:, None]
@@ -137,15 +137,11 @@ def unrolled(path, radius) -> tuple[Any, ...]:
 
 def solids(station, plate=0):
     """Return the rings (K, 2) [m] of what is solid of a plate, in its frame: for the track the bowl's."""
-    first, last = station.plates[plate, 14:16].astype(int)
-    borders, rings, ring = station.borders[first:last], [], []
-    for k, border in enumerate(borders):
-        ring.append(border[:2])
-        after = borders[k + 1, :2] if k + 1 < len(borders) else None
-        if after is None or np.hypot(*(after - border[2:4])) > 1e-12:
-            rings.append(np.array(ring))
-            ring = []
-    return rings
+    row = station.plates[plate]
+    borders = station.borders[row.begin : row.end]
+    starts, ends = (np.column_stack([borders[f"{end}_x"], borders[f"{end}_y"]]) for end in ("start", "end"))
+    breaks = np.flatnonzero(np.hypot(*(starts[1:] - ends[:-1]).T) > 1e-12) + 1
+    return np.split(starts, breaks) if len(starts) else []
 
 
 def _track(axes, station, radius) -> None:
@@ -157,7 +153,7 @@ def _track(axes, station, radius) -> None:
         colour = "white" if hole else TRACK
         axes.add_patch(Polygon(flat, facecolor=colour, edgecolor=style.INK, linewidth=0.6, zorder=0.5))
     for plate in station.plates[1:]:
-        place = radius * np.arctan2(plate[0], radius - plate[1])
+        place = radius * np.arctan2(plate.origin_x, radius - plate.origin_y)
         axes.axvline(place / MM, color=style.INK, linewidth=2.0)
 
 

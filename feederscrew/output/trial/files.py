@@ -41,6 +41,6 @@ def _paths(study):
 
 
 def _stills(study):
-    from feederscrew.output.trial import stills
+    from feederscrew.output.trial import film
 
-    return stills.stills(study.part, study.runs[0])
+    return film.stills(study.part, study.runs[0])

@@ -1,13 +1,17 @@
-"""A trial as a film: single parts at the device that decides, then the queue, with the bowl around them."""
+"""A trial to be looked at: parts at the device that decides as stills and as a film, then the queue.
+
+The bowl lies around them, with sensors, nozzles, and the air while it blows.
+"""
 
 import math
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 import shapely
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
@@ -27,15 +31,15 @@ from feederscrew.output.shading import (
 )
 from feederscrew.output.tooling_views import camera_at
 from feederscrew.output.trial.figures import LOOKS, solids, unrolled
-from feederscrew.output.trial.section import WALL, section
-from feederscrew.output.trial.shown import ShownRide, shown
+from feederscrew.output.trial.rides import ALWAYS, DeviceRide, rides_to_show
+from feederscrew.output.trial.section import WALL, Mesh, air_cones, fittings, joined, section
 from feederscrew.part.record import Part
 from feederscrew.studies.trial import TrialStudy
 from feederscrew.tooling import solid
-from feederscrew.trial.kernel import crowd_records
 from feederscrew.trial.queue import QueuedParts
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.staging import Stage
+from feederscrew.units import MM
 
 ENDINGS = ("gif", "mp4", "webm")
 SECONDS, FRAMES_PER_S = 10.0, 12
@@ -44,6 +48,8 @@ WIDTH, HEIGHT = 640, 400  # [px] of the picture
 HEAD = 34  # [px] above it for the caption
 SAMPLES = 2  # rays a pixel, each way
 METAL, POT = np.array([0.90, 0.91, 0.92]), np.array([0.80, 0.83, 0.86])  # tooled track; rest of the bowl
+FITTING, AIR = np.array([0.33, 0.42, 0.55]), np.array([0.16, 0.56, 0.93])  # sensor and nozzles; their air
+AIR_SHADE = 0.38  # of its colour: what is behind the air is seen
 HIDDEN_SHADE = 0.45  # of its colour: a part where the track is in front of it
 MARGIN = 1.5  # of the stretch that parts pass: what is seen
 HOLD_S = 0.4  # [s] of the film: a part that has ended stays to be seen
@@ -151,9 +157,19 @@ class FilmSet:
         The stretch.
     places : (K, 3) float [m]
         Where parts come; all of them are to be seen.
+    size : (int, int), optional
+        [px] of the picture.
     """
 
-    def __init__(self, part: Part, run: TrialRun, stage: Stage, places: NDArray[np.float64]) -> None:
+    def __init__(
+        self,
+        part: Part,
+        run: TrialRun,
+        stage: Stage,
+        places: NDArray[np.float64],
+        size: tuple[int, int] | None = None,
+    ) -> None:
+        columns, rows = size or (WIDTH, HEIGHT)
         self.part = Rays(part.vertices, part.faces, part.centre_of_mass)
         self.principal = Rotation.from_matrix(np.array(run.course.principal)).inv()
         radius = run.bowl.track.radius
@@ -161,34 +177,50 @@ class FilmSet:
         self.camera = camera_at(0.5 * (angles.min() + angles.max()))
         track = section(stage, run.bowl.track, WALL_HEIGHT * self.part.size)
         pot = _bowl_around(stage, run, WALL_HEIGHT * self.part.size, FLOOR_DEPTH * self.part.size)
-        corners, room = np.vstack([track[0], pot[0]]), MARGIN
+        bodies = [track, pot, *fittings(stage, radius, self.part.size)]
+        (corners, faces), room = joined(bodies), MARGIN
         if np.ptp(angles) > LONG_STRETCH:
             self.camera, places, room = _from_above(self.camera), corners, 1.05
         flat = self.camera.project(places)
         spans = np.ptp(flat, axis=0) + (0.0 if places is corners else 3.0 * self.part.size)
-        half = 0.5 * room * max(spans[0], spans[1] * WIDTH / HEIGHT)
+        half = 0.5 * room * max(spans[0], spans[1] * columns / rows)
         middle = 0.5 * (flat.min(axis=0) + flat.max(axis=0))
         middle[1] -= 0.0 if places is corners else LOWERED * half
         self.centre = middle @ np.array([self.camera.right, self.camera.up])
         self.centre += (places.mean(axis=0) @ self.camera.back) * self.camera.back
-        rays = Rays(corners, np.vstack([track[1], pot[1] + len(track[0])]), self.centre)
-        pixel = 2.0 * half / WIDTH
-        frame = Shot(-half, -0.5 * HEIGHT * pixel, pixel, WIDTH, HEIGHT)
+        rays = Rays(corners, faces, self.centre)
+        pixel = 2.0 * half / columns
+        frame = Shot(-half, -0.5 * rows * pixel, pixel, columns, rows)
         self.across, self.up = frame.positions(SAMPLES)  # [m]
         depths, normals, facets = self.camera.meet(rays, self.across / rays.size, self.up / rays.size)
         self.samples = np.ones((*depths.shape, 3))
-        for mask, colour in (
-            ((facets != MISSED) & (facets < len(track[1])), METAL),
-            (facets >= len(track[1]), POT),
-        ):
+        ends = np.cumsum([0, len(track[1]), len(pot[1]), len(faces)])
+        for first, last, colour in zip(ends, ends[1:], (METAL, POT, FITTING)):
+            mask = (facets != MISSED) & (first <= facets) & (facets < last)
             self.samples[mask] = _shaded(normals[mask], self.camera, colour)
         step = (self.up[0] - self.up[1]) / rays.size
         self.samples[edges(depths, normals, self.camera, step)] = EDGE_COLOUR
         self.image = averaged(self.samples, SAMPLES)
         self.nearness = (AWAY - depths) * rays.size  # [m] towards the viewer; -inf where nothing is
+        self.air = [self._cloud(cone) for cone in air_cones(stage, run.bowl.track.width)]  # of each jet
 
-    def drawn(self, poses: NDArray[np.float64], colours: list[NDArray[np.float64]]) -> NDArray[np.float64]:
-        """Return the image (rows, columns, 3) with parts at poses (N, 7), position [m] and w x y z."""
+    def _cloud(self, cone: Mesh) -> NDArray[np.float64]:
+        """How much of each pixel (rows, columns, 1) a cone of air covers, from 0 to 1."""
+        rays = Rays(*cone, self.centre)
+        depths = self.camera.meet(rays, self.across / rays.size, self.up / rays.size)[0]
+        seen = np.isfinite(depths) & ((AWAY - depths) * rays.size > self.nearness)
+        return averaged(np.repeat(seen[..., None].astype(float), 3, axis=2), SAMPLES)[..., :1]
+
+    def drawn(
+        self,
+        poses: NDArray[np.float64],
+        colours: list[NDArray[np.float64]],
+        blowing: Sequence[bool] = (),
+    ) -> NDArray[np.float64]:
+        """Return the image (rows, columns, 3) with parts at poses (N, 7), position [m] and w x y z.
+
+        ``blowing`` says of each jet of the stage whether its air is drawn.
+        """
         samples, nearness, image = self.samples.copy(), self.nearness.copy(), self.image.copy()
         boxes = [
             self._draw(samples, nearness, pose, colour)
@@ -201,6 +233,9 @@ class FilmSet:
                 rows.start // SAMPLES : rows.stop // SAMPLES,
                 columns.start // SAMPLES : columns.stop // SAMPLES,
             ] = own
+        for cloud, blows in zip(self.air, blowing):
+            if blows:
+                image += AIR_SHADE * cloud * (AIR - image)
         return image
 
     def _draw(
@@ -250,9 +285,7 @@ def _whole_pixels(covered: NDArray[np.bool_]) -> slice | None:
     return slice(places[0] // SAMPLES * SAMPLES, -(-(places[-1] + 1) // SAMPLES) * SAMPLES)
 
 
-def _bowl_around(
-    stage: Stage, run: TrialRun, above: float, below: float
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _bowl_around(stage: Stage, run: TrialRun, above: float, below: float) -> Mesh:
     """The rest of the bowl as a mesh: bare track and wall over the rest of the turn, a floor below."""
     radius, width = run.bowl.track.radius, run.bowl.track.width
     corners = np.concatenate(solids(stage))
@@ -261,7 +294,7 @@ def _bowl_around(
     middle = shapely.Point(0.0, radius)
     full, inner = middle.buffer(radius, quad_segs=64), middle.buffer(radius - width, quad_segs=64)
     outer = middle.buffer(radius + WALL, quad_segs=64)
-    deep = -stage.plates[0, crowd_records.DEPTH]
+    deep = -stage.plates.depth[0]
     bodies = [solid.prism(outer, -below - WALL, -below), solid.prism(outer.difference(full), -below, deep)]
     if last - first < 2.0 * math.pi - 0.05:
         turns = np.linspace(last, first + 2.0 * math.pi, 181)
@@ -269,9 +302,7 @@ def _bowl_around(
         rest = shapely.make_valid(shapely.Polygon([(0.0, radius), *edge]))
         for area, low, high in ((full.difference(inner), deep, 0.0), (outer.difference(full), deep, above)):
             bodies.append(solid.prism(area.intersection(rest), low, high))
-    starts = np.cumsum([0] + [len(vertices) for vertices, _ in bodies])
-    vertices = np.concatenate([vertices for vertices, _ in bodies])
-    return vertices, np.concatenate([faces + n for (_, faces), n in zip(bodies, starts)])
+    return joined(bodies)
 
 
 def _from_above(camera: Camera) -> Camera:
@@ -283,32 +314,53 @@ def _from_above(camera: Camera) -> Camera:
 
 def _single_parts(part: Part, run: TrialRun, frames: int) -> Iterator[tuple[NDArray[np.float64], str, str]]:
     """One part that passes the device that decides and one that does not, one after the other."""
-    rides = shown(run)
+    rides = rides_to_show(part, run)
     stage = run.course.stations[rides[0].place]
     scene = FilmSet(part, run, stage, np.concatenate([ride.path[:, 1:4] for ride in rides]))
     for k, ride in enumerate(rides):
         count = frames * (k + 1) // len(rides) - frames * k // len(rides)
-        rgb = LOOKS[ride.fate][0]
-        passed = ride.fate == "passed"
-        colour = STEEL_COLOUR if passed else np.array([int(rgb[n : n + 2], 16) / 255 for n in (1, 3, 5)])
-        yield from _one_ride(scene, ride, ride.title(run.course), count, colour)
+        yield from _one_ride(scene, ride, ride.title(run.course), count)
 
 
 def _one_ride(
-    scene: FilmSet, ride: ShownRide, title: str, count: int, colour: NDArray[np.float64]
+    scene: FilmSet, ride: DeviceRide, title: str, count: int
 ) -> Iterator[tuple[NDArray[np.float64], str, str]]:
     path = ride.path
     moved = np.flatnonzero(np.abs(path[:, 1:4] - path[-1, 1:4]).max(axis=1) > 5e-5)  # [m]
     begin, end = path[0, 0], path[min(moved[-1] + 1 if len(moved) else 0, len(path) - 1), 0]
     moving = max(count - round(HOLD_S * FRAMES_PER_S), 1)
     speed = _speed((end - begin) / (moving / FRAMES_PER_S))
-    attitudes = Slerp(path[:, 0], Rotation.from_quat(path[:, [5, 6, 7, 4]])) if len(path) > 1 else None
-    for time in np.minimum(np.linspace(begin, end + (end - begin) * (count - moving) / moving, count), end):
-        pose = np.array(path[-1, 1:])
-        if attitudes is not None:
-            turn = attitudes(time).as_quat()[[3, 0, 1, 2]]
-            pose = np.array([*(np.interp(time, path[:, 0], path[:, k]) for k in (1, 2, 3)), *turn])
-        yield scene.drawn(pose[None], [colour]), title, f"{time - begin:.2f} s, {speed}"
+    times = np.minimum(np.linspace(begin, end + (end - begin) * (count - moving) / moving, count), end)
+    before = begin
+    for time, pose in zip(times, _poses(path, times)):
+        image = scene.drawn(pose[None], [_colour(ride)], _blowing(scene, ride, before, time))
+        yield image, title, f"{time - begin:.2f} s, {speed}"
+        before = time
+
+
+def _poses(path: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Position [m] and attitude w x y z (K, 7) of a part at times (K,) [s] of its path."""
+    if len(path) == 1:
+        return np.tile(path[-1, 1:], (len(times), 1))
+    places = np.column_stack([np.interp(times, path[:, 0], path[:, k]) for k in (1, 2, 3)])
+    turns = Slerp(path[:, 0], Rotation.from_quat(path[:, [5, 6, 7, 4]]))(times).as_quat()
+    return np.column_stack([places, turns[:, [3, 0, 1, 2]]])
+
+
+def _colour(ride: DeviceRide) -> NDArray[np.float64]:
+    """Steel for a part that passes, else the colour of its fate."""
+    rgb = LOOKS[ride.fate][0]
+    return (
+        STEEL_COLOUR
+        if ride.fate == "passed"
+        else np.array([int(rgb[n : n + 2], 16) / 255 for n in (1, 3, 5)])
+    )
+
+
+def _blowing(scene: FilmSet, ride: DeviceRide, begin: float, end: float) -> list[bool]:
+    """Whether each jet of the station blows at the part at some time from one to another [s]."""
+    on = ride.blows is not None and ride.blows[0] <= end and begin < ride.blows[1]
+    return [on] * len(scene.air)
 
 
 def _queue(part: Part, run: TrialRun, queue: QueuedParts) -> Iterator[tuple[NDArray[np.float64], str, str]]:
@@ -318,11 +370,20 @@ def _queue(part: Part, run: TrialRun, queue: QueuedParts) -> Iterator[tuple[NDAr
     places = places[np.isfinite(places[:, 0]) & (places[:, 2] > lowest)]
     if queue.stage is None or not len(places):
         return
-    scene = FilmSet(part, run, queue.stage, places)
+    scene, air = FilmSet(part, run, queue.stage, places), queue.stage.air
     speed = _speed(queue.seconds / (len(queue.poses) / FRAMES_PER_S))
+    before = 0.0
     for poses, (time, left, returned) in zip(queue.poses, queue.moments):
+        blowing = np.isinf(air.jets.end) & (air.jets.begin <= 0.0)  # the steady ones
+        for watch, pulses in zip(air.watches, queue.pulses):
+            blowing[watch.jets] = any(begin <= time and before < end for begin, end in pulses)
         words = f"queue of {queue.parts}: {left} left, {returned} returned"
-        yield scene.drawn(poses, [STEEL_COLOUR] * len(poses)), words, f"{time:.2f} s, {speed}"
+        yield (
+            scene.drawn(poses, [STEEL_COLOUR] * len(poses), blowing.tolist()),
+            words,
+            f"{time:.2f} s, {speed}",
+        )
+        before = time
 
 
 def _speed(times: float) -> str:
@@ -330,3 +391,71 @@ def _speed(times: float) -> str:
     if 0.95 < times < 1.05:
         return "real time"
     return f"{times:.2g} times as fast" if times > 1.0 else f"{1.0 / max(times, 1e-9):.2g} times slower"
+
+
+STILLS, IN_A_ROW = 6, 3  # of one part
+STILL_SIZE = (400, 280)  # [px]
+GAP, RIM, TITLE, LINE = 10, 24, 54, 26  # [px] between stills, round all, above a part's, below each
+
+
+def stills(part: Part, run: TrialRun) -> Figure:
+    """Draw one part that passes the device that decides, and one that is lost there, on its way off.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    run : TrialRun
+
+    Returns
+    -------
+    Figure
+        Six moments of each: one of them is when the sensor looks, one while its air blows.
+    """
+    rides, (wide, high) = rides_to_show(part, run), STILL_SIZE
+    width = 2 * RIM + IN_A_ROW * (wide + GAP) - GAP
+    block = TITLE + STILLS // IN_A_ROW * (high + LINE)
+    height = RIM + len(rides) * block
+    figure = style.page(width, height)
+    page = figure.add_axes((0, 0, 1, 1), xlim=(0, width), ylim=(0, height))
+    page.set_axis_off()
+    radius = float(np.linalg.norm(part.vertices - part.centre_of_mass, axis=1).max())
+    for row, ride in enumerate(rides):
+        top = height - row * block
+        page.text(RIM, top - 30, ride.title(run.course), fontsize=11, fontweight="bold", color=style.INK)
+        times = still_times(ride, radius)
+        poses = _poses(ride.path, times)
+        scene = FilmSet(part, run, run.course.stations[ride.place], poses[:, :3], STILL_SIZE)
+        for k, (time, pose) in enumerate(zip(times, poses)):
+            left = RIM + k % IN_A_ROW * (wide + GAP)
+            foot = top - TITLE - high - k // IN_A_ROW * (high + LINE)
+            box = (left / width, foot / height, wide / width, high / height)
+            axes = figure.add_axes(box, xticks=[], yticks=[])
+            axes.spines[:].set_color(style.FAINT)
+            blowing = _blowing(scene, ride, time, time)
+            axes.imshow(scene.drawn(pose[None], [_colour(ride)], blowing), interpolation="nearest")
+            words = [f"{time:.2f} s, {pose[2] / MM:.1f} mm high"]
+            words += ["the sensor looks"] if time == ride.looked else []
+            words += ["air blows"] if any(blowing) and ride.blows != ALWAYS else []
+            page.text(left + 4, foot - 16, ", ".join(words), fontsize=7, color=style.INK)
+    return figure
+
+
+def still_times(ride: DeviceRide, radius: float) -> NDArray[np.float64]:
+    """Return moments (STILLS,) [s] of a ride of a part of a radius [m], evenly along way, fall and turns.
+
+    One is when the sensor looks, one in the middle of the pulse of air, or as the part is gone before it.
+    """
+    path = ride.path
+    turns = Rotation.from_quat(path[:, [5, 6, 7, 4]])
+    moves = np.linalg.norm(np.diff(path[:, 1:4], axis=0), axis=1)
+    arcs = 0.5 * radius * (turns[1:] * turns[:-1].inv()).magnitude()
+    way = np.concatenate([[0.0], np.cumsum(moves + arcs)])
+    way += 1e-12 * np.arange(len(way))  # a part at rest has one place for many times
+    times = np.interp(np.linspace(0.12, 1.0, STILLS) * way[-1], way, path[:, 0])
+    middle = np.nan if ride.blows in (None, ALWAYS) else min(0.5 * sum(ride.blows), path[-1, 0])
+    for moment in (ride.looked, middle):
+        if path[0, 0] < moment <= path[-1, 0]:
+            free = [k for k in range(STILLS) if times[k] != ride.looked]
+            times[min(free, key=lambda k: abs(times[k] - moment))] = moment
+    return np.sort(times)

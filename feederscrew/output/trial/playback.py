@@ -7,8 +7,8 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew.output import shading, tooling_views
 from feederscrew.output.shading import encoded, short
+from feederscrew.output.trial.rides import rides_to_show
 from feederscrew.output.trial.section import section
-from feederscrew.output.trial.shown import shown
 from feederscrew.units import MM
 
 REACH = 1.9  # of the part's radius: how much of the track around it is seen
@@ -35,7 +35,7 @@ def scene(part, *tried) -> tuple[Any, ...]:
     captions : list of (str, str)
         What each pose is, and what becomes of it.
     """
-    rides, run, found = shown(*tried), tried[0], tried[0].course
+    rides, run, found = rides_to_show(part, *tried), tried[0], tried[0].course
     seen = shading.viewed(part, tooling_views.TO_VIEWER)
     cut = section(found.stations[rides[0].place], run.bowl.track, ABOVE * seen["radius"] * MM)
     paths = [_path(ride.path, found.principal) for ride in rides]

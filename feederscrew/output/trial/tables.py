@@ -90,7 +90,7 @@ def orientations(run, *, people=False) -> list[Any]:
             )
             / MM,
         }
-        for k, one in ((k, run.known.lying[k]) for k in first)
+        for k, one in ((k, run.orientations.lying[k]) for k in first)
     ]
 
 
@@ -126,7 +126,7 @@ def queue(study, run) -> dict[Any, Any]:
         "outlet": [dict(zip(seen, row)) for row in zip(*seen.values())],
         "apart": {
             name: {"deviation": deviation, "total_variation": total}
-            for name, (deviation, total) in study.outlet(run).apart.items()
+            for name, (deviation, total) in study.outlet(run).distances.items()
         },
     }
 
@@ -239,7 +239,7 @@ def _staying(run) -> Iterator[Any]:
     """Which orientations stay, and where most of them do."""
     held = run.counts[:, [course.HANGING, course.STOPPED, course.STUCK]].sum(axis=1)
     for k in np.flatnonzero(held):
-        yield f"{run.known.lying[k].name} at {_ended(run, k) or 'the track'}"
+        yield f"{run.orientations.lying[k].name} at {_ended(run, k) or 'the track'}"
 
 
 def _fallen(run) -> str:
@@ -273,7 +273,7 @@ def _beside(found) -> Iterator[Any]:
         return
     own = ", ".join(f"{name} {100.0 * share:.3g}" for name, share in zip(found.aspects, found.shares))
     for one in found.columns:
-        deviation, total = found.apart[one.name]
+        deviation, total = found.distances[one.name]
         said = ", ".join(f"{100.0 * share:.3g}" for share in one.fractions)
         yield (
             f"at the outlet [%] {own} ({found.counts.sum()} parts, {found.other} on none); measured "
@@ -282,9 +282,9 @@ def _beside(found) -> Iterator[Any]:
 
 
 def _name(run, k):
-    if k is None or k < 0 or k >= len(run.known.states):
+    if k is None or k < 0 or k >= len(run.orientations.states):
         return None if k is None else "other"
-    return run.known.states[k].name
+    return run.orientations.states[k].name
 
 
 def _leaves(run, k) -> str:

@@ -91,7 +91,7 @@ def detect_format(data, suffix="") -> Any:
     kind = _format_by_mark(data, head) or _format_by_text(head, suffix)
     if kind:
         return kind, None
-    alien = next((shown for mark, shown in OTHER_FILES if re.match(mark, head)), None)
+    alien = next((text for mark, text in OTHER_FILES if re.match(mark, head)), None)
     if alien is None and (suffix == "stl" or (b"\0" in head and len(data) > STL_HEADER_BYTES)):
         return BINARY_STL, None
     return None, alien or "is not a mesh: it has the marks of no known format"

@@ -79,8 +79,8 @@ def read_obj(data: bytes) -> Soup:
             raise DamageError("a facet names corner 0; OBJ counts from 1")
         begins, warnings = 0, (*warnings, OBJ_FROM_ZERO_WARNING)
     faces, facet = soup.split_facets(vertices, np.array(sizes, dtype=np.int64), whole - begins)
-    shown = tuple(name.decode(errors="replace") for name in names)
-    return Soup(faces=faces, vertices=vertices, format="obj", warnings=warnings, names=shown,
+    titles = tuple(name.decode(errors="replace") for name in names)
+    return Soup(faces=faces, vertices=vertices, format="obj", warnings=warnings, names=titles,
                 objects=np.array(objects, dtype=np.int64)[facet])  # fmt: skip
 
 
@@ -235,7 +235,7 @@ def _ply_from_bytes(data, at, elements, order) -> Any:
     for element in elements:
         if not element.rows or not element.properties:
             continue
-        least = sum(np.dtype(one.count or one.type).itemsize for one in element.properties)
+        least = sum(np.dtype(prop.count or prop.type).itemsize for prop in element.properties)
         if element.rows * least > len(data) - at:
             raise DamageError(ANNOUNCES_MORE)
         refuse_size(element.rows, 0 if element.name == "vertex" else element.rows)
@@ -249,32 +249,32 @@ def _rows_alike(data, at, element, order) -> tuple[Any, ...] | None:
     """Columns and the end of rows whose lists are as long as those of the first; None if they are not."""
     fields: list[Any] = []
     end = at
-    for k, one in enumerate(element.properties):
+    for k, prop in enumerate(element.properties):
         length = 0
-        if one.count:
-            width = np.dtype(one.count).itemsize
+        if prop.count:
+            width = np.dtype(prop.count).itemsize
             if end + width > len(data):
                 raise DamageError(ANNOUNCES_MORE)
-            length = int(np.frombuffer(data, order + one.count, 1, end)[0])
-            if not 0 <= length * np.dtype(one.type).itemsize <= len(data) - end:
+            length = int(np.frombuffer(data, order + prop.count, 1, end)[0])
+            if not 0 <= length * np.dtype(prop.type).itemsize <= len(data) - end:
                 raise DamageError(ANNOUNCES_MORE)
-            fields.append((f"n{k}", order + one.count))
+            fields.append((f"n{k}", order + prop.count))
             end += width
-        fields.append((f"v{k}", order + one.type, (length,)) if one.count else (f"v{k}", order + one.type))
-        end += np.dtype(one.type).itemsize * (length if one.count else 1)
+        fields.append((f"v{k}", order + prop.type, (length,)) if prop.count else (f"v{k}", order + prop.type))
+        end += np.dtype(prop.type).itemsize * (length if prop.count else 1)
     dtype = np.dtype(fields)
     if at + dtype.itemsize * element.rows > len(data):
-        if any(one.count for one in element.properties):
+        if any(prop.count for prop in element.properties):
             return None
         raise DamageError(ANNOUNCES_MORE)
     rows = np.frombuffer(data, dtype, element.rows, at)
     columns = {}
-    for k, one in enumerate(element.properties):
-        if one.count and (rows[f"n{k}"] != rows[f"n{k}"][0]).any():
+    for k, prop in enumerate(element.properties):
+        if prop.count and (rows[f"n{k}"] != rows[f"n{k}"][0]).any():
             return None
         column = rows[f"v{k}"]
-        columns[one.name] = (
-            (rows[f"n{k}"].astype(np.int64), column.ravel().astype(np.int64)) if one.count else column
+        columns[prop.name] = (
+            (rows[f"n{k}"].astype(np.int64), column.ravel().astype(np.int64)) if prop.count else column
         )
     return columns, at + dtype.itemsize * element.rows
 
@@ -283,10 +283,16 @@ def _row_by_row(
     data, at, element, order
 ) -> tuple[dict[str, tuple[NDArray[np.int64], NDArray[np.int64]]], int]:
     """Columns and the end of rows whose lists differ in length; of the lists those of corners only."""
-    kept = next((one for one in element.properties if one.count and one.name in PLY_CORNER_LISTS), None)
+    corner_list = next(
+        (prop for prop in element.properties if prop.count and prop.name in PLY_CORNER_LISTS), None
+    )
     steps = [
-        (one is kept, np.dtype(one.count).itemsize if one.count else 0, np.dtype(one.type).itemsize)
-        for one in element.properties
+        (
+            prop is corner_list,
+            np.dtype(prop.count).itemsize if prop.count else 0,
+            np.dtype(prop.type).itemsize,
+        )
+        for prop in element.properties
     ]
     little: Literal["little", "big"] = "little" if order == "<" else "big"
     sizes, pieces = [], []
@@ -303,10 +309,10 @@ def _row_by_row(
                 sizes.append(length)
                 pieces.append(data[at:end])
             at = end
-    if kept is None:
+    if corner_list is None:
         return {}, at
-    corners = np.frombuffer(b"".join(pieces), order + kept.type).astype(np.int64)
-    return {kept.name: (np.array(sizes, dtype=np.int64), corners)}, at
+    corners = np.frombuffer(b"".join(pieces), order + corner_list.type).astype(np.int64)
+    return {corner_list.name: (np.array(sizes, dtype=np.int64), corners)}, at
 
 
 def _ply_from_text(words, elements, decimals) -> Any:
@@ -317,27 +323,27 @@ def _ply_from_text(words, elements, decimals) -> Any:
         if element.rows * len(element.properties) > len(words) - at:
             raise DamageError(ANNOUNCES_MORE)
         refuse_size(element.rows, 0 if element.name == "vertex" else element.rows)
-        if not any(one.count for one in element.properties):
+        if not any(prop.count for prop in element.properties):
             width = len(element.properties)
             end = at + width * element.rows
-            for k, one in enumerate(element.properties):
-                if element.name == "vertex" and one.name in "xyz":
-                    columns[f"vertex.{one.name}"] = decimals.read(words[at + k : end : width])
+            for k, prop in enumerate(element.properties):
+                if element.name == "vertex" and prop.name in "xyz":
+                    columns[f"vertex.{prop.name}"] = decimals.read(words[at + k : end : width])
             at = end
             continue
         lists: dict[str, Any] = {
-            one.name: ([], []) for one in element.properties if one.name in PLY_CORNER_LISTS
+            prop.name: ([], []) for prop in element.properties if prop.name in PLY_CORNER_LISTS
         }
         for _ in range(element.rows):
-            for one in element.properties:
+            for prop in element.properties:
                 length = 1
-                if one.count:
+                if prop.count:
                     length, at = int(words[at]), at + 1
                 if not 0 <= length <= len(words) - at:
                     raise DamageError(ANNOUNCES_MORE)
-                if one.name in lists:
-                    lists[one.name][0].append(length)
-                    lists[one.name][1].extend(words[at : at + length])
+                if prop.name in lists:
+                    lists[prop.name][0].append(length)
+                    lists[prop.name][1].extend(words[at : at + length])
                 at += length
         for name, (sizes, corners) in lists.items():
             whole = np.array([int(word) for word in corners], dtype=np.int64)
@@ -386,12 +392,12 @@ def read_stl(data, kind, where) -> Soup:
 
 
 def _binary(data, where) -> Soup:
-    data, said = _honest(data, where)
+    data, warnings = _honest(data, where)
     refuse_size(0, (len(data) - STL_HEADER_BYTES) // STL_FACET_BYTES)
     records = np.frombuffer(data, dtype=STL_RECORD, offset=STL_HEADER_BYTES)
     with np.errstate(invalid="ignore"):  # a signalling NaN; the gate names it
         vertices = records["corners"].reshape(-1, 3).astype(float)
-    return Soup(vertices, np.arange(len(vertices)).reshape(-1, 3), BINARY_STL, warnings=said)
+    return Soup(vertices, np.arange(len(vertices)).reshape(-1, 3), BINARY_STL, warnings=warnings)
 
 
 def _honest(data, where) -> tuple[Any, ...]:
@@ -540,9 +546,14 @@ def _stl_from_text(text, warnings, where) -> Soup:
     if not ended:
         warnings += ("the text does not end with 'endsolid', and its last facet is whole: read to there",)
     names = tuple(name.decode(errors="replace") for name in read.names)
-    said = (*warnings, *decimals.warnings, *soup.split_warning(sizes))
+    all_warnings = (*warnings, *decimals.warnings, *soup.split_warning(sizes))
     return Soup(
-        vertices, faces, ASCII_STL, warnings=said, names=names, objects=np.array(read.solids, np.int64)[facet]
+        vertices,
+        faces,
+        ASCII_STL,
+        warnings=all_warnings,
+        names=names,
+        objects=np.array(read.solids, np.int64)[facet],
     )
 
 

@@ -149,8 +149,8 @@ def read_scene(data, kind, where) -> Soup:
             raise
         except DAMAGE:  # trimesh's, of any class
             raise DamageError("its scene does not fit what it holds") from None
-        found = _join_meshes(pieces, kind, unit)
-    return found
+        joined = _join_meshes(pieces, kind, unit)
+    return joined
 
 
 def _scene_meshes(data) -> list[tuple[str, NDArray[np.float64], NDArray[np.int64]]]:

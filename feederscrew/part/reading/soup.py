@@ -171,8 +171,8 @@ def _split(vertices, rings) -> NDArray[np.int64]:
     area = vectors.norm(normals)
     rising = np.einsum("nsi,ni->ns", turns, normals)
     concave = ~(rising > STRAIGHT_CORNER_SHARE * area[:, None] ** 2).all(axis=1)
-    for one in np.flatnonzero(concave & (area > 0.0)).tolist():
-        faces[one] = rings[one][_ears(points[one], normals[one] / area[one])]
+    for ring in np.flatnonzero(concave & (area > 0.0)).tolist():
+        faces[ring] = rings[ring][_ears(points[ring], normals[ring] / area[ring])]
     return faces
 
 

@@ -134,15 +134,17 @@ def read_3mf(data: bytes, where: str) -> Soup:
         pieces = package.pieces()
     name = package.root.unit.strip().lower().rstrip("s").replace("metre", "meter") or "millimeter"
     if name not in UNITS_3MF:
-        known = " or ".join(UNITS_3MF)
-        raise MeshError(where, f"its unit is {quantity_text(package.root.unit)}", f"write {known} there")
+        listed_units = " or ".join(UNITS_3MF)
+        raise MeshError(
+            where, f"its unit is {quantity_text(package.root.unit)}", f"write {listed_units} there"
+        )
     unit, factor = UNITS_3MF[name]
-    kept, warnings = _by_role(pieces, package.left_out, where)
-    names = tuple(piece.name for piece in kept)
-    sizes = np.cumsum([0, *(len(piece.vertices) for piece in kept)])
-    vertices = np.concatenate([np.empty((0, 3)), *(piece.vertices for piece in kept)]) * factor
-    faces = np.concatenate([np.empty((0, 3), np.int64), *(p.faces + k for p, k in zip(kept, sizes))])
-    objects = np.repeat(np.arange(len(kept)), [len(piece.faces) for piece in kept])
+    solids, warnings = _by_role(pieces, package.left_out, where)
+    names = tuple(piece.name for piece in solids)
+    sizes = np.cumsum([0, *(len(piece.vertices) for piece in solids)])
+    vertices = np.concatenate([np.empty((0, 3)), *(piece.vertices for piece in solids)]) * factor
+    faces = np.concatenate([np.empty((0, 3), np.int64), *(p.faces + k for p, k in zip(solids, sizes))])
+    objects = np.repeat(np.arange(len(solids)), [len(piece.faces) for piece in solids])
     return Soup(vertices, faces, "3mf", unit, warnings, names, objects)
 
 
@@ -165,7 +167,9 @@ class Package3MF:
         pieces: list[Piece3MF] = []
         items = self.root.items
         if not items:  # a build of nothing: what no component names
-            inner = {c["objectid"] for one in self.root.objects.values() for c in one.components}
+            inner = {
+                c["objectid"] for inner_object in self.root.objects.values() for c in inner_object.components
+            }
             items = [{"objectid": name} for name in self.root.objects if name not in inner]
         for number, item in enumerate(items):
             if item.get("printable", "1").strip().lower() in ("0", "false"):
@@ -317,8 +321,8 @@ class ModelReader:
             self.model.objects[attributes["id"]] = self.here
             self._count("objects", MAX_PLACED_OBJECTS)
         elif local in ("component", "item"):
-            kept = {key.rpartition("}")[2]: value for key, value in attributes.items()}
-            (self.here.components if local == "component" else self.model.items).append(kept)
+            reference = {key.rpartition("}")[2]: value for key, value in attributes.items()}
+            (self.here.components if local == "component" else self.model.items).append(reference)
             self._count("placed", MAX_PLACED_OBJECTS)
         elif local == "metadata" and "mesh" in attributes.get("name", "") and self.parser is not None:
             self.mark = attributes["name"]  # as Cura marks helpers: its text says whether it is one
@@ -400,18 +404,18 @@ def _by_role(pieces, left_out, where) -> tuple[Any, ...]:
         if left_out[role]:
             title = f" ({listed([quantity_text(name) for name in list(names)[:3]])})" if names else ""
             warnings.append(f"{counted(left_out[role], noun)}{title}: {done}")
-    kept: list[Piece3MF] = []
+    solids: list[Piece3MF] = []
     for item in dict.fromkeys(piece.item for piece in pieces):
         parts = [piece for piece in pieces if piece.item == item and piece.role == PART_ROLE]
         tools = [piece for piece in pieces if piece.item == item and piece.role == NEGATIVE_ROLE]
         if parts and tools:
-            kept += (_cut(part, tools, where) for part in parts)
+            solids += (_cut(part, tools, where) for part in parts)
             warnings.append(f"{counted(len(tools), 'negative part')}: subtracted")
         else:
-            kept += parts
+            solids += parts
             if tools:
                 warnings.append(f"{counted(len(tools), 'negative part')} of no part: left out")
-    return [piece for piece in kept if len(piece.faces)], tuple(warnings)
+    return [piece for piece in solids if len(piece.faces)], tuple(warnings)
 
 
 def _cut(part, tools, where) -> Any:

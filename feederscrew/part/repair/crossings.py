@@ -91,16 +91,16 @@ def _goes_round_once(places, faces, foot) -> bool:
     up = above[through]
     rises = (~up & np.roll(up, -1, axis=1)).argmax(axis=1)
     falls = (up & ~np.roll(up, -1, axis=1)).argmax(axis=1)
-    (x, y), (z, w) = (_met(places, through, side, foot) for side in (rises, falls))
+    (x, y), (z, w) = (crossing_points(places, through, side, foot) for side in (rises, falls))
     return np.abs(np.arctan2(x * w - y * z, x * z + y * w).sum()) < 3.0 * np.pi  # a whole number of 2 pi
 
 
-def _met(places, faces, side, foot) -> NDArray[np.float64]:
+def crossing_points(places, faces, side, foot) -> NDArray[np.float64]:
     """(2, N) where one side of each facet passes through the plane across the axis at a foot."""
     n = np.arange(len(faces))
-    one, other = places[:, faces[n, side]], places[:, faces[n, (side + 1) % 3]]
-    share = (foot - one[0]) / (other[0] - one[0])
-    return one[1:] + share * (other[1:] - one[1:])
+    first, second = places[:, faces[n, side]], places[:, faces[n, (side + 1) % 3]]
+    share = (foot - first[0]) / (second[0] - first[0])
+    return first[1:] + share * (second[1:] - first[1:])
 
 
 MAX_CROSSING_FACETS, MAX_BOX_PAIRS = (
@@ -161,16 +161,16 @@ def _candidates(corners, normals) -> Iterator[Any]:
     boxes = shapely.linestrings(np.stack([low[:, [x, y]], high[:, [x, y]]], axis=1))  # made sooner than boxes
     tree, plane = shapely.STRtree(boxes), _planes(corners, normals)
     floor, top = np.ascontiguousarray(low[:, z]), np.ascontiguousarray(high[:, z])
-    seen, step = 0, max(1, BOX_PAIRS_AT_ONCE // len(boxes))
+    box_pairs, step = 0, max(1, BOX_PAIRS_AT_ONCE // len(boxes))
     for start in range(0, len(boxes), step):
         i, j = tree.query(boxes[start : start + step])
-        i, seen = i + start, seen + len(i)
-        if seen > MAX_BOX_PAIRS:
+        i, box_pairs = i + start, box_pairs + len(i)
+        if box_pairs > MAX_BOX_PAIRS:
             return
         once = i < j
         i, j = i[once], j[once]
-        kept = (plane[i] != plane[j]) & (floor[i] <= top[j]) & (floor[j] <= top[i])
-        yield np.column_stack([i[kept], j[kept]])
+        overlaps = (plane[i] != plane[j]) & (floor[i] <= top[j]) & (floor[j] <= top[i])
+        yield np.column_stack([i[overlaps], j[overlaps]])
 
 
 def _planes(corners, normals) -> NDArray[np.int64]:
@@ -188,10 +188,10 @@ def _in_columns(corners, normals) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _piercing(places, normals, offsets, pairs, tolerance) -> NDArray[np.int64]:
     """Those of the pairs of which each has corners on both sides of the other, by half the tolerance."""
-    for one, other in ((0, 1), (1, 0)):
-        ones, others = pairs[:, one], pairs[:, other]
-        normal, offset = normals[:, others], offsets[others]
-        a, b, c = (vectors.dot_columns(normal, corner[:, ones]) - offset for corner in places)
+    for own, other in ((0, 1), (1, 0)):
+        first, second = pairs[:, own], pairs[:, other]
+        normal, offset = normals[:, second], offsets[second]
+        a, b, c = (vectors.dot_columns(normal, corner[:, first]) - offset for corner in places)
         above, below = np.maximum(np.maximum(a, b), c), np.minimum(np.minimum(a, b), c)
         pairs = pairs[(above > 0.5 * tolerance) & (below < -0.5 * tolerance)]
     return pairs
@@ -199,8 +199,8 @@ def _piercing(places, normals, offsets, pairs, tolerance) -> NDArray[np.int64]:
 
 def _through_both(corners, normals, pairs, tolerance) -> NDArray[np.int64]:
     """Those of the pairs of which each passes through the plane of the other: none that share a side."""
-    for one, other in ((0, 1), (1, 0)):
-        through = _through(_sides(corners, normals, pairs[:, one], pairs[:, other], tolerance))
+    for own, other in ((0, 1), (1, 0)):
+        through = _through(_sides(corners, normals, pairs[:, own], pairs[:, other], tolerance))
         pairs = pairs[through > 0.0]
     return pairs
 
@@ -227,9 +227,9 @@ def _normals(corners) -> NDArray[np.float64]:
     return normals / np.where(length > 0.0, length, 1.0)
 
 
-def _sides(corners, normals, ones, others, tolerance) -> NDArray[np.float64]:
-    """(N, 3) [unit of the file] how far corners of ``ones`` lie above ``others``; 0 within tolerance."""
-    above = np.einsum("nkx,nx->nk", corners[ones] - corners[others, :1], normals[others])
+def _sides(corners, normals, facets, crossed, tolerance) -> NDArray[np.float64]:
+    """(N, 3) [unit of the file] how far corners of ``facets`` lie above ``crossed``; 0 within tolerance."""
+    above = np.einsum("nkx,nx->nk", corners[facets] - corners[crossed, :1], normals[crossed])
     return np.where(np.abs(above) <= tolerance, 0.0, above)
 
 
@@ -246,8 +246,8 @@ def _interval(corners, sides, along) -> tuple[NDArray[np.float64], NDArray[np.fl
     u, s = np.roll(t, -1, axis=1), np.roll(sides, -1, axis=1)
     across = sides * s < 0.0
     cut = np.where(across, t + (u - t) * sides / np.where(across, sides - s, 1.0), np.nan)
-    met = np.concatenate([cut, np.where(sides == 0.0, t, np.nan)], axis=1)
-    return np.fmin.reduce(met, axis=1), np.fmax.reduce(met, axis=1)
+    crossings = np.concatenate([cut, np.where(sides == 0.0, t, np.nan)], axis=1)
+    return np.fmin.reduce(crossings, axis=1), np.fmax.reduce(crossings, axis=1)
 
 
 def _points(corners, sides, along, start) -> Any:

@@ -43,7 +43,7 @@ def mend_facets(vertices, faces, tolerance, where, corners=True) -> tuple[Any, .
     vertices, faces : as above
     edges : MeshEdges
         Closed if the repairs were enough.
-    said : tuple of str
+    notes : tuple of str
         What was done, a sentence each.
 
     Raises
@@ -52,22 +52,22 @@ def mend_facets(vertices, faces, tolerance, where, corners=True) -> tuple[Any, .
         If the facets cannot be turned one way round, or cancel out.
     """
     edges = topology.edge_table(faces, len(vertices))
-    vertices, faces, said = leave_out_strays(vertices, faces, edges, tolerance)
+    vertices, faces, notes = leave_out_strays(vertices, faces, edges, tolerance)
     steps = (_without_repeats, _near_corners_joined, turn_one_way_round, _seams_closed)
     for step in steps if corners else (_without_repeats, turn_one_way_round):
         edges = topology.edge_table(faces, len(vertices))
         if edges.paired:
-            return vertices, faces, edges, said
-        vertices, faces, shown = step(vertices, faces, edges, tolerance, where)
-        said += shown
+            return vertices, faces, edges, notes
+        vertices, faces, step_notes = step(vertices, faces, edges, tolerance, where)
+        notes += step_notes
         if not len(faces):
             raise MeshError(where, "encloses no volume", EXPORT_SOLID)
     edges = topology.edge_table(faces, len(vertices))
     crowded = int((edges.count > 2).sum())
     if edges.closed and crowded:
         joins = _many(crowded, "edge joins", "edges join")
-        said += (f"{joins} more than two facets: the solid touches itself there",)
-    return vertices, faces, edges, said
+        notes += (f"{joins} more than two facets: the solid touches itself there",)
+    return vertices, faces, edges, notes
 
 
 def leave_out_strays(vertices, faces, edges, tolerance) -> tuple[Any, ...]:
@@ -94,10 +94,10 @@ def leave_out_strays(vertices, faces, edges, tolerance) -> tuple[Any, ...]:
     stray = flat[(change < 0)[group[::3]] | alone[group[::3]]]
     if not len(stray) or len(stray) == len(faces):
         return vertices, faces, ()
-    kept = np.ones(len(faces), dtype=bool)
-    kept[stray] = False
+    wanted = np.ones(len(faces), dtype=bool)
+    wanted[stray] = False
     text = f"{_many(len(stray), 'stray facet', 'stray facets')} without area left out: corners on a line"
-    return *topology.drop_unused_corners(vertices, faces[kept]), (text,)
+    return *topology.drop_unused_corners(vertices, faces[wanted]), (text,)
 
 
 def _heights(vertices, faces) -> NDArray[np.float64]:
@@ -115,16 +115,16 @@ def _without_repeats(vertices, faces, edges, tolerance, where) -> tuple[Any, ...
     ahead = np.sum(faces < np.roll(faces, -1, axis=1), axis=1) == 2
     net = np.bincount(group, np.where(ahead, 1, -1)).astype(int)
     runs = np.where(ahead, 1, -1) == np.sign(net)[group]
-    _, kept = np.unique(np.where(runs, group, -1), return_index=True)
-    kept = np.sort(kept[runs[kept]])
+    _, first_facets = np.unique(np.where(runs, group, -1), return_index=True)
+    first_facets = np.sort(first_facets[runs[first_facets]])
     back_to_back = (np.bincount(group) - np.abs(net)).sum() // 2
-    repeated = len(faces) - len(kept) - 2 * back_to_back
-    said: tuple[str, ...] = ()
+    repeated = len(faces) - len(first_facets) - 2 * back_to_back
+    notes: tuple[str, ...] = ()
     if repeated:
-        said += (f"{_many(repeated, 'duplicate facet', 'duplicate facets')} removed",)
+        notes += (f"{_many(repeated, 'duplicate facet', 'duplicate facets')} removed",)
     if back_to_back:
-        said += (f"{_many(back_to_back, 'pair', 'pairs')} of facets back to back (inner walls) removed",)
-    return *topology.drop_unused_corners(vertices, faces[kept]), said
+        notes += (f"{_many(back_to_back, 'pair', 'pairs')} of facets back to back (inner walls) removed",)
+    return *topology.drop_unused_corners(vertices, faces[first_facets]), notes
 
 
 def _near_corners_joined(vertices, faces, edges, tolerance, where) -> tuple[Any, ...]:
@@ -174,8 +174,8 @@ def _parity(mates, askew, count, where) -> Any:
 
 
 def _seams_closed(vertices, faces, edges, tolerance, where) -> tuple[Any, ...]:
-    *surface, said, _ = close_seams(vertices, faces, edges, tolerance)
-    return *surface, said
+    *surface, notes, _ = close_seams(vertices, faces, edges, tolerance)
+    return *surface, notes
 
 
 def close_seams(vertices, faces, edges, tolerance) -> tuple[Any, ...]:
@@ -194,7 +194,7 @@ def close_seams(vertices, faces, edges, tolerance) -> tuple[Any, ...]:
     -------
     vertices, faces : as above
         The facets that join them come last.
-    said : tuple of str
+    notes : tuple of str
     seams : Seams
     """
     tails, heads = edges.rim()
@@ -235,8 +235,8 @@ def _fans(vertices, rim, tails, heads, tolerance) -> tuple[Any, ...]:
     return fans, float(off_line[on].max(initial=0.0))
 
 
-def _many(count, one, more) -> str:
-    return f"{count} {one if count == 1 else more}"
+def _many(count, singular, plural) -> str:
+    return f"{count} {singular if count == 1 else plural}"
 
 
 JOIN_SHARE, OPEN_JOIN_SHARE = 1e-4, 1e-2  # [1] of the size: cracks joined unasked, and with ``allow_open``
@@ -269,7 +269,7 @@ class OpenGaps:
     cracks: int  # open edges that run along another, near it
     width: float  # [unit of the file] largest distance across them
     place: tuple[float, float, float]  # [unit of the file] where
-    others: int  # open edges that lie round holes
+    rim_edges: int  # open edges that lie round holes
 
 
 def join_cracks(
@@ -417,8 +417,8 @@ def _back_to_back(vertices, faces, edges) -> tuple[NDArray[np.float64], NDArray[
     a, b, c = (vertices[corner] for corner in faces.T)
     across = vectors.cross(b - a, c - a)
     area = vectors.norm(across)
-    back = np.einsum("nx,nx->n", across[i], across[j]) < FOLD_COSINE * area[i] * area[j]
-    return area, np.column_stack([i[back], j[back]])
+    opposed = np.einsum("nx,nx->n", across[i], across[j]) < FOLD_COSINE * area[i] * area[j]
+    return area, np.column_stack([i[opposed], j[opposed]])
 
 
 def _is_thin(joined, share) -> bool:
@@ -441,19 +441,21 @@ def _open_edges(
 
 def _gaps(chosen, tails, heads, facet) -> NDArray[np.float64]:
     """How far open edges are from the nearest of other facets that run along them; infinite without one."""
-    ways = heads - tails
-    squares = np.maximum(np.einsum("nx,nx->n", ways, ways), np.finfo(float).tiny)
+    directions = heads - tails
+    squares = np.maximum(np.einsum("nx,nx->n", directions, directions), np.finfo(float).tiny)
     widest = []
     rows = max(1, COMPARED_AT_ONCE // len(tails))
     for edge in np.array_split(chosen, -(-len(chosen) // rows)):
-        cosine = np.abs(np.einsum("ex,nx->en", ways[edge], ways)) / np.sqrt(squares[edge, None] * squares)
-        beside = (cosine > CRACK_ALONG) & (facet[edge, None] != facet)
+        cosine = np.abs(np.einsum("ex,nx->en", directions[edge], directions)) / np.sqrt(
+            squares[edge, None] * squares
+        )
+        parallel = (cosine > CRACK_ALONG) & (facet[edge, None] != facet)
         gap = np.zeros(len(edge))
         for share in (0.0, 0.5, 1.0):
-            offset = (tails[edge] + share * ways[edge])[:, None] - tails
-            t = np.clip(np.einsum("enx,nx->en", offset, ways) / squares, 0.0, 1.0)
-            distance = vectors.norm(offset - t[..., None] * ways)
-            gap = np.maximum(gap, np.where(beside, distance, np.inf).min(axis=1))
+            offset = (tails[edge] + share * directions[edge])[:, None] - tails
+            t = np.clip(np.einsum("enx,nx->en", offset, directions) / squares, 0.0, 1.0)
+            distance = vectors.norm(offset - t[..., None] * directions)
+            gap = np.maximum(gap, np.where(parallel, distance, np.inf).min(axis=1))
         widest.append(gap)
     return np.concatenate(widest)
 

@@ -181,10 +181,10 @@ def edge_table(faces, corners) -> MeshEdges:
     keys = (2 * keys + (tails > heads)).ravel()
     order = np.argsort(keys)
     keys = keys[order]
-    back, keys = keys & 1, keys >> 1
+    reversed_side, keys = keys & 1, keys >> 1
     start = np.flatnonzero(np.concatenate([[True], keys[1:] != keys[:-1]]))
     count = np.diff(start, append=len(keys))
-    net = count - 2 * np.add.reduceat(back, start)
+    net = count - 2 * np.add.reduceat(reversed_side, start)
     return MeshEdges(corners, keys[start], order, start, count, net)
 
 
@@ -217,8 +217,8 @@ def split_shells(edges, faces) -> tuple[int, NDArray[np.int64]]:
         only if they do not close without each other.
     shell : (F,) int
     """
-    one, other = edges.mates(edges.count == 2).T
-    number, shell = components(one, other, len(faces))
+    first, second = edges.mates(edges.count == 2).T
+    number, shell = components(first, second, len(faces))
     crowded = edges.count > 2
     if not crowded.any():
         return number, shell
@@ -296,13 +296,13 @@ def turns_around(vertices, faces, shell, inner, outer) -> NDArray[np.float64]:
     return np.array([winding_number(point, around) for point in vertices[corners[::step]]])
 
 
-def _turns_around(vertices, faces, shell, one) -> NDArray[np.float64]:
+def _turns_around(vertices, faces, shell, inner) -> NDArray[np.float64]:
     """(N,) float [1] how often the other shells go round corners of one: 1 in their material, 0 outside."""
-    own = shell == one
+    own = shell == inner
     corners = np.unique(faces[own])
     step = -(-len(corners) // max(1, min(SHELL_PROBES, SHELL_SOLID_ANGLES // len(faces))))
-    others = vertices[faces[~own]]
-    return np.array([winding_number(point, others) for point in vertices[corners[::step]]])
+    surroundings = vertices[faces[~own]]
+    return np.array([winding_number(point, surroundings) for point in vertices[corners[::step]]])
 
 
 def winding_number(point, corners) -> float:

@@ -10,7 +10,7 @@ from scipy import optimize, stats
 from feederscrew import check
 from feederscrew.errors import FeederError
 from feederscrew.resting.counts.deviation import ChiSquare, chi_square, chi_square_passes
-from feederscrew.resting.exact_tumbling import ground
+from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.resting.rules.formulas import surface_shares
 
 LOWEST, HIGHEST = -2.0, 8.0  # [1] exponents tried
@@ -237,7 +237,7 @@ def fit_passes(part, aspects, counts, paths) -> Fit:
 
 def _tumbled_by_aspect(part, aspects) -> tuple[Any, ...]:
     """Exact tumbling by aspect: (A,) shares [1], (A,) heights [m], and the part's radius [m]."""
-    basis = ground(part, aspects)
+    basis = require_ground(part, aspects)
     rows = len(aspects.names)
     shares = np.bincount(basis.rows, basis.tips.shares, minlength=rows)
     weighted = np.bincount(basis.rows, basis.tips.shares * np.nan_to_num(basis.tips.heights), minlength=rows)

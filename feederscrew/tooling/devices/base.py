@@ -16,6 +16,7 @@ from feederscrew import units
 from feederscrew import value_forms as forms
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import orientation_names, values
+from feederscrew.units import MM
 
 BLADE = 1.5e-3  # [m] thickness of a blade
 GATE_FRAME_M = 5e-3  # [m] of a gate above its opening
@@ -103,7 +104,6 @@ def across(gate, width, orientations, place) -> Blade:
 
 LIMIT_TOLERANCE_M = 1e-9  # [m] a part this much over a limit still passes
 UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
-MM = units.factor("mm", "length")
 WRITTEN_STEP_M = 1e-7  # [m] to which a length is written
 RETURNED, STOPPED, CARRIED = "returned", "stopped", "carried"  # what becomes of a part at a device
 ENDLESS_HOLE_LENGTHS = 3.0  # of the part's size: a hole that goes on along the track is as good as endless

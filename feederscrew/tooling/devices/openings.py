@@ -8,6 +8,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew import value_forms as forms
+from feederscrew.geometry.compiled import frozen_rows, record_type
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import UNSURE, Device, carried, corners_text
 
@@ -17,10 +18,15 @@ WALL_OVERCUT_M = 1e-3  # [m] a hole that reaches the wall is cut on into it
 GAP_EDGE_POINTS = 33  # points along the edge of a gap that is parallel to a radial one
 
 
+# theta = alpha + kappa r + asin(gamma / r) between the radii low and high; an arc of the radius low from the
+# angle alpha to kappa. Where it bulges, track is left on the side of the axis.
+HOLE_EDGE = record_type("arc", "alpha", "kappa", "gamma", "low", "high", "bulge", flags=("arc", "bulge"))
+
+
 class HoleEdges(NamedTuple):
     """What is cut out of the track, about the bowl's axis."""
 
-    edges: np.ndarray  # (M, 7) as `crossing` has them
+    edges: np.recarray  # (M,) HOLE_EDGE
     nodes: np.ndarray  # (P, 3) [rad, m] points of its border that what is left may end in; 1: corner
 
 
@@ -43,7 +49,7 @@ def polygon(corners, radius) -> HoleEdges:
     rows = [_edge(s0 / radius, radius - y0, s1 / radius, radius - y1) for (s0, y0), (s1, y1) in sides]
     nodes = [(s / radius, radius - y, 1.0) for s, y in _reflex(corners)]
     nodes += [node for start, end in sides for node in _bulging(start, end, radius)]
-    return HoleEdges(edges=np.array(rows), nodes=np.array(nodes).reshape(-1, 3))
+    return HoleEdges(edges=frozen_rows(rows, HOLE_EDGE), nodes=np.array(nodes).reshape(-1, 3))
 
 
 def gap(length, radius, width) -> HoleEdges:
@@ -64,7 +70,7 @@ def gap(length, radius, width) -> HoleEdges:
     low, high = max(radius - width, 1e-3 * radius, 1.000001 * length), radius + WALL_OVERCUT_M
     rows = [[0.0, 0.0, 0.0, 0.0, low, high, 0.0], [0.0, 0.0, 0.0, length, low, high, 0.0]]
     inner = [1.0, 0.0, np.arcsin(length / low), 0.0, low, low, 1.0]
-    return HoleEdges(edges=np.array([*rows, inner]), nodes=np.empty((0, 3)))
+    return HoleEdges(edges=frozen_rows([*rows, inner], HOLE_EDGE), nodes=np.empty((0, 3)))
 
 
 def gap_outline(length, radius, width) -> np.ndarray:
@@ -78,14 +84,14 @@ def gap_outline(length, radius, width) -> np.ndarray:
     across = np.linspace(width, 0.0, GAP_EDGE_POINTS)
     left, trailing = gap(length, radius, width).edges[:2]
     sides = [
-        radius * (edge[1] + np.arcsin(np.minimum(edge[3] / (radius - across), 1.0)))
+        radius * (edge.alpha + np.arcsin(np.minimum(edge.gamma / (radius - across), 1.0)))
         for edge in (left, trailing)
     ]
     return np.vstack([[[sides[0][0], width], [sides[0][-1], 0.0]], np.column_stack([sides[1], across])[::-1]])
 
 
 def _edge(theta0, r0, theta1, r1) -> list[Any]:
-    """One straight edge of the unrolled polygon as `crossing` has it; from a later to an earlier angle the
+    """One straight edge of the unrolled polygon as HOLE_EDGE; from a later to an earlier angle the
     hole, on its left, lies nearer to the wall, and the track left beyond it bulges."""
     if r0 == r1:
         return [1.0, min(theta0, theta1), max(theta0, theta1), 0.0, r0, r0, float(theta1 < theta0)]

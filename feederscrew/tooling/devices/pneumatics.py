@@ -484,12 +484,12 @@ class SteadyJet(Device):
         return values.nozzle(entry, needed=("nozzle", "pressure", "height"))
 
     @classmethod
-    def proposals(cls, wanted, others, orientations, where):
+    def proposals(cls, wanted, competitors, orientations, where):
         """Return the jets that blow surely off some orientations and surely leave others, one a height.
 
         Parameters
         ----------
-        wanted, others : sequence of DeviceEncounter
+        wanted, competitors : sequence of DeviceEncounter
             That shall stay, and that shall be blown off where they can.
         orientations : sequence of Orientation
             Of the part.
@@ -507,7 +507,7 @@ class SteadyJet(Device):
             most = max(jet.most(encounter) for encounter in wanted) / own
             limit = min(full, 1.0 / (SURE_FORCE_RATIO * FORCE_RESERVE * most) if most > 0.0 else full)
             ratio = SURE_FORCE_RATIO * FORCE_RESERVE
-            thrusts = [ratio * own / max(jet.factor(encounter), 1e-12) for encounter in others]
+            thrusts = [ratio * own / max(jet.factor(encounter), 1e-12) for encounter in competitors]
             enough = [force for force in thrusts if force <= limit]
             if enough:
                 steps = math.ceil(_pressure(jet.nozzle, max(enough)) / REGULATOR_STEP_PA - 1e-6)

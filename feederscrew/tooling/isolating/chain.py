@@ -132,8 +132,8 @@ def candidates(
     for kind in blowing() if air else ():
         rows = sorted({wanted, *same})
         encounters = [DeviceEncounter(orientation, orientations) for orientation in orientations]
-        others = [encounter for k, encounter in enumerate(encounters) if k not in rows]
-        for device in kind.proposals([encounters[k] for k in rows], others, orientations, DESIGN_KEY):
+        competitors = [encounter for k, encounter in enumerate(encounters) if k not in rows]
+        for device in kind.proposals([encounters[k] for k in rows], competitors, orientations, DESIGN_KEY):
             margins[device] = np.array(
                 [margin_at(device, orientation, orientations) for orientation in orientations]
             )

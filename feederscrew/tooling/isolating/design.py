@@ -345,9 +345,9 @@ def _margins(device, orientations) -> np.ndarray:
     return np.array([chain.margin_at(device, orientation, orientations) for orientation in orientations])
 
 
-MARGIN_M = 1.5e-4  # [m] to either side, beside ...
+DESIGN_MARGIN_M = 1.5e-4  # [m] to either side, beside ...
 PLAY_M, TOLERANCE_M = 5e-5, 5e-5  # [m] ... what parts come off the wall, and what their size is off
-TOTAL_MARGIN_M = MARGIN_M + PLAY_M + TOLERANCE_M  # [m]
+TOTAL_MARGIN_M = DESIGN_MARGIN_M + PLAY_M + TOLERANCE_M  # [m]
 MOST_HOLES = 3  # cut-outs in one chain
 PURITY_GAIN = 1e-2  # [1] purity by which a chain of varied devices is better
 GAIN = 1.25  # turning devices are taken where they bring so many times the parts, if no efficiency is asked
@@ -391,7 +391,7 @@ def design(
     if task.constraints.turn and not (proposal.isolated and proposal.efficiency >= goal.efficiency > 0.0):
         proposal = _with_turning(task, proposal, search, goal.efficiency)
     short = _short(task, proposal, goal.efficiency)
-    return replace(proposal, reasons=(*proposal.reasons, *short)) if short else proposal
+    return replace(proposal, remarks=(*proposal.remarks, *short)) if short else proposal
 
 
 def _returning(task, search):

@@ -1,6 +1,7 @@
 """What a design of tooling says, from what the whole chain does with every orientation."""
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.fates import course
 from feederscrew.tooling.isolating import chain
 from feederscrew.tooling.isolating.chain import Cut, DesignConstraints, margin_at
+from feederscrew.tooling.orientations import Orientation
 
 LEAST_SHARE = 5e-3  # [1] orientations that come less often need not be returned
 ISOLATED_PURITY = 0.98  # [1] of what leaves, from which an orientation is said to be isolated
@@ -28,7 +30,8 @@ class Design:
     efficiency: float  # [1] share of the parts offered that leave in this orientation
     purity: float  # [1] share of what leaves, or is not sure to be returned, that is in this orientation
     left_over: tuple[str, ...]  # what leaves as well
-    reasons: tuple[str, ...]  # why, a sentence each
+    remarks: tuple[str, ...]  # why, beside what stands at a device and what cannot be separated
+    inseparable: tuple[tuple[Orientation, Orientation, float], ...] = ()  # wanted, other, margin [m]
     late: bool = False  # the time limit stopped the search: another machine may find more
     # [1] purity where a trial confirms what is not sure to be returned; None where nothing leaves
     hopeful: float | None = None
@@ -36,6 +39,14 @@ class Design:
     least_purity: float = ISOLATED_PURITY  # [1] from which it is said to isolate
     surely: float = 0.0  # [1] of the efficiency, what does not roll or rock on its way: the least of it
     steady: bool = True  # the drive leaves the wanted orientation lying on what the cuts leave of its foot
+
+    @cached_property
+    def reasons(self) -> tuple[str, ...]:
+        """Why, a sentence each: found out when it is asked for, which of most proposals it never is."""
+        stops = (
+            f"{' '.join(cut.stops)} come to stand at the {cut.device.name}" for cut in self.cuts if cut.stops
+        )
+        return (*stops, *(chain.inseparable_reason(*pair) for pair in self.inseparable), *self.remarks)
 
     @property
     def purity_is_least(self):
@@ -180,9 +191,8 @@ def propose(task, cuts, returned, same=None, late=False) -> Design:
         left_over=tuple(
             state.name for k, state in enumerate(flow.states) if out[k] > 0.0 and k not in states
         ),
-        reasons=(
-            *(f"{' '.join(cut.stops)} come to stand at the {cut.device.name}" for cut in cuts if cut.stops),
-            *(chain.inseparable_reason(orientations[wanted], orientations[k], task.margin) for k in left),
+        inseparable=tuple((orientations[wanted], orientations[k], task.margin) for k in left),
+        remarks=(
             *impure,
             *_against(
                 np.array([orientation.name for orientation in orientations])[(unsure > 0.0) & task.often]
@@ -267,7 +277,7 @@ def without_device(task, why) -> Design:
         efficiency=0.0,
         purity=np.nan,
         left_over=(),
-        reasons=(f"{task.orientations[task.wanted].name} {why}",),
+        remarks=(f"{task.orientations[task.wanted].name} {why}",),
     )
 
 

@@ -258,7 +258,7 @@ def _on_this_track(orientations, shares, wanted, bowl, steady, options):
     if same and stays(gentle):
         return gentle
     reason = ROCKS.format(orientations[wanted].name)
-    return replace(proposal, steady=False, reasons=(*proposal.reasons, reason))
+    return replace(proposal, steady=False, remarks=(*proposal.remarks, reason))
 
 
 def _isolating(orientations, shares, wanted, **options):
@@ -268,4 +268,4 @@ def _isolating(orientations, shares, wanted, **options):
         return proposal
     options["constraints"] = replace(options["constraints"], vary=False)
     still = design(place(orientations), shares, wanted, **options)
-    return replace(still, reasons=(*still.reasons, TRACK_REMARK)) if still.isolated else proposal
+    return replace(still, remarks=(*still.remarks, TRACK_REMARK)) if still.isolated else proposal

@@ -8,11 +8,9 @@ crossing with an edge is monotone, the crossing exists while phi is between the 
 
 import math
 
-from feederscrew.geometry.compiled import compiled
+from feederscrew.geometry.compiled import compiled, record_type
 
-ARC, ALPHA, KAPPA, GAMMA, LOW, HIGH, BULGE = range(7)  # columns of a hole's edge; of an arc ALPHA, KAPPA are
-# the angles where it begins and ends and LOW, HIGH its radius; BULGE: track is left on the side of the axis
-SIDE, EDGE, T0, T1, PHI0, PHI1 = range(6)  # columns of a stretch
+STRETCH = record_type("side", "edge", "t0", "t1", "phi0", "phi1", whole=("side", "edge"))  # of a side
 CUTS = 10  # at most that many ends of stretches on a side
 SHORT_SIDE = 1e-13  # [1] of a side
 TINY = 1e-300
@@ -26,8 +24,8 @@ def shift(side, edge, t):
     """
     x, q = side[0] + t * side[2], side[1] + t * side[3]
     radius = math.hypot(x, q)
-    bend = 0.0 if edge[GAMMA] == 0.0 else math.asin(min(edge[GAMMA] / radius, 1.0))
-    return math.atan2(x, q) - edge[ALPHA] - edge[KAPPA] * radius - bend
+    bend = 0.0 if edge.gamma == 0.0 else math.asin(min(edge.gamma / radius, 1.0))
+    return math.atan2(x, q) - edge.alpha - edge.kappa * radius - bend
 
 
 @compiled
@@ -52,9 +50,8 @@ def stretches(sides, edges, out, cuts):
     ----------
     sides : (E, 4) float [m]
         Start and vector of each side of the foot, x ahead and q away from the bowl's axis.
-    edges : (M, 7) float [m or 1]
-        Columns as above.
-    out : (N, 6) float [m or 1]
+    edges : (M,) `tooling.devices.openings.HOLE_EDGE`
+    out : (N,) STRETCH
         To be filled; no more than it holds are kept.
     cuts : (CUTS,) float [1]
         Scratch.
@@ -67,7 +64,7 @@ def stretches(sides, edges, out, cuts):
     count = 0
     for k in range(len(sides)):
         for j in range(len(edges)):
-            if edges[j, ARC] > 0.0:
+            if edges[j].arc:
                 count = _on_arc(sides[k], edges[j], k, j, out, count)
             else:
                 count = _on_slant(sides[k], edges[j], k, j, out, count, cuts)
@@ -97,13 +94,13 @@ def _on_arc(side, edge, k, j, out, count):
     a = side[2] * side[2] + side[3] * side[3]
     nearest = -(side[0] * side[2] + side[1] * side[3]) / a
     low = math.hypot(side[0] + nearest * side[2], side[1] + nearest * side[3])
-    if edge[LOW] > low:
-        half = math.sqrt((edge[LOW] - low) * (edge[LOW] + low) / a)
+    if edge.low > low:
+        half = math.sqrt((edge.low - low) * (edge.low + low) / a)
         cuts = (nearest - half, nearest + half)
     for t in cuts:
         if 0.0 <= t <= 1.0 and count < len(out):
             theta = math.atan2(side[0] + t * side[2], side[1] + t * side[3])
-            _keep(out[count], k, j, t, t, theta - edge[KAPPA], theta - edge[ALPHA])
+            _keep(out[count], k, j, t, t, theta - edge.kappa, theta - edge.alpha)
             count += 1
     return count
 
@@ -113,8 +110,8 @@ def _on_slant(side, edge, k, j, out, count, cuts):
     if _beyond(side, edge):
         return count
     cuts[0], cuts[1] = 0.0, 1.0
-    number = _at_radius(side, edge[LOW], cuts, 2)
-    number = _at_radius(side, edge[HIGH], cuts, number)
+    number = _at_radius(side, edge.low, cuts, 2)
+    number = _at_radius(side, edge.high, cuts, number)
     number = _turning(side, edge, cuts, number)
     sort(cuts, number)
     for i in range(number - 1):
@@ -123,7 +120,7 @@ def _on_slant(side, edge, k, j, out, count, cuts):
             continue
         middle = 0.5 * (t0 + t1)
         radius = math.hypot(side[0] + middle * side[2], side[1] + middle * side[3])
-        if edge[LOW] <= radius <= edge[HIGH]:
+        if edge.low <= radius <= edge.high:
             _keep(out[count], k, j, t0, t1, shift(side, edge, t0), shift(side, edge, t1))
             count += 1
     return count
@@ -134,11 +131,11 @@ def _beyond(side, edge):
     """Whether a side lies outside the ring of an edge's radii for certain."""
     first = side[0] * side[0] + side[1] * side[1]
     x, q = side[0] + side[2], side[1] + side[3]
-    if max(first, x * x + q * q) < edge[LOW] * edge[LOW]:
+    if max(first, x * x + q * q) < edge.low * edge.low:
         return True
     a = side[2] * side[2] + side[3] * side[3]
     nearest = min(max(-(side[0] * side[2] + side[1] * side[3]) / a, 0.0), 1.0)
-    return math.hypot(side[0] + nearest * side[2], side[1] + nearest * side[3]) > edge[HIGH]
+    return math.hypot(side[0] + nearest * side[2], side[1] + nearest * side[3]) > edge.high
 
 
 @compiled
@@ -149,14 +146,14 @@ def _turning(side, edge, cuts, number):
     if 0.0 < nearest < 1.0:
         cuts[number] = nearest
         number += 1
-    if edge[KAPPA] == 0.0:
+    if edge.kappa == 0.0:
         return number
     moment = side[2] * side[1] - side[0] * side[3]  # d theta / dt = moment / r^2
-    height2, pull2 = moment * moment / a, (moment / edge[KAPPA]) ** 2
+    height2, pull2 = moment * moment / a, (moment / edge.kappa) ** 2
     # kappa^2 (p v)^2 r^2 = moment^2, with p v = a tau and r^2 = height2 + a tau^2
     b = a * a * height2
     z = 2.0 * pull2 / max(b + math.sqrt(b * b + 4.0 * a * a * a * pull2), TINY)
-    share = nearest + math.copysign(math.sqrt(z), moment / edge[KAPPA])
+    share = nearest + math.copysign(math.sqrt(z), moment / edge.kappa)
     if 0.0 < share < 1.0:
         cuts[number] = share
         number += 1
@@ -165,16 +162,16 @@ def _turning(side, edge, cuts, number):
 
 @compiled
 def _keep(row, k, j, t0, t1, phi0, phi1):
-    row[SIDE], row[EDGE], row[T0], row[T1], row[PHI0], row[PHI1] = k, j, t0, t1, phi0, phi1
+    row.side, row.edge, row.t0, row.t1, row.phi0, row.phi1 = k, j, t0, t1, phi0, phi1
 
 
 @compiled
 def place(side, edge, row, phi):
     """Return the share [1] of a side at which an edge shifted by ``phi`` [rad] crosses it, on one stretch."""
-    low, high = row[T0], row[T1]
+    low, high = row.t0, row.t1
     if low == high:
         return low
-    below, above = row[PHI0] - phi, row[PHI1] - phi
+    below, above = row.phi0 - phi, row.phi1 - phi
     if below == 0.0 or above == 0.0 or (below > 0.0) == (above > 0.0):
         return low if abs(below) <= abs(above) else high
     t = low - below * (high - low) / (above - below)
@@ -197,7 +194,7 @@ def _slope(side, edge, t):
     x, q = side[0] + t * side[2], side[1] + t * side[3]
     radius2 = x * x + q * q
     outward, radius = x * side[2] + q * side[3], math.sqrt(radius2)
-    found = (side[2] * q - side[3] * x) / radius2 - edge[KAPPA] * outward / radius
-    if edge[GAMMA] == 0.0:
-        return found
-    return found + edge[GAMMA] * outward / (radius2 * math.sqrt(max(radius2 - edge[GAMMA] ** 2, TINY)))
+    slope = (side[2] * q - side[3] * x) / radius2 - edge.kappa * outward / radius
+    if edge.gamma == 0.0:
+        return slope
+    return slope + edge.gamma * outward / (radius2 * math.sqrt(max(radius2 - edge.gamma**2, TINY)))

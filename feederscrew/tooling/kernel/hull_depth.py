@@ -113,10 +113,10 @@ def inset_beside(points, count, foot, keep, moving=False):
         own = last == k + 1
         if own and moving:
             continue
-        found = foot.insets[k] if own else _between(points, count, foot, k, last, moving)
-        if found < 0.0:
+        own_inset = foot.insets[k] if own else _between(points, count, foot, k, last, moving)
+        if own_inset < 0.0:
             return inset(points, count, foot.reach)
-        line = min(line, found)
+        line = min(line, own_inset)
     return line
 
 
@@ -137,9 +137,11 @@ def _between(points, count, foot, k, last, moving):
         if there < 0:
             return -1.0
         bx, by = points[there, 0], points[there, 1]
-        found = (ax * (by - ay) - ay * (bx - ax)) / math.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
-        if not moving or (abs(found - aside) > LINE_TOLERANCE_M and abs(found - behind) > LINE_TOLERANCE_M):
-            line = min(line, found)
+        distance = (ax * (by - ay) - ay * (bx - ax)) / math.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
+        if not moving or (
+            abs(distance - aside) > LINE_TOLERANCE_M and abs(distance - behind) > LINE_TOLERANCE_M
+        ):
+            line = min(line, distance)
         ax, ay = bx, by
         if line < 0.0 or (abs(ax - ex) < POINT_TOLERANCE_M and abs(ay - ey) < POINT_TOLERANCE_M):
             break

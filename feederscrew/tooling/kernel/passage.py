@@ -5,23 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew.geometry.compiled import apart, compiled, entry
-from feederscrew.tooling.kernel.crossing import (
-    ALPHA,
-    ARC,
-    BULGE,
-    EDGE,
-    KAPPA,
-    LOW,
-    PHI0,
-    PHI1,
-    SIDE,
-    place,
-    sort,
-    stretches,
-)
+from feederscrew.geometry.compiled import compiled, entry, outlined
+from feederscrew.tooling.kernel.carried_corners import carried, keep_corners, kept_inset
+from feederscrew.tooling.kernel.crossing import place, sort, stretches
 from feederscrew.tooling.kernel.hull_depth import inset_beside
-from feederscrew.tooling.kernel.kept import carried, keep_corners, kept_inset
 
 MARGIN_STEP_M = 1e-9  # [m] a lower margin is looked for if it may be lower by more
 INSTANT = 1e-12  # [rad] a shorter piece is one of rounding
@@ -50,7 +37,7 @@ class Foot(NamedTuple):
 class VerdictArrays(NamedTuple):
     """Arrays the verdict works in."""
 
-    rows: np.ndarray  # (N, 6) stretches
+    rows: np.recarray  # (N,) STRETCH
     events: np.ndarray  # (2 N,) [rad]
     bounds: np.ndarray  # (2 N,) [m] the margin between two events is not less
     movements: np.ndarray  # (2 N,) [m] how far any of its points moves between two events
@@ -116,10 +103,10 @@ def _events(foot, hole, scratch):
     """Fill the shifts at which a corner of either crosses the border of the other, sorted; their number."""
     count = stretches(foot.sides, hole.edges, scratch.rows, scratch.cuts)
     if count < len(scratch.rows):
-        scratch.rows[count, SIDE] = -1.0
+        scratch.rows[count].side = -1
     for k in range(count):
-        scratch.events[2 * k] = scratch.rows[k, PHI0]
-        scratch.events[2 * k + 1] = scratch.rows[k, PHI1]
+        scratch.events[2 * k] = scratch.rows[k].phi0
+        scratch.events[2 * k + 1] = scratch.rows[k].phi1
     sort(scratch.events, 2 * count)
     return 2 * count
 
@@ -133,9 +120,9 @@ def status(foot, hole, scratch, i):
             scratch.held[k] = points_under(foot, hole.nodes[k, 0] + phi, hole.nodes[k, 1], scratch.points, 0)
     active = 0
     for k in range(len(scratch.rows)):
-        if scratch.rows[k, SIDE] < 0.0:
+        if scratch.rows[k].side < 0:
             break
-        first, last = scratch.rows[k, PHI0], scratch.rows[k, PHI1]
+        first, last = scratch.rows[k].phi0, scratch.rows[k].phi1
         if min(first, last) < phi < max(first, last):
             scratch.active[active] = k
             active += 1
@@ -184,11 +171,11 @@ def _within(foot, hole, scratch, i, out):
     _lower(out, lowest, start + at * step)
     if lowest - MAX_MARGIN_SLOPE * scratch.movements[i] / SAMPLES_PER_PIECE > out[0]:
         return
-    for beside in (at - 1, at + 1):  # an end may be the lowest sample, and the margin still fall from there
-        if 0 <= beside <= SAMPLES_PER_PIECE:
-            movement = (beside - at) * step
+    for side in (at - 1, at + 1):  # an end may be the lowest sample, and the margin still fall from there
+        if 0 <= side <= SAMPLES_PER_PIECE:
+            movement = (side - at) * step
             if _margin(foot, hole, scratch, start + at * step + SLOPE_STEP * movement, active) < lowest:
-                _section(foot, hole, scratch, i, start + at * step, start + beside * step, active, out)
+                _section(foot, hole, scratch, i, start + at * step, start + side * step, active, out)
 
 
 @compiled
@@ -215,7 +202,7 @@ def _section(foot, hole, scratch, i, start, end, active, out):
     _lower(out, min(here, there), first if here < there else second)
 
 
-@apart
+@outlined
 def _margin(foot, hole, scratch, phi, active):
     count = _gather(foot, hole, scratch, phi, active, True, scratch.points)
     return inset_beside(scratch.points, count, foot, scratch.keep, True)
@@ -226,8 +213,8 @@ def _gather(foot, hole, scratch, phi, active, present, points):
     """Fill the points whose hull is the supported area: crossings first; return their number."""
     for k in range(active):
         row = scratch.rows[scratch.active[k]]
-        side = foot.sides[int(row[SIDE])]
-        t = place(side, hole.edges[int(row[EDGE])], row, phi)
+        side = foot.sides[row.side]
+        t = place(side, hole.edges[row.edge], row, phi)
         points[k, 0] = side[0] + t * side[2]
         points[k, 1] = foot.centre - side[1] - t * side[3]
     count = active
@@ -252,8 +239,8 @@ def _border(foot, hole, held, phi, points, count):
             count += 1
     for j in range(len(hole.edges)):  # of an arc the point nearest to the foot of the centre of mass
         edge = hole.edges[j]
-        if edge[ARC] > 0.0 and edge[BULGE] > 0.0 and edge[ALPHA] + phi <= 0.0 <= edge[KAPPA] + phi:
-            count = points_under(foot, 0.0, edge[LOW], points, count)
+        if edge.arc and edge.bulge and edge.alpha + phi <= 0.0 <= edge.kappa + phi:
+            count = points_under(foot, 0.0, edge.low, points, count)
     return count
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from feederscrew.geometry.compiled import apart, compiled, entry
+from feederscrew.geometry.compiled import compiled, entry, outlined
 from feederscrew.tooling.kernel.hull_depth import inset_beside
 from feederscrew.tooling.kernel.passage import points_under
 
@@ -27,7 +27,7 @@ def over_ring(foot, low, high, scratch):
     return _ring_margin(foot, low, high, scratch)
 
 
-@apart
+@outlined
 def _ring_margin(foot, low, high, scratch):
     """The margin [m] of a foot over the ring between two radii [m]."""
     count, points = 0, scratch.points

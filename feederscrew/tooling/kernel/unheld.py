@@ -2,8 +2,8 @@
 
 from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.tooling.kernel import passage
+from feederscrew.tooling.kernel.carried_corners import carried
 from feederscrew.tooling.kernel.hull_depth import inset_beside
-from feederscrew.tooling.kernel.kept import carried
 
 UNHELD_SAMPLES = 8  # parts of a piece between two events
 

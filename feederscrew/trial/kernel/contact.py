@@ -1,251 +1,327 @@
-"""Compiled contacts of a part with anything: rows of WIDTH numbers, and the impulses at them.
+"""Compiled contacts of a part with anything, records of `workspace.CONTACT`, and the impulses at them.
 
-A row begins as one of `dropping.kernel.floor_contacts`: along each of its axes the lever in body axes and
-the rates that one unit of impulse gives; the effective masses; the speed along the normal wanted after the
-impulse; the impulse. Here the axes are its own, in the bowl's frame, two along the contact and its normal,
-towards the part; then come the friction against sliding ahead and back, the gap, the friction of what is
-touched where that is its own, which contact it is, and where it is, in body axes.
+A contact's Jacobian (6,) along one of its axes gives the speed there of a body's velocities and rates (6,).
+Its response (6,) is what one unit of impulse along that axis adds to these.
 """
 
 import math
 
-from feederscrew.dropping.kernel.body import VX, VZ, W
-from feederscrew.dropping.kernel.floor_contacts import IMPULSE, LEVER, MASS, RATE, WANTED, masses, rates
-from feederscrew.geometry.compiled import apart, compiled
+from feederscrew.dropping.kernel.body import moves_of, set_moves
+from feederscrew.geometry.compiled import compiled, outlined
 
-AXES = IMPULSE + 3
-AHEAD, BACK, GAP, RUB, KEY, SPOT = (AXES + 9 + k for k in range(6))
-WIDTH = SPOT + 3
-KINDS = 8.0  # [1] of a contact's key: its kind, then what touches
-NORMAL = 2  # which of the axes
-TOWARDS = AXES + 3 * NORMAL  # where it is
+KEYS_PER_SPOT = 8.0  # [1] of a contact's key: its kind, then what touches
+STEEP_NORMAL = 0.9  # [1] of a normal along the track: its first axis is upwards then
 
 
 @compiled
-def axes(row, tangent, normal):
-    """Write the axes (9,) [1] of a contact with a normal, the first along the track where it can be."""
+def set_axes(row, tangent, normal):
+    """Write the axes [1] of a contact with a normal, the first along the track where it can be."""
     nx, ny, nz = normal
     u, v, w = tangent[0], tangent[1], 0.0
     across = u * nx + v * ny
-    if abs(across) > 0.9:
+    if abs(across) > STEEP_NORMAL:
         u, v, w, across = 0.0, 0.0, 1.0, nz
     u, v, w = u - across * nx, v - across * ny, w - across * nz
     size = 1.0 / math.sqrt(u * u + v * v + w * w)
     u, v, w = u * size, v * size, w * size
-    row[AXES], row[AXES + 1], row[AXES + 2] = u, v, w
-    row[AXES + 3], row[AXES + 4], row[AXES + 5] = ny * w - nz * v, nz * u - nx * w, nx * v - ny * u
-    row[AXES + 6], row[AXES + 7], row[AXES + 8] = nx, ny, nz
+    row.along_x, row.along_y, row.along_z = u, v, w
+    row.aside_x, row.aside_y, row.aside_z = ny * w - nz * v, nz * u - nx * w, nx * v - ny * u
+    row.normal_x, row.normal_y, row.normal_z = nx, ny, nz
 
 
 @compiled
-def levers(row, turn, inertia, spot):
-    """Write the levers [L] of a contact at a spot (3,) [L] in body axes, its rates [1/L] and masses [1]."""
+def _lever(turn, spot, u, v, w):
+    """Return the lever (3,) [L] in body axes of a spot (3,) [L] there, along an axis in the bowl's frame."""
     x, y, z = spot
-    for e in range(3):
-        u, v, w = row[AXES + 3 * e], row[AXES + 3 * e + 1], row[AXES + 3 * e + 2]
-        a = turn[0] * u + turn[3] * v + turn[6] * w
-        b = turn[1] * u + turn[4] * v + turn[7] * w
-        c = turn[2] * u + turn[5] * v + turn[8] * w
-        k = LEVER + 3 * e
-        row[k], row[k + 1], row[k + 2] = y * c - z * b, z * a - x * c, x * b - y * a
-    rates(inertia, row)
-    masses(row)
+    a = turn[0] * u + turn[3] * v + turn[6] * w
+    b = turn[1] * u + turn[4] * v + turn[7] * w
+    c = turn[2] * u + turn[5] * v + turn[8] * w
+    return y * c - z * b, z * a - x * c, x * b - y * a
 
 
 @compiled
-def put(crowd, n, solid, spot, normal, gap, rub, key):
+def set_levers(row, turn, inertia, spot):
+    """Write the levers [L] of a contact at a spot (3,) [L] in body axes, its rates [1/L] and masses [1]."""
+    i, j, k = inertia[0], inertia[1], inertia[2]
+    a, b, c = _lever(turn, spot, row.along_x, row.along_y, row.along_z)
+    row.along_lever_x, row.along_lever_y, row.along_lever_z = a, b, c
+    p, q, r = a / i, b / j, c / k
+    row.along_rate_x, row.along_rate_y, row.along_rate_z = p, q, r
+    along = 1.0 + (a * p + b * q + c * r)
+    u, v, w = _lever(turn, spot, row.aside_x, row.aside_y, row.aside_z)
+    row.aside_lever_x, row.aside_lever_y, row.aside_lever_z = u, v, w
+    p, q, r = u / i, v / j, w / k
+    row.aside_rate_x, row.aside_rate_y, row.aside_rate_z = p, q, r
+    aside, both = 1.0 + (u * p + v * q + w * r), a * p + b * q + c * r
+    lean, mean = 0.5 * (along - aside), 0.5 * (along + aside)
+    row.along_mass = row.aside_mass = 1.0 / (mean + math.sqrt(lean * lean + both * both))
+    a, b, c = _lever(turn, spot, row.normal_x, row.normal_y, row.normal_z)
+    row.normal_lever_x, row.normal_lever_y, row.normal_lever_z = a, b, c
+    p, q, r = a / i, b / j, c / k
+    row.normal_rate_x, row.normal_rate_y, row.normal_rate_z = p, q, r
+    row.normal_mass = 1.0 / (1.0 + (a * p + b * q + c * r))
+
+
+@compiled
+def add_contact(work, n, solid, spot, normal, gap, friction, key):
     """Add a contact of part n at a spot (3,) [L] in its axes, with a normal (3,) [1] in the bowl's frame."""
-    count = crowd.counts[n]
-    if count >= crowd.rows.shape[1]:
+    count = work.counts[n]
+    if count >= work.contacts.shape[1]:
         return
-    row = crowd.rows[n, count]
-    row[TOWARDS], row[TOWARDS + 1], row[TOWARDS + 2] = normal
-    row[GAP], row[RUB], row[KEY] = gap, rub, key
-    row[SPOT], row[SPOT + 1], row[SPOT + 2] = spot
-    _filled(row, crowd.tangents[n], crowd.turns[n], solid.inertia)
-    crowd.counts[n] = count + 1
+    row = work.contacts[n, count]
+    row.normal_x, row.normal_y, row.normal_z = normal
+    row.gap, row.friction, row.key = gap, friction, key
+    row.spot_x, row.spot_y, row.spot_z = spot
+    _complete(row, work.tangents[n], work.turns[n], solid.inertia)
+    work.counts[n] = count + 1
 
 
-@apart
-def _filled(row, tangent, turn, inertia):
+@outlined
+def _complete(row, tangent, turn, inertia):
     """Write axes, levers, rates and masses of a contact with its normal and spot."""
-    axes(row, tangent, (row[TOWARDS], row[TOWARDS + 1], row[TOWARDS + 2]))
-    levers(row, turn, inertia, (row[SPOT], row[SPOT + 1], row[SPOT + 2]))
+    set_axes(row, tangent, (row.normal_x, row.normal_y, row.normal_z))
+    set_levers(row, turn, inertia, (row.spot_x, row.spot_y, row.spot_z))
 
 
 @compiled
-def speed(state, row, e):
-    """Return the velocity [sqrt(g L)] of a contact, a row (WIDTH,), along its axis e."""
-    a, k = AXES + 3 * e, LEVER + 3 * e
-    found = row[a] * state[VX] + row[a + 1] * state[VX + 1] + row[a + 2] * state[VZ]
-    return found + row[k] * state[W] + row[k + 1] * state[W + 1] + row[k + 2] * state[W + 2]
+def along_jacobian(row):
+    """Return the Jacobian (6,) of a contact along the track."""
+    return row.along_x, row.along_y, row.along_z, row.along_lever_x, row.along_lever_y, row.along_lever_z
 
 
 @compiled
-def apart_by(states, crowd, k, e):
-    """Return the velocity [sqrt(g L)] of a pair's first part against the second, along one of their axes."""
-    first, second = states[crowd.owners[k]], states[crowd.owners[k + 1]]
-    return speed(first, crowd.pairs[k], e) - speed(second, crowd.pairs[k + 1], e)
+def aside_jacobian(row):
+    """Return the Jacobian (6,) of a contact square to its normal and the track."""
+    return row.aside_x, row.aside_y, row.aside_z, row.aside_lever_x, row.aside_lever_y, row.aside_lever_z
 
 
 @compiled
-def _speed(row, a, k, moves):
-    """Velocity along the axis at ``a``, with levers at ``k``, from a body's velocities and rates (6,)."""
+def normal_jacobian(row):
+    """Return the Jacobian (6,) of a contact along its normal."""
+    return (
+        row.normal_x,
+        row.normal_y,
+        row.normal_z,
+        row.normal_lever_x,
+        row.normal_lever_y,
+        row.normal_lever_z,
+    )
+
+
+@compiled
+def _along_response(row):
+    return row.along_x, row.along_y, row.along_z, row.along_rate_x, row.along_rate_y, row.along_rate_z
+
+
+@compiled
+def _aside_response(row):
+    return row.aside_x, row.aside_y, row.aside_z, row.aside_rate_x, row.aside_rate_y, row.aside_rate_z
+
+
+@compiled
+def _normal_response(row):
+    return row.normal_x, row.normal_y, row.normal_z, row.normal_rate_x, row.normal_rate_y, row.normal_rate_z
+
+
+@compiled
+def speed(jacobian, moves):
+    """Return the velocity [sqrt(g L)] along an axis of a contact, of a body's velocities and rates (6,)."""
+    a, b, c, d, e, f = jacobian
     u, v, w, p, q, r = moves
-    along = row[a] * u + row[a + 1] * v + row[a + 2] * w
-    return along + row[k] * p + row[k + 1] * q + row[k + 2] * r
+    return a * u + b * v + c * w + d * p + e * q + f * r
 
 
 @compiled
-def _pushed(row, a, k, impulse, moves):
-    """Velocities and rates (6,) of a body after an impulse along the axis at ``a``, with rates at ``k``."""
+def _pushed(response, impulse, moves):
+    """Velocities and rates (6,) of a body after an impulse along an axis of a contact."""
+    a, b, c, d, e, f = response
     u, v, w, p, q, r = moves
-    u, v, w = u + row[a] * impulse, v + row[a + 1] * impulse, w + row[a + 2] * impulse
-    return u, v, w, p + row[k] * impulse, q + row[k + 1] * impulse, r + row[k + 2] * impulse
+    u, v, w = u + a * impulse, v + b * impulse, w + c * impulse
+    return u, v, w, p + d * impulse, q + e * impulse, r + f * impulse
 
 
 @compiled
-def _rubbing(ahead, aside, most):
+def along_speed(state, row):
+    """Return the velocity [sqrt(g L)] along the track of a contact of a body in a state (13,)."""
+    return speed(along_jacobian(row), moves_of(state))
+
+
+@compiled
+def aside_speed(state, row):
+    """Return the velocity [sqrt(g L)] of a contact square to its normal and the track, as ``along_speed``."""
+    return speed(aside_jacobian(row), moves_of(state))
+
+
+@compiled
+def normal_speed(state, row):
+    """Return the velocity [sqrt(g L)] of a contact along its normal, as ``along_speed``."""
+    return speed(normal_jacobian(row), moves_of(state))
+
+
+@compiled
+def pair_normal_speed(states, work, k):
+    """Return the velocity [sqrt(g L)] of a pair's first part against the second, along their normal."""
+    first, second = states[work.owners[k]], states[work.owners[k + 1]]
+    return normal_speed(first, work.pairs[k]) - normal_speed(second, work.pairs[k + 1])
+
+
+@compiled
+def pair_slip(states, work, k):
+    """Return the velocity (2,) [sqrt(g L)] of a pair's first part against the second, along and aside."""
+    first, second = states[work.owners[k]], states[work.owners[k + 1]]
+    a, b = work.pairs[k], work.pairs[k + 1]
+    return along_speed(first, a) - along_speed(second, b), aside_speed(first, a) - aside_speed(second, b)
+
+
+@compiled
+def _within_friction(along, aside, most):
     """Impulses along a contact, of the size that friction allows at most."""
-    size = ahead * ahead + aside * aside
+    size = along * along + aside * aside
     scale = most / math.sqrt(size) if size > most * most else 1.0
-    return scale * ahead, scale * aside
+    return scale * along, scale * aside
 
 
 @compiled
 def _relax(row, rough, moves):
     """One projected Gauss-Seidel step on a contact: velocities and rates (6,), its impulse's change."""
-    x, y, z = row[IMPULSE], row[IMPULSE + 1], row[IMPULSE + 2]
-    up = max(z + row[MASS + 2] * (row[WANTED] - _speed(row, TOWARDS, LEVER + 6, moves)), 0.0)
-    moves = _pushed(row, TOWARDS, RATE + 6, up - z, moves)
+    x, y, z = row.along_impulse, row.aside_impulse, row.normal_impulse
+    up = max(z + row.normal_mass * (row.wanted - speed(normal_jacobian(row), moves)), 0.0)
+    moves = _pushed(_normal_response(row), up - z, moves)
     change = abs(up - z)
     if rough and (up > 0.0 or z > 0.0):
-        ahead = x - row[MASS] * _speed(row, AXES, LEVER, moves)
-        aside = y - row[MASS + 1] * _speed(row, AXES + 3, LEVER + 3, moves)
-        ahead, aside = _rubbing(ahead, aside, up * (row[BACK] if ahead > 0.0 else row[AHEAD]))
-        moves = _pushed(row, AXES, RATE, ahead - x, moves)
-        moves = _pushed(row, AXES + 3, RATE + 3, aside - y, moves)
-        row[IMPULSE], row[IMPULSE + 1] = ahead, aside
-        change += abs(ahead - x) + abs(aside - y)
-    row[IMPULSE + 2] = up
+        along = x - row.along_mass * speed(along_jacobian(row), moves)
+        aside = y - row.aside_mass * speed(aside_jacobian(row), moves)
+        most = up * (row.friction_back if along > 0.0 else row.friction_ahead)
+        along, aside = _within_friction(along, aside, most)
+        moves = _pushed(_along_response(row), along - x, moves)
+        moves = _pushed(_aside_response(row), aside - y, moves)
+        row.along_impulse, row.aside_impulse = along, aside
+        change += abs(along - x) + abs(aside - y)
+    row.normal_impulse = up
     return moves, change
 
 
 @compiled
-def _begun(state, rows, count, warm):
-    """Begin with a share of the impulses that are in the rows."""
+def _begin_part(state, contacts, count, warm):
+    """Begin with a share of the impulses that are in the contacts."""
+    moves = moves_of(state)
     for m in range(count):
-        row = rows[m]
-        for e in range(3):
-            row[IMPULSE + e] *= warm
-            impulse = row[IMPULSE + e]
-            if impulse != 0.0:
-                for k in range(3):
-                    state[VX + k] += row[AXES + 3 * e + k] * impulse
-                    state[W + k] += row[RATE + 3 * e + k] * impulse
+        row = contacts[m]
+        row.along_impulse *= warm
+        row.aside_impulse *= warm
+        row.normal_impulse *= warm
+        if row.along_impulse != 0.0:
+            moves = _pushed(_along_response(row), row.along_impulse, moves)
+        if row.aside_impulse != 0.0:
+            moves = _pushed(_aside_response(row), row.aside_impulse, moves)
+        if row.normal_impulse != 0.0:
+            moves = _pushed(_normal_response(row), row.normal_impulse, moves)
+    set_moves(state, moves)
 
 
 @compiled
-def _relax_part(state, rows, count, rough):
+def _relax_part(state, contacts, count, rough):
     """One step on all contacts of one part with the track; change and sum of their impulses."""
     change = size = 0.0
-    moves = state[VX], state[VX + 1], state[VZ], state[W], state[W + 1], state[W + 2]
+    moves = moves_of(state)
     for m in range(count):
-        moves, more = _relax(rows[m], rough, moves)
+        moves, more = _relax(contacts[m], rough, moves)
         change += more
-        size += rows[m, IMPULSE + 2]
-    state[VX], state[VX + 1], state[VZ], state[W], state[W + 1], state[W + 2] = moves
+        size += contacts[m].normal_impulse
+    set_moves(state, moves)
     return change, size
 
 
 @compiled
-def _both(states, crowd, k, e, impulse):
-    """Give both parts of a pair's contact an impulse along one of its axes, against each other."""
-    for side in range(2):
-        state, row = states[crowd.owners[k + side]], crowd.pairs[k + side]
-        for m in range(3):
-            state[VX + m] += impulse * row[AXES + 3 * e + m]
-            state[W + m] += impulse * row[RATE + 3 * e + m]
-        impulse = -impulse
+def _push_pair(states, work, k, responses, impulse):
+    """Give both parts of a pair's contact an impulse against each other, by their responses (2, 6)."""
+    first, second = states[work.owners[k]], states[work.owners[k + 1]]
+    set_moves(first, _pushed(responses[0], impulse, moves_of(first)))
+    set_moves(second, _pushed(responses[1], -impulse, moves_of(second)))
 
 
 @compiled
-def _relax_pair(states, crowd, k, rough):
+def _relax_pair(states, work, k, rough):
     """One step on a contact of two parts; the change of its impulse."""
-    row = crowd.pairs[k]
-    x, y, z = row[IMPULSE], row[IMPULSE + 1], row[IMPULSE + 2]
-    up = max(z + row[MASS + 2] * (row[WANTED] - apart_by(states, crowd, k, NORMAL)), 0.0)
-    _both(states, crowd, k, NORMAL, up - z)
-    row[IMPULSE + 2] = up
+    row, other = work.pairs[k], work.pairs[k + 1]
+    x, y, z = row.along_impulse, row.aside_impulse, row.normal_impulse
+    up = max(z + row.normal_mass * (row.wanted - pair_normal_speed(states, work, k)), 0.0)
+    _push_pair(states, work, k, (_normal_response(row), _normal_response(other)), up - z)
+    row.normal_impulse = up
     if not rough or (up == 0.0 and z == 0.0):
         return abs(up - z)
-    ahead = x - row[MASS] * apart_by(states, crowd, k, 0)
-    aside = y - row[MASS + 1] * apart_by(states, crowd, k, 1)
-    ahead, aside = _rubbing(ahead, aside, row[AHEAD] * up)
-    _both(states, crowd, k, 0, ahead - x)
-    _both(states, crowd, k, 1, aside - y)
-    row[IMPULSE], row[IMPULSE + 1] = ahead, aside
-    return abs(up - z) + abs(ahead - x) + abs(aside - y)
+    along, aside = pair_slip(states, work, k)
+    along, aside = x - row.along_mass * along, y - row.aside_mass * aside
+    along, aside = _within_friction(along, aside, row.friction_ahead * up)
+    _push_pair(states, work, k, (_along_response(row), _along_response(other)), along - x)
+    _push_pair(states, work, k, (_aside_response(row), _aside_response(other)), aside - y)
+    row.along_impulse, row.aside_impulse = along, aside
+    return abs(up - z) + abs(along - x) + abs(aside - y)
 
 
-@apart
-def solve(surface, crowd, states, island, rough, warm):
+@outlined
+def solve(surface, work, states, island, rough, warm):
     """Find impulses that let each contact of some parts leave at its wanted speed or faster.
 
     Parameters
     ----------
     surface : Surface
-    crowd : Crowd
+    work : Workspace
     states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
         Whose velocities are changed.
     island : (int, int)
-        From where to where in ``crowd.order`` those parts are.
+        From where to where in ``work.order`` those parts are.
     rough : bool
         With friction.
     warm : float [1]
-        Times the impulses in the rows is begun with.
+        Times the impulses in the contacts is begun with.
     """
     for m in range(island[0], island[1]):
-        n = crowd.order[m]
-        _begun(states[n], crowd.rows[n], crowd.counts[n], warm)
-    pairs = crowd.paired[0]
+        n = work.order[m]
+        _begin_part(states[n], work.contacts[n], work.counts[n], warm)
+    pairs = work.pair_rows[0]
     for k in range(0, pairs, 2):
-        for e in range(3):
-            crowd.pairs[k, IMPULSE + e] *= warm
-            _both(states, crowd, k, e, crowd.pairs[k, IMPULSE + e])
+        row, other = work.pairs[k], work.pairs[k + 1]
+        row.along_impulse *= warm
+        row.aside_impulse *= warm
+        row.normal_impulse *= warm
+        _push_pair(states, work, k, (_along_response(row), _along_response(other)), row.along_impulse)
+        _push_pair(states, work, k, (_aside_response(row), _aside_response(other)), row.aside_impulse)
+        _push_pair(states, work, k, (_normal_response(row), _normal_response(other)), row.normal_impulse)
     for _ in range(surface.sweeps):
         change = size = 0.0
         for m in range(island[0], island[1]):
-            n = crowd.order[m]
-            more, part = _relax_part(states[n], crowd.rows[n], crowd.counts[n], rough)
+            n = work.order[m]
+            more, part = _relax_part(states[n], work.contacts[n], work.counts[n], rough)
             change, size = change + more, size + part
         for k in range(0, pairs, 2):
-            change += _relax_pair(states, crowd, k, rough)
-            size += crowd.pairs[k, IMPULSE + 2]
+            change += _relax_pair(states, work, k, rough)
+            size += work.pairs[k].normal_impulse
         if change <= surface.converged * size:
             break
 
 
 @compiled
-def remembered(crowd, n):
+def recall_impulses(work, n):
     """Begin the contacts of a part with the impulses [sqrt(g L)] that they had a step before."""
     start = 0
-    for m in range(crowd.counts[n]):
-        row = crowd.rows[n, m]
-        row[IMPULSE] = row[IMPULSE + 1] = row[IMPULSE + 2] = 0.0
-        for k in range(start, crowd.knowns[n]):  # they come in nearly the same order
-            if crowd.known[n, k, 0] == row[KEY]:
-                for e in range(3):
-                    row[IMPULSE + e] = crowd.known[n, k, 1 + e]
+    for m in range(work.counts[n]):
+        row = work.contacts[n, m]
+        row.along_impulse = row.aside_impulse = row.normal_impulse = 0.0
+        for k in range(start, work.remembered_counts[n]):  # they come in nearly the same order
+            before = work.remembered[n, k]
+            if before.key == row.key:
+                row.along_impulse, row.aside_impulse = before.along, before.aside
+                row.normal_impulse = before.normal
                 start = k + 1
                 break
 
 
 @compiled
-def remember(crowd, n):
+def remember_impulses(work, n):
     """Keep the impulses [sqrt(g L)] of a part's contacts for the next step."""
-    crowd.knowns[n] = crowd.counts[n]
-    for m in range(crowd.counts[n]):
-        crowd.known[n, m, 0] = crowd.rows[n, m, KEY]
-        for e in range(3):
-            crowd.known[n, m, 1 + e] = crowd.rows[n, m, IMPULSE + e]
+    work.remembered_counts[n] = work.counts[n]
+    for m in range(work.counts[n]):
+        row, impulses = work.contacts[n, m], work.remembered[n, m]
+        impulses.key, impulses.along = row.key, row.along_impulse
+        impulses.aside, impulses.normal = row.aside_impulse, row.normal_impulse

@@ -1,146 +1,141 @@
 """Compiled search for contacts between two parts of one shape: corners on faces, and edges on edges.
 
-Everything is looked for in the body axes of the part that is touched, the second. A contact is two rows of
-`trial.kernel.contact`, one for each part, with the same axes; the normal points towards the first part.
+Everything is looked for in the body axes of the part that is touched, the second. A contact is two records of
+`workspace.CONTACT`, one for each part, with the same axes; the normal points towards the first part.
 """
 
 import math
 
 from feederscrew.dropping.kernel.body import X
-from feederscrew.geometry.compiled import apart, compiled
-from feederscrew.trial.kernel.contact import GAP, IMPULSE, MASS, axes, levers
-from feederscrew.trial.kernel.near_borders import BLOCK
-from feederscrew.trial.kernel.plate_views import PARALLEL, SLANT, within
+from feederscrew.geometry.compiled import compiled, outlined
+from feederscrew.trial.kernel.contact import set_axes, set_levers
+from feederscrew.trial.kernel.plate_views import (
+    BLOCK,
+    CROSSING_SINE,
+    MAX_DEPTH,
+    NORMAL_SLACK,
+    height_over_face,
+    is_over_face,
+)
 
-DEEP = 0.04  # how deep in each other parts are looked for, in units of their length
-BESIDE = 2e-3  # by which a corner may lie beside the face it touches
+FACE_MARGIN = 2e-3  # by which a corner may lie outside the face it touches
 
 
-@apart
-def met(solid, crowd, i, j, reach):
+@outlined
+def find_pair_contacts(solid, work, i, j, reach):
     """Add contacts of two parts with each other, if they come within ``reach`` [L]."""
-    _relative(crowd, i, j)
-    if not _meet(crowd, reach):
+    _place_in(work, i, j)
+    if not _boxes_meet(work, reach):
         return
-    count = corners_on(crowd, solid, i, j, reach, crowd.paired[0])
-    count = edges_on(crowd, solid, i, j, reach, count)
-    crowd.paired[0] = corners_on(crowd, solid, j, i, reach, count)
+    count = _add_corners(work, solid, i, j, reach, work.pair_rows[0])
+    count = _add_edges(work, solid, i, j, reach, count)
+    work.pair_rows[0] = _add_corners(work, solid, j, i, reach, count)
 
 
 @compiled
-def may_meet(solid, crowd, i, j, reach):
+def may_meet(solid, work, i, j, reach):
     """Say whether two parts come within ``reach`` [L] of each other, by balls and boxes around them."""
     square = 0.0
     for e in range(3):
-        square += (crowd.states[i, X + e] - crowd.states[j, X + e]) ** 2
+        square += (work.states[i, X + e] - work.states[j, X + e]) ** 2
     if square > (2.0 * solid.radius + reach) ** 2:
         return False
-    _relative(crowd, i, j)
-    if not _meet(crowd, reach):
+    _place_in(work, i, j)
+    if not _boxes_meet(work, reach):
         return False
-    _relative(crowd, j, i)
-    return _meet(crowd, reach)
+    _place_in(work, j, i)
+    return _boxes_meet(work, reach)
 
 
 @compiled
-def _meet(crowd, reach):
-    """Whether the box of one part comes to that of the other, along the other's axes, as ``crowd.frame``."""
-    move = crowd.frame
+def _boxes_meet(work, reach):
+    """Whether the box of one part comes to that of the other, along the other's axes, as ``work.frame``."""
+    move = work.frame
     for p in range(3):
         middle, half = move[9 + p], reach
         for q in range(3):
-            middle += move[3 * p + q] * 0.5 * (crowd.least[q] + crowd.most[q])
-            half += abs(move[3 * p + q]) * 0.5 * (crowd.most[q] - crowd.least[q])
-        if middle + half < crowd.least[p] or middle - half > crowd.most[p]:
+            middle += move[3 * p + q] * 0.5 * (work.least[q] + work.most[q])
+            half += abs(move[3 * p + q]) * 0.5 * (work.most[q] - work.least[q])
+        if middle + half < work.least[p] or middle - half > work.most[p]:
             return False
     return True
 
 
 @compiled
-def _relative(crowd, i, j):
+def _place_in(work, i, j):
     """Write rotation and place of part i in the body axes of part j."""
-    a, b, move = crowd.turns[i], crowd.turns[j], crowd.frame
+    a, b, move = work.turns[i], work.turns[j], work.frame
     for p in range(3):
         move[9 + p] = 0.0
         for q in range(3):
             move[3 * p + q] = b[p] * a[q] + b[3 + p] * a[3 + q] + b[6 + p] * a[6 + q]
-            move[9 + p] += b[3 * q + p] * (crowd.states[i, X + q] - crowd.states[j, X + q])
+            move[9 + p] += b[3 * q + p] * (work.states[i, X + q] - work.states[j, X + q])
 
 
 @compiled
-def _shifted(points, move, spots):
-    """Write points of one part in the axes of the other."""
-    for k in range(len(points)):
-        a, b, c = points[k, 0], points[k, 1], points[k, 2]
-        for p in range(3):
-            spots[k, p] = move[3 * p] * a + move[3 * p + 1] * b + move[3 * p + 2] * c + move[9 + p]
-
-
-@compiled
-def _touch(crowd, solid, parts, spot, normal, gap, count):
+def _add_contact(work, solid, parts, spot, normal, gap, count):
     """Add a contact at a spot and with a normal in the second part's axes; how many rows there are now."""
-    if count + 2 > len(crowd.pairs):
+    if count + 2 > len(work.pairs):
         return count
     i, j = parts
-    b, rows, move = crowd.turns[j], crowd.pairs, crowd.frame
-    x, y, z = spot
-    u, v, w = normal
-    n = (
+    b, move, (u, v, w), (x, y, z) = work.turns[j], work.frame, normal, spot
+    first, second = work.pairs[count], work.pairs[count + 1]
+    axis = (
         b[0] * u + b[1] * v + b[2] * w,
         b[3] * u + b[4] * v + b[5] * w,
         b[6] * u + b[7] * v + b[8] * w,
     )
-    axes(rows[count], crowd.tangents[i], n)
-    axes(rows[count + 1], crowd.tangents[i], n)
+    set_axes(first, work.tangents[i], axis)
+    set_axes(second, work.tangents[i], axis)
     x, y, z = x - move[9], y - move[10], z - move[11]
     own = (
         move[0] * x + move[3] * y + move[6] * z,
         move[1] * x + move[4] * y + move[7] * z,
         move[2] * x + move[5] * y + move[8] * z,
     )
-    levers(rows[count], crowd.turns[i], solid.inertia, own)
-    levers(rows[count + 1], b, solid.inertia, spot)
-    for k in range(3):
-        both = 1.0 / (1.0 / rows[count, MASS + k] + 1.0 / rows[count + 1, MASS + k])
-        rows[count, MASS + k] = rows[count + 1, MASS + k] = both
-        rows[count, IMPULSE + k] = 0.0
-    rows[count, GAP] = gap
-    crowd.owners[count], crowd.owners[count + 1] = i, j
+    set_levers(first, work.turns[i], solid.inertia, own)
+    set_levers(second, b, solid.inertia, spot)
+    first.along_mass = second.along_mass = 1.0 / (1.0 / first.along_mass + 1.0 / second.along_mass)
+    first.aside_mass = second.aside_mass = 1.0 / (1.0 / first.aside_mass + 1.0 / second.aside_mass)
+    first.normal_mass = second.normal_mass = 1.0 / (1.0 / first.normal_mass + 1.0 / second.normal_mass)
+    first.along_impulse = first.aside_impulse = first.normal_impulse = 0.0
+    first.gap = gap
+    work.owners[count], work.owners[count + 1] = i, j
     return count + 2
 
 
 @compiled
-def _rests(crowd, solid, k, n):
+def _is_lowest(work, solid, k, n):
     """Whether a corner is the lowest of its surroundings over a face."""
-    spots = crowd.shown
+    spots = work.views
     for m in range(solid.firsts[k], solid.firsts[k + 1]):
-        q = solid.beside[m]
+        q = solid.neighbours[m]
         a, b, c = spots[q, 0] - spots[k, 0], spots[q, 1] - spots[k, 1], spots[q, 2] - spots[k, 2]
-        if a * n[0] + b * n[1] + c * n[2] < -SLANT * math.sqrt(a * a + b * b + c * c):
+        if a * n[0] + b * n[1] + c * n[2] < -NORMAL_SLACK * math.sqrt(a * a + b * b + c * c):
             return False
     return True
 
 
 @compiled
-def _face(crowd, solid, blocks, k, reach):
+def _touched_face(work, solid, blocks, k, reach):
     """Triangle that a corner touches, the least deep of those it may, and the gap; -1 for none."""
-    p = crowd.shown[k]
-    a, b, c = p[0], p[1], p[2]
-    best, found = -DEEP, -1
+    p = work.views[k]
+    gap, face = -MAX_DEPTH, -1
     for f in range(blocks):
-        block = crowd.faces[f]
-        if _off(solid.face_blocks[block], p, p, reach + DEEP):
+        block = work.face_blocks[f]
+        if _box_is_off(solid.face_blocks[block], p, p, reach + MAX_DEPTH):
             continue
         for m in range(block * BLOCK, min((block + 1) * BLOCK, len(solid.triangles))):
-            n, first = solid.normals[m], solid.vertices[solid.triangles[m, 0]]
-            off = (a - first[0]) * n[0] + (b - first[1]) * n[1] + (c - first[2]) * n[2]
-            if best < off < reach and within(solid, m, a, b, c, BESIDE) and _rests(crowd, solid, k, n):
-                best, found = off, m
-    return found, best
+            off = height_over_face(solid, m, p[0], p[1], p[2])
+            if not gap < off < reach or not is_over_face(solid, m, p[0], p[1], p[2], FACE_MARGIN):
+                continue
+            if _is_lowest(work, solid, k, solid.normals[m]):
+                gap, face = off, m
+    return face, gap
 
 
 @compiled
-def _off(box, p, q, reach):
+def _box_is_off(box, p, q, reach):
     """Whether the box around two points lies farther than ``reach`` from another, along one of the axes."""
     for e in range(3):
         least, most = min(p[e], q[e]), max(p[e], q[e])
@@ -150,82 +145,98 @@ def _off(box, p, q, reach):
 
 
 @compiled
-def _emptied(box):
+def _empty_box(box):
     for e in range(3):
         box[e], box[3 + e] = math.inf, -math.inf
 
 
 @compiled
-def _taken_in(box, p):
+def _extend_box(box, p):
     for e in range(3):
         box[e], box[3 + e] = min(box[e], p[e]), max(box[3 + e], p[e])
 
 
 @compiled
-def _near_corners(crowd, solid, reach):
-    """Write which corners of the first part come into the box of the second, and their own box; how many."""
-    low, high, count = crowd.least, crowd.most, 0
-    _emptied(crowd.box)
+def _near_blocks(blocks, box, reach, near):
+    """Write which blocks of the second part's faces, or of its edges, come to a box; how many."""
+    count = 0
+    for m in range(len(blocks)):
+        if not _box_is_off(blocks[m], box[:3], box[3:], reach):
+            near[count] = m
+            count += 1
+    return count
+
+
+@compiled
+def _add_corners(work, solid, i, j, reach, count):
+    """Add contacts of part i's corners within ``reach`` [L] of faces of j; fills ``work.views`` (C, 3)."""
+    _place_in(work, i, j)
+    move, low, high, near = work.frame, work.least, work.most, 0
+    _empty_box(work.box)
     for k in range(len(solid.corners)):
-        p = crowd.shown[k]
+        a, b, c = solid.corners[k, 0], solid.corners[k, 1], solid.corners[k, 2]
+        p = work.views[k]
+        for e in range(3):
+            p[e] = move[3 * e] * a + move[3 * e + 1] * b + move[3 * e + 2] * c + move[9 + e]
         if p[0] < low[0] - reach or p[1] < low[1] - reach or p[2] < low[2] - reach:
             continue
         if p[0] > high[0] + reach or p[1] > high[1] + reach or p[2] > high[2] + reach:
             continue
-        crowd.low[count] = k
-        count += 1
-        _taken_in(crowd.box, p)
-    return count
-
-
-@compiled
-def _near_blocks(blocks, box, reach, found):
-    """Write which blocks of the second part's faces, or of its edges, come to a box; how many."""
-    count = 0
-    for m in range(len(blocks)):
-        if not _off(blocks[m], box[:3], box[3:], reach):
-            found[count] = m
-            count += 1
-    return count
-
-
-@compiled
-def corners_on(crowd, solid, i, j, reach, count):
-    """Add contacts of part i's corners within ``reach`` [L] of faces of j; fills ``crowd.shown`` (C, 3)."""
-    _relative(crowd, i, j)
-    _shifted(solid.corners, crowd.frame, crowd.shown)
-    nears = _near_corners(crowd, solid, reach)
-    if nears == 0:
+        work.indices[near] = k
+        near += 1
+        _extend_box(work.box, p)
+    if near == 0:
         return count
-    blocks = _near_blocks(solid.face_blocks, crowd.box, reach + DEEP, crowd.faces)
-    for c in range(nears):
-        k = crowd.low[c]
-        m, gap = _face(crowd, solid, blocks, k, reach)
+    blocks = _near_blocks(solid.face_blocks, work.box, reach + MAX_DEPTH, work.face_blocks)
+    for c in range(near):
+        k = work.indices[c]
+        m, gap = _touched_face(work, solid, blocks, k, reach)
         if m >= 0:
-            n, p = solid.normals[m], crowd.shown[k]
-            count = _touch(crowd, solid, (i, j), (p[0], p[1], p[2]), (n[0], n[1], n[2]), gap, count)
+            n, p = solid.normals[m], work.views[k]
+            count = _add_contact(work, solid, (i, j), (p[0], p[1], p[2]), (n[0], n[1], n[2]), gap, count)
     return count
 
 
 @compiled
-def _near_edges(solid, spots, low, high, reach, found):
-    """Write which edges between the spots come into a box; how many."""
-    count = 0
+def _add_edges(work, solid, i, j, reach, count):
+    """Add contacts of convex edges of part i, corners in ``work.views`` (C, 3) [L], with those of j."""
+    near = 0
+    _empty_box(work.box)
     for k in range(len(solid.edges)):
-        p, q = spots[solid.edges[k, 0]], spots[solid.edges[k, 1]]
-        meets = True
-        for e in range(3):
-            if min(p[e], q[e]) > high[e] + reach or max(p[e], q[e]) < low[e] - reach:
-                meets = False
-        if meets:
-            found[count] = k
-            count += 1
+        p, q = work.views[solid.edges[k, 0]], work.views[solid.edges[k, 1]]
+        if _are_beyond(p, q, work.least, work.most, reach):
+            continue
+        work.first_edges[near] = k
+        near += 1
+        _extend_box(work.box, p)
+        _extend_box(work.box, q)
+    blocks = _near_blocks(solid.edge_blocks, work.box, reach, work.second_blocks) if near else 0
+    for m in range(near):
+        k = work.first_edges[m]
+        p, q = work.views[solid.edges[k, 0]], work.views[solid.edges[k, 1]]
+        for f in range(blocks):
+            block = work.second_blocks[f]
+            if _box_is_off(solid.edge_blocks[block], p, q, reach):
+                continue
+            for n in range(block * BLOCK, min((block + 1) * BLOCK, len(solid.edges))):
+                r, s = solid.corners[solid.edges[n, 0]], solid.corners[solid.edges[n, 1]]
+                if not _edges_are_off(p, q, r, s, reach):
+                    count = _add_edge(work, solid, (i, j), (k, n), reach, count)
     return count
 
 
 @compiled
-def _beside(p, q, r, s, reach):
-    """Whether two edges lie apart along one of the axes."""
+def _are_beyond(p, q, low, high, reach):
+    """Whether the box around two points lies farther than ``reach`` from a box, along one of the axes."""
+    beyond = False
+    for e in range(3):
+        beyond = beyond or min(p[e], q[e]) > high[e] + reach or max(p[e], q[e]) < low[e] - reach
+    return beyond
+
+
+@compiled
+def _edges_are_off(p, q, r, s, reach):
+    """Whether two edges lie farther than ``reach`` from each other along one of the axes."""
     for e in range(3):
         if min(p[e], q[e]) > max(r[e], s[e]) + reach or max(p[e], q[e]) < min(r[e], s[e]) - reach:
             return True
@@ -233,42 +244,17 @@ def _beside(p, q, r, s, reach):
 
 
 @compiled
-def edges_on(crowd, solid, i, j, reach, count):
-    """Add contacts of convex edges of part i, corners in ``crowd.shown`` (C, 3) [L], with those of j."""
-    nears = _near_edges(solid, crowd.shown, crowd.least, crowd.most, reach, crowd.ours)
-    _emptied(crowd.box)
-    for m in range(nears):
-        _taken_in(crowd.box, crowd.shown[solid.edges[crowd.ours[m], 0]])
-        _taken_in(crowd.box, crowd.shown[solid.edges[crowd.ours[m], 1]])
-    blocks = 0
-    if nears:
-        blocks = _near_blocks(solid.edge_blocks, crowd.box, reach, crowd.theirs)
-    for m in range(nears):
-        k = crowd.ours[m]
-        p, q = crowd.shown[solid.edges[k, 0]], crowd.shown[solid.edges[k, 1]]
-        for f in range(blocks):
-            block = crowd.theirs[f]
-            if _off(solid.edge_blocks[block], p, q, reach):
-                continue
-            for n in range(block * BLOCK, min((block + 1) * BLOCK, len(solid.edges))):
-                r, s = solid.corners[solid.edges[n, 0]], solid.corners[solid.edges[n, 1]]
-                if not _beside(p, q, r, s, reach):
-                    count = _cross(crowd, solid, (i, j), (k, n), reach, count)
-    return count
-
-
-@compiled
-def _cross(crowd, solid, parts, edges, reach, count):
+def _add_edge(work, solid, parts, edges, reach, count):
     """Add the contact of two edges (2,) of two parts (2,), if they touch; how many rows there are now."""
     ours, theirs = edges
-    p, q = crowd.shown[solid.edges[ours, 0]], crowd.shown[solid.edges[ours, 1]]
+    p, q = work.views[solid.edges[ours, 0]], work.views[solid.edges[ours, 1]]
     r, s = solid.corners[solid.edges[theirs, 0]], solid.corners[solid.edges[theirs, 1]]
     a, b, c = q[0] - p[0], q[1] - p[1], q[2] - p[2]
     u, v, w = s[0] - r[0], s[1] - r[1], s[2] - r[2]
     nx, ny, nz = b * w - c * v, c * u - a * w, a * v - b * u
     aa, uu, au = a * a + b * b + c * c, u * u + v * v + w * w, a * u + b * v + c * w
     size = math.sqrt(nx * nx + ny * ny + nz * nz)
-    if size <= PARALLEL * math.sqrt(aa * uu):
+    if size <= CROSSING_SINE * math.sqrt(aa * uu):
         return count
     x, y, z = r[0] - p[0], r[1] - p[1], r[2] - p[2]
     pa, pu = x * a + y * b + z * c, x * u + y * v + z * w
@@ -280,21 +266,21 @@ def _cross(crowd, solid, parts, edges, reach, count):
     size = -size if lean > 0.0 else size  # away from the second part
     nx, ny, nz = nx / size, ny / size, nz / size
     gap = -(x * nx + y * ny + z * nz)
-    if not -DEEP < gap < reach or not _wedged(crowd.frame, solid.sides[ours], side, nx, ny, nz):
+    if not -MAX_DEPTH < gap < reach or not _is_between_faces(work.frame, solid.sides[ours], side, nx, ny, nz):
         return count
     spot = (r[0] + place * u, r[1] + place * v, r[2] + place * w)
-    return _touch(crowd, solid, parts, spot, (nx, ny, nz), gap, count)
+    return _add_contact(work, solid, parts, spot, (nx, ny, nz), gap, count)
 
 
 @compiled
-def _wedged(move, first, second, nx, ny, nz):
+def _is_between_faces(move, first, second, nx, ny, nz):
     """Whether a normal lies between the faces of both edges."""
     x = move[0] * nx + move[3] * ny + move[6] * nz
     y = move[1] * nx + move[4] * ny + move[7] * nz
     z = move[2] * nx + move[5] * ny + move[8] * nz
     for e in range(2):
-        if second[3 * e] * nx + second[3 * e + 1] * ny + second[3 * e + 2] * nz > SLANT:
+        if second[3 * e] * nx + second[3 * e + 1] * ny + second[3 * e + 2] * nz > NORMAL_SLACK:
             return False
-        if first[3 * e] * x + first[3 * e + 1] * y + first[3 * e + 2] * z < -SLANT:
+        if first[3 * e] * x + first[3 * e + 1] * y + first[3 * e + 2] * z < -NORMAL_SLACK:
             return False
     return True

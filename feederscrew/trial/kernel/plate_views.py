@@ -1,31 +1,35 @@
-"""Compiled views: how a plate sees a body, and how far points are from borders, faces and the wall."""
+"""Compiled views: how a plate sees a body, and how far points and circles are from borders and the wall."""
 
 import math
 
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import compiled
-from feederscrew.trial.kernel.crowd_records import ACROSS, ALONG, BEFORE, FRONT, NORMAL, WALL
 
-DEEP = 0.04  # how far behind a surface anything may be found, in units of the part's length
-SLANT = 0.02  # [1] by which a contact's normal may lie beyond the faces it is between
-PARALLEL = 1e-3  # [1] sine of the angle below which two edges do not cross: their ends touch instead
-INSIDE = 1.0 - 1e-9  # a border's end counts for the next border's start
+MAX_DEPTH = 0.04  # how far behind a surface anything may be found, in units of the part's length
+NORMAL_SLACK = 0.02  # [1] by which a contact's normal may lie beyond the faces it is between
+CROSSING_SINE = 1e-3  # [1] of the angle below which two edges do not cross: their ends touch instead
+BORDER_END_SHARE = 1.0 - 1e-9  # a border's end counts for the next border's start
+BLOCK = 16  # corners, edges, or faces, that have a box together
 
 
 @compiled
-def seen_by(plate, state, turn, frame):
-    """Write how a plate (21,) sees a body to ``frame`` (12,): rotation [1], row by row, and place [L]."""
-    x, y, z = state[X] - plate[0], state[Y] - plate[1], state[Z] - plate[2]
+def view_of(plate, state, turn, frame):
+    """Write how a plate, a PLATE, sees a body to ``frame`` (12,): rotation [1], row by row, and place [L]."""
+    x, y, z = state[X] - plate.origin_x, state[Y] - plate.origin_y, state[Z] - plate.origin_z
     for e in range(3):
-        u, v, w = plate[ACROSS + 3 * e], plate[ACROSS + 3 * e + 1], plate[ACROSS + 3 * e + 2]
+        u, v, w = plate.first_x, plate.first_y, plate.first_z
+        if e == 1:
+            u, v, w = plate.second_x, plate.second_y, plate.second_z
+        elif e == 2:
+            u, v, w = plate.front_x, plate.front_y, plate.front_z
         for k in range(3):
             frame[3 * e + k] = u * turn[k] + v * turn[3 + k] + w * turn[6 + k]
         frame[9 + e] = u * x + v * y + w * z
 
 
 @compiled
-def placed(frame, p):
-    """Return where a point (3,) [L] of the body is, as a plate sees it [L]; frame (12,) of ``seen_by``."""
+def place_of(frame, p):
+    """Return where a point (3,) [L] of the body is, as a plate sees it [L]; frame (12,) of ``view_of``."""
     return (
         frame[0] * p[0] + frame[1] * p[1] + frame[2] * p[2] + frame[9],
         frame[3] * p[0] + frame[4] * p[1] + frame[5] * p[2] + frame[10],
@@ -34,7 +38,13 @@ def placed(frame, p):
 
 
 @compiled
-def level(frame, block):
+def height_of(frame, p):
+    """Return how high a point (3,) [L] of the body is over a plate [L]; frame (12,) of ``view_of``."""
+    return frame[6] * p[0] + frame[7] * p[1] + frame[8] * p[2] + frame[11]
+
+
+@compiled
+def heights_of(frame, block):
     """Return the least and the greatest height [L] over a plate of what is in a box (6,) [L]."""
     middle, half = frame[11], 0.0
     for e in range(3):
@@ -55,68 +65,139 @@ def in_body(frame, x, y, z):
 
 @compiled
 def in_bowl(plate, x, y, z):
-    """Return a vector that a plate sees, in the bowl's frame and its own unit [any]; ``plate`` (21,)."""
+    """Return a vector that a plate sees, in the bowl's frame and its own unit [any]."""
     return (
-        x * plate[ACROSS] + y * plate[ALONG] + z * plate[FRONT],
-        x * plate[ACROSS + 1] + y * plate[ALONG + 1] + z * plate[FRONT + 1],
-        x * plate[ACROSS + 2] + y * plate[ALONG + 2] + z * plate[FRONT + 2],
+        x * plate.first_x + y * plate.second_x + z * plate.front_x,
+        x * plate.first_y + y * plate.second_y + z * plate.front_y,
+        x * plate.first_z + y * plate.second_z + z * plate.front_z,
     )
 
 
 @compiled
-def off_wall(surface, leans, x, y, z):
-    """Return how far a point is from the wall [L], which stands upright also where the track is banked.
-
-    Beside a groove it leans back: it is the other face of the V.
-    """
-    y -= surface.radius
-    return leans[WALL + 1] * (surface.radius - math.sqrt(x * x + y * y)) - leans[WALL] * z
+def turned(turn, p):
+    """Return a vector (3,) of the body in the bowl's frame; ``turn`` (9,) [1] is its rotation."""
+    return (
+        turn[0] * p[0] + turn[1] * p[1] + turn[2] * p[2],
+        turn[3] * p[0] + turn[4] * p[1] + turn[5] * p[2],
+        turn[6] * p[0] + turn[7] * p[1] + turn[8] * p[2],
+    )
 
 
 @compiled
-def inside(borders, first, last, a, b):
-    """Say whether a point (a, b) [L] of a plate is solid: within its borders (B, 12), holes left out."""
+def turned_back(turn, p):
+    """Return a vector (3,) of the bowl's frame in the body's axes; ``turn`` (9,) [1] is its rotation."""
+    return (
+        turn[0] * p[0] + turn[3] * p[1] + turn[6] * p[2],
+        turn[1] * p[0] + turn[4] * p[1] + turn[7] * p[2],
+        turn[2] * p[0] + turn[5] * p[1] + turn[8] * p[2],
+    )
+
+
+@compiled
+def gravity_of(leans):
+    """Return gravity (3,) [1] ahead, from the wall inwards and up, where the track leans (7,) so."""
+    return leans[0], leans[1], leans[2]
+
+
+@compiled
+def axis_of(leans):
+    """Return the bowl's axis (2,) [1], inwards and up, where the track leans (7,) so."""
+    return leans[3], leans[4]
+
+
+@compiled
+def wall_of(leans):
+    """Return the direction (2,) [1] along which the wall stands, inwards and up, where the track leans so."""
+    return leans[5], leans[6]
+
+
+@compiled
+def distance_to_wall(surface, leans, x, y, z):
+    """Return how far a point is from the wall [L], which stands upright also where the track is banked.
+
+    In a groove it leans back: it is the other face of the V.
+    """
+    lean, up = wall_of(leans)
+    y -= surface.radius
+    return up * (surface.radius - math.sqrt(x * x + y * y)) - lean * z
+
+
+@compiled
+def is_solid(borders, first, last, a, b):
+    """Return whether a point (a, b) [L] of a plate is solid: within its borders (B,), holes left out."""
     odd = False
     for k in range(first, last):
-        odd = odd != crossed(borders[k], a, b)
+        odd = odd != crosses(borders[k], a, b)
     return odd
 
 
 @compiled
-def crossed(border, a, b):
-    """Say whether a line from a point (a, b) [L] of a plate along its first axis crosses a border (12,)."""
-    p, q, r, s = border[0], border[1], border[2], border[3]
+def crosses(border, a, b):
+    """Return whether a line from a point (a, b) [L] of a plate along its first axis crosses a border."""
+    p, q, r, s = border.start_x, border.start_y, border.end_x, border.end_y
     return (q > b) != (s > b) and a < p + (b - q) / (s - q) * (r - p)
 
 
 @compiled
-def beside(border, a, b):
-    """Return how far a point is from a border (12,) [L], negative where it is solid; infinite at its end."""
-    u, v = border[2] - border[0], border[3] - border[1]
-    x, y = a - border[0], b - border[1]
+def distance_to_border(border, a, b):
+    """Return how far a point is from a border [L], negative where it is solid; infinite at its end."""
+    u, v = border.end_x - border.start_x, border.end_y - border.start_y
+    x, y = a - border.start_x, b - border.start_y
     share = (x * u + y * v) / (u * u + v * v)
-    if share >= INSIDE:
+    if share >= BORDER_END_SHARE:
         share = 1.0
     share = min(max(share, 0.0), 1.0)
     x, y = x - share * u, y - share * v
     off = math.sqrt(x * x + y * y)
-    nx, ny = border[NORMAL], border[NORMAL + 1]
+    nx, ny = border.normal_x, border.normal_y
     if share == 0.0:
-        nx, ny = nx + border[BEFORE], ny + border[BEFORE + 1]
+        nx, ny = nx + border.before_x, ny + border.before_y
     elif share == 1.0:
         off += 1e-12 + 1e-9 * off  # the next border tells
     return -off if nx * x + ny * y < 0.0 else off
 
 
 @compiled
-def within(solid, k, x, y, z, wide):
-    """Say whether a point [L] lies over triangle k, or no further than ``wide`` [L] outside it."""
+def is_over_face(solid, k, x, y, z, margin):
+    """Return whether a point [L] lies over triangle k, or no further than ``margin`` [L] outside it."""
     n = solid.normals[k]
     for i in range(3):
         p, q = solid.vertices[solid.triangles[k, i]], solid.vertices[solid.triangles[k, (i + 1) % 3]]
         u, v, w = q[0] - p[0], q[1] - p[1], q[2] - p[2]
         a, b, c = x - p[0], y - p[1], z - p[2]
         side = n[0] * (v * c - w * b) + n[1] * (w * a - u * c) + n[2] * (u * b - v * a)
-        if side < -wide * math.sqrt(u * u + v * v + w * w):
+        if side < -margin * math.sqrt(u * u + v * v + w * w):
             return False
     return True
+
+
+@compiled
+def height_over_face(solid, k, x, y, z):
+    """Return how far a point [L] lies outside the plane of triangle k [L]."""
+    n, p = solid.normals[k], solid.vertices[solid.triangles[k, 0]]
+    return (x - p[0]) * n[0] + (y - p[1]) * n[1] + (z - p[2]) * n[2]
+
+
+@compiled
+def circle_height(frame, circle):
+    """Return the height [L] of a circle's lowest point as a plate sees it, and the sine of its tilt [1]."""
+    middle = frame[6] * circle.x + frame[7] * circle.y + frame[8] * circle.z + frame[11]
+    up = frame[6] * circle.axis_x + frame[7] * circle.axis_y + frame[8] * circle.axis_z
+    tilt = math.sqrt(max(1.0 - up * up, 0.0))
+    return middle - circle.radius * tilt, tilt
+
+
+@compiled
+def circle_to_wall(surface, state, turn, leans, circle):
+    """Return how near [L] a circle comes to the wall, or a little less, and the sine of its tilt to it."""
+    lean, up = wall_of(leans)
+    p = turned(turn, (circle.x, circle.y, circle.z))
+    x, y, z = p[0] + state[X], p[1] + state[Y] - surface.radius, p[2]
+    off = math.sqrt(x * x + y * y)
+    a, b, c = up * x / off, up * y / off, lean
+    n = turned(turn, (circle.axis_x, circle.axis_y, circle.axis_z))
+    along = a * n[0] + b * n[1] + c * n[2]
+    tilt = math.sqrt(max(a * a + b * b + c * c - along * along, 0.0))
+    bent = 0.5 * circle.radius**2 / surface.radius  # by which the wall comes nearer to either side
+    gap = distance_to_wall(surface, leans, x, y + surface.radius, z + state[Z])
+    return gap - circle.radius * tilt - bent, tilt

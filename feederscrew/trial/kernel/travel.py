@@ -4,24 +4,24 @@ import math
 
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, X, Y, Z
-from feederscrew.geometry.compiled import apart, compiled, entry
-from feederscrew.trial.kernel import corners_met, jets, motion, pairs
-from feederscrew.trial.kernel.crowd_records import REACHES
+from feederscrew.geometry.compiled import compiled, entry, outlined
+from feederscrew.trial.kernel import pairs, steps
+from feederscrew.trial.kernel.track_contacts import find_contacts
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = range(5)  # STANDS gets on no more, ROLLED went back
-TIME, MOVED, SUNK, WON, NOTES = 0, 1, 2, 3, 4  # what a run notes: time, way, depth, energy; how many
 BACKWARDS = 5.0  # times as far as a part must get on: so far back in that time it rolls back
-LEFT = 1e-6  # of a step: less is nothing
+LEAST_STEP_SHARE = 1e-6  # [1] of a step: less is nothing
+LEAST_FRICTION = 1e-6  # [1] below which a part slides on for good
 
 
 @compiled
-def way(surface, state):
+def way_of(surface, state):
     """Return how far along the wall [L] the centre of mass of a state (13,) is."""
     return surface.radius * math.atan2(state[X], surface.radius - state[Y])
 
 
 @compiled
-def across(surface, state):
+def distance_from_wall(surface, state):
     """Return how far from the wall [L] the centre of mass of a state (13,) is, anywhere round the bowl."""
     x, y = state[X], surface.radius - state[Y]
     return surface.radius - math.sqrt(x * x + y * y)
@@ -35,51 +35,44 @@ def slides_to(surface, state):
     """
     x, y = state[X], surface.radius - state[Y]
     outwards = (state[VY] * y - state[VX] * x) / math.sqrt(x * x + y * y)
-    return across(surface, state) + 0.5 * max(outwards, 0.0) ** 2 / max(surface.friction[1], LEFT)
+    braking = max(surface.friction[1], LEAST_FRICTION)
+    return distance_from_wall(surface, state) + 0.5 * max(outwards, 0.0) ** 2 / braking
 
 
-@apart
-def over(surface, solid, floor, crowd, island, time, notes):
-    """Move an island's parts through a step of the floor; ``notes`` gets depth [L] and energy [g L].
+@outlined
+def step_island(surface, solid, floor, work, island, time, journal):
+    """Move an island's parts through a step of the floor; ``journal`` gets depth [L] and energy [g L].
 
     What strikes or turns its sliding round within it ends a share of the step, and the rest follows.
     """
     rest = floor.step
-    while rest > LEFT * floor.step:
+    while rest > LEAST_STEP_SHARE * floor.step:
         now, taken = time + floor.step - rest, rest
-        motion.ready(surface, crowd, island)
+        steps.begin_step(surface, work, island)
         reach = 0.0
         for m in range(island[0], island[1]):
-            own = motion.ahead(solid, crowd.states[crowd.order[m]], taken)
-            corners_met.found(surface, solid, crowd, crowd.order[m], own)
+            n = work.order[m]
+            own = steps.reach_ahead(solid, work.states[n], taken)
+            find_contacts(surface, solid, work, n, own)
             reach = max(reach, own)
-        crowd.paired[0] = 0
+        work.pair_rows[0] = 0
         for m in range(island[0], island[1]):
             for k in range(island[0], m):
-                pairs.met(solid, crowd, crowd.order[m], crowd.order[k], reach)
-        deepest, strikes, share = motion.pushed(surface, solid, floor, crowd, island, now, taken)
-        once = motion.at_once(floor, taken)
+                pairs.find_pair_contacts(solid, work, work.order[m], work.order[k], reach)
+        deepest, strikes, share = steps.push_island(surface, solid, floor, work, island, now, taken)
+        once = steps.share_at_once(floor, taken)
         if once <= share < 1.0 - once:
             taken *= share
-            motion.back(crowd, island)
-            deepest, strikes, share = motion.pushed(surface, solid, floor, crowd, island, now, taken)
-        motion.moved(crowd, island, 1.0 if strikes else 0.5, taken)
-        if deepest < -motion.TROUBLE:
-            motion.lift(surface, solid, crowd, island, taken)
-        notes[SUNK] = max(notes[SUNK], -deepest)
+            steps.reset_island(work, island)
+            deepest, strikes, share = steps.push_island(surface, solid, floor, work, island, now, taken)
+        steps.move_island(work, island, 1.0 if strikes else 0.5, taken)
+        if deepest < -steps.DEEP_CONTACT:
+            steps.lift_island(surface, solid, work, island, taken)
+        journal.depth = max(journal.depth, -deepest)
         rest -= taken
-        notes[NOTES] += motion.unpaid(solid, crowd, island, taken)
-        notes[NOTES + 1] = min(notes[NOTES + 1], notes[NOTES])
-        notes[WON] = max(notes[WON], notes[NOTES] - notes[NOTES + 1])
-
-
-@compiled
-def _sent_off(crowd, sent, n):
-    """Lay the n-th part that is sent onto the track, with nothing known of what it touches."""
-    for k in range(body.STATE):
-        crowd.states[0, k] = sent.states[n, k]
-    crowd.lasted[0] = crowd.made[0, REACHES] = crowd.blown[0, jets.AGAIN] = -1.0
-    crowd.knowns[0] = crowd.order[0] = 0
+        journal.energy += steps.energy_gain(solid, work, island, taken)
+        journal.least_energy = min(journal.least_energy, journal.energy)
+        journal.gain = max(journal.gain, journal.energy - journal.least_energy)
 
 
 @compiled
@@ -93,46 +86,47 @@ def _note(place, state, time):
 
 
 @compiled
-def _what_became(surface, limits, solid, state):
+def _outcome(surface, limits, solid, state):
     """Return RUNNING, or how a part with that state has left the stretch."""
-    if state[Z] < -solid.radius - limits.drop or across(surface, state) > limits.free:
+    if state[Z] < -solid.radius - limits.drop or distance_from_wall(surface, state) > limits.free:
         return RETURNED
-    place = way(surface, state)
+    place = way_of(surface, state)
     if place > limits.exit:
-        held = state[Z] > limits.under and slides_to(surface, state) < limits.edge
-        return PASSED if held else RETURNED
-    return ROLLED if place < limits.back else RUNNING
+        on_track = state[Z] > limits.under and slides_to(surface, state) < limits.edge
+        return PASSED if on_track else RETURNED
+    return ROLLED if place < limits.back_limit else RUNNING
 
 
 @compiled
-def _islands(solid, crowd, active, dt):
+def _find_islands(solid, work, active, dt):
     """Write which parts may touch each other in a step, by islands; how many islands there are."""
-    count, found = 0, 0
-    for n in range(len(crowd.states)):
+    count, islands = 0, 0
+    for n in range(len(work.states)):
         if active[n]:
-            body.rotation(crowd.states[n], crowd.turns[n])
-            crowd.order[count] = n
+            body.rotation(work.states[n], work.turns[n])
+            work.order[count] = n
             count += 1
     first = 0
     while first < count:
-        crowd.islands[found] = first
-        found += 1
+        work.islands[islands] = first
+        islands += 1
         last = first + 1
         while first < last:
-            n = crowd.order[first]
+            n = work.order[first]
             for m in range(last, count):
-                k = crowd.order[m]
-                reach = motion.ahead(solid, crowd.states[n], dt) + motion.ahead(solid, crowd.states[k], dt)
-                if pairs.may_meet(solid, crowd, n, k, reach):
-                    crowd.order[m], crowd.order[last] = crowd.order[last], k
+                k = work.order[m]
+                reach = steps.reach_ahead(solid, work.states[n], dt)
+                reach += steps.reach_ahead(solid, work.states[k], dt)
+                if pairs.may_meet(solid, work, n, k, reach):
+                    work.order[m], work.order[last] = work.order[last], k
                     last += 1
             first += 1
-    crowd.islands[found] = count
-    return found
+    work.islands[islands] = count
+    return islands
 
 
 @entry
-def ride(surface, limits, solid, floor, crowd, sent, together):
+def ride(surface, limits, solid, floor, work, sent, together):
     """Follow every part that is sent from its start, one at a time; where none is, move a crowd on.
 
     One entry and one function for both: what they share is most of it, and is compiled once.
@@ -145,38 +139,40 @@ def ride(surface, limits, solid, floor, crowd, sent, together):
     solid : TrueSolid
     floor : Floor
         Its ``step`` is the time step.
-    crowd : Crowd
+    work : Workspace
         Of one part where any is sent; else ``strains`` (N, 2) [sqrt(g L)] are added to.
     sent : Sent
         Outcomes are PASSED, RETURNED, STANDS, ROLLED or, of one whose time was up, RUNNING.
     together : Together
     """
-    dt, state = floor.step, crowd.states[0]
+    dt, state = floor.step, work.states[0]
     for k in range(together.steps):
-        found = _islands(solid, crowd, together.active, dt)
-        for m in range(found):
-            island = (crowd.islands[m], crowd.islands[m + 1])
-            over(surface, solid, floor, crowd, island, together.time + k * dt, together.notes)
+        for m in range(_find_islands(solid, work, together.active, dt)):
+            island = (work.islands[m], work.islands[m + 1])
+            step_island(surface, solid, floor, work, island, together.time + k * dt, together.journals[0])
     often = math.ceil(limits.patience / dt)
     for n in range(len(sent.states)):
-        _sent_off(crowd, sent, n)
-        path, notes, begun, outcome = sent.paths[n], sent.notes[n], sent.times[n], RUNNING
-        start, level, time = way(surface, state), state[Z], begun
+        body.keep(sent.states[n], state)
+        work.last_steps[0] = work.listed[0].reach = work.blown_until[0] = -1.0  # nothing is known of it
+        work.remembered_counts[0] = work.order[0] = 0
+        path, journal, begun, outcome = sent.paths[n], sent.journals[n], sent.times[n], RUNNING
+        start, level, time = way_of(surface, state), state[Z], begun
         mark = start
         for k in range(math.ceil(limits.longest / dt)):
             if k % often == often - 1:
-                place = way(surface, state)
+                place = way_of(surface, state)
                 on = -BACKWARDS * limits.progress < place - mark < limits.progress
                 if on and level - state[Z] < limits.progress:
                     outcome = STANDS
                     break
                 mark, level = place, state[Z]
-            if k % sent.every == 0 and k // sent.every < len(path):
-                _note(path[k // sent.every], state, time - begun)
-            over(surface, solid, floor, crowd, (0, 1), time, notes)
+            if k % sent.stride == 0 and k // sent.stride < len(path):
+                _note(path[k // sent.stride], state, time - begun)
+            step_island(surface, solid, floor, work, (0, 1), time, journal)
             time = begun + (k + 1) * dt
-            outcome = _what_became(surface, limits, solid, state)
+            outcome = _outcome(surface, limits, solid, state)
             if outcome != RUNNING:
                 break
-        notes[TIME], notes[MOVED], sent.outcomes[n] = time - begun, way(surface, state) - start, outcome
+        journal.time, journal.way = time - begun, way_of(surface, state) - start
+        sent.outcomes[n] = outcome
         body.keep(state, sent.states[n])

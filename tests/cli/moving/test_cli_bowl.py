@@ -108,12 +108,6 @@ def test_parts_fill_a_bowl_and_a_hopper_by_their_hulls(run):
     assert full["mass_kg"] == pytest.approx(full["volume_l"] * 1e6 * 0.5 / hull * grams * 1e-3, rel=1e-6)
 
 
-def test_the_magnet_is_told_with_its_angle_and_its_mean(run):
-    found = document(run("bowl", *machine(), "--format", "json"))
-    assert found["magnet_force_n"] == pytest.approx(2.9238 * found["drive_force_n"], rel=1e-4)
-    assert (found["magnet_force_mean_n"], found["magnet_angle_deg"]) == (found["magnet_force_n"], 90.0)
-
-
 def test_leaves_that_do_not_share_into_the_banks_are_told(run):
     line = "machine.leaves: 10 leaves do not share into 3 banks - take 9 or 12, or give sizing.banks"
     assert f"Warning: {line}" in run("bowl", *machine()).stderr.splitlines()
@@ -186,16 +180,6 @@ def test_what_the_file_says_is_kept_and_devices_count(run):
     assert 0.5 < found["share_counted"] < 0.99
 
 
-def test_the_machine_sets_angle_and_frequency_of_other_commands(run):
-    found = document(run("bowl", *machine(), "--format", "json"))
-    along = document(run("convey", "--bowl", *machine(), "--format", "json"))["cells"][-1]
-    assert along["vibration_angle_deg"] == pytest.approx(found["angle_by_radius"][-1]["to_the_track_deg"])
-    shown = document(run("config", "show", *machine(), "--format", "json"))["settings"]
-    origins = {row["key"]: (row["value"], row["from"]) for row in shown}
-    assert origins["drive.vibration_angle"] == ("9.31897 deg", "from machine")
-    assert origins["drive.frequency"] == ("100 Hz", "from machine.supply")
-
-
 def test_an_angle_that_is_written_holds_and_is_told(run):
     result = run("bowl", *machine(), "--set", "drive.vibration_angle=20 deg")
     told = (
@@ -257,14 +241,6 @@ def test_a_target_no_bowl_reaches(run):
     line = told(run, PART, "--target", "6000/min", status=2)
     assert line.startswith("--target: no bowl reaches 6000/min of this part: the most is ")
     assert line.endswith(" - split it over several bowls or tracks, or let more orientations pass")
-
-
-def test_a_track_too_narrow_for_the_aspect_that_counts(run):
-    line = told(run, PART, "--target", "9/min", "--aspect", "A", "--set", "track.width=15 mm")
-    assert line == (
-        f"{PART}: needs 15 mm of track and its play, more than track.width"
-        " - widen the track, or leave track.width out"
-    )
 
 
 def test_part_and_target_go_together(run):
@@ -354,16 +330,6 @@ def test_a_bowl_that_sorts_nothing_says_so(run, tmp_path):
     assert "every way up" not in run(*line, "--config", tmp_path / "gap.yaml").stderr
 
 
-def test_a_solid_needs_a_part(run):
-    found = run("bowl", "--solid")
-    assert found.exit_code == 2 and "--solid is given without PART - name the part's file" in found.stderr
-
-
-def test_what_joins_segments_needs_a_bed(run):
-    found = run("bowl", PART, "--target", "60/min", "--solid", "--join", "screws")
-    assert found.exit_code == 2 and "--join is given without --bed - give the printer's bed" in found.stderr
-
-
 def test_what_was_measured_is_set_beside_what_should_be(run):
     plain = ("bowl", *machine(), "--format", "json", "--measured")
     asked = document(run(*plain, "stroke=0.42 mm"))
@@ -376,14 +342,6 @@ def test_what_was_measured_is_set_beside_what_should_be(run):
     half = document(run(*plain, f"acceleration={peak} m/s2, stroke={should} mm"))
     assert half["measured"]["frequency_hz"] == pytest.approx(0.5 * half["should"]["frequency_hz"])
     assert half["causes"][0] == "only one half-wave pulls: the controller is set to half wave"
-
-
-def test_measured_values_that_are_none_are_refused(run):
-    refused = run("bowl", "--measured", "stroke=3 kg")
-    assert refused.exit_code == 2
-    assert refused.stderr == "Error: --measured stroke: '3 kg' is a mass, not a length - give it in mm\n"
-    only = run("bowl", "--measured", "fill=50 %")
-    assert "says nothing but the fill - add stroke=0.3 mm, or an acceleration" in only.stderr
 
 
 @pytest.mark.parametrize(

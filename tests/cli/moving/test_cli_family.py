@@ -5,13 +5,13 @@ import json
 import pytest
 import shapes
 
-from feederscrew.designing import beside, queues
+from feederscrew.designing import built_bowl, queues
 
 
 @pytest.fixture
 def cubes(tmp_path, monkeypatch):
     """Two cubes of other sizes, queues that are soon over, and no solid."""
-    monkeypatch.setattr(beside, "built", lambda study, settings: beside.Built())
+    monkeypatch.setattr(built_bowl, "built", lambda study, settings: built_bowl.Built())
     monkeypatch.setattr(queues, "PARTS", 4)
     monkeypatch.setattr(queues, "SECONDS", 2.0)
     monkeypatch.setattr(queues, "FILLS", queues.FILLS[1:])

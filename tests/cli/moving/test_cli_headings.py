@@ -27,13 +27,6 @@ def test_a_bar_at_a_straight_wall(run, tmp_path):
     assert [row["heading_deg"] for row in long_side] == [0.0]  # half a turn maps the bar to itself
 
 
-def test_every_aspect_has_shares_that_sum_to_one(run):
-    found = rows(run, BRACKET)
-    for name in {row["aspect"] for row in found}:
-        assert sum(row["share"] for row in found if row["aspect"] == name) == pytest.approx(1)
-    assert sum(row["aspect_share"] for row in found) == pytest.approx(1)
-
-
 def test_a_narrow_track_lets_the_part_fall(run):
     wide, narrow = (rows(run, BRACKET, "--aspect", "A", "--set", f"track.width={w} mm") for w in (40, 12))
     assert not any(row["falls_off"] for row in wide)
@@ -51,19 +44,3 @@ def test_a_round_part_takes_any_heading(run):
     result = run("headings", PARTS / "washer_m6.stl", "--aspect", "A")
     assert result.exit_code == 0
     assert "aspect A is round in plan: it takes any heading" in result.stderr
-
-
-def test_a_card_has_no_outline(run):
-    result = run("headings", CARD)
-    assert result.exit_code == 1
-    assert result.stderr.splitlines()[-1] == (
-        "Error: part card: the card of aspect 1 has no outline - give the part as a mesh"
-    )
-
-
-def test_an_unknown_aspect(run):
-    result = run("headings", BRACKET, "--aspect", "Q")
-    assert result.exit_code == 2
-    assert result.stderr.splitlines()[-1] == (
-        f"Error: --aspect of {BRACKET}: there is no aspect 'Q' - choose one of A, B, C, D, E"
-    )

@@ -67,20 +67,10 @@ def test_an_orientation_that_a_device_returns(run, config):
     ("arguments", "status", "line"),
     [
         (
-            ("--aspect", "Q"),
-            2,
-            f"Error: --aspect of {PART}: there is no aspect 'Q' - choose one of A, B, C, D, E",
-        ),
-        (
             ("--aspect", "A", "--set", "track.climb=40 deg"),
             1,
             "Error: track.climb: is steeper than friction holds: the part slides down continuously - "
             "lower the climb or raise the friction",
-        ),
-        (
-            ("--aspect", "A", "--gap", "3"),
-            2,
-            "Error: Invalid value for '--gap': '3' has no unit - write 3 mm (see feeder rate --help)",
         ),
         (
             ("--aspect", "A", "--fill", "1.2"),

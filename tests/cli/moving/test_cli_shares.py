@@ -10,8 +10,6 @@ import numpy as np
 import pytest
 import shapes
 
-import feederscrew
-
 PARTS = Path(__file__).parents[3] / "parts"
 CAP = PARTS / "cap_14x10.stl"  # CSA and PMI rank B first or second, the recommended answer A
 
@@ -45,16 +43,7 @@ def test_a_bowl_file_feeds_its_own_floor_and_names_it(run, block, config):
             assert made["answer"].endswith(answer)
 
 
-def test_a_file_of_the_defaults_is_the_defaults(run, block, tmp_path):
-    """In the command with it and without, in the library, and in a batch."""
-    run("config", "init", "defaults.yaml")
-    call = ("rate", block, "--aspect", "A", "--fed", "60")
-    rates = [told(run, *call, *own)["parts_per_minute"] for own in ((), ("--config", "defaults.yaml"))]
-    found = feederscrew.rate(feederscrew.load(block), feederscrew.read_bowl("defaults.yaml"), "A", fed=60)
-    assert rates[0] == rates[1] == pytest.approx(60.0 * found.parts.value, rel=1e-9)
-
-
-@pytest.mark.parametrize("command", ["rate", "headings", "track", "floor"])
+@pytest.mark.parametrize("command", ["rate", "track"])
 def test_a_file_of_the_defaults_changes_no_command_and_no_file(run, block, command):
     """Of a part whose orientation is left open; all that is printed and every table."""
     run("config", "init", "defaults.yaml")
@@ -66,17 +55,6 @@ def test_a_file_of_the_defaults_changes_no_command_and_no_file(run, block, comma
         tables = {path.name: path.read_bytes() for path in Path(folder).rglob("*.csv")}
         found.append((done.stdout, tables))
     assert found[0][1] and found[0] == found[1]
-
-
-def test_a_batch_with_a_file_of_the_defaults_is_the_batch_without(run, block):
-    run("config", "init", "defaults.yaml")
-    rows = []
-    for folder, own in (("without", ()), ("with", ("--config", "defaults.yaml"))):
-        call = ("batch", block, "-o", folder, "--no-pictures", "--jobs", "1", *own)
-        (row,) = told(run, *call)["parts"]
-        rows.append({name: value for name, value in row.items() if name != "config"})
-    assert rows[0]["parts_per_minute"] > 0.0
-    assert rows[0] == rows[1]
 
 
 @pytest.mark.thorough
@@ -152,7 +130,7 @@ def test_rate_tune_and_batch_take_the_same_answer(run, block, config):
     assert densities[0] == pytest.approx(densities[1], rel=1e-9)
 
 
-@pytest.mark.parametrize("option", [("--launch", "drop"), ("--rule", "csa")])
+@pytest.mark.parametrize("option", [("--rule", "csa")])
 def test_a_batch_with_a_launch_or_a_rule_feeds_nothing(run, block, config, option):
     call = ("batch", block, "--config", config, "-o", "all", "--no-pictures", "--jobs", "1", *option)
     (row,) = told(run, *call)["parts"]

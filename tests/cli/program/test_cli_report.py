@@ -62,16 +62,6 @@ def test_markdown_with_its_pictures_beside_it(run, light):
     assert all((folder / name).stat().st_size > 60 for name in shown)
 
 
-def test_another_format_takes_the_place_of_the_first(run, monkeypatch):
-    monkeypatch.setattr(report, "page", functools.partial(report.page, chapters=LIGHT[-2:]))
-    run("report", PART, "--format", "md")
-    run("report", PART)
-    assert sorted(p.name for p in Path("results", PART.stem).rglob("*") if p.is_file()) == [
-        "report.html",
-        "run.json",
-    ]
-
-
 def test_same_input_same_bytes_wherever_it_is_written(run, light):
     run("report", PART, "-o", "one", "--set", "track.bank=5 deg")
     run("report", PART, "-o", "two", "--set", "track.bank=5 deg", "-q")
@@ -95,11 +85,6 @@ def test_what_was_told_is_recorded(run, light):
 @pytest.mark.parametrize(
     ("arguments", "status", "line"),
     [
-        (
-            ("--aspect", "Q"),
-            2,
-            f"Error: --aspect of {PART}: there is no aspect 'Q' - choose one of A, B, C, D, E",
-        ),
         (("--config", "none.yaml"), 1, "Error: none.yaml: "),
         (("--format", "pdf"), 2, "Error: Invalid value for '--format': 'pdf' is not one of 'html', 'md'."),
     ],

@@ -101,12 +101,3 @@ def test_csv_summary(run):
     found = list(csv.DictReader(result.stdout.splitlines()))
     assert found[0]["item"] == "table 3-1"
     assert all(row["differs"] == "0" for row in found)
-
-
-def test_the_same_run_gives_the_same_bytes(written, tmp_path):
-    folder, _ = written
-    CliRunner().invoke(feeder, ["reproduce", "-o", str(tmp_path), "-q"])
-    again = {
-        path.name: path.read_bytes() for path in (tmp_path / "thesis").iterdir() if path.name != "run.json"
-    }
-    assert again == {path.name: path.read_bytes() for path in folder.iterdir() if path.name != "run.json"}

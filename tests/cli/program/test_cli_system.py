@@ -110,13 +110,6 @@ def test_a_batch_of_odd_names_ends_with_its_summary(run, tmp_path):
     assert (tmp_path / "out/index.html").exists()
 
 
-@pytest.mark.parametrize("name", ODD)
-def test_a_picture_of_odd_names(run, tmp_path, name):
-    shutil.copy(NUT, tmp_path / name)
-    done = run("floor", name, "-o", "out")
-    assert done.exit_code == 0, done.output
-
-
 def test_links_that_go_round_are_counted_once_and_dangling_ones_are_told(run, tmp_path):
     (tmp_path / "in").mkdir()
     shutil.copy(NUT, tmp_path / "in/a.stl")

@@ -3,24 +3,20 @@
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import click
-import part_files as files
 import pytest
 
 from feederscrew.part.density import MATERIALS
 from feederscrew.resting.rules import registry
-from feederscrew_cli import grouped, talk
+from feederscrew_cli import argument_names, grouped, talk
 from feederscrew_cli.main import feeder
 
 PARTS = Path(__file__).parents[3] / "parts"
 NUT = PARTS / "squarenut_m5.stl"
-BROKEN = Path(__file__).parents[2] / "data" / "broken"
-WIPER = "devices:\n  - wiper: 3 mm\n"
 
 
 def words(text):
@@ -48,46 +44,6 @@ def test_a_remark_is_folded_for_a_terminal_and_one_line_for_a_program():
     assert talk.folded(text, None) == text and talk.folded(text, 200) == text
 
 
-def test_a_new_bowl_file_shows_a_block_of_devices(run):
-    told = run("config", "init").stdout
-    assert "# devices:  # along the track, in the order parts meet them\n#   - wiper: 6 mm  # " in told
-
-
-def test_several_bodies_are_refused_with_the_option_that_takes_them(run):
-    done = run("inertia", BROKEN / "two_nuts.stl")
-    assert done.stderr.endswith("; or pass --allow-open to take them as one part\n")
-
-
-def test_a_device_that_rejects_what_is_wanted(run, tmp_path):
-    (tmp_path / "bowl.yaml").write_text(WIPER)
-    done = run("rate", NUT, "--aspect", "C", "--config", "bowl.yaml")
-    assert done.stderr == "Warning: wiper (3 mm) rejects the orientation you want; rate is 0\n"
-    assert "correctly oriented parts per minute" in done.stdout
-
-
-def test_one_part_is_one(run, tmp_path):
-    shutil.copy(NUT, tmp_path / "a.stl")
-    done = run("batch", "a.stl", "-o", "out", "--no-pictures", "--jobs", 1, "--rule", "closed")
-    assert "Wrote out (1 part; open index.html)\n" in done.stderr
-
-
-def test_duplicates_are_removed_and_what_points_inwards_is_reversed(tmp_path):
-    from feederscrew.part import load
-
-    box = files.box()
-    twice = load(files.written(tmp_path, [*box, *box[:3]]))
-    assert twice.warnings == ("3 duplicate facets removed",)
-    assert load(files.written(tmp_path, files.inside_out(box))).warnings == (
-        "all facets pointed inwards; reversed",
-    )
-
-
-@pytest.mark.parametrize("beta", ["1e-308", "5e-324", "0", "90"])
-def test_any_vibration_angle_is_mapped(run, beta):
-    done = run("slide", "--beta", beta, "--no-pictures", "-o", "out")
-    assert (done.exit_code, "Error" in done.stderr) == (0, False), done.output
-
-
 def test_drops_without_a_compiler():
     code = "import sys; from feederscrew_cli.main import feeder; feeder(sys.argv[1:])"
     call = [sys.executable, "-c", code, "drop", str(NUT), "--drops", "2", "--jobs", "1", "--format", "csv"]
@@ -95,13 +51,6 @@ def test_drops_without_a_compiler():
     done = subprocess.run(call, env=environment, capture_output=True, text=True, timeout=120, check=False)
     assert (done.returncode, "Traceback" in done.stderr) == (0, False), done.stderr
     assert done.stdout.startswith("aspect,")
-
-
-def test_a_part_that_does_not_move_on_the_plate_sticks():
-    from feederscrew.output.floor import HATCHES
-    from feederscrew.output.slide import REGIMES
-
-    assert (REGIMES["stick"][1], HATCHES["stick"][2]) == ("sticks", "sticks")
 
 
 @pytest.mark.parametrize("name", list(feeder.commands))
@@ -143,3 +92,17 @@ def test_a_help_text_has_sentences_of_thirty_words_at_most(name):
     sentences = [one for text in paragraphs for one in re.split(r"(?<=[.!?])\s+(?=[A-Za-z`(-])", text)]
     long = [one for one in sentences if len(re.findall(r"\S*\w\S*", one.split(": ")[0])) > 30]
     assert sentences and long == []
+
+
+@pytest.mark.parametrize(
+    ("command", "text", "told"),
+    [
+        ("aspects", "pass `allow_open` to compute", "pass --allow-open to compute"),
+        ("batch", "pass `allow_open` to compute", "pass allow_open to compute"),
+        ("batch", "start again with `resume`", "start again with --resume"),
+        ("config", "or pass `replace`", "or pass --force"),
+        ("slide", "another folder to `directory`", "another folder to -o"),
+    ],
+)
+def test_an_argument_goes_by_its_option_where_the_command_has_one(command, text, told):
+    assert argument_names.translated(text, argument_names.options(feeder.commands[command])) == told

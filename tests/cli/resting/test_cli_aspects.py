@@ -98,16 +98,6 @@ def test_o_writes_tables_pictures_and_the_record(run, tmp_path, stl):
     assert record["inputs"][0]["path"] == "../../box.stl"
 
 
-def test_no_pictures(run, tmp_path, stl):
-    run("aspects", stl, "-o", "res", "--no-pictures")
-    assert {path.name for path in (tmp_path / "res/box").iterdir()} == {
-        "aspects.csv",
-        "aspects.json",
-        "names.yaml",
-        "run.json",
-    }
-
-
 def test_a_part_card_has_no_picture_and_says_so(run, tmp_path):
     done = run("aspects", PARTS / "arc_chute.yaml", "-o", "res")
     assert done.exit_code == 0, done.output
@@ -136,31 +126,6 @@ def test_a_broken_file_is_one_line_and_leaves_nothing(run, tmp_path, content):
     assert len(done.stderr.splitlines()) == 1
     assert done.stderr.startswith("Error: bad.stl: ")
     assert not (tmp_path / "res").exists()
-
-
-def test_a_folder_that_cannot_be_is_one_line(run, tmp_path, stl):
-    (tmp_path / "res").write_text("")
-    done = run("aspects", stl, "-o", "res")
-    assert (done.exit_code, done.stdout) == (1, "")
-    assert done.stderr == f"Error: {tmp_path / 'res'}: is a file, not a folder - give another folder to -o\n"
-
-
-def test_another_part_of_the_same_name_is_refused(run, tmp_path, stl):
-    run("aspects", stl, "-o", "res", "--no-pictures")
-    (tmp_path / "other").mkdir()
-    shapes.box(1.0, 2.0, 3.0).export(tmp_path / "other/box.stl")
-    done = run("aspects", "other/box.stl", "-o", "res", "--no-pictures")
-    assert (done.exit_code, done.stdout) == (1, "")
-    assert done.stderr.splitlines()[-1] == (
-        "Error: res/box: holds the results of another file, ../../box.stl"
-        " - give another folder to -o, or rename the file"
-    )
-
-
-def test_a_missing_file_is_one_line(run):
-    done = run("aspects", "none.stl")
-    assert (done.exit_code, done.stdout, len(done.stderr.splitlines())) == (1, "", 1)
-    assert done.stderr.startswith("Error: none.stl: ")
 
 
 def test_an_open_surface_is_labelled_everywhere(run, tmp_path):
@@ -215,19 +180,6 @@ def test_a_failed_self_check_marks_every_row(run, stl, tmp_path, monkeypatch):
     assert all(text.endswith("doubtful") for text in run("aspects", stl).stdout.splitlines()[-3:])
 
 
-@pytest.mark.parametrize("centre", ["5,0,0", "0,-10,0", "0,0,15.001", "100,0,0"])
-def test_a_centre_of_mass_on_or_outside_the_hull_is_one_line(run, stl, centre):
-    done = run("aspects", stl, "--centre-of-mass", centre)
-    line = "the centre of mass is not inside the part's convex hull - check --centre-of-mass and its units"
-    assert (done.exit_code, done.stdout) == (2, "")
-    assert done.stderr.splitlines() == [f"Error: --centre-of-mass: {line}"]
-
-
-def test_a_centre_of_mass_just_inside_is_computed(run, stl):
-    rows = document(run("aspects", stl, "--centre-of-mass", "4.99,0,0", "--format", "json"))["aspects"]
-    assert sum(row["p_quasistatic"] for row in rows) == pytest.approx(1.0, rel=1e-9)
-
-
 def test_the_graph_needs_a_folder(run, stl):
     done = run("aspects", stl, "--graph")
     assert (done.exit_code, done.stdout) == (2, "")
@@ -238,12 +190,6 @@ def test_the_graph_is_written(run, tmp_path, stl):
     assert run("aspects", stl, "--graph", "-o", "res").exit_code == 0
     assert (tmp_path / "res/box/graph.csv").read_text().startswith("from,to,barrier_mm")
     assert (tmp_path / "res/box/graph.png").stat().st_size > 5000
-
-
-def test_a_drop_test_joins_the_columns(run, stl):
-    rows = json.loads(run("aspects", stl, "--drops", "300", "--format", "json", "-q").stdout)["aspects"]
-    assert sum(row["p_drop"] for row in rows) == pytest.approx(1.0, abs=0.05)
-    assert all(row["p_drop_low"] <= row["p_drop"] <= row["p_drop_high"] for row in rows)
 
 
 def test_one_answer_with_an_interval_comes_last(run, stl):
@@ -265,12 +211,6 @@ def test_the_answer_is_the_drop_test_where_there_is_one(run, stl):
         assert (
             row["p_recommended_low"] <= row["p_drop_low"] <= row["p_drop_high"] <= row["p_recommended_high"]
         )
-
-
-def test_a_card_has_no_answer_of_its_own(run):
-    told = document(run("aspects", PARTS / "arc_chute.yaml", "--format", "json"))
-    assert told["recommended"] is None
-    assert "p_recommended" not in told["aspects"][0]
 
 
 def test_the_answer_says_its_surface(run, stl):
@@ -312,9 +252,3 @@ def test_how_the_pmi_rule_counts_equal_faces_is_said_where_there_are_any(run, st
     assert "--as-published" not in run(*line, "--format", "csv").stderr
     bracket = run("aspects", PARTS / "lbracket_30x20x15.stl", "--rule", "closed")  # no two faces are equal
     assert bracket.exit_code == 0 and "--as-published" not in bracket.stderr
-
-
-def test_a_column_that_is_not_there_leaves_no_files(run, tmp_path):
-    done = run("aspects", PARTS / "squarenut_m5.stl", "--columns", "nonsense", "-o", "out", "--no-pictures")
-    assert (done.exit_code, list(tmp_path.iterdir())) == (2, [])
-    assert "Error: --columns: there is no column 'nonsense'" in done.stderr

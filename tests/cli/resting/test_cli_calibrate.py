@@ -22,11 +22,11 @@ def counts(tmp_path, text):
 def test_counts_give_their_exponent_back(run, stl, tmp_path):
     from feederscrew.part import load
     from feederscrew.resting.aspects import find
-    from feederscrew.resting.exact_tumbling import exact, ground
+    from feederscrew.resting.exact_tumbling import exact, require_ground
 
     part = load(stl)
     aspects = find(part)
-    p = exact(ground(part, aspects), part, aspects, exponent=1.3).probabilities["surface"]
+    p = exact(require_ground(part, aspects), part, aspects, exponent=1.3).probabilities["surface"]
     lines = [f"{name},{round(20000 * share)}" for name, share in zip(aspects.names, p)]
     done = run(
         "calibrate",

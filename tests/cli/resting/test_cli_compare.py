@@ -100,22 +100,6 @@ def test_files(run, card, counts, tmp_path):
     assert (folder / "compare.png").read_bytes() == first
 
 
-def test_no_pictures(run, card, counts, tmp_path):
-    run("compare", card, "--with", counts, "-o", "out", "--no-pictures")
-    names = {path.name for path in (tmp_path / "out" / "arc_chute").iterdir()}
-    assert names == {"compare.csv", "run.json"}
-
-
-def test_a_mesh_has_aspects_a_b_c(run, request, tmp_path):
-    part = request.config.rootpath / "parts" / "lbracket_30x20x15.stl"
-    names = [a["aspect"] for a in json.loads(run("aspects", part, "--format", "json").stdout)["aspects"]]
-    lines = [f"{name},{10 + k}" for k, name in enumerate(names)]
-    (tmp_path / "c.csv").write_text("\n".join(["aspect,drops", *lines]) + "\n")
-    result = run("compare", part, "--with", "c.csv", "--format", "csv")
-    assert result.exit_code == 0, result.output
-    assert ("drops", "CSA") in rows(result)
-
-
 def test_faults_are_one_line_each_and_nothing_is_written(run, card, tmp_path):
     (tmp_path / "bad.csv").write_text("aspect,x\n1,2\n2,x\n9,1\n")
     result = run("compare", card, "--with", "bad.csv", "-o", "out")
@@ -126,12 +110,6 @@ def test_faults_are_one_line_each_and_nothing_is_written(run, card, tmp_path):
         "Error: bad.csv: has no row for aspect 3, 4, 5 - add it, 0 if never seen",
     ]
     assert not (tmp_path / "out").exists()
-
-
-def test_a_call_without_counts_is_a_wrong_call(run, card):
-    result = run("compare", card)
-    assert result.exit_code == 2
-    assert "Missing option '--with'" in result.stderr
 
 
 def test_the_chart_draws_the_profiles():

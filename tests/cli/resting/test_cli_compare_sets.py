@@ -96,11 +96,6 @@ def test_a_file_without_a_part_and_one_with_a_fault(run, tmp_path):
     ]
 
 
-def test_with_goes_with_one_part(run, files):
-    done = run("compare", files[0], files[1], "--with", files[2])
-    assert done.exit_code == 2 and "--with goes with one PART" in done.stderr
-
-
 @pytest.mark.parametrize("counts", ["/dev/zero", "faulty.csv"])
 def test_floods_are_refused_early(run, request, tmp_path, counts):
     """Both took gigabytes once."""

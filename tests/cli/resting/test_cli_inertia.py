@@ -94,24 +94,6 @@ def test_output_folder(run, stl, tmp_path, format, name):
         assert first.decode() == done.stdout
 
 
-def test_standard_input(run):
-    told = document(run("inertia", "-", "--format", "json", stdin=files.binary_stl(files.box())))
-    assert told["part"] == "stdin"
-    assert told["volume_mm3"] == pytest.approx(6000.0)
-
-
-def test_warnings_go_to_stderr_and_into_the_document(run):
-    done = run("inertia", BROKEN / "inverted_lbracket.stl", "--format", "json")
-    assert document(done)["warnings"] == ["all facets pointed inwards; reversed"]
-    assert done.stderr.splitlines()[0] == "Warning: all facets pointed inwards; reversed"
-
-
-def test_open_surface_is_labelled(run):
-    told = document(run("inertia", BROKEN / "open_lbracket.stl", "--allow-open", "--format", "json"))
-    assert told["open_surface"] is True
-    assert told["warnings"] == ["the surface is open: 10 holes filled in for these numbers (`allow_open`)"]
-
-
 @pytest.mark.parametrize(
     "name", ["truncated_hexbolt", "not_an_stl", "zero_bytes", "flat_sheet", "nan_lbracket", "open_lbracket"]
 )
@@ -122,14 +104,6 @@ def test_file_without_an_honest_number_is_one_line(run, name):
     assert done.stdout == ""
     told = files.refused(path).replace("`allow_open`", "--allow-open")
     assert done.stderr == f"Error: {path}: {told}\n"
-
-
-def test_impossible_density_names_the_unit(run, stl):
-    done = run("inertia", stl, "--density", "7850 g/cm3")
-    assert done.exit_code == 2
-    assert done.stderr == (
-        "Error: --density: '7850 g/cm3' is the density of no solid - did you mean 7850 kg/m3?\n"
-    )
 
 
 @pytest.mark.parametrize("metres", [7.0, 0.007])

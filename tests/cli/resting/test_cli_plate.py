@@ -5,7 +5,6 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 import shapes
 
@@ -70,27 +69,9 @@ def test_a_table_of_two_plates_fits_a_page(run, stl):
     assert "Left out of the table: " in done.stderr
 
 
-def test_what_is_empty_is_left_out_first():
-    empty, seen = ({"p_limit": np.array([value])} for value in (np.nan, 0.5))
-    assert (
-        plate_output.spare(empty)[0]
-        == plate_output.spare(seen)[-1]
-        == ("p_limit", "p_limit_low", "p_limit_high")
-    )
-
-
 def test_the_files_and_the_trend(run, stl, tmp_path):
-    done = run(
-        "drop",
-        stl,
-        *SHORT,
-        "--set",
-        "drive.amplitude=0.5 mm",
-        "--amplitude",
-        "78%,80%,0.41 mm",
-        "-o",
-        "results",
-    )
+    own = ("--set", "drive.amplitude=0.5 mm", "--amplitude", "78%,80%,0.41 mm")
+    done = run("drop", stl, *SHORT, *own, "-o", "results")
     assert done.exit_code == 0, done.output
     folder = tmp_path / "results/box"
     tables = {f"plate{table}.csv" for table in ("", "_drives", "_rates", "_time")}
@@ -120,14 +101,6 @@ def test_several_bowl_files_are_several_plates(run, stl, tmp_path):
     assert wet < 0.5 * dry
 
 
-def test_the_seed_and_not_the_jobs_decides(run, stl):
-    def call(seed, jobs):
-        strong = ("--set", "drive.amplitude=0.6 mm", "--seed", seed, "--jobs", jobs, "--format", "json")
-        return document(run("drop", stl, *SHORT, *strong))["plates"]
-
-    assert call(1, 1) == call(1, 2) != call(2, 1)
-
-
 def test_what_is_simplified_is_said(run, stl):
     done = run("drop", stl, *SHORT, "--set", "friction.kinetic=0.3")
     assert done.exit_code == 0
@@ -138,14 +111,8 @@ def test_what_is_simplified_is_said(run, stl):
     ("arguments", "status", "line"),
     [
         (("--config", "b.yaml"), 2, "Error: --config is for a vibrating plate - give --plate as well"),
-        (("--seconds", "2"), 2, "Error: --seconds is for a vibrating plate - give --plate as well"),
-        (("--amplitude", "80%"), 2, "Error: --amplitude is for a vibrating plate - give --plate as well"),
         (("--plate", "--until", "1%"), 2, AT_REST.format("--until")),
-        (("--plate", "--trace", "1"), 2, AT_REST.format("--trace")),
         (("--plate", "--amplitude", "0.4"), 2, "Error: --amplitude: drive.amplitude: '0.4' has no unit"),
-        (("--plate", "--amplitude", "900%"), 2, "Error: --amplitude: '900%' is out of range - give 0%"),
-        (("--plate", "--amplitude", "x%"), 2, "Error: --amplitude: 'x%' is not a number - write digits"),
-        (("--plate", "--config", "none.yaml"), 1, "Error: none.yaml: "),
     ],
 )  # fmt: skip
 def test_faults_are_one_line(run, stl, arguments, status, line):
@@ -153,36 +120,6 @@ def test_faults_are_one_line(run, stl, arguments, status, line):
     told = [each for each in done.stderr.splitlines() if each.startswith("Error")]
     assert done.exit_code == status and len(told) == 1 and told[0].startswith(line)
     assert done.stdout == ""
-
-
-def test_a_plate_at_rest_moves_nothing(run, stl):
-    call = ("drop", stl, *SHORT, "--launch", "place", "--set", "drive.amplitude=0 mm", "--format", "json")
-    told = document(run(*call))
-    (plate,) = told["plates"]
-    assert plate["throw_number"] == 0.0 and plate["transitions_seen"] == 0 and plate["steady"]
-    assert abs(plate["velocity_mm_s"]) < 1e-3
-
-
-def test_parts_that_never_come_down_are_told(run, tmp_path):
-    """A coin that is thrown in rolls on and on."""
-    path = tmp_path / "coin.stl"
-    shapes.cylinder(5.0, 1.0, sections=64).export(path)
-    call = (
-        "drop",
-        path,
-        *SHORT,
-        "--set",
-        "drive.amplitude=0.05 mm",
-        "--spin",
-        "150 rad/s",
-        "--speed",
-        "2 m/s",
-    )
-    done = run(*call, "--format", "json")
-    (plate,) = document(done)["plates"]
-    assert 0 < plate["unsettled"] <= 30
-    assert f"{plate['unsettled']} of 30 parts lay on no aspect to the end" in done.stderr
-    assert sum(row["p_start"] for row in plate["aspects"]) == pytest.approx(1.0 - plate["unsettled"] / 30)
 
 
 def test_a_plate_that_was_stopped_is_marked_everywhere():

@@ -8,7 +8,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
 
 
-def laid(orientation, principal, length, track, *, place, aside=0.0, turn=0.0):
+def pose_on_track(orientation, principal, length, track, *, place, aside=0.0, turn=0.0):
     """Return the state of a part laid on the track in an orientation.
 
     Parameters
@@ -51,15 +51,15 @@ def quaternion(axes):
     k = int(np.argmax(trace))
     if k == 0:
         spun = [axes[2, 1] - axes[1, 2], axes[0, 2] - axes[2, 0], axes[1, 0] - axes[0, 1]]
-        found = np.array([1.0 + trace[0], *spun])
+        wxyz = np.array([1.0 + trace[0], *spun])
     else:
         i, j, m = k - 1, k % 3, (k + 1) % 3
-        found = np.zeros(4)
-        found[0] = axes[m, j] - axes[j, m]
-        found[1 + i] = 1.0 + axes[i, i] - axes[j, j] - axes[m, m]
-        found[1 + j] = axes[j, i] + axes[i, j]
-        found[1 + m] = axes[m, i] + axes[i, m]
-    return found / vectors.length(found)
+        wxyz = np.zeros(4)
+        wxyz[0] = axes[m, j] - axes[j, m]
+        wxyz[1 + i] = 1.0 + axes[i, i] - axes[j, j] - axes[m, m]
+        wxyz[1 + j] = axes[j, i] + axes[i, j]
+        wxyz[1 + m] = axes[m, i] + axes[i, m]
+    return wxyz / vectors.length(wxyz)
 
 
 def matrix(state) -> np.ndarray:
@@ -74,7 +74,7 @@ def matrix(state) -> np.ndarray:
     )
 
 
-def ways(states, radius):
+def ways_along_wall(states, radius):
     """Return how far along the wall states (N, 13) are, (N,) [that of the radius]."""
     return radius * np.arctan2(states[:, 0], radius - states[:, 1])
 

@@ -56,7 +56,7 @@ def is_sheet(path: str | Path) -> bool:
     try:
         with Path(path).open("rb") as file:
             first = file.read(MAX_HEAD_BYTES).decode("utf-8-sig", errors="replace").splitlines()
-        return tuple(one.strip() for one in next(csv.reader(first[:1]), ())) == HEAD
+        return tuple(cell.strip() for cell in next(csv.reader(first[:1]), ())) == HEAD
     except (OSError, csv.Error):
         return False
 

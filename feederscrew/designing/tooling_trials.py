@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.designing import trying
-from feederscrew.designing.proposals import alike
+from feederscrew.designing import short_trials
+from feederscrew.designing.proposals import equivalent_rows
 from feederscrew.designing.robust import denied
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
@@ -85,7 +85,7 @@ def _percent(value: float, ends: tuple[float, float]) -> str:
 
 def own_trials(
     study: ToolingStudy,
-    again: Callable[[tuple[str, ...]], ToolingStudy] | None = None,
+    without_kinds: Callable[[tuple[str, ...]], ToolingStudy] | None = None,
     *,
     seed: int = 1,
     jobs: int = 1,
@@ -96,7 +96,7 @@ def own_trials(
     Parameters
     ----------
     study : ToolingStudy
-    again : callable, optional
+    without_kinds : callable, optional
         Given kinds of devices, returns the same study without them: where the trial denies the chain of the
         orientation that was asked for, others are tried, five in all. The most efficient of those that the
         trial confirms is taken.
@@ -110,63 +110,67 @@ def own_trials(
         With its ``trials``: of a chain that the trial confirms where one is found, else of the first. Chains
         that isolate nothing are not tried.
     """
-    known = [one for one in study.designs if one is not None and one.devices and one.efficiency > 0.0]
-    best = sorted(known, key=lambda one: (-one.isolated, -one.efficiency, one.wanted))
+    candidates = [
+        design
+        for design in study.designs
+        if design is not None and design.devices and design.efficiency > 0.0
+    ]
+    best = sorted(candidates, key=lambda design: (-design.isolated, -design.efficiency, design.wanted))
     run = RunSettings(seed, jobs, before=before)
-    tried = tuple(_tried(study, one, run) for one in best[:BEST])
+    tried = tuple(_tried(study, design, run) for design in best[:BEST])
     first = replace(study, trials=tried)
-    if study.design is None or again is None or not tried or not tried[0].faults:
+    if study.design is None or without_kinds is None or not tried or not tried[0].faults:
         return first
-    others, ways, searched = [study], _ways_on((), study.design), 0
-    while ways and searched < SEARCHES and len(tried) < TRIES:
-        kinds, searched = ways.pop(0), searched + 1
-        other = again(kinds)
-        found = other.design
-        if found is None or not _isolates(found) or _devices(found) in [one.devices for one in tried]:
+    studies, pending, searched = [study], _ways_on((), study.design), 0
+    while pending and searched < SEARCHES and len(tried) < TRIES:
+        kinds, searched = pending.pop(0), searched + 1
+        other = without_kinds(kinds)
+        design = other.design
+        if design is None or not _isolates(design) or _devices(design) in [trial.devices for trial in tried]:
             continue
-        others, tried = [*others, other], (*tried, _tried(other, found, run))
-        if not tried[-1].faults and found.efficiency >= study.design.efficiency:
+        studies, tried = [*studies, other], (*tried, _tried(other, design, run))
+        if not tried[-1].faults and design.efficiency >= study.design.efficiency:
             break
-        ways += _ways_on(kinds, found) if tried[-1].faults else []
-    holds = [k for k, one in enumerate(tried) if not one.faults]
+        pending += _ways_on(kinds, design) if tried[-1].faults else []
+    holds = [k for k, trial in enumerate(tried) if not trial.faults]
     taken = max(holds, key=lambda k: tried[k].static_efficiency, default=0)
-    return replace(others[taken], trials=(tried[taken], *tried[:taken], *tried[taken + 1 :]))
+    return replace(studies[taken], trials=(tried[taken], *tried[:taken], *tried[taken + 1 :]))
 
 
-def _isolates(found: Design) -> bool:
-    return found.isolated and bool(found.cuts) and found.efficiency > 0.0
+def _isolates(design: Design) -> bool:
+    return design.isolated and bool(design.cuts) and design.efficiency > 0.0
 
 
-def _ways_on(without: tuple[str, ...], found: Design) -> list[tuple[str, ...]]:
+def _ways_on(without: tuple[str, ...], design: Design) -> list[tuple[str, ...]]:
     """Kinds of devices to do without as well: each of a chain alone, the last one first, then all of them."""
-    kinds = list(dict.fromkeys(cut.device.kind for cut in reversed(found.cuts)))
+    kinds = list(dict.fromkeys(cut.device.kind for cut in reversed(design.cuts)))
     kinds = [kind for kind in kinds if kind not in KEPT]
-    every = [(kind,) for kind in kinds] + ([tuple(kinds)] if len(kinds) > 1 else [])
-    return [(*without, *more) for more in every]
+    choices = [(kind,) for kind in kinds] + ([tuple(kinds)] if len(kinds) > 1 else [])
+    return [(*without, *more) for more in choices]
 
 
-def _devices(found: Design) -> tuple[str, ...]:
-    return tuple(f"{device.kind}: {device.text}" for device in found.devices)
+def _devices(design: Design) -> tuple[str, ...]:
+    return tuple(f"{device.kind}: {device.text}" for device in design.devices)
 
 
-def _words(found: Design) -> tuple[str, ...]:
-    return tuple(f"{device.full_name}: {device.value_words}" for device in found.devices)
+def _words(design: Design) -> tuple[str, ...]:
+    return tuple(f"{device.full_name}: {device.value_words}" for device in design.devices)
 
 
-def _tried(study: ToolingStudy, one: Design, run: RunSettings) -> TriedDesign:
+def _tried(study: ToolingStudy, design: Design, run: RunSettings) -> TriedDesign:
     """One design with parts of its own, on a track of its own width."""
-    study = study.on_its_width(one.wanted)
-    bowl = replace(study.bowl, devices=one.devices)
-    ways = stream.along(study.orientations, study.aspects, bowl.devices, bowl=bowl)
-    name, total = ways.lying[one.wanted].name, study.shares.sum()
+    study = study.on_its_width(design.wanted)
+    bowl = replace(study.bowl, devices=design.devices)
+    oriented = stream.along(study.orientations, study.aspects, bowl.devices, bowl=bowl)
+    name, total = oriented.lying[design.wanted].name, study.shares.sum()
     shares = study.shares / total if total > 0.0 else np.full(len(study.shares), 1.0 / len(study.shares))
-    rows = _rows_tried(ways, shares, one.wanted)
-    wanted = (one.wanted, *alike(ways.lying, one.wanted, study.up))
-    free = trying.aspects_at_any_heading(ways.lying, one.wanted, study.up)
+    rows = _rows_tried(oriented, shares, design.wanted)
+    wanted = (design.wanted, *equivalent_rows(oriented.lying, design.wanted, study.up))
+    free = short_trials.aspects_at_any_heading(oriented.lying, design.wanted, study.up)
 
-    def single(tried_rows: Any, each: Any, how: RunSettings) -> trying.Tried:
-        return trying.single(
-            study.part, bowl, ways, shares, wanted, rows=tried_rows, each=each, run=how,
+    def single(tried_rows: Any, each: Any, how: RunSettings) -> short_trials.Tried:
+        return short_trials.single(
+            study.part, bowl, oriented, shares, wanted, rows=tried_rows, each=each, run=how,
             aspects=study.aspects, any_heading=free,
         )  # fmt: skip
 
@@ -174,38 +178,40 @@ def _tried(study: ToolingStudy, one: Design, run: RunSettings) -> TriedDesign:
         tried = single(rows, EACH, run)
         further = further_parts(shares[rows])
         if not list(denied(tried)) and further.any():
-            again = replace(run, seed=run.seed + 1, before=None)
+            further_run = replace(run, seed=run.seed + 1, before=None)
             more = [row for row, count in zip(rows, further) if count]
             counts = further[further > 0]
-            tried = tried.joined(single(more, counts, again))
+            tried = tried.joined(single(more, counts, further_run))
     except FeederError as fault:  # the bowl does not convey
-        return TriedDesign(name, one.wanted, _devices(one), one.efficiency, 0.0, np.nan, 0, (fault.what,))
+        return TriedDesign(
+            name, design.wanted, _devices(design), design.efficiency, 0.0, np.nan, 0, (fault.what,)
+        )
     efficiency, purity = shares_leaving(tried)
     value, (low, high) = purity[0], purity[1:]
     impure = []
-    if value < one.least_purity:
+    if value < design.least_purity:
         impure.append(
-            f"{_percent(value, (low, high))} of what leaves is wanted, of {100.0 * one.least_purity:.3g} %"
+            f"{_percent(value, (low, high))} of what leaves is wanted, of {100.0 * design.least_purity:.3g} %"
         )
     return TriedDesign(
         name=name,
-        wanted=one.wanted,
-        devices=_devices(one),
-        static_efficiency=one.efficiency,
+        wanted=design.wanted,
+        devices=_devices(design),
+        static_efficiency=design.efficiency,
         efficiency=efficiency[0],
         purity=value,
         parts=int(tried.parts.sum()),
         faults=(*denied(tried), *impure),
         efficiency_ends=efficiency[1:],
         purity_ends=(low, high),
-        devices_words=_words(one),
+        devices_words=_words(design),
     )
 
 
-def _rows_tried(ways: stream.Orientations, shares: np.ndarray, wanted: int) -> list[int]:
+def _rows_tried(oriented: stream.Orientations, shares: np.ndarray, wanted: int) -> list[int]:
     """Orientations that are tried: those that come often, and of the others those that may leave."""
     often = [k for k in np.argsort(-shares, kind="stable") if shares[k] >= OFTEN or k == wanted]
-    may = (ways.may_leave > 0.0) & (shares >= RARE * shares[wanted]) & (shares > 0.0)
+    may = (oriented.may_leave > 0.0) & (shares >= RARE * shares[wanted]) & (shares > 0.0)
     further = [k for k in np.argsort(-shares, kind="stable") if may[k] and k not in often]
     return [int(k) for k in (*often, *further[:FURTHER])]
 
@@ -229,7 +235,9 @@ def further_parts(shares: np.ndarray) -> np.ndarray:
     return np.floor(MORE * shares / total + 0.5).astype(int) if total > 0.0 else np.zeros(len(shares), int)
 
 
-def shares_leaving(tried: trying.Tried) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+def shares_leaving(
+    tried: short_trials.Tried,
+) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     """Return efficiency and purity [1] of a short trial, each as value, low and high end.
 
     What was not tried counts as the static rule says; what that is not sure to return, as wrong at the lower
@@ -249,14 +257,16 @@ def shares_leaving(tried: trying.Tried) -> tuple[tuple[float, float, float], tup
     Sums of shares: G. Y. Zou, A. Donner, "Construction of confidence limits about effect measures: a general
     approach", Statist. Med. 27, 1693-1702, 2008.
     """
-    known, shares = tried.known, tried.shares / max(tried.shares.sum(), 1e-300)
+    orientations, shares = tried.orientations, tried.shares / max(tried.shares.sum(), 1e-300)
     rest = np.setdiff1d(np.arange(len(shares)), tried.rows)
-    as_ruled = known.leaving[rest][:, list(tried.states)].sum(axis=1) * (known.leaves[rest] > 0.0)
+    as_ruled = orientations.leaving[rest][:, list(tried.states)].sum(axis=1) * (
+        orientations.leaves[rest] > 0.0
+    )
     right = _summed(shares[tried.rows], tried.right, tried.parts)
     wrong = _summed(shares[tried.rows], tried.wrong, tried.parts)
     more = float((shares[rest] * as_ruled).sum())
-    other = float((shares[rest] * np.maximum(known.leaves[rest] - as_ruled, 0.0)).sum())
-    doubt = float((shares[rest] * np.maximum(known.may_leave[rest] - as_ruled, 0.0)).sum())
+    other = float((shares[rest] * np.maximum(orientations.leaves[rest] - as_ruled, 0.0)).sum())
+    doubt = float((shares[rest] * np.maximum(orientations.may_leave[rest] - as_ruled, 0.0)).sum())
     efficiency = right[0] + more, right[1], min(right[2] + more, 1.0)
     against = wrong[0] + other, wrong[1], wrong[2] + doubt
     if not efficiency[0] + against[0] > 0.0:
@@ -279,19 +289,19 @@ def document(tried: Iterable[TriedDesign]) -> list[dict[str, Any]]:
     """Return TriedDesigns as a list of dicts."""
     return [
         {
-            "orientation": one.name,
-            "devices": list(one.devices),
-            "efficiency_static": one.static_efficiency,
-            "efficiency_tried": one.efficiency,
-            "efficiency_low": one.efficiency_ends[0],
-            "efficiency_high": one.efficiency_ends[1],
-            "purity_tried": None if np.isnan(one.purity) else one.purity,
-            "purity_low": one.purity_ends[0],
-            "purity_high": one.purity_ends[1],
-            "parts": one.parts,
-            "sorts": not one.faults,
-            "agrees": one.agrees,
-            "denied": list(one.faults),
+            "orientation": trial.name,
+            "devices": list(trial.devices),
+            "efficiency_static": trial.static_efficiency,
+            "efficiency_tried": trial.efficiency,
+            "efficiency_low": trial.efficiency_ends[0],
+            "efficiency_high": trial.efficiency_ends[1],
+            "purity_tried": None if np.isnan(trial.purity) else trial.purity,
+            "purity_low": trial.purity_ends[0],
+            "purity_high": trial.purity_ends[1],
+            "parts": trial.parts,
+            "sorts": not trial.faults,
+            "agrees": trial.agrees,
+            "denied": list(trial.faults),
         }
-        for one in tried
+        for trial in tried
     ]

@@ -2,14 +2,13 @@
 
 import math
 
-from feederscrew.geometry.compiled import apart, compiled
-from feederscrew.tooling.kernel.crossing import ALPHA, ARC, GAMMA, HIGH, KAPPA, LOW
+from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.tooling.kernel.hull_depth import inset_beside
 
 MARGIN_ROUNDING_M = 1e-12  # [m] of a margin: what is sure by more cannot come out lower
 
 
-@apart
+@outlined
 def carried(foot, hole, scratch, i, margin):
     """Return whether the corners that have track below in a piece carry a foot by a margin [m] for certain.
 
@@ -20,14 +19,14 @@ def carried(foot, hole, scratch, i, margin):
     whole = len(foot.hull) > 0
     for k in foot.hull:
         whole = whole and scratch.keep[k] == 1
-    found = kept_inset(foot, scratch, foot.hull)
-    if found > margin + MARGIN_ROUNDING_M or (whole and found >= max(margin, 0.0)):
+    inset = kept_inset(foot, scratch, foot.hull)
+    if inset > margin + MARGIN_ROUNDING_M or (whole and inset >= max(margin, 0.0)):
         return True
     keep_corners(foot, hole, scratch, i, foot.all_corners)
     return kept_inset(foot, scratch, foot.all_corners) > margin + MARGIN_ROUNDING_M
 
 
-@apart
+@outlined
 def kept_inset(foot, scratch, corners):
     """Return the margin [m] on no more than those of some corners of a foot that have track below."""
     count = 0
@@ -52,9 +51,10 @@ def _over(edges, theta, radius):
     """Whether a point is over the hole."""
     inside = False
     for j in range(len(edges)):
-        if edges[j, ARC] > 0.0 or not edges[j, LOW] <= radius < edges[j, HIGH]:
+        edge = edges[j]
+        if edge.arc or not edge.low <= radius < edge.high:
             continue
-        bend = 0.0 if edges[j, GAMMA] == 0.0 else math.asin(min(edges[j, GAMMA] / radius, 1.0))
-        if edges[j, ALPHA] + edges[j, KAPPA] * radius + bend > theta:
+        bend = 0.0 if edge.gamma == 0.0 else math.asin(min(edge.gamma / radius, 1.0))
+        if edge.alpha + edge.kappa * radius + bend > theta:
             inside = not inside
     return inside

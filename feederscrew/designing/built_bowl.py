@@ -14,22 +14,16 @@ from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import BOWL_KEYS
 from feederscrew.bowl.settings import Setting, of_device
 from feederscrew.designing.nearest import tried_nearest
-from feederscrew.designing.proposals import Proposal
-from feederscrew.designing.record import HOLDS, DesignRequest, DesignStudy
+from feederscrew.designing.record import HOLDS, DesignStudy
 from feederscrew.errors import FeederError
 from feederscrew.machine import checks, drive_sizing
 from feederscrew.machine.drive_sizing import is_two_axis
 from feederscrew.part.record import Part
-from feederscrew.rates.stream import Orientations
-from feederscrew.resting.aspects import Aspects
 from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import solidbowl
 from feederscrew.studies.bowl import MachineSheet
-from feederscrew.studies.rate import LEAST
-from feederscrew.studies.tooling import ToolingStudy
-from feederscrew.tooling.isolating import proposal as static
-from feederscrew.tooling.isolating.chain import DesignConstraints
+from feederscrew.studies.rate import MIN_POSITIVE
 
 DRIVE = (
     ("frequency", 1.0, "Hz"),
@@ -43,55 +37,6 @@ TRACK = (
     ("width", 1e-3, "mm"),
 )
 FIGURES = ": asked for "  # between what is wrong with a drive and its figures, in a DriveMismatch
-
-
-def tooled(
-    part: Part,
-    bowl: Bowl,
-    aspects: Aspects,
-    ways: Orientations,
-    weights: np.ndarray,
-    proposal: Proposal,
-    request: DesignRequest,
-    margin: float,
-) -> ToolingStudy | None:
-    """Return a chain as `feeder tooling` would have found it; None without one.
-
-    Parameters
-    ----------
-    part : Part
-    bowl : Bowl
-        With its devices.
-    aspects : Aspects
-    ways : Orientations
-        Through the devices; M of them.
-    weights : (M,) float [1]
-        In which they come.
-    proposal : Proposal
-    request : DesignRequest
-    margin : float [m]
-
-    Returns
-    -------
-    ToolingStudy or None
-    """
-    if not proposal.cuts:
-        return None
-    given = static.design_task(
-        ways.lying,
-        weights,
-        proposal.row,
-        margin,
-        1.0,
-        proposal.before,
-        constraints=DesignConstraints(up=request.up),
-    )
-    same = np.isin(ways.leaves_as, proposal.states(ways))
-    found = static.propose(given, proposal.cuts, ways.through < 0.5, same)
-    designs = tuple(found if k == proposal.row else None for k in range(len(weights)))
-    return ToolingStudy(
-        part, bowl, aspects, request.rule, margin, ways.lying, weights, designs, proposal.row, request.up
-    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,22 +66,22 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     if study.bowl is None:
         return Built()
     listed = [s for s in settings if s.is_own and not s.key.name.startswith("devices")]
-    given = [f"{s.key.name}={s.text}" for s in listed]
+    user_lines = [f"{s.key.name}={s.text}" for s in listed]
     own = [*_texts("drive", study.bowl.drive, DRIVE), *_texts("track", study.bowl.track, TRACK)]
     words = {line.partition("=")[0] for line in own} | {"drive.amplitude", "drive.peak_to_peak"}
     words |= {"sizing.fill_density"}
-    kept = [line for line in given if line.partition("=")[0] not in words]
-    devices = tuple(of_device(k, one) for k, one in enumerate(study.devices, start=1))
+    kept_lines = [line for line in user_lines if line.partition("=")[0] not in words]
+    devices = tuple(of_device(k, device) for k, device in enumerate(study.devices, start=1))
     try:
-        made = bowls.settings(None, (*kept, *own))
+        base_settings = bowls.settings(None, (*kept_lines, *own))
         stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
-        tried = bowls.settings(None, (*kept, *own, stroke))
-        sized, why = _sized((*made, *devices), study, (*tried, *devices))
+        tried = bowls.settings(None, (*kept_lines, *own, stroke))
+        sized, why = _sized((*base_settings, *devices), study, (*tried, *devices))
         driven = replace(sized.bowl, drive=study.bowl.drive)  # at the stroke that was tried
         words = drive_sizing.user_keys(listed, "machine")
         machine = driven.machine if "leaves" in words else drive_sizing.on_leaves(driven, words)
         under = [f"machine.{name}={text}" for name, text in _machine(machine)]
-        lines = _last((*kept, *own, stroke, *under, *_fill(study.part, sized)))
+        lines = _last((*kept_lines, *own, stroke, *under, *_fill(study.part, sized)))
         own_settings = (*bowls.settings(None, lines), *devices)
         sheet = machines.machine(own_settings)
     except FeederError as fault:
@@ -144,14 +89,14 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     sheet = replace(sheet, turns=sized.turns)
     owned = "leaves" in words or is_two_axis(sheet.bowl.drive)
     lacks = "" if owned else drive_sizing.leaf_shortfall(sheet.bowl)
-    said = {*study.warnings, *checks.remarks(sheet)}
-    return Built(sheet, _drawn(sheet, sized), why, tuple(_ordered(own_settings, study, said)), lacks)
+    warned = {*study.warnings, *checks.remarks(sheet)}
+    return Built(sheet, _drawn(sheet, sized), why, tuple(_ordered(own_settings, study, warned)), lacks)
 
 
-def _ordered(settings: Sequence[Setting], study: DesignStudy, said: Collection[str]) -> Iterator[str]:
+def _ordered(settings: Sequence[Setting], study: DesignStudy, warned: Collection[str]) -> Iterator[str]:
     """What ``feeder bowl`` with the part and the rate warns of: it takes the drive that was tried.
 
-    What is ``said`` of the design already is not said again.
+    What is ``warned`` of the design is warned of already is left out.
     """
     rate = f"{study.request.target * units.MINUTE:.4g}/min"
     try:
@@ -159,21 +104,21 @@ def _ordered(settings: Sequence[Setting], study: DesignStudy, said: Collection[s
     except FeederError as fault:
         yield f"feeder bowl finds no machine of this file for {rate}: {fault}"
         return
-    drives = {one.partition(FIGURES)[0] for one in said if FIGURES in one}
+    drives = {warning.partition(FIGURES)[0] for warning in warned if FIGURES in warning}
     for remark in sheet.remarks:
         drive, figures, _ = remark.partition(FIGURES)
-        if remark not in said and not (figures and drive in drives):  # the drive is told as it was tried
+        if remark not in warned and not (figures and drive in drives):  # the drive is told as it was tried
             yield remark
 
 
-def settings_of(bowl: Bowl, given: Collection[str] = ()) -> tuple[Setting, ...]:
+def settings_of(bowl: Bowl, kept_keys: Collection[str] = ()) -> tuple[Setting, ...]:
     """Return a bowl as settings that the user gave, for the machine below a design of the library.
 
     Parameters
     ----------
     bowl : Bowl
         Its devices are left out: a design has its own.
-    given : collection of str
+    kept_keys : collection of str
         Names of keys that count as given although they have their default value.
 
     Returns
@@ -185,11 +130,11 @@ def settings_of(bowl: Bowl, given: Collection[str] = ()) -> tuple[Setting, ...]:
     for key in BOWL_KEYS:
         if key.field in lines or key.word in schema.UNBALANCE_NAMES:
             continue
-        pair: list[Any] = [reduce(getattr, key.field.split("."), one) for one in (bowl, usual)]
+        pair: list[Any] = [reduce(getattr, key.field.split("."), record) for record in (bowl, usual)]
         value, default = pair
         if key.name == "machine.supply":  # follows the mains
             default = 2.0 * bowl.sizing.mains_frequency
-        if value is None or (value == default and key.name not in given):
+        if value is None or (value == default and key.name not in kept_keys):
             continue
         if key.choices:
             lines[key.field] = f"{key.name}={value}"
@@ -229,7 +174,7 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
     )
     lacking += (f"the machine that is drawn does not make its drive: {built.lacks}",) if built.lacks else ()
     lacking += solid
-    made = replace(
+    completed = replace(
         study,
         bowl=replace(study.bowl, machine=sheet.bowl.machine),
         machine_drawn=True,
@@ -238,11 +183,11 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
         machine_lacks=lacking,
     )
     if study.status != HOLDS or not lacking or other is None:
-        return made
+        return completed
     angle = np.degrees(other.wanted.spring_angle)
     change = f"springs that stand at {angle:.3g} deg"
-    found = tried_nearest(study, study.request.target, change, trials=len(study.attempts))
-    return replace(made, nearest=found)
+    changed_springs = tried_nearest(study, study.request.target, change, trials=len(study.attempts))
+    return replace(completed, nearest=changed_springs)
 
 
 def _last(lines: Iterable[str]) -> tuple[str, ...]:
@@ -275,7 +220,7 @@ def _sized(
     Where the static rule lets nothing or too little through, it is the bowl at the stroke that was tried,
     whose settings are ``tried``; where that makes no solid, that of a track without devices.
     """
-    wanted = solidbowl.asked(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
+    wanted = solidbowl.solid_options(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
     target = study.request.target
     for own, as_tried in ((settings, False), (tried, True)):
         try:
@@ -286,7 +231,7 @@ def _sized(
         return machines.bowl(settings, study.part, study.request.target), why
     except FeederError:
         plain = [s for s in settings if not s.key.name.startswith("devices.")]
-        return machines.bowl(plain, study.part, LEAST), why
+        return machines.bowl(plain, study.part, MIN_POSITIVE), why
 
 
 def _texts(section: str, record: object, rows: Iterable[tuple[str, float, str]]) -> list[str]:

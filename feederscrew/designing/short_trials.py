@@ -30,7 +30,7 @@ GAP = 1.0 + LOW  # pitch of parts that come in a row at low fill, over their len
 class Tried:
     """What single parts did in one bowl; M orientations."""
 
-    known: stream.Orientations
+    orientations: stream.Orientations
     shares: np.ndarray  # (M,) [1] in which they come; sums to 1
     rows: np.ndarray  # (R,) int, the orientations tried
     parts: np.ndarray  # (R,) int, of each
@@ -42,8 +42,8 @@ class Tried:
     state: int  # the wanted one
     states: tuple[int, ...]  # all that count as it
     deepest: float  # [m]
-    apart: float = 0.0  # [m] free way between parts that the devices need
-    seen: tuple = ()  # of Course: what was followed
+    spacing: float = 0.0  # [m] free way between parts that the devices need
+    courses: tuple = ()  # of Course: what was followed
     turns: tuple[dict[str, int], ...] = ()  # (R,) where parts turned that left so: 'turned on the track'
 
     @property
@@ -80,51 +80,51 @@ class Tried:
         counts: dict[str, Any] = {name: np.zeros(len(rows), int) for name in COUNTED}
         places: list[Counter[str]] = [Counter() for _ in rows]
         turns: list[Counter[str]] = [Counter() for _ in rows]
-        for one in (self, other):
-            own = [place[row] for row in one.rows.tolist()]
+        for trial in (self, other):
+            own = [place[row] for row in trial.rows.tolist()]
             for name in COUNTED:
-                np.add.at(counts[name], own, getattr(one, name))
+                np.add.at(counts[name], own, getattr(trial, name))
             for n, k in enumerate(own):
-                places[k].update(one.places[n])
-                turns[k].update(one.turns[n] if one.turns else {})
-        speeds = [one.velocity for one in (self, other) if one.velocity > 0.0]
+                places[k].update(trial.places[n])
+                turns[k].update(trial.turns[n] if trial.turns else {})
+        speeds = [trial.velocity for trial in (self, other) if trial.velocity > 0.0]
         return replace(
             self,
             **counts,
             rows=np.array(rows, int),
-            places=tuple(dict(one) for one in places),
-            turns=tuple(dict(one) for one in turns),
+            places=tuple(dict(counts_of_row) for counts_of_row in places),
+            turns=tuple(dict(counts_of_row) for counts_of_row in turns),
             velocity=float(np.mean(speeds)) if speeds else 0.0,
             deepest=max(self.deepest, other.deepest),
-            seen=(*self.seen, *other.seen),
+            courses=(*self.courses, *other.courses),
         )
 
     @property
     def rate(self) -> float:
         """Wanted parts [1/s] that such a bowl delivers, from a row with the gaps that its devices need."""
-        pitch = GAP * float((self.shares * self.known.lengths).sum()) + self.apart
-        longest = GAP * float(np.mean([self.known.states[k].length for k in self.states]))
+        pitch = GAP * float((self.shares * self.orientations.lengths).sum()) + self.spacing
+        longest = GAP * float(np.mean([self.orientations.states[k].length for k in self.states]))
         return float(
             min(max(self.velocity, 0.0) / pitch * self.efficiency, max(self.velocity, 0.0) / longest)
         )
 
 
-def wanted_states(known: stream.Orientations, rows: Sequence[int] | np.ndarray) -> tuple[int, ...]:
+def wanted_states(orientations: stream.Orientations, rows: Sequence[int] | np.ndarray) -> tuple[int, ...]:
     """Return the states in which some rows leave, the first one first.
 
     Parameters
     ----------
-    known : Orientations
+    orientations : Orientations
     rows : sequence of int
         The wanted one first; others that count as it, of which those that are returned add no state.
     """
-    others = [k for k in rows[1:] if known.leaving[k].max() > 0.5]
-    return tuple(dict.fromkeys(int(known.leaves_as[k]) for k in (rows[0], *others)))
+    further = [k for k in rows[1:] if orientations.leaving[k].max() > 0.5]
+    return tuple(dict.fromkeys(int(orientations.leaves_as[k]) for k in (rows[0], *further)))
 
 
-def wanted_rows(known: stream.Orientations, states: Sequence[int]) -> list[int]:
+def wanted_rows(orientations: stream.Orientations, states: Sequence[int]) -> list[int]:
     """Return the rows that leave in one of some states as the static rule says."""
-    return [k for k in range(len(known.lying)) if known.leaving[k, list(states)].sum() > 0.5]
+    return [k for k in range(len(orientations.lying)) if orientations.leaving[k, list(states)].sum() > 0.5]
 
 
 def aspects_at_any_heading(
@@ -147,21 +147,21 @@ def aspects_at_any_heading(
     tuple of str
         Those of ``up``, and the wanted row's own where it is round in plan and takes any heading.
     """
-    names, one = {name.strip().casefold() for name in up}, lying[row]
-    found = [other.aspect for other in lying if other.aspect.casefold() in names]
-    if not heading_given and rests(one.posture.outline, one.track.radius).rounded:
-        found.append(one.aspect)
-    return tuple(dict.fromkeys(found))
+    names, wanted = {name.strip().casefold() for name in up}, lying[row]
+    aspects = [other.aspect for other in lying if other.aspect.casefold() in names]
+    if not heading_given and rests(wanted.posture.outline, wanted.track.radius).rounded:
+        aspects.append(wanted.aspect)
+    return tuple(dict.fromkeys(aspects))
 
 
 def counted(
-    known: stream.Orientations, states: Sequence[int], any_heading: Sequence[str] = ()
+    orientations: stream.Orientations, states: Sequence[int], any_heading: Sequence[str] = ()
 ) -> tuple[Orientation, ...]:
     """Return the poses in which parts may be found; of an aspect that counts beside another at any heading.
 
     Parameters
     ----------
-    known : Orientations
+    orientations : Orientations
         S states.
     states : sequence of int
         The wanted one, and others that count as it.
@@ -173,14 +173,16 @@ def counted(
     tuple of Orientation
         S of them.
     """
-    names = {known.states[k].aspect for k in states[1:] if not isinstance(known.states[k], Hanging)}
+    names = {
+        orientations.states[k].aspect for k in states[1:] if not isinstance(orientations.states[k], Hanging)
+    }
     names |= set(any_heading)
-    return tuple(replace(one, any_heading=one.aspect in names) for one in known.states)
+    return tuple(replace(pose, any_heading=pose.aspect in names) for pose in orientations.states)
 
 
-def gain(known: stream.Orientations, shares: np.ndarray, states: Sequence[int]) -> float:
+def gain(orientations: stream.Orientations, shares: np.ndarray, states: Sequence[int]) -> float:
     """Return the share [1] of what comes that leaves in one of some states, as the static rule says."""
-    return float((shares[:, None] * known.leaving[:, list(states)]).sum())
+    return float((shares[:, None] * orientations.leaving[:, list(states)]).sum())
 
 
 def often(shares: np.ndarray, rows: Sequence[int] = ()) -> list[int]:
@@ -192,7 +194,7 @@ def often(shares: np.ndarray, rows: Sequence[int] = ()) -> list[int]:
 def single(
     part: Part,
     bowl: Bowl,
-    known: stream.Orientations,
+    orientations: stream.Orientations,
     shares: np.ndarray,
     wanted: int | Sequence[int] | np.ndarray,
     *,
@@ -209,7 +211,7 @@ def single(
     part : Part
     bowl : Bowl
         With its devices.
-    known : Orientations
+    orientations : Orientations
         On its track, through its devices; M of them.
     shares : (M,) float [1]
     wanted : int or sequence of int
@@ -233,64 +235,68 @@ def single(
     KeyboardInterrupt
         If the user stops it before all parts are through.
     """
-    rows, states = np.asarray(rows, int), wanted_states(known, np.atleast_1d(wanted))
+    rows, states = np.asarray(rows, int), wanted_states(orientations, np.atleast_1d(wanted))
     sent = np.tile(rows, each) if isinstance(each, int) else np.repeat(rows, each)
-    seen = course.course(
-        part, bowl, known.lying, course.Sending(sent.tolist(), len(sent)), bowl.devices,
-        poses=counted(known, states, any_heading), leaves=course.rightly(known.leaving), run=run,
+    followed = course.course(
+        part, bowl, orientations.lying, course.Sending(sent.tolist(), len(sent)), bowl.devices,
+        poses=counted(orientations, states, any_heading), leaves=course.rightly(orientations.leaving),
+        run=run,
     )  # fmt: skip
-    if seen.partial:  # fewer parts than were to be tried decide nothing
+    if followed.partial:  # fewer parts than were to be tried decide nothing
         raise KeyboardInterrupt
-    whole, asked = np.isin(seen.fates, (course.PASSED, course.TURNED)), np.isin(seen.orientations[-1], states)
-    if aspects is not None and any_heading and not isinstance(known.states[states[0]], Hanging):
-        asked |= _lies_on(part, aspects, seen, any_heading)
-    own = [seen.entered == k for k in rows]
-    count = [[int((one & some).sum()) for one in own] for some in (
-        np.ones(len(whole), bool), whole & asked, whole & ~asked,
-        np.isin(seen.fates, HELD),
+    whole, as_wanted = (
+        np.isin(followed.fates, (course.PASSED, course.TURNED)),
+        np.isin(followed.orientations[-1], states),
+    )
+    if aspects is not None and any_heading and not isinstance(orientations.states[states[0]], Hanging):
+        as_wanted |= _lies_on(part, aspects, followed, any_heading)
+    own = [followed.entered == k for k in rows]
+    count = [[int((own_parts & some).sum()) for own_parts in own] for some in (
+        np.ones(len(whole), bool), whole & as_wanted, whole & ~as_wanted,
+        np.isin(followed.fates, HELD),
     )]  # fmt: skip
-    moving = seen.velocities[np.isfinite(seen.velocities) & (seen.velocities > 0.0)]
-    parts, right, wrong, held = (np.array(one) for one in count)
+    moving = followed.velocities[np.isfinite(followed.velocities) & (followed.velocities > 0.0)]
+    parts, right, wrong, held = (np.array(counts_of_rows) for counts_of_rows in count)
     return Tried(
-        known, shares, rows, parts, right, wrong, held,
-        places=tuple(_places(seen, one) for one in own),
-        turns=tuple(_turns(seen, one & ~asked) for one in own),
+        orientations, shares, rows, parts, right, wrong, held,
+        places=tuple(_places(followed, own_parts) for own_parts in own),
+        turns=tuple(_turns(followed, own_parts & ~as_wanted) for own_parts in own),
         velocity=float(moving.mean()) if len(moving) else 0.0,
-        state=states[0], states=states, deepest=float(seen.depths.max(initial=0.0)),
-        apart=stream.needed_spacing(bowl.devices, known.lying, bowl), seen=(seen,),
+        state=states[0], states=states, deepest=float(followed.depths.max(initial=0.0)),
+        spacing=stream.needed_spacing(bowl.devices, orientations.lying, bowl), courses=(followed,),
     )  # fmt: skip
 
 
-def _lies_on(part: Part, aspects: Aspects, seen: course.Course, names: Sequence[str]) -> np.ndarray:
+def _lies_on(part: Part, aspects: Aspects, followed: course.Course, names: Sequence[str]) -> np.ndarray:
     """(N,) bool, whether a part left lying on one of some aspects, or would come to, at any heading."""
-    found, ride, riders = np.zeros(len(seen.fates), bool), seen.rides[-1], seen.riders[-1]
-    if len(seen.rides) < len(seen.stations):  # none came to the last station
-        return found
+    lies_on, ride, riders = np.zeros(len(followed.fates), bool), followed.rides[-1], followed.riders[-1]
+    if len(followed.rides) < len(followed.stations):  # none came to the last station
+        return lies_on
     passed = ride.outcomes == runs.PASSED
     rows = [aspects.names.index(name) for name in names]
-    found[riders[passed]] = np.isin(AspectsBelow(part, aspects).of(ride.states[passed]), rows)
-    return found
+    lies_on[riders[passed]] = np.isin(AspectsBelow(part, aspects).of(ride.states[passed]), rows)
+    return lies_on
 
 
-def _places(seen: course.Course, own: np.ndarray) -> dict[str, int]:
+def _places(followed: course.Course, own: np.ndarray) -> dict[str, int]:
     """Where parts ended that did not leave, and how: {'returned at gap': 2}."""
-    found: dict[str, int] = {}
-    for n in np.flatnonzero(own & ~np.isin(seen.fates, (course.PASSED, course.TURNED))):
-        where = at_station(seen.stations[seen.ended[n]].device)
-        name = f"{course.FATES[seen.fates[n]].replace('_', ' ')} {where}"
-        found[name] = found.get(name, 0) + 1
-    return found
+    counts: dict[str, int] = {}
+    for n in np.flatnonzero(own & ~np.isin(followed.fates, (course.PASSED, course.TURNED))):
+        where = at_station(followed.stations[followed.ended[n]].device)
+        name = f"{course.FATES[followed.fates[n]].replace('_', ' ')} {where}"
+        counts[name] = counts.get(name, 0) + 1
+    return counts
 
 
-def _turns(seen: course.Course, own: np.ndarray) -> dict[str, int]:
+def _turns(followed: course.Course, own: np.ndarray) -> dict[str, int]:
     """Where parts came into the orientation in which they left, and how many: {'turned on the track': 2}."""
-    found: dict[str, int] = {}
-    for n in np.flatnonzero(own & np.isin(seen.fates, (course.PASSED, course.TURNED))):
-        others = np.flatnonzero(seen.orientations[:, n] != seen.orientations[-1, n])
-        station = int(others[-1]) if len(others) else 0
-        name = f"turned {at_station(seen.stations[station].device)}"
-        found[name] = found.get(name, 0) + 1
-    return found
+    counts: dict[str, int] = {}
+    for n in np.flatnonzero(own & np.isin(followed.fates, (course.PASSED, course.TURNED))):
+        changed = np.flatnonzero(followed.orientations[:, n] != followed.orientations[-1, n])
+        station = int(changed[-1]) if len(changed) else 0
+        name = f"turned {at_station(followed.stations[station].device)}"
+        counts[name] = counts.get(name, 0) + 1
+    return counts
 
 
 def at_station(device: Device) -> str:
@@ -311,7 +317,7 @@ def spared_rows(tried: Tried) -> tuple[int, ...]:
         Their rows: fewer parts a minute, no fault. None where no wanted orientation leaves whole, nor any of
         which a part stays or leaves otherwise.
     """
-    right = set(wanted_rows(tried.known, tried.states))
+    right = set(wanted_rows(tried.orientations, tried.states))
     own = [n for n, k in enumerate(tried.rows) if k in right]
     if not any(tried.right[n] == tried.parts[n] for n in own):
         return ()
@@ -332,7 +338,7 @@ def lost_by_motion(tried: Tried) -> int:
     int
         What a device returns, stops or turns is not among them.
     """
-    right = set(wanted_rows(tried.known, tried.states))
+    right = set(wanted_rows(tried.orientations, tried.states))
     own = [n for n, k in enumerate(tried.rows) if k in right]
-    counts = [one[n] for one in (tried.places, tried.turns) if one for n in own]
+    counts = [counted_ends[n] for counted_ends in (tried.places, tried.turns) if counted_ends for n in own]
     return sum(number for count in counts for name, number in count.items() if name.endswith("on the track"))

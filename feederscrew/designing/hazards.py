@@ -1,0 +1,589 @@
+"""Risks that are said before steel is cut: parts that shingle, hook, nest, wedge, or climbed in the queue."""
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.bowl import default
+from feederscrew.bowl.record import Bowl, Track
+from feederscrew.dropping.kernel import body
+from feederscrew.geometry import vectors
+from feederscrew.geometry.compiled import zero_rows
+from feederscrew.geometry.lattice import Cells, cells, chords, handles
+from feederscrew.geometry.polygons import turned
+from feederscrew.part.record import Part
+from feederscrew.tooling.isolating.chain import in_mm
+from feederscrew.tooling.orientations import Orientation
+from feederscrew.trial import air, arrays, crowd, part_poses, runs, staging
+from feederscrew.trial.kernel.workspace import JOURNAL, Together
+from feederscrew.trial.shape import TrueSolid, solid_of
+from feederscrew.units import counted
+
+LIFT = 0.25e-3  # [m] that one part may lie higher than the next: play, burrs, dirt; as a design's margin
+CLEARS = 2  # status of a linear programme without a solution: so much higher nothing meets
+DIRECTIONS = check.frozen(  # (26, 3) to faces, edges and corners of a cube
+    vectors.unit(
+        np.array([corner for corner in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(corner)])
+    )
+)
+SHINGLES, CLIMBS, HOOKS, NESTS, WEDGES = "shingles", "climbs", "hooks", "nests", "wedges"
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """A part and another of its kind, or the walls that it stands between, as it is drawn."""
+
+    axes: np.ndarray  # (3, 3) [1] of the picture as rows, in the file's axes: along, across, up
+    turn: np.ndarray | None = None  # (3, 3) [1] of the second part, in the file's axes
+    place: np.ndarray | None = None  # (3,) [m] of its centre of mass from that of the first, in those axes
+    walls: float = np.nan  # [m] apart, square to what is across; NaN of two parts
+
+
+@dataclass(frozen=True, eq=False)
+class Risk:
+    """What may go wrong between parts."""
+
+    kind: str  # 'shingles', 'climbs', 'hooks', 'nests', 'wedges'
+    text: str
+    pair: Pair | None = None  # what is drawn of it
+
+
+class QueueSeen(Protocol):
+    """A queue that was followed, as far as it tells of risks."""
+
+    @property
+    def climbs(self) -> int:
+        """How often a part climbed on another."""
+
+    @property
+    def seconds(self) -> float:
+        """How long it was followed [s]."""
+
+
+def wedge(orientation: Orientation, lift: float = LIFT) -> float:
+    """Return the angle [rad] at which a part is pushed up on another where it lies a little higher.
+
+    Two parts of one orientation follow each other along the track, one of them higher by ``lift``. They come
+    together until their hulls touch, L apart. Pushed on, the higher one rises as the plane does in which they
+    touch: by -dL/d(lift) along the track for each unit upwards.
+
+    Source: own; docs/design.md, "7. Risks between parts".
+
+    Parameters
+    ----------
+    orientation : Orientation
+    lift : float [m]
+
+    Returns
+    -------
+    float
+        The smaller angle above the track of the two: either the part behind is higher or the one before. A
+        quarter of a turn where upright sides meet, more where the plane pushes the higher one down, 0 where
+        one clears the other.
+    """
+    return min(_rise(orientation, sign, lift)[0] for sign in (1.0, -1.0))
+
+
+def _rise(orientation: Orientation, sign: float, lift: float) -> tuple[float, float]:
+    """The angle where the part behind is higher (+1) or the part before (-1), and how far apart they are.
+
+    L is the largest q_x - p_x of points q of the part behind and p of the part before that meet: a linear
+    programme in the shares of the corners, whose multiplier of the height is dL/d(lift).
+    """
+    from scipy.optimize import linprog
+
+    points = orientation.posture.surface
+    x, y = turned(points[:, :2], orientation.heading).T
+    z, count = points[:, 2], len(points)
+    whole, none = np.ones(count), np.zeros(count)
+    rows = [np.append(whole, none), np.append(none, whole), np.append(y, -y), np.append(-z, z)]
+    right = [1.0, 1.0, 0.0, sign * lift]  # shares of q, of p; beside each other; p_z - q_z
+    solution = linprog(np.append(-x, x), A_eq=rows, b_eq=right, method="highs")
+    if solution.status == CLEARS:
+        return 0.0, 0.5 * float(np.ptp(x))
+    return math.atan2(1.0, sign * solution.eqlin.marginals[3]), -float(solution.fun)
+
+
+def risks(
+    orientation: Orientation,
+    bowl: Bowl,
+    queues: Sequence[QueueSeen],
+    *,
+    orientations: Sequence[Orientation] = (),
+    seed: int = 1,
+) -> tuple[Risk, ...]:
+    """Say what may go wrong between parts.
+
+    Parameters
+    ----------
+    orientation : Orientation
+        That is wanted, of a part from a mesh.
+    bowl : Bowl
+        Its friction is also that of part on part.
+    queues : sequence of FilledQueue
+        What was seen.
+    orientations : sequence of Orientation
+        All that come often enough to matter.
+    seed : int
+
+    Returns
+    -------
+    tuple of Risk
+    """
+    part = orientation.posture.solid
+    listed = [*_shingling(orientation, bowl.friction.kinetic), *_climbing(queues)]
+    if part is not None:
+        listed += [*_nesting(part, bowl), *_tangling(part, bowl, seed)]
+    return (*listed, *_wedging(orientations or (orientation,), bowl))
+
+
+def _shingling(orientation: Orientation, friction: float) -> Iterator[Risk]:
+    held = math.atan(friction)
+    angle, distance, sign = min((*_rise(orientation, sign, LIFT), sign) for sign in (1.0, -1.0))
+    higher = f"where one lies {1e3 * LIFT:.3g} mm higher than the next it"
+    if angle >= held:
+        return
+    if angle <= 0.0:
+        text = f"{orientation.name} may shingle: {higher} slides onto it"
+    else:
+        text = (
+            f"{orientation.name} may shingle: {higher} is pushed up a side of {math.degrees(angle):.3g} deg, "
+            f"and friction holds it up to {math.degrees(held):.3g} deg"
+        )
+    before = vectors.product(np.array([distance, 0.0, -sign * LIFT]), orientation.axes)
+    yield Risk(SHINGLES, text, Pair(orientation.axes, np.eye(3), check.frozen(before)))
+
+
+def _climbing(queues: Sequence[QueueSeen]) -> Iterator[Risk]:
+    climbs = sum(queue.climbs for queue in queues)
+    if climbs:
+        seconds = sum(queue.seconds for queue in queues)
+        yield Risk(CLIMBS, f"parts climbed on others {counted(climbs, 'time')} in {seconds:.3g} s of queue")
+
+
+def _nesting(part: Part, bowl: Bowl) -> Iterator[Risk]:
+    nested = stack(part, bowl.friction.static)
+    if nested is not None:
+        held, side = math.degrees(math.atan(bowl.friction.static)), math.degrees(nested.side)
+        text = (
+            f"parts may nest: one goes {in_mm(nested.depth)} of {in_mm(nested.height)} into the "
+            f"next; its sides are {side:.3g} deg off that way, and friction holds it up to {held:.3g} deg"
+        )
+        yield Risk(NESTS, text, Pair(np.eye(3), np.eye(3), nested.place))
+
+
+def _tangling(part: Part, bowl: Bowl, seed: int) -> Iterator[Risk]:
+    tangled = tangle(part, (bowl.friction.static, bowl.friction.kinetic), seed)
+    if tangled is None:
+        return
+    pulls = f"{tangled.held} of {tangled.pulls} pulls do not part two of them"
+    pair = Pair(np.eye(3), tangled.turn, tangled.place)
+    if np.isfinite(tangled.opening):
+        text = (
+            f"parts may hook into each other: {pulls}; {in_mm(tangled.section)} of them come through a "
+            f"mouth of {in_mm(tangled.opening)}"
+        )
+        yield Risk(HOOKS, text, pair)
+    else:
+        yield Risk(HOOKS, f"parts may catch in each other: {pulls}", pair)
+
+
+def _wedging(orientations: Sequence[Orientation], bowl: Bowl) -> Iterator[Risk]:
+    """Those that come between the wall and what stands at the free edge, such as the chute's other wall."""
+    wall, width = bowl.friction.wall, bowl.track.width
+    for orientation in orientations:
+        between = walls_between(orientation, wall)
+        if between is None or not between[0] < width < between[1]:
+            continue
+        text = (
+            f"{orientation.name} may wedge across a chute as wide as the track, {in_mm(width)}: friction "
+            f"holds it between walls {in_mm(between[0])} to {in_mm(between[1])} apart"
+        )
+        c, s = math.cos(strut(orientation, width)), math.sin(strut(orientation, width))
+        x, y, z = orientation.axes
+        yield Risk(WEDGES, text, Pair(np.array([c * x - s * y, s * x + c * y, z]), walls=width))
+        return
+
+
+TURNS = 1.02  # times its breadth along the wall: what is no wider, turned as you like, is no strut
+
+
+def walls_between(orientation: Orientation, friction: float) -> tuple[float, float] | None:
+    """Return between which distances of two parallel walls a part may wedge; None where it cannot.
+
+    A part between upright walls, turned until it touches both, is a strut: two forces along the line through
+    the points where it touches. They hold it, however hard it is pushed along, where that line is within the
+    angle of friction of square to the walls. It turns no further where that line is its own longest.
+
+    Source: own; docs/design.md, "7. Risks between parts".
+
+    Parameters
+    ----------
+    orientation : Orientation
+        Lying as it travels along the first wall.
+    friction : float [1]
+        Of the part on the walls.
+
+    Returns
+    -------
+    (float, float) [m] or None
+        Least and greatest. Walls that are nearer than the part is broad let none in; walls that are further
+        apart never touch it at once.
+    """
+    corners = orientation.outline
+    breadth = float(np.ptp(corners[:, 1]))
+    longest = _longest(corners)
+    if longest <= TURNS * breadth:
+        return None
+    return max(longest * math.cos(math.atan(friction)), breadth), longest
+
+
+def _longest(corners: np.ndarray) -> float:
+    """The greatest distance of two corners (J, 2)."""
+    differences = corners[:, None] - corners[None]
+    return float(np.sqrt((differences**2).sum(axis=-1)).max())
+
+
+def strut(orientation: Orientation, width: float) -> float:
+    """Return the heading [rad] by which a part is turned further where it touches walls so far apart.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    width : float [m]
+        Of the two walls.
+    """
+    angles = np.linspace(-math.pi / 2.0, math.pi / 2.0, 721)
+    wide = [
+        float(np.ptp(math.sin(turn) * orientation.outline[:, 0] + math.cos(turn) * orientation.outline[:, 1]))
+        for turn in angles
+    ]
+    return float(angles[int(np.argmin(np.abs(np.array(wide) - width)))])
+
+
+LINES, NEAR, NESTED = 60, 0.02, 0.3  # lines through a part; of their longest; of a part that is in another
+ROUND = 0.5  # mean of the sides' normals: what touches on one side only slides off
+
+
+@dataclass(frozen=True, eq=False)
+class Stack:
+    """A part in another of its kind, shifted and not turned."""
+
+    place: np.ndarray  # (3,) [m] of the second part from the first, in the file's axes
+    height: float  # [m] of one of them along that direction
+    side: float  # [rad] between that direction and the sides on which they touch
+
+    @property
+    def depth(self) -> float:
+        """How far the one is in the other [m]."""
+        return self.height - float(vectors.norm(self.place))
+
+
+def stack(part: Part, friction: float) -> Stack | None:
+    """Return how a part sits in another, shifted and not turned, where friction holds it; else None.
+
+    Two such parts touch where the upright chord of the one is longest, its hollows counted in: that is how
+    far apart they are. Where their sides all round are steeper there than friction holds, they stay so.
+
+    Source: own; docs/design.md, "7. Risks between parts".
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    friction : float [1]
+        Of part on part.
+
+    Returns
+    -------
+    Stack or None
+        Of all directions the one in which it goes in deepest.
+    """
+    solid, length, principal = solid_of(part)
+    stacks = []
+    for direction in DIRECTIONS[len(DIRECTIONS) // 2 :]:
+        axes = _upright(direction)
+        corners = vectors.product(solid.vertices, axes.T)
+        chord, low, high = chords(corners, solid.triangles, LINES)
+        whole = float(np.ptp(corners[:, 2]))
+        touching = chord > (1.0 - NEAR) * chord.max()
+        sides = [vectors.product(solid.normals[own[touching]], axes.T) for own in (low, high)]
+        steep = [
+            np.arctan2(np.abs(normals[:, 2]), np.hypot(normals[:, 0], normals[:, 1])) for normals in sides
+        ]
+        side = float(np.median(np.maximum(*steep)))
+        lean = np.hypot(*sides[1][:, :2].mean(axis=0))  # 0 where they touch all round
+        deep = 1.0 - float(chord.max()) / whole
+        if deep > NESTED and side < np.arctan(friction) and lean < ROUND:
+            place = length * float(chord.max()) * vectors.product(principal, direction)
+            stacks.append(Stack(check.frozen(place), length * whole, side))
+    return min(stacks, key=lambda nested: vectors.norm(nested.place) / nested.height, default=None)
+
+
+def _upright(upwards: np.ndarray) -> np.ndarray:
+    """Axes (3, 3) as rows, of which the third is a direction (3,)."""
+    aside = np.cross(upwards, np.eye(3)[int(np.argmin(np.abs(upwards)))])
+    aside = vectors.unit(aside)
+    return np.array([aside, np.cross(upwards, aside), upwards])
+
+
+CELLS = 36  # along the longest side of a part
+HOLLOW = 0.03  # of its hull that is not of the part: with less nothing reaches into it
+TRIES, POSES = 3000, 24  # pairs that are laid out by chance; of them, the deepest that are pulled
+DEEP = 0.02  # of both parts that lies in the other's hull: less is no hooking
+BESIDE = 0.4  # of a part's radius by which poses differ that are both pulled
+LOOSE = 0.8  # of the pulls: a closed ring that holds in more of them was never apart, as a link of a chain
+THINNEST = 0.25  # of a part: its edges and corners are less of it than its thinnest limb
+
+
+@dataclass(frozen=True, eq=False)
+class Tangle:
+    """Two parts of one shape that reach into each other, and how well they hold."""
+
+    turn: np.ndarray  # (3, 3) [1] of the second part in the file's axes of the first
+    place: np.ndarray  # (3,) [m] of its centre of mass from that of the first, in those axes
+    pulls: int
+    held: int  # of them that did not part the two
+    opening: float  # [m] through which they come to hook; NaN where they part in some direction
+    section: float  # [m] thinnest of the part
+
+    @property
+    def share(self) -> float:
+        """Share of the pulls that do not part them [1]."""
+        return self.held / self.pulls
+
+
+def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle | None:
+    """Return the pair of a part that holds best of those that reach into each other; None where none holds.
+
+    Pairs are laid out by chance, one of the second part's cells in a hollow of the first. Those that do not
+    overlap and reach deepest into each other's hulls are pulled apart in the trial's engine, in directions
+    that lead their centres of mass away from each other, without gravity and track. What is never parted
+    counts only where the part has a mouth through which its thinnest section comes: a ring does not.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    friction : (float, float) [1]
+        Static and kinetic, of part on part.
+    seed : int
+
+    Returns
+    -------
+    Tangle or None
+    """
+    solid, length, principal = solid_of(part)
+    grid = cells(solid.vertices, solid.triangles, CELLS)
+    if 1.0 - grid.solid.sum() / grid.hull.sum() < HOLLOW:
+        return None
+    section, mouth = _section(grid), _mouth(grid)
+    closed = mouth < section if np.isfinite(mouth) else handles(grid.solid) > 0
+    most = LOOSE if closed else 1.0
+    pulled = Pulled(solid, grid, length, friction)
+    tried = [pulled.tried(turn, place, most) for turn, place in poses(grid, np.random.default_rng(seed))]
+    holding = [
+        outcome for outcome in tried if outcome is not None and HELD <= outcome[3] / outcome[2] <= most
+    ]
+    mouth = mouth if mouth >= section else np.nan
+    if not holding:
+        return None
+    turn, place, pulls, held = max(holding, key=lambda outcome: outcome[3] / outcome[2])
+    turn = vectors.product(vectors.product(principal, turn), principal.T)
+    place = length * vectors.product(principal, place)
+    return Tangle(check.frozen(turn), check.frozen(place), pulls, held, length * mouth, length * section)
+
+
+def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return the deepest poses of a part in another of its kind that do not overlap: rotations and places.
+
+    Parameters
+    ----------
+    grid : Cells
+        Of the part, about its centre of mass.
+    rng : numpy Generator
+
+    Returns
+    -------
+    list of ((3, 3) float [1], (3,) float [L])
+        Deepest first, no two alike.
+    """
+    own, rim = grid.middles(grid.solid), grid.middles(grid.rim)
+    hollow = grid.middles(grid.hull & ~grid.solid & (grid.away > grid.size))
+    if not len(hollow):
+        return []
+    overlaps = []
+    for _ in range(TRIES):
+        turn = _turn(rng.standard_normal(4))
+        q, p = own[rng.integers(len(own))], hollow[rng.integers(len(hollow))]
+        place = p - vectors.product(turn, q)
+        if (grid.away[grid.at(place + vectors.product(rim, turn.T))] <= 0.0).any():
+            continue
+        moved_back = vectors.product(own - place, turn)
+        deep = min(_within(grid, place + vectors.product(own, turn.T)), _within(grid, moved_back))
+        if deep > DEEP:
+            overlaps.append((deep, turn, place))
+    return _distinct_poses(sorted(overlaps, key=lambda pose: -pose[0]), float(vectors.length(rim).max()))
+
+
+def _within(grid: Cells, points: np.ndarray) -> float:
+    """Share of points (N, 3) in the hull."""
+    return float(grid.hull[grid.at(points)].mean())
+
+
+def _distinct_poses(
+    overlaps: list[tuple[float, np.ndarray, np.ndarray]], radius: float
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """The first of the poses of which none is like one before it."""
+    distinct: list[tuple[np.ndarray, np.ndarray]] = []
+    for _, turn, place in overlaps:
+        differs = (
+            vectors.length(place - other) + radius * np.abs(turn - spun).max() > BESIDE * radius
+            for spun, other in distinct
+        )
+        if all(differs):
+            distinct.append((turn, place))
+        if len(distinct) == POSES:
+            break
+    return distinct
+
+
+def _turn(numbers: np.ndarray) -> np.ndarray:
+    state = np.zeros(body.STATE)
+    state[body.Q : body.Q + 4] = numbers / vectors.norm(numbers)
+    return part_poses.matrix(state)
+
+
+def _section(grid: Cells) -> float:
+    """Diameter [L] of the ball that fits into a part wherever it is, but for its edges and corners."""
+    own, inside = np.argwhere(grid.solid), grid.inside[grid.solid]
+    neighbours = np.max([np.roll(grid.inside, step, axis) for axis in range(3) for step in (-1, 1)], axis=0)
+    ridge = np.flatnonzero(inside >= neighbours[grid.solid] - 0.5 * grid.size)
+    least = np.zeros(len(own))
+    for k in ridge[np.argsort(inside[ridge], kind="stable")]:
+        least[((own - own[k]) ** 2).sum(axis=1) * grid.size**2 < inside[k] ** 2] = inside[k]
+    return 2.0 * float(np.quantile(least, THINNEST)) - grid.size
+
+
+def _mouth(grid: Cells) -> float:
+    """Width [L] of the slit that closes a ring of the part; NaN where none does.
+
+    The part grows on all sides, until it has a handle more than it had.
+    """
+    own, step = handles(grid.solid), 0.5 * grid.size
+    least = min(grid.solid.shape) // 2
+    wide = np.pad(grid.away, 0)
+    for k in range(1, 4 * least):
+        if handles(wide <= k * step) > own:
+            return 2.0 * k * step
+    return np.nan
+
+
+HELD = 0.75  # of the pulls, that do not part the two: then they may hook
+PULL, SECONDS = 0.12, 0.06  # [sqrt(g L)] by which a pull changes their velocities; [sqrt(L/g)] to the next
+PULLS, SHAKES, SHAKEN = 40, 15, 1  # in one direction; then in any, away from each other in the mean; seed
+LEAKS, SEEN, SURE = 1.7, 400, 7  # cells deep; so many of its cells are looked at; pulls that hold, of a ring
+SUNK = 0.02  # of the unit of length: so deep in each other no two parts are
+HIGH, FAR = 1e3, 1e6  # over the track and from the wall, in units of length; radius of the wall
+
+
+class Pulled:
+    """Two parts without gravity, which are pulled apart."""
+
+    def __init__(self, solid: TrueSolid, grid: Cells, length: float, friction: tuple[float, float]) -> None:
+        bowl = default()
+        track = replace(bowl.track, climb=0.0, bank=0.0, radius=FAR * length)
+        bowl = replace(bowl, drive=replace(bowl.drive, amplitude=0.0), track=track, devices=())
+        rim = grid.middles(grid.rim)
+        self.solid, self.grid, self.rim = solid, grid, rim[:: max(len(rim) // SEEN, 1)]
+        self.setting = setting = runs.setting(solid, length, bowl)
+        static, kinetic = friction
+        setting = replace(setting, friction=np.array([static, kinetic, static, kinetic, static]))
+        self.pair = crowd.PartsOnTrack(setting, _nowhere(track, length), 2)
+
+    def tried(
+        self, turn: np.ndarray, place: np.ndarray, most: float
+    ) -> tuple[np.ndarray, np.ndarray, int, int] | None:
+        """Return a pose with how often it was pulled, and how often in vain; None where no pose was tried.
+
+        It ends as soon as too few can hold, or of what is to hold in a share ``most`` [1], as too many do.
+        """
+        away = vectors.unit(place) if vectors.norm(place) > 0.0 else place
+        directions = [direction for direction in DIRECTIONS if vectors.dot(direction, away) > -1e-9]
+        held = pulls = 0
+        for left, direction in zip(range(len(directions))[::-1], directions):
+            parted = self.parted(turn, place, direction)
+            held += parted is False
+            pulls += parted is not None
+            few = held + left < HELD * len(directions)
+            if few or (most < 1.0 and held == pulls == SURE):
+                return None
+        return turn, place, pulls, held
+
+    def parted(self, turn: np.ndarray, place: np.ndarray, direction: np.ndarray) -> bool | None:
+        """Return whether a pull (3,) [1] parts the two, or shaking after it; None where they overlap then."""
+        states = np.zeros((2, body.STATE))
+        states[:, 1:3] = HIGH
+        states[1, :3] += place
+        states[0, body.Q] = 1.0
+        states[1, body.Q : body.Q + 4] = part_poses.quaternion(turn)
+        for n in (0, 1):
+            self.pair.lay(n, states[n])
+        rng = np.random.default_rng(SHAKEN)
+        for k in range(PULLS + SHAKES):
+            own = (
+                direction
+                if k < PULLS
+                else vectors.unit(self.separation) + vectors.unit(rng.standard_normal(3))
+            )
+            depth = self.pull(PULL * own)
+            if self.through or (k == 0 and depth > SUNK):
+                return None
+            if vectors.norm(self.separation) > 2.0 * self.solid.radius:
+                return True
+        return False
+
+    @property
+    def through(self) -> bool:
+        """Whether the two have come through each other."""
+        first, second = self.pair.arrays.states
+        spots = self.separation + vectors.product(self.rim, part_poses.matrix(second).T)
+        spots = vectors.product(spots, part_poses.matrix(first))
+        return bool((self.grid.inside[self.grid.at(spots)] > LEAKS * self.grid.size).any())
+
+    @property
+    def separation(self) -> np.ndarray:
+        """From one centre of mass to the other, (3,) [L]."""
+        return self.pair.arrays.states[1, :3] - self.pair.arrays.states[0, :3]
+
+    def pull(self, pull: np.ndarray) -> float:
+        """Pull both by a velocity (3,) [sqrt(g L)] away from each other; how deep they were in each other."""
+        pair, states, journals = self.pair, self.pair.arrays.states, zero_rows(1, JOURNAL)
+        states[:, 3:6] -= states[:, 3:6].mean(axis=0)  # they fall freely: that is left out
+        states[:, 2] += HIGH - states[:, 2].mean()
+        states[0, 3:6] -= pull
+        states[1, 3:6] += pull
+        steps = max(round(SECONDS / self.setting.floor.step), 1)
+        arrays.move_on(self.setting, pair.surface, pair.arrays, Together(pair.on, 0.0, steps, journals))
+        return float(journals.depth[0])
+
+
+def _nowhere(track: Track, length: float) -> crowd.CrowdedTrack:
+    """A track that is too far away to be met."""
+    plates = staging.built([], track, length, (-length, length))
+    stage = staging.Stage(
+        staging.BARE_TRACK,
+        *plates,
+        begin=-length,
+        exit=np.inf,
+        air=air.STILL_AIR,
+        size=length,
+        width=track.width,
+    )
+    none = np.zeros((0, 2))
+    return crowd.CrowdedTrack(stage, -length, none, np.zeros(1), length)

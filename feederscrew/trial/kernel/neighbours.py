@@ -1,0 +1,468 @@
+"""Compiled lists of what of a part may come to touch what, made once in a while.
+
+They hold as long as no corner of the part has moved further than the lists look around it: a part that slides
+or lies moves by that in many steps, so that a step costs what touches and not what is in the file.
+"""
+
+import math
+
+from feederscrew.dropping.kernel.body import Q, X, Y, Z
+from feederscrew.geometry.compiled import compiled, outlined
+from feederscrew.trial.kernel.plate_views import (
+    BLOCK,
+    MAX_DEPTH,
+    circle_height,
+    circle_to_wall,
+    distance_to_border,
+    distance_to_wall,
+    height_over_face,
+    heights_of,
+    in_body,
+    is_over_face,
+    is_solid,
+    place_of,
+    turned,
+    view_of,
+    wall_of,
+)
+
+FREE_WAY = 0.25  # in units of the part's length: so far along a bare track its lists hold
+LEAST_MARGIN, MARGIN_SHARE = 0.02, 3.0  # how far around a part is looked, at least, and times the reach
+NO_BEND = 1e-9  # [1] of the product of squares: two lines are parallel
+
+
+@compiled
+def lists_hold(surface, solid, work, n, reach):
+    """Return whether the lists of a part still hold for contacts ``reach`` [L] ahead."""
+    state, listed = work.states[n], work.listed[n]
+    x, y = state[X] - listed.x, state[Y] - listed.y
+    square, c, s = x * x + y * y, 1.0, 0.0
+    if square < listed.free * listed.free:  # along the bare track, turned about its axis, it sees the same
+        new = work.tangents[n]
+        c = listed.tangent_x * new[0] + listed.tangent_y * new[1]
+        s = listed.tangent_x * new[1] - listed.tangent_y * new[0]
+        off = (state[X] * new[1]) + (surface.radius - state[Y]) * new[0] - listed.from_axis
+        square = off * off
+    square += (state[Z] - listed.z) ** 2
+    half = math.sqrt(0.5 + 0.5 * c)
+    p, q = half, 0.5 * s / half
+    w, x = p * listed.qw - q * listed.qz, p * listed.qx - q * listed.qy
+    y, z = p * listed.qy + q * listed.qx, p * listed.qz + q * listed.qw
+    a, b, c, d = state[Q], state[Q + 1], state[Q + 2], state[Q + 3]
+    same = (a - w) ** 2 + (b - x) ** 2 + (c - y) ** 2 + (d - z) ** 2
+    opposite = (a + w) ** 2 + (b + x) ** 2 + (c + y) ** 2 + (d + z) ** 2
+    listed.moved = math.sqrt(square) + 2.1 * solid.radius * math.sqrt(min(same, opposite))
+    return listed.moved + reach < listed.reach
+
+
+@outlined
+def rebuild_lists(surface, solid, work, n, reach):
+    """Make the lists of a part anew, of what may come within ``reach`` [L]."""
+    state, listed, filled = work.states[n], work.listed[n], work.filled[0]
+    margin = reach + max(LEAST_MARGIN, MARGIN_SHARE * reach)
+    listed.x, listed.y, listed.z = state[X], state[Y], state[Z]
+    listed.qw, listed.qx, listed.qy, listed.qz = state[Q], state[Q + 1], state[Q + 2], state[Q + 3]
+    listed.reach, listed.moved, listed.free = margin, 0.0, FREE_WAY
+    listed.tangent_x, listed.tangent_y = work.tangents[n, 0], work.tangents[n, 1]
+    listed.from_axis = state[X] * work.tangents[n, 1] + (surface.radius - state[Y]) * work.tangents[n, 0]
+    _list_near_wall(surface, solid, work, n, margin)
+    filled.corners = filled.sides = filled.edges = filled.posts = 0
+    filled.faces = filled.circles = filled.rounds = 0
+    for k in range(len(surface.plates)):
+        plate = surface.plates[k]
+        view_of(plate, state, work.turns[n], work.frame)
+        if _comes_to_plate(plate, work.frame, solid.radius + margin + FREE_WAY):
+            if plate.front_z < 1.0 or _border_comes(solid, work, plate, surface.borders, margin + FREE_WAY):
+                listed.free = 0.0
+            _list_near_plate(surface, solid, work, n, k, margin)
+        work.ends[n, k + 1] = work.filled[0]
+
+
+@compiled
+def _list_near_wall(surface, solid, work, n, margin):
+    """List what of a part is within a margin [L] of the wall: corners of its hull, and circles."""
+    state, count = work.states[n], 0
+    x, y = state[X], surface.radius - state[Y]
+    if math.sqrt(x * x + y * y) + solid.radius > (surface.radius - margin) * wall_of(work.leans[n])[1]:
+        for j in range(len(solid.single_blocks)):
+            block = solid.single_blocks[j]
+            p = 0.5 * (block[0] + block[3]), 0.5 * (block[1] + block[4]), 0.5 * (block[2] + block[5])
+            x, y, z = block[3] - p[0], block[4] - p[1], block[5] - p[2]
+            if _point_to_wall(surface, work, n, p) > margin + math.sqrt(x * x + y * y + z * z):
+                continue
+            for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.singles))):
+                k = solid.singles[m]
+                gap = _point_to_wall(
+                    surface, work, n, (solid.corners[k, 0], solid.corners[k, 1], solid.corners[k, 2])
+                )
+                if gap < margin:
+                    near = work.wall_corners[n, count]
+                    near.corner, near.gap = k, gap
+                    count += 1
+    work.listed[n].wall_corners = count
+    count = 0
+    for k in range(len(solid.circles)):
+        if circle_to_wall(surface, state, work.turns[n], work.leans[n], solid.circles[k])[0] < margin:
+            work.wall_circles[n, count] = k
+            count += 1
+    work.listed[n].wall_circles = count
+
+
+@compiled
+def _point_to_wall(surface, work, n, p):
+    """How far a point of a body is from the wall."""
+    state = work.states[n]
+    x, y, z = turned(work.turns[n], p)
+    return distance_to_wall(surface, work.leans[n], state[X] + x, state[Y] + y, state[Z] + z)
+
+
+@compiled
+def _comes_to_plate(plate, frame, far):
+    """Whether a ball about the body's centre comes to a plate."""
+    if frame[11] > far or frame[11] < -plate.depth - far:
+        return False
+    if frame[9] < plate.least_x - far or frame[9] > plate.most_x + far:
+        return False
+    return plate.least_y - far <= frame[10] <= plate.most_y + far
+
+
+@compiled
+def _list_near_plate(surface, solid, work, n, k, margin):
+    """Add what of a part is near one plate; ``work.frame`` is how that sees it."""
+    plate, borders = surface.plates[k], surface.borders
+    count = total = blocks = 0
+    if _border_comes(solid, work, plate, borders, margin):
+        _list_rounds(work, n, plate, borders, margin)
+        blocks = _find_edge_blocks(solid, work, plate, margin)
+        count, total = _find_borders(plate, borders, work.box, margin, work.borders_near)
+    # where no border is near, corners of the hull that are on no circle: no others touch the plate
+    if count:
+        corners = _find_corners(solid, work, plate, margin, solid.grouped, solid.corner_blocks)
+    else:
+        corners = _find_corners(solid, work, plate, margin, solid.singles, solid.single_blocks)
+    _list_circles(surface, solid, work, n, k, total, margin)
+    _list_corners(surface, solid, work, n, k, (count, total, corners), margin)
+    for m in range(count):
+        _list_edges(surface, solid, work, n, plate, work.borders_near[m], blocks, margin)
+    _list_faces(surface, solid, work, n, plate, count, margin)
+
+
+@compiled
+def _comes_into(border, box, margin):
+    """Whether a border may come into a box (4,) of places along a plate, or so near to it."""
+    p, q, u, v = border.start_x, border.start_y, border.end_x, border.end_y
+    if min(p, u) > box[1] + margin or max(p, u) < box[0] - margin:
+        return False
+    return min(q, v) <= box[3] + margin and max(q, v) >= box[2] - margin
+
+
+@compiled
+def _border_comes(solid, work, plate, borders, margin):
+    """Whether any border of a plate comes into the box of a ball around the part."""
+    box, far, comes = work.box, solid.radius, False
+    for e in range(2):
+        box[2 * e], box[2 * e + 1] = work.frame[9 + e] - far, work.frame[9 + e] + far
+    for k in range(plate.begin, plate.end):
+        comes = comes or _comes_into(borders[k], box, margin)
+    return comes
+
+
+@compiled
+def _list_rounds(work, n, plate, borders, margin):
+    """Add the borders that a line along the plate from a point of the part, in ``work.box``, may cross."""
+    box, count = work.box, work.filled[0].rounds
+    for k in range(plate.begin, plate.end):
+        border = borders[k]
+        level = max(border.start_y, border.end_y) >= box[2] - margin
+        level = level and min(border.start_y, border.end_y) <= box[3] + margin
+        if level and max(border.start_x, border.end_x) >= box[0] - margin:
+            work.rounds[n, count] = k
+            count += 1
+    work.filled[0].rounds = count
+
+
+@compiled
+def _find_corners(solid, work, plate, margin, which, blocks):
+    """Write which of some corners are as high as a plate, and where it sees them; how many."""
+    count, top, bottom = 0, margin, -plate.depth - margin
+    for j in range(len(blocks)):
+        low, high = heights_of(work.frame, blocks[j])
+        if low > top or high < bottom:
+            continue
+        for m in range(BLOCK * j, min(BLOCK * (j + 1), len(which))):
+            k = which[m]
+            a, b, c = place_of(work.frame, solid.corners[k])
+            if bottom <= c <= top:
+                work.viewed[count] = k
+                work.views[count, 0], work.views[count, 1], work.views[count, 2] = a, b, c
+                count += 1
+    return count
+
+
+@compiled
+def _find_edge_blocks(solid, work, plate, margin):
+    """Write which blocks of edges come to a plate's height, and their box; how many."""
+    box, frame, count, top, bottom = work.box, work.frame, 0, margin, -plate.depth - margin
+    for e in range(2):
+        box[2 * e], box[2 * e + 1] = math.inf, -math.inf
+    for j in range(len(solid.edge_blocks)):
+        block = solid.edge_blocks[j]
+        low, high = heights_of(frame, block)
+        if low > top + MAX_DEPTH or high < bottom - MAX_DEPTH:
+            continue
+        work.blocks[count] = j
+        count += 1
+        if low > top or high < bottom:
+            continue
+        for e in range(2):
+            middle, half = frame[9 + e], 0.0
+            for i in range(3):
+                middle += 0.5 * frame[3 * e + i] * (block[i] + block[3 + i])
+                half += 0.5 * abs(frame[3 * e + i]) * (block[3 + i] - block[i])
+            box[2 * e] = min(box[2 * e], middle - half)
+            box[2 * e + 1] = max(box[2 * e + 1], middle + half)
+    return count
+
+
+@compiled
+def _find_borders(plate, borders, box, margin, near):
+    """Write which borders come into a box, those where the drawing ends last; how many, and all of them."""
+    count, ends = 0, 0
+    for turn in range(2):
+        for k in range(plate.begin, plate.end):
+            if borders[k].drawn_end == (turn == 1) and _comes_into(borders[k], box, margin):
+                near[count + ends] = k
+                if turn == 0:
+                    count += 1
+                else:
+                    ends += 1
+    return count, count + ends
+
+
+@compiled
+def _list_corners(surface, solid, work, n, k, counts, margin):
+    """Add the corners near a plate, each with the borders near it, of so many borders and corners."""
+    count, total, corners = counts
+    plate = surface.plates[k]
+    for begin in range(0, corners, BLOCK):
+        end, box, close, bare = min(begin + BLOCK, corners), work.box, 0, True
+        for e in range(2):
+            box[2 * e] = box[2 * e + 1] = work.views[begin, e]
+        for m in range(begin + 1, end):
+            for e in range(2):
+                box[2 * e] = min(box[2 * e], work.views[m, e])
+                box[2 * e + 1] = max(box[2 * e + 1], work.views[m, e])
+        for e in range(total):
+            if _comes_into(surface.borders[work.borders_near[e]], box, margin + MAX_DEPTH):
+                bare = False
+                if e < count:
+                    work.borders_close[close] = work.borders_near[e]
+                    close += 1
+        if bare and not is_solid(
+            surface.borders, plate.begin, plate.end, work.views[begin, 0], work.views[begin, 1]
+        ):
+            continue
+        for m in range(begin, end):
+            _list_corner(surface, solid, work, n, plate, m, close, bare, margin)
+
+
+@compiled
+def _list_corner(surface, solid, work, n, plate, m, close, bare, margin):
+    """Add a corner with the borders near it, of those that come close to the corners around it."""
+    borders, filled = surface.borders, work.filled[0]
+    a, b, c = work.views[m, 0], work.views[m, 1], work.views[m, 2]
+    count, first = filled.corners, filled.sides
+    sides, nearest = first, math.inf
+    for e in range(close):
+        off = distance_to_border(borders[work.borders_close[e]], a, b)
+        if abs(off) < margin + MAX_DEPTH and sides < work.sides.shape[1]:
+            work.sides[n, sides] = work.borders_close[e]
+            sides += 1
+            nearest = off if abs(off) < abs(nearest) else nearest
+    corner = work.viewed[m]
+    if sides == first:
+        if -plate.depth + MAX_DEPTH + margin < c and (c < -MAX_DEPTH - margin or solid.on_circle[corner]):
+            return
+        if not bare and not is_solid(borders, plate.begin, plate.end, a, b):
+            return
+    if count < work.near_corners.shape[1]:
+        near = work.near_corners[n, count]
+        near.corner, near.first_side, near.last_side = corner, first, sides
+        near.off = c if sides == first else max(c, nearest)
+        box, p, new = work.groups[n, count // BLOCK], solid.corners[corner], count % BLOCK == 0
+        for e in range(3):
+            box[e] = p[e] if new else min(box[e], p[e])
+            box[3 + e] = p[e] if new else max(box[3 + e], p[e])
+        filled.corners, filled.sides = count + 1, sides
+
+
+@compiled
+def _list_circles(surface, solid, work, n, k, total, margin):
+    """Add the circles near a plate's surface, of so many near borders, within a margin [L].
+
+    A circle to which no border comes near counts as it lies over what is solid; of any other each point is
+    asked for.
+    """
+    plate, frame, box = surface.plates[k], work.frame, work.box
+    whole = 0.5 * plate.depth >= MAX_DEPTH
+    for m in range(len(solid.circles)):
+        circle = solid.circles[m]
+        low, _ = circle_height(frame, circle)
+        if not -MAX_DEPTH - margin < low < margin:
+            continue
+        a, b, _ = place_of(frame, (circle.x, circle.y, circle.z))
+        clear = total == 0
+        if whole and not clear:
+            for e in range(2):
+                along = frame[3 * e] * circle.axis_x + frame[3 * e + 1] * circle.axis_y
+                along += frame[3 * e + 2] * circle.axis_z
+                half = circle.radius * math.sqrt(max(1.0 - along * along, 0.0))
+                middle = a if e == 0 else b
+                box[2 * e], box[2 * e + 1] = middle - half, middle + half
+            clear = True
+            for e in range(total):
+                border = surface.borders[work.borders_near[e]]
+                clear = clear and not _comes_into(border, box, margin + MAX_DEPTH)
+        if clear and not is_solid(surface.borders, plate.begin, plate.end, a, b):
+            continue
+        near = work.near_circles[n, work.filled[0].circles]
+        near.circle, near.clear = m, clear
+        work.filled[0].circles += 1
+
+
+@compiled
+def _box_between(frame, first, second, margin, box):
+    """Write the box in the body's axes of what a plate sees between two points, and so far around it."""
+    p = in_body(frame, first[0] - frame[9], first[1] - frame[10], first[2] - frame[11])
+    q = in_body(frame, second[0] - frame[9], second[1] - frame[10], second[2] - frame[11])
+    for e in range(3):
+        box[e], box[3 + e] = min(p[e], q[e]) - margin, max(p[e], q[e]) + margin
+
+
+@compiled
+def _boxes_meet(box, other):
+    """Whether two boxes, three least places and three greatest, have anything in common."""
+    if box[0] > other[3] or box[3] < other[0] or box[1] > other[4] or box[4] < other[1]:
+        return False
+    return box[2] <= other[5] and box[5] >= other[2]
+
+
+@compiled
+def _list_edges(surface, solid, work, n, plate, k, blocks, margin):
+    """Add the edges near border k, in front or at the back, and near what runs back from its start.
+
+    They are looked for in so many blocks of edges.
+    """
+    border, depth, frame, box = surface.borders[k], plate.depth, work.frame, work.box
+    wide = margin + MAX_DEPTH
+    for what in range(3):
+        if what == 2 and not border.convex:
+            continue
+        level = -depth if what == 1 else 0.0
+        first = (border.start_x, border.start_y, level)
+        second = (border.end_x, border.end_y, level)
+        if what == 2:
+            second = (border.start_x, border.start_y, -depth)
+        _box_between(frame, first, second, wide, box)
+        for i in range(blocks):
+            j = work.blocks[i]
+            if not _boxes_meet(box, solid.edge_blocks[j]):
+                continue
+            for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.edges))):
+                p = place_of(frame, solid.corners[solid.edges[m, 0]])
+                q = place_of(frame, solid.corners[solid.edges[m, 1]])
+                if what == 2:
+                    if min(p[2], q[2]) <= margin and max(p[2], q[2]) >= -depth - margin:
+                        _list_post(work, n, m, k, _passes_start(p, q, border, wide))
+                elif _comes_to_border(p, q, border, level, wide):
+                    _list_edge(work, n, m, k, what == 1, _line_distance(p, q, border, level), wide)
+
+
+@compiled
+def _comes_to_border(p, q, border, level, wide):
+    """Whether the boxes of an edge and a border, at a level of its plate, are no further apart than that."""
+    if min(p[2], q[2]) > level + wide or max(p[2], q[2]) < level - wide:
+        return False
+    a, b, c, d = border.start_x, border.start_y, border.end_x, border.end_y
+    if min(p[0], q[0]) > max(a, c) + wide or max(p[0], q[0]) < min(a, c) - wide:
+        return False
+    return min(p[1], q[1]) <= max(b, d) + wide and max(p[1], q[1]) >= min(b, d) - wide
+
+
+@compiled
+def _list_edge(work, n, edge, border, at_back, gap, wide):
+    count = work.filled[0].edges
+    if gap < wide and count < work.near_edges.shape[1]:
+        near = work.near_edges[n, count]
+        near.edge, near.border, near.back, near.gap = edge, border, at_back, gap
+        work.filled[0].edges = count + 1
+
+
+@compiled
+def _list_post(work, n, edge, border, passes):
+    count = work.filled[0].posts
+    if passes and count < work.near_posts.shape[1]:
+        near = work.near_posts[n, count]
+        near.edge, near.border = edge, border
+        work.filled[0].posts = count + 1
+
+
+@compiled
+def _line_distance(p, q, border, level):
+    """How far apart an edge and a border, at a level of its plate, are."""
+    a, b, c = q[0] - p[0], q[1] - p[1], q[2] - p[2]
+    u, v = border.end_x - border.start_x, border.end_y - border.start_y
+    x, y, z = p[0] - border.start_x, p[1] - border.start_y, p[2] - level
+    ee, ff, ef = a * a + b * b + c * c, u * u + v * v, a * u + b * v
+    ex, fx = a * x + b * y + c * z, u * x + v * y
+    flat = ee * ff - ef * ef
+    share = min(max((ef * fx - ff * ex) / flat, 0.0), 1.0) if flat > NO_BEND * ee * ff else 0.0
+    place = (fx + share * ef) / ff
+    if place < 0.0 or place > 1.0:
+        place = min(max(place, 0.0), 1.0)
+        share = min(max((place * ef - ex) / ee, 0.0), 1.0)
+    x, y, z = x + share * a - place * u, y + share * b - place * v, z + share * c
+    return math.sqrt(x * x + y * y + z * z)
+
+
+@compiled
+def _passes_start(p, q, border, wide):
+    """Whether an edge comes past the start of a border as near as that."""
+    a, b = q[0] - p[0], q[1] - p[1]
+    x, y = border.start_x - p[0], border.start_y - p[1]
+    square = a * a + b * b
+    share = min(max((x * a + y * b) / square, 0.0), 1.0) if square > 0.0 else 0.0
+    x, y = x - share * a, y - share * b
+    return x * x + y * y < wide * wide
+
+
+@compiled
+def _list_faces(surface, solid, work, n, plate, borders, margin):
+    """Add the faces of a part within ``margin`` [L] of the convex corners of so many near borders."""
+    frame, box = work.frame, work.box
+    for m in range(borders):
+        border = surface.borders[work.borders_near[m]]
+        if not border.convex:
+            continue
+        for at_back in range(2):
+            corner = (border.start_x, border.start_y, -plate.depth if at_back else 0.0)
+            _box_between(frame, corner, corner, margin + MAX_DEPTH, box)
+            for j in range(len(solid.face_blocks)):
+                if not _boxes_meet(box, solid.face_blocks[j]):
+                    continue
+                for f in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.triangles))):
+                    _list_face(solid, work, n, work.borders_near[m], at_back, f, margin)
+
+
+@compiled
+def _list_face(solid, work, n, border, at_back, face, margin):
+    """Add a face near a corner, in the middle of ``work.box``, if it is that near."""
+    box, count = work.box, work.filled[0].faces
+    x, y, z = 0.5 * (box[0] + box[3]), 0.5 * (box[1] + box[4]), 0.5 * (box[2] + box[5])
+    off = height_over_face(solid, face, x, y, z)
+    if not -margin - MAX_DEPTH < off < margin or count >= work.near_faces.shape[1]:
+        return
+    if is_over_face(solid, face, x, y, z, margin):
+        near = work.near_faces[n, count]
+        near.face, near.border, near.back = face, border, at_back > 0
+        work.filled[0].faces = count + 1

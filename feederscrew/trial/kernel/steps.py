@@ -1,0 +1,388 @@
+"""Compiled steps of parts that may touch each other, one or many: an island of them at a time.
+
+Over a step gravity, the drive and jets change velocities, and each contact is told how it shall leave it: as
+fast as it closes its gap, or, of one that strikes, as Newton's law of restitution says.
+"""
+
+import math
+
+from feederscrew.dropping.kernel import body
+from feederscrew.dropping.kernel import floor_motion as floors
+from feederscrew.dropping.kernel.body import VX, W, X, Y
+from feederscrew.geometry.compiled import compiled, outlined
+from feederscrew.trial.kernel import contact, jets
+from feederscrew.trial.kernel.contact import (
+    along_speed,
+    aside_speed,
+    normal_speed,
+    pair_normal_speed,
+    pair_slip,
+)
+from feederscrew.trial.kernel.plate_views import axis_of, gravity_of, wall_of
+
+LEAST_REACH = 2e-3  # how far ahead contacts are looked for, more than the way of two steps
+FREE_WORK = 1e-9  # work against gravity and the drive that is rounding, of one part alone, and ...
+FREE_PAIR_WORK = 2e-6  # ... of parts that push each other, by impulses that are not wholly converged
+DEPTH_LEFT, DEEP_CONTACT = 3e-4, 6e-4  # depth that is left, and from which on it is made less
+LIFT_SHARE, MAX_LIFT = 0.1, 0.01  # of a greater depth, taken back in a step; of so much at most
+AT_ONCE = 0.02  # of a step: what happens sooner happens at its start
+UPWARD = 0.5  # [1] of the normal: a part that is held so by another is carried
+BEHIND, BELOW = 0, 1  # columns of the strains
+STILL_SLIP = 1e-5  # speed along a contact below which it sticks while static friction holds
+IMPACT_GAP = 2e-5  # [1] of the unit of length: what is further off takes no part in an impact
+SPEED_ROUNDING = 1e-9  # speed that is rounding
+
+
+@compiled
+def reach_ahead(solid, state, dt):
+    """Return how far ahead [L] contacts of a part with a state (13,) are looked for in a step [sqrt(L/g)]."""
+    u, v, w = body.velocity(state)
+    return LEAST_REACH + 2.0 * dt * (math.sqrt(u**2 + v**2 + w**2) + solid.radius * body.rate(state))
+
+
+@compiled
+def begin_step(surface, work, island):
+    """Note where and how an island's parts are as a step begins, and how the track leans there."""
+    for m in range(island[0], island[1]):
+        n = work.order[m]
+        state = work.states[n]
+        body.keep(state, work.before[n])
+        body.rotation(state, work.turns[n])
+        x, y = state[X], surface.radius - state[Y]
+        off = math.sqrt(x * x + y * y)
+        work.tangents[n, 0], work.tangents[n, 1] = y / off, x / off
+        _lean_here(surface, work, n)
+
+
+@compiled
+def _lean_here(surface, work, n):
+    """Write how the track leans where part n is; what is near a wall that turns is looked at anew."""
+    slopes, last = surface.slopes, len(surface.slopes) - 1
+    state, leans = work.states[n], work.leans[n]
+    place = surface.radius * math.atan2(state[X], surface.radius - state[Y]) if last else 0.0
+    m, before = 0, wall_of(leans)[0]
+    while m < last and place > slopes[m, 0]:
+        m += 1
+    between = m > 0 and place <= slopes[m, 0]
+    share = (place - slopes[m - 1, 0]) / (slopes[m, 0] - slopes[m - 1, 0]) if between else 0.0
+    for k in range(len(leans)):
+        leans[k] = slopes[m, 1 + k]
+        if between:
+            leans[k] = slopes[m - 1, 1 + k] + share * (slopes[m, 1 + k] - slopes[m - 1, 1 + k])
+    if wall_of(leans)[0] != before:
+        work.listed[n].reach = -1.0
+
+
+@compiled
+def _add_forces(surface, solid, floor, work, n, time, dt):
+    """Write the changes (6,) [sqrt(g L), sqrt(g/L)] of velocity and rates by gravity, drive and jets."""
+    changes, state, turn = work.changes[n], work.before[n], work.turns[n]
+    c, s = work.tangents[n, 0], work.tangents[n, 1]
+    x, y = state[X], surface.radius - state[Y]
+    forth, rise = floors.quickening(floor, time, dt)
+    (ahead, inwards, down), (lean, up) = gravity_of(work.leans[n]), axis_of(work.leans[n])
+    along = dt * ahead - forth * math.sqrt(x * x + y * y) / surface.radius
+    across = dt * inwards - rise * lean
+    changes[0] = c * along - s * across
+    changes[1] = s * along + c * across
+    changes[2] = dt * down - rise * up
+    spin = forth / surface.radius
+    for k in range(3):
+        changes[3 + k] = -spin * (lean * (c * turn[3 + k] - s * turn[k]) + up * turn[6 + k])
+    if len(surface.jets):
+        jets.blow(surface, solid, floor, work, n, time, dt)
+
+
+@compiled
+def _want_no_strike(surface, work, n, dt):
+    """Say how each contact of a part shall leave a step in which none strikes, with which friction.
+
+    Returns
+    -------
+    depth of the deepest, share of the step after which the first of them strikes; infinite where none does
+    """
+    deepest, share = 0.0, math.inf
+    saved = work.before[n]
+    for m in range(work.counts[n]):
+        row = work.contacts[n, m]
+        gap, fall = row.gap, normal_speed(saved, row)
+        deepest = min(deepest, gap)
+        row.wanted = -max(gap, 0.0) / dt - max(fall, 0.0)
+        share = min(share, _strikes_after(surface, gap, fall, dt))
+        if math.isnan(row.friction):
+            slides = math.hypot(along_speed(saved, row), aside_speed(saved, row)) > STILL_SLIP
+            row.friction_ahead = surface.friction[int(slides)]
+            row.friction_back = surface.friction[2 + int(slides)]
+        else:
+            row.friction_ahead = row.friction_back = row.friction
+    return deepest, share
+
+
+@compiled
+def _want_no_strike_of_pairs(surface, work, dt):
+    """Say with which speed [sqrt(g L)] each contact of two parts shall leave a step; as of one part."""
+    deepest, share = 0.0, math.inf
+    for k in range(0, work.pair_rows[0], 2):
+        row = work.pairs[k]
+        gap, fall = row.gap, pair_normal_speed(work.before, work, k)
+        deepest = min(deepest, gap)
+        row.wanted = -max(gap, 0.0) / dt
+        share = min(share, _strikes_after(surface, gap, fall, dt))
+        along, aside = pair_slip(work.before, work, k)
+        row.friction_ahead = surface.friction[int(math.hypot(along, aside) > STILL_SLIP)]
+    return deepest, share
+
+
+@compiled
+def _strikes_after(surface, gap, fall, dt):
+    """Share of a step after which a contact strikes; infinite where it does not."""
+    if fall < -surface.threshold and gap + fall * dt < -SPEED_ROUNDING * dt:
+        return max(gap, 0.0) / (-fall * dt)
+    return math.inf
+
+
+@compiled
+def _want_rebound(surface, work, n, dt, once):
+    """Say how contacts of a part shall leave an impact that begins a step: those that strike at once rebound.
+
+    What is further off than IMPACT_GAP, and strikes later than a share ``once`` of the step or not at all,
+    takes no part in the impact. The corners of a part that comes down a little out of level so strike one
+    after the other, each with the speed that the one before has left it, and the part goes on rocking.
+    """
+    for m in range(work.counts[n]):
+        row = work.contacts[n, m]
+        fall = normal_speed(work.before[n], row)
+        if _strikes_after(surface, row.gap, fall, dt) <= once:
+            gained = normal_speed(work.states[n], row) - fall
+            row.wanted = max(gained - surface.restitution * fall, 0.0)
+        elif row.gap > IMPACT_GAP:
+            row.wanted = -math.inf
+
+
+@compiled
+def _want_rebound_of_pairs(surface, work, dt):
+    """Say how contacts of two parts shall leave an impact: all that strike in the step rebound together.
+
+    Parts of a row meet face to face; what is nearer by a micrometre shall not turn them.
+    """
+    for k in range(0, work.pair_rows[0], 2):
+        row = work.pairs[k]
+        fall = pair_normal_speed(work.before, work, k)
+        if _strikes_after(surface, row.gap, fall, dt) <= 1.0:
+            gained = pair_normal_speed(work.states, work, k) - fall
+            row.wanted = max(gained - surface.restitution * fall, 0.0)
+
+
+@compiled
+def _next_strike(work, n, dt):
+    """Return the share [1] of a step after which what took no part in an impact touches; 1 if none does."""
+    share = 1.0
+    for m in range(work.counts[n]):
+        row = work.contacts[n, m]
+        if row.wanted == -math.inf:
+            distance = -dt * normal_speed(work.states[n], row)
+            share = row.gap / distance if distance * share > row.gap else share
+    return share
+
+
+@compiled
+def _stand_share(work, n):
+    """Return the share [1] of a step after which sliding comes to a stand, if it does; else 1.
+
+    Of the contact that slides fastest. What friction did less than its most against the sliding is what it
+    did after the stand: without that the contact would have gone on to slide back so much faster.
+    """
+    first, before = -1, STILL_SLIP
+    saved = work.before[n]
+    for m in range(work.counts[n]):
+        row = work.contacts[n, m]
+        if row.normal_impulse > 0.0:
+            quick = math.hypot(along_speed(saved, row), aside_speed(saved, row))
+            if quick > before:
+                first, before = m, quick
+    if first < 0:
+        return 1.0
+    row = work.contacts[n, first]
+    a, b = along_speed(saved, row) / before, aside_speed(saved, row) / before
+    after = a * along_speed(work.states[n], row) + b * aside_speed(work.states[n], row)
+    if after > STILL_SLIP:
+        return 1.0
+    spared = 0.0
+    for m in range(work.counts[n]):
+        row = work.contacts[n, m]
+        most = row.friction_back if a < 0.0 else row.friction_ahead
+        spared += most * row.normal_impulse + a * row.along_impulse + b * row.aside_impulse
+    return before / (before - after + max(spared, 0.0))
+
+
+@compiled
+def _moving_energy(solid, work, island):
+    whole = 0.0
+    for m in range(island[0], island[1]):
+        whole += body.moving_energy(work.states[work.order[m]], solid.inertia)
+    return whole
+
+
+@compiled
+def _scale_velocities(work, island, scale):
+    """Scale the velocities of an island's parts."""
+    for m in range(island[0], island[1]):
+        for k in range(3):
+            work.states[work.order[m], VX + k] *= scale
+            work.states[work.order[m], W + k] *= scale
+
+
+@compiled
+def limit_energy_to_work(solid, work, island, late):
+    """Scale all velocities so that a step wins no more than gravity, drive and jets give along its way.
+
+    The way is that of the velocities after the step, by a share ``late`` [1], and of those before it.
+    """
+    moving, begun, by_end = 0.0, 0.0, 0.0
+    for m in range(island[0], island[1]):
+        n = work.order[m]
+        start, end, changes = work.before[n], work.states[n], work.changes[n]
+        moving += body.moving_energy(end, solid.inertia)
+        begun += body.moving_energy(start, solid.inertia)
+        for k in range(3):
+            begun += (1.0 - late) * changes[k] * start[VX + k]
+            by_end += late * changes[k] * end[VX + k]
+            begun += 0.5 * changes[3 + k] * solid.inertia[k] * work.free_rates[n, k]
+            by_end += 0.5 * changes[3 + k] * solid.inertia[k] * end[W + k]
+    if moving > max(begun + by_end, 0.0):
+        scale = (by_end + math.sqrt(max(by_end**2 + 4.0 * moving * begun, 0.0))) / (2.0 * moving)
+        _scale_velocities(work, island, min(max(scale, 0.0), 1.0))
+
+
+@compiled
+def share_at_once(floor, dt):
+    """Return the share [1] of a step ``dt`` [sqrt(L/g)] in which what happens, happens at its start."""
+    return min(AT_ONCE * floor.step / dt, 1.0)
+
+
+@outlined
+def push_island(surface, solid, floor, work, island, time, dt):
+    """Compute velocities after a step: gravity, drive, jets and contacts.
+
+    Returns
+    -------
+    depth of the deepest contact, whether one strikes, share of the step after which its course changes
+    """
+    deepest, first = _want_no_strike_of_pairs(surface, work, dt)
+    count, warm, once = work.pair_rows[0], 1.0, share_at_once(floor, dt)
+    for m in range(island[0], island[1]):
+        n = work.order[m]
+        state = work.states[n]
+        body.turn_freely(state, solid.inertia, dt)
+        _add_forces(surface, solid, floor, work, n, time, dt)
+        for k in range(3):
+            state[VX + k] += work.changes[n, k]
+            work.free_rates[n, k] = state[W + k]
+            state[W + k] += work.changes[n, 3 + k]
+        depth, share = _want_no_strike(surface, work, n, dt)
+        deepest, first = min(deepest, depth), min(first, share)
+        count += work.counts[n]
+        warm = dt / work.last_steps[n] if warm > 0.0 and work.last_steps[n] > 0.0 else 0.0
+    strikes, share = first <= 1.0, min(first, 1.0)
+    if count == 0 or (strikes and share > once):
+        return deepest, strikes, share
+    if strikes:
+        _want_rebound_of_pairs(surface, work, dt)
+        for m in range(island[0], island[1]):
+            _want_rebound(surface, work, work.order[m], dt, once)
+    contact.solve(surface, work, work.states, island, True, 0.0 if strikes else warm)
+    share = 1.0
+    for m in range(island[0], island[1]):
+        n = work.order[m]
+        work.last_steps[n] = -1.0 if strikes else dt
+        stands = _stand_share(work, n)
+        share = min(share, stands) if stands > once else share
+    limit_energy_to_work(solid, work, island, 1.0 if strikes else 0.5)
+    if strikes:
+        for m in range(island[0], island[1]):
+            share = min(share, max(once, _next_strike(work, work.order[m], dt)))
+    return deepest, strikes, share
+
+
+@outlined
+def lift_island(surface, solid, work, island, dt):
+    """Take a part of what is too deep [L] back, without a speed, as far as the motion can pay for it."""
+    push, cost = work.push, 0.0
+    for m in range(island[0], island[1]):
+        n = work.order[m]
+        for k in range(body.STATE):
+            push[n, k] = 0.0
+        for k in range(work.counts[n]):
+            row = work.contacts[n, k]
+            row.wanted = LIFT_SHARE * min(max(-row.gap - DEPTH_LEFT, 0.0), MAX_LIFT)
+    for k in range(0, work.pair_rows[0], 2):
+        row = work.pairs[k]
+        row.wanted = LIFT_SHARE * min(max(-row.gap - DEPTH_LEFT, 0.0), MAX_LIFT)
+    contact.solve(surface, work, push, island, False, 0.0)
+    for m in range(island[0], island[1]):
+        n = work.order[m]
+        for k in range(3):
+            cost -= work.changes[n, k] * push[n, VX + k] / dt
+    moving, cost = _moving_energy(solid, work, island), max(cost, 0.0)
+    free = FREE_PAIR_WORK if work.pair_rows[0] else FREE_WORK
+    share = moving / cost if cost > moving + free else 1.0
+    for m in range(island[0], island[1]):
+        n = work.order[m]
+        for k in range(3):
+            work.states[n, k] += share * push[n, VX + k]
+        body.rotate(work.states[n], push[n, W], push[n, W + 1], push[n, W + 2], share)
+    moving, limit = _moving_energy(solid, work, island), max(moving - share * cost, 0.0)
+    if moving > limit:
+        _scale_velocities(work, island, math.sqrt(limit / moving))
+
+
+@compiled
+def _add_strains(work):
+    """Add up what parts push each other along the track, and what they carry of each other."""
+    for k in range(0, work.pair_rows[0], 2):
+        row, i, j = work.pairs[k], work.owners[k], work.owners[k + 1]
+        along = work.tangents[i, 0] * row.normal_x + work.tangents[i, 1] * row.normal_y
+        work.strains[i, BEHIND] += max(along, 0.0) * row.normal_impulse
+        work.strains[j, BEHIND] += max(-along, 0.0) * row.normal_impulse
+        if abs(row.normal_z) > UPWARD:
+            work.strains[i if row.normal_z > 0.0 else j, BELOW] += row.normal_impulse
+
+
+@compiled
+def move_island(work, island, share, dt):
+    """Move an island's parts by their velocities, a share of those after the step; keep their impulses."""
+    for m in range(island[0], island[1]):
+        n = work.order[m]
+        contact.remember_impulses(work, n)
+        state, saved = work.states[n], work.before[n]
+        for k in range(3):
+            state[k] += dt * (share * state[VX + k] + (1.0 - share) * saved[VX + k])
+        p = share * state[W] + (1.0 - share) * saved[W]
+        q = share * state[W + 1] + (1.0 - share) * saved[W + 1]
+        r = share * state[W + 2] + (1.0 - share) * saved[W + 2]
+        body.rotate(state, p, q, r, dt)
+    _add_strains(work)
+
+
+@compiled
+def reset_island(work, island):
+    """Take an island's parts back to where and how they were at the start of a step."""
+    for m in range(island[0], island[1]):
+        body.keep(work.before[work.order[m]], work.states[work.order[m]])
+
+
+@compiled
+def energy_gain(solid, work, island, taken):
+    """Return the change of the energy over mass [g L] in a step, less the work of gravity, drive and jets.
+
+    Both in the bowl's frame, in which the drive is a force.
+    """
+    gain = 0.0
+    for m in range(island[0], island[1]):
+        n = work.order[m]
+        start, end, changes = work.before[n], work.states[n], work.changes[n]
+        gain += body.moving_energy(end, solid.inertia) - body.moving_energy(start, solid.inertia)
+        for k in range(3):
+            gain -= changes[k] * (end[k] - start[k]) / taken
+            gain -= changes[3 + k] * solid.inertia[k] * 0.5 * (work.free_rates[n, k] + end[W + k])
+    return gain

@@ -1,0 +1,677 @@
+"""Compiled contacts of a part with what stands along the track and with the wall, among what is near it.
+
+Of a plate there can touch: a corner or a circle of the part its surface, a corner its back or a side; an edge
+of the part a border, in front or at the back, or what runs straight back from a border's convex corner; such
+a corner a face of the part. Each is a contact where it is a least distance of both: the normal lies between
+the faces of either.
+
+What lies on a surface by many corners, circles, edges and faces is carried as well by a few of them:
+`outermost` chooses those.
+"""
+
+import math
+
+from feederscrew.dropping.kernel.body import X, Y, Z
+from feederscrew.geometry.compiled import compiled, outlined
+from feederscrew.trial.kernel.contact import KEYS_PER_SPOT, add_contact, recall_impulses
+from feederscrew.trial.kernel.neighbours import lists_hold, rebuild_lists
+from feederscrew.trial.kernel.plate_views import (
+    BLOCK,
+    CROSSING_SINE,
+    MAX_DEPTH,
+    NORMAL_SLACK,
+    axis_of,
+    circle_height,
+    circle_to_wall,
+    crosses,
+    distance_to_border,
+    distance_to_wall,
+    height_of,
+    height_over_face,
+    heights_of,
+    in_body,
+    in_bowl,
+    is_over_face,
+    place_of,
+    turned,
+    turned_back,
+    view_of,
+    wall_of,
+)
+
+SHALLOW = 1e-3  # a contact less deep is not looked at again
+PLACE_ROUNDING = 1e-9  # more than rounding moves a point
+SHADOW_DEPTHS = 4.0  # times its depth: a deeper contact is none where so near to it another is shallower
+UPRIGHT_WALL = 1e-9  # [1] a wall that leans by more from the bowl's axis is the other face of a groove
+
+WAYS, FALL = 6, 100.0  # supports are kept in so many directions, a lower one rather than one further out
+COSINES = tuple(math.cos(2.0 * math.pi * m / WAYS) for m in range(WAYS // 2))
+SINES = tuple(math.sin(2.0 * math.pi * m / WAYS) for m in range(WAYS // 2))
+SUPPORT_SPACING = 0.02  # so near to each other two supports are one: it is the lower
+LEVEL_NORMAL = 1.0 - 1e-5  # [1] against a surface's normal: less than it looks around parts tilt so
+
+TILTED_CIRCLE = 0.25  # [1] sine of the tilt from which on it touches at its lowest point only
+FLAT_CIRCLE = 1e-6  # [1] a circle that is not tilted by more has no lowest point
+CIRCLE_KEYS = 5e5  # contacts of circles are counted from here, those of corners from 0
+PLATE_KEYS = 1e6  # and of each plate, or border, from so much more
+
+STEEP_EDGE_NORMAL = 0.7  # [1] against a plate's front: one that lies flatter stops a part
+LIST_DEPTH = 0.01  # in units of the part's length: what is deeper in something as the lists are made is left
+STRAIGHT_BORDERS = 0.9  # [1] cosine between borders of which one goes on from the other nearly straight
+EDGE_SPACING, SAME_NORMAL = (
+    1e-2,
+    0.995,
+)  # edges that touch so near, with normals [1] so alike, are one contact
+
+
+@outlined
+def find_contacts(surface, solid, work, n, reach):
+    """Find every contact of part n within ``reach`` [L]; its turn and tangent are of its place."""
+    if not lists_hold(surface, solid, work, n, reach):
+        rebuild_lists(surface, solid, work, n, reach)
+    work.counts[n] = 0
+    if work.listed[n].wall_corners or work.listed[n].wall_circles:
+        _add_wall(surface, solid, work, n, reach)
+    for k in range(len(surface.plates)):
+        first, last = work.ends[n, k], work.ends[n, k + 1]
+        if (
+            first.corners == last.corners
+            and first.edges == last.edges
+            and first.posts == last.posts
+            and first.circles == last.circles
+            and first.faces == last.faces
+        ):
+            continue
+        view_of(surface.plates[k], work.states[n], work.turns[n], work.frame)
+        begun = work.counts[n]
+        _measure_dips(solid, work, n, k)
+        lying = _add_corners(surface, solid, work, n, k, reach)
+        lying = _add_circles(surface, solid, work, n, k, reach, lying)
+        lying = _add_edges(surface, solid, work, n, k, reach, lying)
+        _add_posts(surface, solid, work, n, k, reach)
+        lying = _add_faces(surface, solid, work, n, k, reach, lying)
+        plate = surface.plates[k]
+        normal = in_bowl(plate, 0.0, 0.0, 1.0)
+        for m in range(outermost(work.supports, work.best, lying)):
+            row = work.supports[m]
+            spot = row.spot_x, row.spot_y, row.spot_z
+            add_contact(work, n, solid, spot, normal, row.gap, plate.friction, row.key)
+        _drop_shadowed(work, n, begun)
+    recall_impulses(work, n)
+
+
+@compiled
+def wall_friction(surface, leans):
+    """Return the friction [1] of the wall; NaN, that of the track, where it is the other face of a groove."""
+    wall, axis = wall_of(leans), axis_of(leans)
+    leaning = wall[0] * axis[1] - wall[1] * axis[0]
+    return math.nan if math.fabs(leaning) > UPRIGHT_WALL else surface.friction[4]
+
+
+@compiled
+def _add_wall(surface, solid, work, n, reach):
+    """Add contacts with the wall, a cone in the track's frame where that is banked."""
+    state, turn, leans, listed, lying = work.states[n], work.turns[n], work.leans[n], work.listed[n], 0
+    (lean, up), radius = wall_of(leans), surface.radius
+    friction = wall_friction(surface, leans)
+    far = listed.moved + reach
+    for m in range(listed.wall_corners):
+        near = work.wall_corners[n, m]
+        if near.gap > far:
+            continue
+        p = solid.corners[near.corner]
+        x, y, z = turned(turn, p)
+        gap = distance_to_wall(surface, leans, state[X] + x, state[Y] + y, state[Z] + z)
+        if gap < reach:
+            place = work.tangents[n, 0] * x + work.tangents[n, 1] * y, z
+            lying = add_support(work.supports, lying, place, gap, p, -KEYS_PER_SPOT * (1 + near.corner))
+    for m in range(listed.wall_circles):
+        k = work.wall_circles[n, m]
+        circle = solid.circles[k]
+        gap, tilt = circle_to_wall(surface, state, turn, leans, circle)
+        if gap > reach:
+            continue
+        for e in range(WAYS if tilt > TILTED_CIRCLE else 0, WAYS + 1 if tilt > FLAT_CIRCLE else WAYS):
+            p = _towards_wall(surface, work, n, circle, e)
+            x, y, z = turned(turn, p)
+            gap = distance_to_wall(surface, leans, state[X] + x, state[Y] + y, state[Z] + z)
+            if gap < reach:
+                place = work.tangents[n, 0] * x + work.tangents[n, 1] * y, z
+                key = -KEYS_PER_SPOT * (1 + CIRCLE_KEYS + 8 * k + e)
+                lying = add_support(work.supports, lying, place, gap, p, key)
+    for m in range(outermost(work.supports, work.best, lying)):
+        row = work.supports[m]
+        p = row.spot_x, row.spot_y, row.spot_z
+        x = state[X] + turn[0] * p[0] + turn[1] * p[1] + turn[2] * p[2]
+        y = state[Y] + turn[3] * p[0] + turn[4] * p[1] + turn[5] * p[2] - radius
+        off = math.sqrt(x * x + y * y)
+        add_contact(work, n, solid, p, (-up * x / off, -up * y / off, -lean), row.gap, friction, row.key)
+
+
+@compiled
+def _towards_wall(surface, work, n, circle, k):
+    """The point of a circle furthest towards the wall, and ahead or up as well, in body axes."""
+    state, turn = work.states[n], work.turns[n]
+    (lean, upright), (ahead, up) = wall_of(work.leans[n]), _direction(k)
+    s, t = work.tangents[n, 0], work.tangents[n, 1]
+    p = circle.x, circle.y, circle.z
+    for _ in range(2):  # the wall is curved: once more from where that is
+        q = turned(turn, p)
+        x, y = q[0] + state[X], q[1] + state[Y] - surface.radius
+        size = FALL * upright / math.sqrt(x * x + y * y)
+        p = x * size + ahead * s, y * size + ahead * t, FALL * lean + up
+        p = _furthest(circle, turned_back(turn, p))
+    return p
+
+
+@compiled
+def add_support(supports, count, place, gap, spot, key):
+    """Note a contact at a place (2,) [L] along the surface, a spot (3,) [L] in body axes; return how many."""
+    if count == len(supports):
+        return count
+    row = supports[count]
+    row.place_x, row.place_y, row.gap, row.key = place[0], place[1], gap, key
+    row.spot_x, row.spot_y, row.spot_z = spot[0], spot[1], spot[2]
+    return count + 1
+
+
+@outlined
+def outermost(supports, best, count):
+    """Move the supports that are kept, the lowest and those furthest out, to the front; return how many.
+
+    ``best`` (WAYS + 1, 2), a score and which support, is worked in.
+    """
+    kept_count = count
+    if count <= WAYS + 1:
+        for m in range(count):
+            best[m, 1] = m
+    else:
+        half = WAYS // 2
+        for m in range(WAYS + 1):
+            best[m, 0] = -math.inf
+        for n in range(count):
+            row = supports[n]
+            x, y, fall = row.place_x, row.place_y, FALL * row.gap
+            _note_better(best[WAYS], -fall, n)
+            for m in range(half):
+                off = COSINES[m] * x + SINES[m] * y
+                _note_better(best[m], off - fall, n)
+                _note_better(best[half + m], -off - fall, n)
+        kept_count = 0
+        for m in range(WAYS + 1):  # each once
+            first, new = int(best[m, 1]), True
+            for e in range(m):
+                new = new and int(best[e, 1]) != first
+            if new:
+                best[kept_count, 1] = first
+                kept_count += 1
+    return _move_to_front(supports, best, _spread_out(supports, best, kept_count))
+
+
+@compiled
+def _note_better(row, score, n):
+    if score > row[0]:
+        row[0], row[1] = score, n
+
+
+@compiled
+def _spread_out(supports, best, rows):
+    """Leave out of the rows in ``best`` what is as near as SUPPORT_SPACING to a lower one; how many stay."""
+    count = 0
+    for m in range(rows):
+        row, lowest = supports[int(best[m, 1])], True
+        for e in range(rows):
+            other = supports[int(best[e, 1])]
+            x, y = row.place_x - other.place_x, row.place_y - other.place_y
+            if x * x + y * y < SUPPORT_SPACING * SUPPORT_SPACING and e != m:
+                lowest = lowest and (row.gap < other.gap or (row.gap == other.gap and m < e))
+        if lowest:
+            best[WAYS - count, 0] = best[m, 1]
+            count += 1
+    for m in range(count):
+        best[m, 1] = best[WAYS - m, 0]
+    return count
+
+
+@compiled
+def _move_to_front(supports, best, rows):
+    """Move the supports named in ``best`` before the others; how many."""
+    for m in range(rows):  # the smallest first: none is moved before its turn
+        least = m
+        for e in range(m + 1, rows):
+            if best[e, 1] < best[least, 1]:
+                least = e
+        best[m, 1], best[least, 1] = best[least, 1], best[m, 1]
+        supports[m] = supports[int(best[m, 1])]
+    return rows
+
+
+@compiled
+def _is_foremost(solid, k, direction):
+    """Whether a corner of the part is its foremost against a direction, as far as its neighbours tell."""
+    a, b, c = direction
+    p = solid.corners[k]
+    for n in range(solid.firsts[k], solid.firsts[k + 1]):
+        q = solid.corners[solid.neighbours[n]]
+        x, y, z = q[0] - p[0], q[1] - p[1], q[2] - p[2]
+        ahead = a * x + b * y + c * z
+        if ahead < 0.0 and ahead * ahead > NORMAL_SLACK * NORMAL_SLACK * (x * x + y * y + z * z):
+            return False
+    return True
+
+
+@compiled
+def _measure_dips(solid, work, n, k):
+    """Write how deep corners of the part come beside each border near them."""
+    first, last = work.ends[n, k].corners, work.ends[n, k + 1].corners
+    if first == last:
+        return
+    first_side, last_side = work.near_corners[n, first].first_side, work.near_corners[n, last - 1].last_side
+    if first_side == last_side:
+        return
+    for e in range(first_side, last_side):
+        work.dips[work.sides[n, e]] = 0.0
+    for g in range(first // BLOCK, (last + BLOCK - 1) // BLOCK):
+        if heights_of(work.frame, work.groups[n, g])[0] > PLACE_ROUNDING:
+            continue
+        for m in range(max(first, BLOCK * g), min(last, BLOCK * (g + 1))):
+            near = work.near_corners[n, m]
+            height = height_of(work.frame, solid.corners[near.corner])
+            for e in range(near.first_side, near.last_side):
+                side = work.sides[n, e]
+                work.dips[side] = min(work.dips[side], height)
+
+
+@compiled
+def _add_corners(surface, solid, work, n, k, reach):
+    """Add contacts of the part's corners with a plate's sides and back; how many lie on its surface."""
+    lying, far = 0, work.listed[n].moved + reach
+    first, last = work.ends[n, k].corners, work.ends[n, k + 1].corners
+    for g in range(first // BLOCK, (last + BLOCK - 1) // BLOCK):
+        if heights_of(work.frame, work.groups[n, g])[0] > reach + PLACE_ROUNDING:
+            continue
+        for m in range(max(first, BLOCK * g), min(last, BLOCK * (g + 1))):
+            near = work.near_corners[n, m]
+            if near.off <= far:
+                lying = _add_corner(surface, solid, work, n, k, near, reach, lying)
+    return lying
+
+
+@compiled
+def _add_corner(surface, solid, work, n, k, near, reach, lying):
+    """Add the contact of one of the corners near a plate, as ``_add_corners``."""
+    plate, frame, corner = surface.plates[k], work.frame, near.corner
+    p = solid.corners[corner]
+    c = height_of(frame, p)
+    if c > reach or c < -plate.depth - reach:
+        return lying
+    a, b, c = place_of(frame, p)
+    counts = not solid.on_circle[corner]  # else its circle touches, unless a border is near
+    key = KEYS_PER_SPOT * (corner + PLATE_KEYS * k)
+    if near.first_side == near.last_side:
+        on_top = c > -MAX_DEPTH
+        down = -frame[6], -frame[7], -frame[8]
+        if plate.depth + c < MAX_DEPTH and _is_foremost(solid, corner, down):
+            normal = in_bowl(plate, 0.0, 0.0, -1.0)
+            spot = p[0], p[1], p[2]
+            add_contact(work, n, solid, spot, normal, -plate.depth - c, plate.friction, 1.0 + key)
+    else:
+        on_top, counts = _add_corner_by_borders(surface, solid, work, n, k, near, reach, (a, b, c)), True
+    if on_top and counts:
+        lying = add_support(work.supports, lying, (a, b), c, p, key)
+    return lying
+
+
+@compiled
+def _add_corner_by_borders(surface, solid, work, n, k, near, reach, place):
+    """Add the contact of a corner near borders with a side or the back; whether it touches the surface."""
+    plate, frame, corner, (a, b, c) = surface.plates[k], work.frame, near.corner, place
+    depth, off, side = plate.depth, math.inf, 0
+    for e in range(near.first_side, near.last_side):
+        far = distance_to_border(surface.borders[work.sides[n, e]], a, b)
+        if abs(far) < abs(off):
+            off, side = far, work.sides[n, e]
+    catches = min(c, work.dips[side]) < -plate.rounding and -depth < c < 0.0
+    if off > 0.0 and (off > reach or not catches):
+        return False
+    on_top, best, kind = False, MAX_DEPTH, 0.0
+    u = v = w = 0.0
+    if off <= 0.0 and c > -best and _is_foremost(solid, corner, (frame[6], frame[7], frame[8])):
+        on_top, best = True, -c
+    if off <= 0.0 and depth + c < best and _is_foremost(solid, corner, (-frame[6], -frame[7], -frame[8])):
+        best, on_top, kind = depth + c, False, 1.0
+        u, v, w = 0.0, 0.0, -1.0
+    if -off < best and catches:
+        border = surface.borders[side]
+        if _is_foremost(solid, corner, in_body(frame, border.normal_x, border.normal_y, 0.0)):
+            best, on_top, kind = -off, False, 2.0
+            u, v, w = border.normal_x, border.normal_y, 0.0
+    if kind > 0.0:
+        p, normal = solid.corners[corner], in_bowl(plate, u, v, w)
+        key = kind + KEYS_PER_SPOT * (corner + PLATE_KEYS * k)
+        add_contact(work, n, solid, (p[0], p[1], p[2]), normal, -best, plate.friction, key)
+    return on_top
+
+
+@compiled
+def _drop_shadowed(work, n, first):
+    """Leave out contacts with a plate that are deeper than others near them: those are what is to be left."""
+    kept_count = first
+    for m in range(first, work.counts[n]):
+        row, shadowed = work.contacts[n, m], False
+        if row.gap < -SHALLOW:
+            for e in range(first, work.counts[n]):
+                other = work.contacts[n, e]
+                if 0.5 * row.gap < other.gap < SHALLOW and e != m:
+                    x, y = row.spot_x - other.spot_x, row.spot_y - other.spot_y
+                    z = row.spot_z - other.spot_z
+                    shadowed = shadowed or x * x + y * y + z * z < (SHADOW_DEPTHS * row.gap) ** 2
+        if not shadowed:
+            work.indices[kept_count - first] = m
+            kept_count += 1
+    if kept_count < work.counts[n]:
+        for m in range(first, kept_count):
+            work.contacts[n, m] = work.contacts[n, work.indices[m - first]]
+        work.counts[n] = kept_count
+
+
+@compiled
+def _direction(m):
+    """The m-th direction along a surface; none after the last."""
+    half = WAYS // 2
+    if m < half:
+        return COSINES[m], SINES[m]
+    if m < WAYS:
+        return -COSINES[m - half], -SINES[m - half]
+    return 0.0, 0.0
+
+
+@compiled
+def _furthest(circle, direction):
+    """The furthest point of a circle in a direction, all in body axes."""
+    a, b, c = direction
+    along = a * circle.axis_x + b * circle.axis_y + c * circle.axis_z
+    a, b, c = a - along * circle.axis_x, b - along * circle.axis_y, c - along * circle.axis_z
+    size = circle.radius / math.sqrt(a * a + b * b + c * c)
+    return circle.x + a * size, circle.y + b * size, circle.z + c * size
+
+
+@outlined
+def _add_circles(surface, solid, work, n, k, reach, lying):
+    """Add what of circles lies within ``reach`` [L] on a plate's surface; return how many carry it.
+
+    Of a circle touch the lowest point and, where it lies nearly flat, those furthest out, as ``outermost``
+    chooses among corners.
+    """
+    frame = work.frame
+    for m in range(work.ends[n, k].circles, work.ends[n, k + 1].circles):
+        near = work.near_circles[n, m]
+        circle = solid.circles[near.circle]
+        low, tilt = circle_height(frame, circle)
+        if low > reach:
+            continue
+        for e in range(WAYS if tilt > TILTED_CIRCLE else 0, WAYS + 1 if tilt > FLAT_CIRCLE else WAYS):
+            x, y = _direction(e)
+            p = _furthest(circle, in_body(frame, x, y, -FALL))
+            a, b, c = place_of(frame, p)
+            if -MAX_DEPTH < c < reach and (near.clear or _is_on_top(surface, work, n, k, (a, b, c))):
+                key = KEYS_PER_SPOT * (CIRCLE_KEYS + 8 * near.circle + e + PLATE_KEYS * k)
+                lying = add_support(work.supports, lying, (a, b), c, p, key)
+    return lying
+
+
+@compiled
+def _is_on_top(surface, work, n, k, place):
+    """Whether a point lies on a plate's surface: over what is solid, and not at a side."""
+    plate, (a, b, c), odd = surface.plates[k], place, False
+    for e in range(work.ends[n, k].rounds, work.ends[n, k + 1].rounds):
+        odd = odd != crosses(surface.borders[work.rounds[n, e]], a, b)
+    if not odd:
+        return False
+    if c > -plate.rounding:
+        return True
+    for e in range(plate.begin, plate.end):
+        if abs(distance_to_border(surface.borders[e], a, b)) < -c:
+            return False
+    return c > -0.5 * plate.depth
+
+
+@compiled
+def _dip_of(surface, plate, work, k):
+    """How deep corners of the part come beside a border or one that goes on from it nearly straight."""
+    low, border = work.dips[k], surface.borders[k]
+    if k + 1 < plate.end:
+        after = surface.borders[k + 1]
+        cosine = border.normal_x * after.normal_x + border.normal_y * after.normal_y
+        if after.start_x == border.end_x and after.start_y == border.end_y and cosine > STRAIGHT_BORDERS:
+            low = min(low, work.dips[k + 1])
+    return low
+
+
+@compiled
+def _is_between_faces(solid, k, normal):
+    """Whether a normal in body axes lies between the faces of an edge of the part."""
+    s, (a, b, c) = solid.sides[k], normal
+    if a * s[0] + b * s[1] + c * s[2] < -NORMAL_SLACK:
+        return False
+    return a * s[3] + b * s[4] + c * s[5] >= -NORMAL_SLACK
+
+
+@compiled
+def _add_edge_once(work, n, solid, spot, normal, gap, friction, key):
+    """Add a contact of an edge unless one as good as the same is there; the deeper of the two is kept."""
+    for m in range(work.counts[n]):
+        row = work.contacts[n, m]
+        if row.key % KEYS_PER_SPOT < 3.0:
+            continue
+        x, y, z = row.spot_x - spot[0], row.spot_y - spot[1], row.spot_z - spot[2]
+        if x * x + y * y + z * z > EDGE_SPACING * EDGE_SPACING:
+            continue
+        if row.normal_x * normal[0] + row.normal_y * normal[1] + row.normal_z * normal[2] > SAME_NORMAL:
+            if gap < row.gap:
+                count, work.counts[n] = work.counts[n], m
+                add_contact(work, n, solid, spot, normal, gap, friction, key)
+                work.counts[n] = count
+            return
+    add_contact(work, n, solid, spot, normal, gap, friction, key)
+
+
+@compiled
+def _add_edges(surface, solid, work, n, k, reach, lying):
+    """Add contacts of edges with a plate's borders within ``reach`` [L]; return how many carry it."""
+    far = work.listed[n].moved + reach + LIST_DEPTH
+    for m in range(work.ends[n, k].edges, work.ends[n, k + 1].edges):
+        near = work.near_edges[n, m]
+        if near.gap <= far:
+            lying = _add_edge(surface, solid, work, n, k, near, reach, lying)
+    return lying
+
+
+@compiled
+def _add_edge(surface, solid, work, n, k, near, reach, lying):
+    """Add the contact of one edge with a border; as ``_add_edges``."""
+    plate, frame, edge, border = surface.plates[k], work.frame, near.edge, surface.borders[near.border]
+    i, j = solid.corners[solid.edges[edge, 0]], solid.corners[solid.edges[edge, 1]]
+    ends = (-solid.onwards[edge, 0], 1.0 + solid.onwards[edge, 1])
+    c, f = height_of(frame, i), height_of(frame, j)
+    if near.back:
+        c, f = -plate.depth - c, -plate.depth - f
+    if min(c + ends[0] * (f - c), c + ends[1] * (f - c)) > reach:  # as high as that no border is
+        return lying
+    a, b, _ = place_of(frame, i)
+    d, e, _ = place_of(frame, j)
+    share, u, v, w, gap = crossing((a, b, c), (d - a, e - b, f - c), ends, border, reach)
+    if gap == math.inf or (
+        w < STEEP_EDGE_NORMAL and min(c, f, _dip_of(surface, plate, work, near.border)) > -plate.rounding
+    ):
+        return lying
+    if near.back:
+        w = -w
+    if not _is_between_faces(solid, edge, in_body(frame, u, v, w)):
+        return lying
+    spot = _point_on_edge(i, j, share)
+    key = 3.0 + near.back + KEYS_PER_SPOT * (edge + PLATE_KEYS * near.border)
+    if w > LEVEL_NORMAL:
+        place = a + share * (d - a), b + share * (e - b)
+        return add_support(work.supports, lying, place, gap, spot, key)
+    _add_edge_once(work, n, solid, spot, in_bowl(plate, u, v, w), gap, plate.friction, key)
+    return lying
+
+
+@compiled
+def _point_on_edge(i, j, share):
+    return i[0] + share * (j[0] - i[0]), i[1] + share * (j[1] - i[1]), i[2] + share * (j[2] - i[2])
+
+
+@compiled
+def crossing(p, along, ends, border, reach):
+    """Where an edge from p touches a border, as the plate sees them; ``ends`` are its least and most share.
+
+    Returns
+    -------
+    share of the edge, normal (3), gap; the gap is infinite where they do not touch
+    """
+    a, b, c = along
+    least, most = ends
+    u, v = border.end_x - border.start_x, border.end_y - border.start_y
+    nx, ny, nz = -c * v, c * u, a * v - b * u  # edge x border
+    square = nx * nx + ny * ny + nz * nz
+    if square <= CROSSING_SINE * CROSSING_SINE * (a * a + b * b + c * c) * (u * u + v * v):
+        return 0.0, 0.0, 0.0, 0.0, math.inf
+    flat = nx * border.normal_x + ny * border.normal_y
+    size = math.sqrt(square)
+    if nz + flat < 0.0:
+        size = -size
+    x, y, z = p[0] - border.start_x, p[1] - border.start_y, p[2]
+    nx, ny, nz = nx / size, ny / size, nz / size
+    gap = nx * x + ny * y + nz * z
+    if gap > reach or gap < -MAX_DEPTH or nz < -NORMAL_SLACK or flat / size < -NORMAL_SLACK:
+        return 0.0, 0.0, 0.0, 0.0, math.inf
+    x, y, z = x - gap * nx, y - gap * ny, z - gap * nz
+    # in the plane of both: share of the edge where it meets the border's line, then of the border
+    mx, my, mz = -v * nz, u * nz, v * nx - u * ny  # normal x border
+    share = -(x * mx + y * my + z * mz) / (a * mx + b * my + c * mz)
+    place = ((x + share * a) * u + (y + share * b) * v) / (u * u + v * v)
+    if not (least <= share <= most and -border.onwards_start <= place <= 1.0 + border.onwards_end):
+        return 0.0, 0.0, 0.0, 0.0, math.inf
+    return share, nx, ny, nz, gap
+
+
+@compiled
+def _add_posts(surface, solid, work, n, k, reach):
+    """Add contacts of edges within ``reach`` [L] of what runs back from convex corners of borders."""
+    plate, frame = surface.plates[k], work.frame
+    for m in range(work.ends[n, k].posts, work.ends[n, k + 1].posts):
+        near = work.near_posts[n, m]
+        edge, border = near.edge, surface.borders[near.border]
+        i, j = solid.corners[solid.edges[edge, 0]], solid.corners[solid.edges[edge, 1]]
+        a, b, c = place_of(frame, i)
+        d, e, f = place_of(frame, j)
+        ends = (-solid.onwards[edge, 0], 1.0 + solid.onwards[edge, 1])
+        share, u, v, gap = post_crossing((a, b, c), (d - a, e - b, f - c), ends, border, reach)
+        height = c + share * (f - c)
+        if gap == math.inf or not -plate.depth < height < 0.0:
+            continue
+        low = min(height, _dip_of(surface, plate, work, near.border))
+        if low > -plate.rounding or gap < low:  # it is nearer to the surface
+            continue
+        if _is_between_faces(solid, edge, in_body(frame, u, v, 0.0)):
+            spot = _point_on_edge(i, j, share)
+            key = 5.0 + KEYS_PER_SPOT * (edge + PLATE_KEYS * near.border)
+            _add_edge_once(work, n, solid, spot, in_bowl(plate, u, v, 0.0), gap, plate.friction, key)
+
+
+@compiled
+def post_crossing(p, along, ends, border, reach):
+    """Where an edge from p touches the line straight back from the start of a border; as ``crossing``.
+
+    Returns
+    -------
+    share of the edge, normal (2) along the plate, gap; the gap is infinite where they do not touch
+    """
+    a, b, c = along
+    square = a * a + b * b
+    if square <= CROSSING_SINE * CROSSING_SINE * (square + c * c):
+        return 0.0, 0.0, 0.0, math.inf
+    x, y = border.start_x - p[0], border.start_y - p[1]
+    share, size = (x * a + y * b) / square, math.sqrt(square)
+    u, v = b / size, -a / size
+    if u * (border.normal_x + border.before_x) + v * (border.normal_y + border.before_y) < 0.0:
+        u, v = -u, -v
+    gap = -(u * x + v * y)
+    if not (ends[0] <= share <= ends[1] and -MAX_DEPTH <= gap <= reach) or not _is_before_corner(
+        border, u, v
+    ):
+        return 0.0, 0.0, 0.0, math.inf
+    return share, u, v, gap
+
+
+@compiled
+def _is_before_corner(border, u, v):
+    """Whether what is solid at a border's start lies behind a normal along the plate."""
+    along = -u * border.normal_y + v * border.normal_x
+    behind = u * border.before_y - v * border.before_x
+    return along <= NORMAL_SLACK and behind <= NORMAL_SLACK
+
+
+@compiled
+def _add_faces(surface, solid, work, n, k, reach, lying):
+    """Add contacts of faces within ``reach`` [L] of the convex corners of borders; as ``_add_edges``."""
+    plate, frame = surface.plates[k], work.frame
+    m, last = work.ends[n, k].faces, work.ends[n, k + 1].faces
+    while m < last:
+        first = work.near_faces[n, m]
+        border = surface.borders[first.border]
+        level = -plate.depth if first.back else 0.0
+        spot = in_body(frame, border.start_x - frame[9], border.start_y - frame[10], level - frame[11])
+        x, y, z = spot
+        gap, face = math.inf, -1
+        while m < last:
+            near = work.near_faces[n, m]
+            if near.border != first.border or near.back != first.back:
+                break
+            off = height_over_face(solid, near.face, x, y, z)
+            nearer = (
+                -MAX_DEPTH < off < reach
+                and abs(off) < abs(gap)
+                and is_over_face(solid, near.face, x, y, z, 0.0)
+            )
+            if nearer and _points_to_face(surface, solid, work, plate, near):
+                gap, face = off, near.face
+            m += 1
+        if face >= 0:
+            u, v, w = _against_face(frame, solid.normals[face])
+            key = 6.0 + first.back + KEYS_PER_SPOT * (face + PLATE_KEYS * first.border)
+            if w > LEVEL_NORMAL:
+                place = border.start_x, border.start_y
+                lying = add_support(work.supports, lying, place, gap, spot, key)
+            else:
+                add_contact(work, n, solid, spot, in_bowl(plate, u, v, w), gap, plate.friction, key)
+    return lying
+
+
+@compiled
+def _against_face(frame, t):
+    """The normal of a face of the part as a plate sees it, away from the plate."""
+    return (
+        -(frame[0] * t[0] + frame[1] * t[1] + frame[2] * t[2]),
+        -(frame[3] * t[0] + frame[4] * t[1] + frame[5] * t[2]),
+        -(frame[6] * t[0] + frame[7] * t[1] + frame[8] * t[2]),
+    )
+
+
+@compiled
+def _points_to_face(surface, solid, work, plate, near):
+    """Whether a border's corner, in front or at the back, points to a face of the part."""
+    frame = work.frame
+    u, v, w = _against_face(frame, solid.normals[near.face])
+    out = -w if near.back else w
+    if out < -NORMAL_SLACK or not _is_before_corner(surface.borders[near.border], u, v):
+        return False
+    if out < STEEP_EDGE_NORMAL:
+        low = _dip_of(surface, plate, work, near.border)
+        for e in range(3):
+            c = height_of(frame, solid.vertices[solid.triangles[near.face, e]])
+            low = min(low, -plate.depth - c if near.back else c)
+        return low <= -plate.rounding
+    return True

@@ -1,0 +1,196 @@
+"""What the compiled steps work on: what stands along a stretch of track, and the parts on it.
+
+The frame is fixed to the bowl: the track is z = 0, the wall is about an axis at (0, radius) and tangent to x
+at the origin. The drive is a force that changes with time, and gravity turns with the place. Everything is
+without dimensions, as in `feederscrew.dropping.kernel`, forces over the part's weight.
+
+Rows are records. Their fields are plain numbers, so that compiled code reads them without making an array.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from feederscrew.geometry.compiled import record_type
+
+
+def _spread(*names: str) -> list[str]:
+    return [f"{name}_{e}" for name in names for e in "xyz"]
+
+
+# a flat surface with borders; its solid lies behind it, as deep as it is, with sides straight back from the
+# borders: the track with its holes, a blade seen by the part that arrives
+PLATE_RECORD = record_type(
+    *_spread("origin", "first", "second", "front"),  # its own axes: two along it, one out of it
+    "depth",
+    "rounding",  # of its borders
+    "begin", "end",  # of its borders among all
+    "friction",  # its own, NaN for that of the track
+    "least_x", "most_x", "least_y", "most_y",  # box around its borders
+    whole=("begin", "end"),
+)  # fmt: skip
+BORDER = record_type(
+    "start_x", "start_y", "end_x", "end_y",
+    "normal_x", "normal_y",  # away from what is solid
+    "convex",  # corner at its start
+    "drawn_end",  # not what is solid ends there
+    "before_x", "before_y",  # normal of the border before
+    "onwards_start", "onwards_end",  # [1] how far it goes on in the solid before its start, behind its end
+    flags=("convex", "drawn_end"),
+)  # fmt: skip
+JET = record_type(
+    *_spread("mouth", "towards"), "radius", "spread", "thrust", "reach", "begin", "end"
+)  # spread: growth of the radius by the way; begin and end in time
+# a contact has axes of its own in the bowl's frame: along it two, along the track where that can be and aside
+# of that, and its normal, towards the part
+CONTACT = record_type(
+    *_spread("along", "aside", "normal"),
+    *_spread("along_lever", "aside_lever", "normal_lever"),  # in body axes
+    *_spread("along_rate", "aside_rate", "normal_rate"),  # that one unit of impulse gives, in body axes
+    "along_mass", "aside_mass", "normal_mass",  # effective
+    "wanted",  # speed along the normal after the impulse
+    "along_impulse", "aside_impulse", "normal_impulse",
+    "friction_ahead", "friction_back",  # against sliding ahead and back
+    "friction",  # of what is touched, NaN for that of the track
+    "gap",
+    "key",  # which contact it is: its kind, then what touches
+    *_spread("spot"),  # in body axes
+)  # fmt: skip
+IMPULSES = record_type("key", "along", "aside", "normal")  # of a contact in the step before
+SUPPORT = record_type("place_x", "place_y", "gap", *_spread("spot"), "key")  # one of many that push one way
+CIRCLE = record_type("x", "y", "z", *_spread("axis"), "radius")  # of a part, in its own axes
+NEAR_CORNER = record_type(
+    "corner",
+    "first_side", "last_side",  # the borders near it, among `sides`
+    "off",  # over the plate, or from it along the plate where that is more, as the lists were made
+    whole=("corner", "first_side", "last_side"),
+)  # fmt: skip
+NEAR_EDGE = record_type("edge", "border", "gap", "back", whole=("edge", "border"), flags=("back",))
+NEAR_POST = record_type("edge", "border", whole=("edge", "border"))  # runs straight back from a border
+NEAR_FACE = record_type("face", "border", "back", whole=("face", "border"), flags=("back",))
+NEAR_CIRCLE = record_type("circle", "clear", whole=("circle",), flags=("clear",))  # clear: no border is near
+NEAR_WALL = record_type("corner", "gap", whole=("corner",))
+LISTED = record_type(
+    "x", "y", "z", "qw", "qx", "qy", "qz",  # pose in which the lists were made, ...
+    "tangent_x", "tangent_y",  # ... tangent of the wall there, and ...
+    "from_axis",  # ... how far from the bowl's axis
+    "reach",  # how far off they look
+    "moved",  # how far the part has moved since
+    "free",  # how far along the track it may go
+    "wall_corners", "wall_circles",  # how many are near the wall
+    whole=("wall_corners", "wall_circles"),
+)  # fmt: skip
+LISTS = ("corners", "sides", "edges", "posts", "faces", "circles", "rounds")
+LIST_COUNTS = record_type(*LISTS, whole=LISTS)  # how many of each list are near the plates so far
+JOURNAL = record_type(
+    "time", "way", "depth",  # taken, along the wall, the greatest
+    "gain",  # greatest rise of the energy over what gravity and the drive gave
+    "energy", "least_energy",  # what the last is reckoned with
+)  # fmt: skip
+
+
+class Surface(NamedTuple):
+    """What a part meets on a stretch of track, in units of its length; P plates, B borders, J jets."""
+
+    radius: float  # of the wall
+    # (K, 8) along the wall, evenly between two: gravity ahead, from the wall inwards and up; the bowl's axis,
+    # along which it moves, inwards and up; the same of the wall, that stands along it but beside a groove
+    slopes: np.ndarray
+    plates: np.recarray  # (P,) PLATE
+    borders: np.recarray  # (B,) BORDER
+    jets: np.recarray  # (J,) JET
+    friction: np.ndarray  # (5,) static and kinetic ahead, static and kinetic back, wall
+    restitution: float
+    threshold: float  # approach speed from which a contact rebounds
+    sweeps: int
+    converged: float
+
+
+class Limits(NamedTuple):
+    """When one part is done with a station."""
+
+    exit: float  # way along the wall at which it has passed
+    drop: float  # by which the track lies lower there
+    under: float  # height of the centre of mass below which what comes there has fallen below the track
+    longest: float  # time after which it is given up
+    patience: float  # time in which it must get on
+    progress: float  # ... so far along the wall, or down
+    back_limit: float  # way along the wall, behind which it has gone back
+    edge: float  # from the wall, where the track ends: what slides beyond it does not pass
+    free: float  # from the wall, beyond which the track does not hold it any more
+
+
+class Sent(NamedTuple):
+    """Arrays for N parts that are sent one at a time, each noted at K places."""
+
+    states: np.ndarray  # (N, 13) at the start; filled with those at the end
+    times: np.ndarray  # (N,) at the start: the phase of the drive
+    stride: int  # steps between two places noted
+    # (N, K, 8) filled with time, position and attitude, from the first row on; nothing more once it is full
+    paths: np.ndarray
+    journals: np.recarray  # (N,) JOURNAL, filled
+    outcomes: np.ndarray  # (N,) int, filled with what became of each
+
+
+class Together(NamedTuple):
+    """How a crowd of N parts moves on, all at once."""
+
+    active: np.ndarray  # (N,) bool, which of them are on the track
+    time: float  # at the start
+    steps: int  # of the floor
+    journals: np.recarray  # (1,) JOURNAL of all
+
+
+class Workspace(NamedTuple):
+    """Arrays for N parts of one shape with C corners: their motion, what is near them, their contacts."""
+
+    states: np.ndarray  # (N, 13)
+    before: np.ndarray  # (N, 13) at the start of a step
+    push: np.ndarray  # (N, 13) velocities that take parts out of what they are too deep in
+    turns: np.ndarray  # (N, 9) body to bowl, at the start of a step
+    tangents: np.ndarray  # (N, 2) of the wall where each is
+    leans: np.ndarray  # (N, 7) gravity, the bowl's axis and the wall where each is, in the track's frame
+    changes: np.ndarray  # (N, 6) of velocity and rates by gravity, drive and jets over a step
+    free_rates: np.ndarray  # (N, 3) rates at the end of a step by free rotation alone
+    blown: np.ndarray  # (N, 6) force and torque of jets, the latter about the body's axes
+    blown_until: np.ndarray  # (N,) when that is looked at anew
+    contacts: np.recarray  # (N, R) CONTACT with the track
+    counts: np.ndarray  # (N,) int, of them
+    remembered: np.recarray  # (N, R) IMPULSES of the step before
+    remembered_counts: np.ndarray  # (N,) int, of them
+    last_steps: np.ndarray  # (N,) how long that was; negative where its impulses are not to be begun with
+    listed: np.recarray  # (N,) LISTED
+    ends: np.recarray  # (N, P + 1) COUNTS, where the candidates of each plate begin and end in the lists
+    filled: np.recarray  # (1,) COUNTS as the lists are made
+    near_corners: np.recarray  # (N, ...) NEAR_CORNER of a plate
+    groups: np.ndarray  # (N, ..., 6) box around each BLOCK of those corners: least places and greatest
+    sides: np.ndarray  # (N, ...) int, borders near them
+    near_edges: np.recarray  # (N, ...) NEAR_EDGE of a border
+    near_posts: np.recarray  # (N, ...) NEAR_POST
+    near_faces: np.recarray  # (N, ...) NEAR_FACE of a border's start
+    near_circles: np.recarray  # (N, ...) NEAR_CIRCLE of a plate's surface
+    rounds: np.ndarray  # (N, B) int, borders that tell whether a point of the part is over what is solid
+    wall_corners: np.recarray  # (N, C) NEAR_WALL
+    wall_circles: np.ndarray  # (N, K) int, circles near the wall
+    frame: np.ndarray  # (12,) how a plate sees a part, or a part another: rotation and place
+    views: np.ndarray  # (C, 3) corners as a plate, or another part, sees them
+    viewed: np.ndarray  # (C,) int, which corners those are
+    blocks: np.ndarray  # (E,) int, of which blocks of edges
+    indices: np.ndarray  # (C,) int
+    supports: np.recarray  # (L,) SUPPORT
+    best: np.ndarray  # (7, 2) the best of them each way
+    borders_near: np.ndarray  # (B,) int
+    borders_close: np.ndarray  # (B,) int, of these, those near some corners
+    dips: np.ndarray  # (B,) how deep corners of the part come beside each border
+    box: np.ndarray  # (6,)
+    pairs: np.recarray  # (2 K,) CONTACT of parts with each other, two rows each
+    owners: np.ndarray  # (2 K,) int, which part a row is of
+    pair_rows: np.ndarray  # (1,) int, how many rows there are
+    strains: np.ndarray  # (N, 2) impulse from behind along the track, and from below, of other parts
+    order: np.ndarray  # (N,) int, parts by islands: those that may touch each other
+    islands: np.ndarray  # (N + 1,) int, where each begins
+    least: np.ndarray  # (3,) box of the part in its own axes
+    most: np.ndarray  # (3,)
+    first_edges: np.ndarray  # (E,) int, edges of one part near another
+    second_blocks: np.ndarray  # (E,) int, blocks of edges of the other near the first
+    face_blocks: np.ndarray  # (T,) int, the same of faces
