@@ -137,4 +137,9 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request):
         out.say(*agreed, *tables.remarks(result, request["efficiency"]))
         offered = files.offers(result, settings, cad, fields=marking.SheetFields(**fields))
         offers.write(folder, offered, pictures=pictures)
-        out.show(tables.summary(result, out.format), document, hidden=tables.HIDDEN, spare=tables.SPARE)
+        out.show(
+            tables.summary(result, out.format),
+            document,
+            hidden=tables.HIDDEN,
+            spare=tables.TABLE_SPARE_COLUMNS,
+        )

@@ -20,7 +20,7 @@ MILLIMETRES = {  # by $INSUNITS: DXF Reference of Autodesk, "HEADER Section"; 0 
     10: 914.4, 11: 1e-7, 12: 1e-6, 13: 1e-3, 14: 100.0, 15: 1e4, 16: 1e5, 21: 1200e3 / 3937.0,
     22: 100e3 / 3937.0, 23: 3600e3 / 3937.0,
 }  # fmt: skip
-UNITLESS, IN_MILLIMETRES = 0, 4  # of $INSUNITS
+NO_UNIT_CODE, MILLIMETRE_CODE = 0, 4  # of $INSUNITS
 MAX_DXF_COORDINATE_M = 1e3  # [m] from the origin of a drawing to a corner of a hole
 CHORD_ERROR_M = 1e-6  # at most between a curve and the chord read for it; the corners lie on the curve
 MAX_CHORD_ANGLE = math.radians(15.0)  # of an arc to one chord
@@ -118,7 +118,7 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
     if not outlines:
         what = f"{units.printable(path.name)} has no closed outline on layer {units.quantity_text(layer)}"
         raise ConfigError(where, what, "draw the hole as one closed polyline (LWPOLYLINE)")
-    return Outlines(outlines, _unit_code(drawing) != UNITLESS)
+    return Outlines(outlines, _unit_code(drawing) != NO_UNIT_CODE)
 
 
 def _drawing(path: Path) -> Any:
@@ -149,7 +149,7 @@ def _outlines(drawing: Any, layer: str) -> list[list[tuple[float, float]]]:
 
 def _unit_code(drawing: Any) -> int:
     """The $INSUNITS of a drawing."""
-    return int(drawing.header.get("$INSUNITS", UNITLESS))
+    return int(drawing.header.get("$INSUNITS", NO_UNIT_CODE))
 
 
 def _on_layer(space: Iterable[Any], layer: str) -> Iterator[tuple[str, Any]]:
@@ -384,7 +384,7 @@ def new_document() -> Any:
     import ezdxf
 
     with _without_a_date(ezdxf.options):
-        drawing = ezdxf.new("R2010", units=IN_MILLIMETRES)
+        drawing = ezdxf.new("R2010", units=MILLIMETRE_CODE)
     drawing.header["$MEASUREMENT"] = 1  # metric
     return drawing
 
@@ -420,16 +420,16 @@ def primitives(entity: Any, sagitta: float = 0.02) -> Iterator[tuple[str, Any]]:
     from ezdxf.disassemble import recursive_decompose
     from ezdxf.path import make_path
 
-    one: Any
-    for one in recursive_decompose([entity]):
-        kind = one.dxftype()
+    simple: Any
+    for simple in recursive_decompose([entity]):
+        kind = simple.dxftype()
         if kind in ("TEXT", "MTEXT"):
-            yield "text", _written_text(one, kind)
+            yield "text", _written_text(simple, kind)
         elif kind in ("SOLID", "HATCH"):
-            rings = [one.vertices()] if kind == "SOLID" else [path.vertices for path in one.paths]
+            rings = [simple.vertices()] if kind == "SOLID" else [path.vertices for path in simple.paths]
             yield "area", [np.array([(place[0], place[1]) for place in ring]) for ring in rings]
         elif kind != "POINT":
-            places = make_path(one).flattening(sagitta)
+            places = make_path(simple).flattening(sagitta)
             yield "line", np.array([(place.x, place.y) for place in places])
 
 

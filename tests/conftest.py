@@ -186,7 +186,7 @@ def coarse(request):
             patch.setattr(style, "png", lambda figure: PIXEL)
         if not getattr(request.module, "LOOKED_AT", False):
             patch.setattr(style, "DPI", COARSE)
-            patch.setattr(shading_output, "SAMPLES", 1)
+            patch.setattr(shading_output, "RAYS_PER_PIXEL", 1)
             patch.setattr(shading_output, "PAIR_SAMPLES", 1)
         yield
 

@@ -376,7 +376,7 @@ def aspect_views(part: Part, resting, rows, answer=None):
     figure = style.page(*sheet.page)
     for panel, (row, standing) in enumerate(zip(rows, stances)):
         frame = _frame(sheet, standing)
-        colour = shading.STEEL if resting.stable[row] else shading.PALE
+        colour = shading.STEEL_COLOUR if resting.stable[row] else shading.PALE_COLOUR
         axes = _axes(figure, sheet, panel)
         axes.imshow(
             shading.picture(solid, standing, frame, colour), extent=frame.extent, interpolation="nearest"

@@ -28,13 +28,13 @@ LITRE, GRAM = factor("l", "volume"), factor("g", "mass")
 SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1:2.5
 VIEW_ROOM = 134.0  # [mm] of paper for the bowl across
 VIEW_HEIGHT = 56.0  # and upright, in each of two views
-TOP, BETWEEN = 276.0, 21.0  # [mm] where the upper of them begins, and from its foot to the lower one
+TOP, VIEW_DISTANCE_MM = 276.0, 21.0  # [mm] where the upper of them begins, and from its foot to the lower one
 STRIP_ROOM = 330.0, 45.0  # [mm] of paper for the unrolled track
-CUT = "±0.1"  # [mm] of an edge that parts meet
+CUT_TOLERANCE = "±0.1"  # [mm] of an edge that parts meet
 GENERAL = "ISO 2768-m"
-LONG, NARROW_LETTERS = 46, 38  # letters of a line in the title block, and of its left column
+SHEET_TITLE_LETTERS, NARROW_LETTERS = 46, 38  # letters of a line in the title block, and of its left column
 PIECE_ANGLE = np.pi  # [rad] of one piece of the track's development, at most
-PLACES = 61  # along a piece at which it is developed
+DEVELOPED_PLACES = 61  # along a piece at which it is developed
 
 
 def draw_sheets(
@@ -53,7 +53,7 @@ def draw_sheets(
     fields : SheetFields, optional
         Date and revision of the title block.
     """
-    drawing, solid = Drawing(tooling_drawing.PENS), study.solid.with_lugs
+    drawing, solid = Drawing(tooling_drawing.DEVICE_PENS), study.solid.with_lugs
     sizes = measures(study.solid)
     wide, deep, high = (float(x) for x in np.ptp(solid.vertices, axis=0))
     sizes = replace(sizes, extent=(wide, deep, high))
@@ -77,7 +77,7 @@ def draw_sheets(
 
 
 def _scale(size: float, room: float) -> float:
-    return next((one for one in SCALES if one * size <= room), SCALES[-1])
+    return next((scale for scale in SCALES if scale * size <= room), SCALES[-1])
 
 
 def _placed(pieces: ArrayLike, at: ArrayLike, scale: float) -> NDArray[np.float64]:
@@ -168,7 +168,7 @@ def _section(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> Non
 def _hanging_station(plan: BowlPlan) -> Any:
     """The station of the rails that parts hang between, or None."""
     stations = plan.stretch.stations if plan.stretch is not None else ()
-    return next((one for one in stations if one.device.hangs and one.hole is not None), None)
+    return next((station for station in stations if station.device.hangs and station.hole is not None), None)
 
 
 def _yoke(plan: BowlPlan) -> NDArray[np.float64] | None:
@@ -190,7 +190,7 @@ def _yoke(plan: BowlPlan) -> NDArray[np.float64] | None:
 
 def _from_outside(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> None:
     """The bowl from the side that its outlet leaves to."""
-    top = TOP - sizes.height / MM * scale - BETWEEN
+    top = TOP - sizes.height / MM * scale - VIEW_DISTANCE_MM
     at = np.array([255.0, top - solid.vertices[:, 2].max() / MM * scale])
     turn = np.degrees(solid.plan.turned) + (-90.0 if solid.plan.left else 90.0)
     drawn = _placed(views.lines(solid.vertices, solid.faces, views.camera(turn, 0.0)), at, scale)
@@ -384,14 +384,14 @@ def _small_title(drawing: Drawing, study: Any, scale: float, fields: SheetFields
 
 def _not_made(study: Any) -> Iterator[str]:
     """What of its drive the springs do not make, at most two lines."""
-    said = sheets.two_axis(study.bowl.drive)
-    if said:
-        yield said
+    words = sheets.two_axis(study.bowl.drive)
+    if words:
+        yield words
     if study.mismatch is not None:
         yield f"these springs make {study.mismatch.machine.text}"
 
 
-def _shortened(words: str, letters: int = LONG) -> str:
+def _shortened(words: str, letters: int = SHEET_TITLE_LETTERS) -> str:
     return words if len(words) <= letters else f"{words[: letters - 1]}…"
 
 
@@ -425,19 +425,21 @@ def _fields(study: Any, sizes: Measures, tried: Any) -> list[tuple[str, str]]:
         ("inertia about axis", f"{solid.inertia:.4g} kg m²"),
         ("centre of mass", f"{centre} mm"),
         ("size", f"{extent} mm"),
-        ("general tolerance", f"{GENERAL}; cuts {CUT} mm"),
+        ("general tolerance", f"{GENERAL}; cuts {CUT_TOLERANCE} mm"),
         ("drawn by", "feeder bowl" if tried is None else "feeder design, feeder bowl"),
     ]
 
 
-def _banks(way: TrackPath) -> str:
+def _banks(path: TrackPath) -> str:
     """'0°', '0° to 12°': the banks of the track, one after the other."""
-    return " to ".join(f"{np.degrees(bank):.3g}°" for bank in (way.bank, *(one[2] for one in way.leans)))
+    return " to ".join(f"{np.degrees(bank):.3g}°" for bank in (path.bank, *(lean[2] for lean in path.leans)))
 
 
-def _climbs(way: TrackPath) -> str:
+def _climbs(path: TrackPath) -> str:
     """'4°', '4° to -6° to 3°': the climbs of the track, one after the other."""
-    return " to ".join(f"{np.degrees(one):.3g}°" for one in (way.climb, *(climb for _, climb in way.bends)))
+    return " to ".join(
+        f"{np.degrees(angle):.3g}°" for angle in (path.climb, *(climb for _, climb in path.bends))
+    )
 
 
 def number_devices(plan: BowlPlan) -> list[tuple[str, float, float]]:
@@ -448,17 +450,17 @@ def number_devices(plan: BowlPlan) -> list[tuple[str, float, float]]:
     stretch = plan.stretch
     if stretch is None:
         return []
-    below = {one.start for one in stretch.ledges}
-    found = [(f"step {drop / MM:.4g} mm down", at, at) for at, drop in stretch.drops if at not in below]
-    for one in stretch.ledges:
-        level = f"ledge {one.width / MM:.4g} wide, track {one.drop / MM:.4g} lower"
-        found.append((f"{level}; to {one.end / MM:.5g} level", one.start, one.end + one.ramp))
+    below = {ledge.start for ledge in stretch.ledges}
+    changes = [(f"step {drop / MM:.4g} mm down", at, at) for at, drop in stretch.drops if at not in below]
+    for ledge in stretch.ledges:
+        level = f"ledge {ledge.width / MM:.4g} wide, track {ledge.drop / MM:.4g} lower"
+        changes.append((f"{level}; to {ledge.end / MM:.5g} level", ledge.start, ledge.end + ledge.ramp))
     for start, end, bank in stretch.leans:
-        found.append((f"twists to a bank of {np.degrees(bank):.3g}°", start, end))
+        changes.append((f"twists to a bank of {np.degrees(bank):.3g}°", start, end))
     for start, end, lean, _ in stretch.grooves:
         words = f"groove: the wall leans back by {np.degrees(lean):.3g}°"
-        found.append((words, max(start, 0.0), end))
-    return found
+        changes.append((words, max(start, 0.0), end))
+    return changes
 
 
 def _devices(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str) -> None:
@@ -487,7 +489,7 @@ def _devices(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: st
             drawing.outline(view.placed(ring), "CUT")
         if station.blade is not None:
             drawing.outline(view.placed(station.blade), "GATE")
-    stations = [_to_the_outlet(one, length) for one in stretch.stations]
+    stations = [_to_the_outlet(station, length) for station in stretch.stations]
     tooling_drawing.dimension_devices(drawing, stations, view, plan.width)
     drawing.length(view.placed([length, 0]), view.placed([length, plan.width]), (27.0, 0.0), scale)
     tooling_drawing.draw_wall_bores(drawing, stations, view, 240.0)
@@ -499,9 +501,12 @@ def _devices(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: st
     for words, start, stop in number_devices(plan):
         angles = [f"{angle_from_outlet(plan, place):.4g}" for place in (start, stop)]
         rows.append(["", "track", f"{start / MM:.5g}", f"{stop / MM:.5g}", *angles, words])
-    low = drawing.table(25.0, 175.0, tooling_drawing.COLUMNS, rows, line=min(4.6, 130.0 / len(rows)))
+    low = drawing.table(
+        25.0, 175.0, tooling_drawing.DEVICE_LIST_COLUMNS_MM, rows, line=min(4.6, 130.0 / len(rows))
+    )
     listed = [
-        f"from and to: along the wall from D; cuts {CUT}, everything else {GENERAL}; * before the outlet",
+        f"from and to: along the wall from D; cuts {CUT_TOLERANCE}, everything else {GENERAL}; "
+        "* before the outlet",
         f"track of sheet {plan.material.plate / MM:.4g}, wall {plan.material.wall / MM:.4g}; "
         f"arcs are facets within {plan.chord / MM:.3g} mm; {EDGES}",
         *_yoke_words(plan),
@@ -552,7 +557,7 @@ class TrackPiece:
         return float(np.hypot(*np.diff(self.outer, axis=0).T).sum()) / self.radii[0]
 
 
-def develop_track(way: TrackPath, width: float, start: float, end: float) -> tuple[NDArray, NDArray]:
+def develop_track(path: TrackPath, width: float, start: float, end: float) -> tuple[NDArray, NDArray]:
     """Return the flat outline of a piece of track: its outer and inner border, (N, 2) [m] each.
 
     The surface between both borders is taken as triangles, which are laid into the plane one after the
@@ -560,66 +565,66 @@ def develop_track(way: TrackPath, width: float, start: float, end: float) -> tup
 
     Parameters
     ----------
-    way : TrackPath
+    path : TrackPath
     width : float [m]
     start, end : float [m]
         Lengths along the wall.
     """
-    s = np.linspace(start, end, PLACES)
-    outer, inner = way.places(s, 0.0), way.places(s, width)
+    s = np.linspace(start, end, DEVELOPED_PLACES)
+    outer, inner = path.places(s, 0.0), path.places(s, width)
     flat = [np.array([0.0, 0.0]), np.array([0.0, -_away(outer[0], inner[0])])]
-    for k in range(PLACES - 1):
-        one, other = flat[-2], flat[-1]
-        ahead = _third(one, other, _away(outer[k], outer[k + 1]), _away(inner[k], outer[k + 1]))
-        below = _third(ahead, other, _away(outer[k + 1], inner[k + 1]), _away(inner[k], inner[k + 1]))
+    for k in range(DEVELOPED_PLACES - 1):
+        corner, opposite = flat[-2], flat[-1]
+        ahead = _third(corner, opposite, _away(outer[k], outer[k + 1]), _away(inner[k], outer[k + 1]))
+        below = _third(ahead, opposite, _away(outer[k + 1], inner[k + 1]), _away(inner[k], inner[k + 1]))
         flat += [ahead, below]
     return np.array(flat[0::2]), np.array(flat[1::2])
 
 
-def _away(one: NDArray, other: NDArray) -> float:
-    return float(np.sqrt(((one - other) ** 2).sum()))
+def _away(start: NDArray, end: NDArray) -> float:
+    return float(np.sqrt(((start - end) ** 2).sum()))
 
 
-def _third(one: NDArray, other: NDArray, from_one: float, from_other: float) -> NDArray[np.float64]:
+def _third(start: NDArray, end: NDArray, from_one: float, from_other: float) -> NDArray[np.float64]:
     """The corner of a triangle at distances from two others, ahead of the line between them."""
-    base = _away(one, other)
-    along = (other - one) / base
+    base = _away(start, end)
+    along = (end - start) / base
     x = (from_one**2 - from_other**2 + base**2) / (2.0 * base)
     y = np.sqrt(max(from_one**2 - x**2, 0.0))
-    return one + x * along + y * np.array([-along[1], along[0]])
+    return start + x * along + y * np.array([-along[1], along[0]])
 
 
 def track_pieces(plan: BowlPlan) -> list[TrackPiece]:
     """Return the pieces that the track is made of in sheet metal: one climb each, half a turn at most."""
-    way = plan.path
-    stops = [0.0, *(at for at, _ in way.bends), way.end]
-    climbs = [way.climb, *(climb for _, climb in way.bends)]
-    found = []
+    path = plan.path
+    stops = [0.0, *(at for at, _ in path.bends), path.end]
+    climbs = [path.climb, *(climb for _, climb in path.bends)]
+    pieces = []
     for (start, end), climb in zip(itertools.pairwise(stops), climbs):
-        count = int(np.ceil((float(way.angle(end)) - float(way.angle(start))) / PIECE_ANGLE - 1e-9))
+        count = int(np.ceil((float(path.angle(end)) - float(path.angle(start))) / PIECE_ANGLE - 1e-9))
         ends = np.linspace(start, end, max(count, 1) + 1)
-        found += [TrackPiece(a, b, climb, *develop_track(way, plan.width, a, b))
+        pieces += [TrackPiece(a, b, climb, *develop_track(path, plan.width, a, b))
                   for a, b in itertools.pairwise(ends) if b > a]  # fmt: skip
-    return found
+    return pieces
 
 
 def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str) -> None:
     """The last sheet: the stretches of the track from the side, and their development in sheet metal."""
-    plan, way = study.solid.plan, study.solid.plan.path
-    scale = _scale(way.end / MM, 340.0)
+    plan, path = study.solid.plan, study.solid.plan.path
+    scale = _scale(path.end / MM, 340.0)
     drawing.new_sheet()
     _small_title(drawing, study, scale, fields, sheet)
     _profile(drawing, plan, scale)
     pieces = track_pieces(plan)
     rows = [["piece", "from [°] *", "to [°] *", "climb", "height [mm]", "pitch [mm]", "outer R", "inner R",
              "angle", "width"]]  # fmt: skip
-    for k, one in enumerate(pieces, start=1):
-        ends = [f"{abs(float(way.angle(s))) / DEG:.4g}" for s in (one.start, one.end)]
-        heights = " to ".join(f"{float(way.height(s)) / MM:.4g}" for s in (one.start, one.end))
-        pitch = 2.0 * np.pi * way.radius * np.tan(one.climb) / MM
-        radii = [f"{radius / MM:.5g}" for radius in one.radii]
-        rows.append([str(k), *ends, f"{one.climb / DEG:.3g}°", heights, f"{pitch:.4g}", *radii,
-                     f"{one.angle / DEG:.4g}°", f"{plan.width / MM:.4g}"])  # fmt: skip
+    for k, piece in enumerate(pieces, start=1):
+        ends = [f"{abs(float(path.angle(s))) / DEG:.4g}" for s in (piece.start, piece.end)]
+        heights = " to ".join(f"{float(path.height(s)) / MM:.4g}" for s in (piece.start, piece.end))
+        pitch = 2.0 * np.pi * path.radius * np.tan(piece.climb) / MM
+        radii = [f"{radius / MM:.5g}" for radius in piece.radii]
+        rows.append([str(k), *ends, f"{piece.climb / DEG:.3g}°", heights, f"{pitch:.4g}", *radii,
+                     f"{piece.angle / DEG:.4g}°", f"{plan.width / MM:.4g}"])  # fmt: skip
     low = drawing.table(25.0, 212.0, [12.0, 22, 22, 18, 36, 24, 24, 24, 24, 22], rows)
     drawing.text(25.0, low - 5.0, "* before the outlet; radii, angle and width: of the flat sheet", 2.2)
     _flat_pieces(drawing, pieces, low - 14.0)
@@ -627,34 +632,34 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
 
 def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
     """The height of the track over the floor's edge along the wall, from where it rises to the outlet."""
-    way = plan.path
-    stops = sorted({0.0, *(at for at, _ in way.bends), *(at for at, _ in way.drops), way.end})
+    path = plan.path
+    stops = sorted({0.0, *(at for at, _ in path.bends), *(at for at, _ in path.drops), path.end})
     places = np.unique(np.concatenate([stops, np.nextafter(np.array(stops[1:-1]), 0.0), [plan.first]]))
-    heights = way.height(places)
+    heights = path.height(places)
     at = np.array([40.0, 266.0 - float(heights.max()) / MM * scale])
     line = np.column_stack([places, heights]) / MM * scale + at
     drawing.outline(line, "OUTLINE", closed=False)
-    drawing.lines([[at, at + [way.end / MM * scale, 0.0]]], "CENTRE")
-    ends = tooling_drawing.spread([way.end * 0 + s / MM * scale + at[0] for s in stops], 4.2)
+    drawing.lines([[at, at + [path.end / MM * scale, 0.0]]], "CENTRE")
+    ends = tooling_drawing.spread([path.end * 0 + s / MM * scale + at[0] for s in stops], 4.2)
     for s, end in zip(stops, ends):
-        place = np.array([s, float(way.height(s))]) / MM * scale + at
+        place = np.array([s, float(path.height(s))]) / MM * scale + at
         drawing.ordinate(place, (end, at[1] - 14.0), at, False, scale)
-    right = at[0] + way.end / MM * scale
-    levels = sorted({round(float(way.height(s)), 7) for s in stops if float(way.height(s)) > 1e-6})
-    spots = [next(s for s in stops if abs(float(way.height(s)) - z) < 1e-6) for z in levels]
+    right = at[0] + path.end / MM * scale
+    levels = sorted({round(float(path.height(s)), 7) for s in stops if float(path.height(s)) > 1e-6})
+    spots = [next(s for s in stops if abs(float(path.height(s)) - z) < 1e-6) for z in levels]
     for z, s, end in zip(
         levels, spots, tooling_drawing.spread([z / MM * scale + at[1] for z in levels], 4.2)
     ):
         place = np.array([s, z]) / MM * scale + at
         drawing.ordinate(place, (right + 12.0, end), at, True, scale)
-    climbs = [way.climb, *(climb for _, climb in way.bends)]
-    bends = [0.0, *(s for s, _ in way.bends), way.end]
+    climbs = [path.climb, *(climb for _, climb in path.bends)]
+    bends = [0.0, *(s for s, _ in path.bends), path.end]
     for (start, end), climb in zip(itertools.pairwise(bends), climbs):
         middle = 0.5 * (start + end)
-        x, y = np.array([middle, float(way.height(middle))]) / MM * scale + at
+        x, y = np.array([middle, float(path.height(middle))]) / MM * scale + at
         drawing.text(float(x), float(y) + 3.0, f"{climb / DEG:.3g}°", 2.5, "center")
     if plan.stretch is not None:
-        x, y = np.array([plan.first, float(way.height(plan.first))]) / MM * scale + at
+        x, y = np.array([plan.first, float(path.height(plan.first))]) / MM * scale + at
         drawing.lines([[(x, y - 3.0), (x, y + 7.0)]], "NOTE")
         drawing.text(float(x), float(y) + 8.0, "D", 3.0, "center", bold=True)
     _head(drawing, 25.0, 281.0, "track along the wall, heights over the floor's edge", scale)
@@ -663,9 +668,9 @@ def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
 def _flat_pieces(drawing: Drawing, pieces: Sequence[TrackPiece], top: float) -> None:
     """The outlines of the flat pieces beside each other, each upright in the middle."""
     bodies = []
-    for one in pieces:
-        ring = np.vstack([one.outer, one.inner[::-1]])
-        ends = one.outer[-1] - one.outer[0]
+    for piece in pieces:
+        ring = np.vstack([piece.outer, piece.inner[::-1]])
+        ends = piece.outer[-1] - piece.outer[0]
         turn = -np.arctan2(ends[1], ends[0])
         c, s = np.cos(turn), np.sin(turn)
         bodies.append(ring @ np.array([[c, s], [-s, c]]) / MM)
@@ -684,7 +689,7 @@ def _flat_pieces(drawing: Drawing, pieces: Sequence[TrackPiece], top: float) -> 
         flat = ring * scale
         shift = at - [0.5 * (flat[:, 0].min() + flat[:, 0].max()), flat[:, 1].max()]
         drawing.outline(flat + shift, "OUTLINE")
-        chord = flat[[0, PLACES - 1]] + shift
+        chord = flat[[0, DEVELOPED_PLACES - 1]] + shift
         drawing.length(chord[0], chord[1], (0.0, flat[:, 1].min() - flat[0, 1] - 7.0), scale)
         drawing.text(float(at[0]), float(at[1]) + 2.0, f"piece {k + 1}", 2.5, "center", bold=True)
     _head(drawing, 25.0, top + 3.5, "track in sheet metal, flat", scale)

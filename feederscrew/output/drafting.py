@@ -23,13 +23,13 @@ from feederscrew.output import marking, style
 
 A3 = 420.0, 297.0  # [mm]
 FRAME = 20.0, 10.0, 410.0, 287.0  # [mm] left, low, right, high: ISO 5457
-APART = 30.0  # [mm] between the sheets in the DXF file
-INCH = 25.4  # [mm]
+SHEET_GAP_MM = 30.0  # [mm] between the sheets in the DXF file
+INCH_MM = 25.4  # [mm]
 CAPITAL = 0.72  # [1] height of a capital over the size of its font
-POINT = 72.0 / INCH / CAPITAL  # [pt] of a font whose capitals are one millimetre high
-CHORD = 0.02  # [mm] by which an arc may be seen too flat
-LETTERS, SMALL = 2.5, 2.2  # [mm] height of letters
-THICK, THIN = 0.5, 0.18  # [mm] width of lines: ISO 128-2
+POINT = 72.0 / INCH_MM / CAPITAL  # [pt] of a font whose capitals are one millimetre high
+DRAWN_ARC_CHORD_MM = 0.02  # [mm] by which an arc may be seen too flat
+NUMBER_HEIGHT_MM, TABLE_LETTER_HEIGHT_MM = 2.5, 2.2  # [mm] height of letters
+THICK_LINE_MM, THIN_LINE_MM = 0.5, 0.18  # [mm] width of lines: ISO 128-2
 LINE_TYPES = {  # ISO 128-2: name, its description, and its dashes [mm]
     "DASHED": ("dashed", (3.0, 1.0)),
     "CENTER": ("long dashed dotted", (6.0, 1.0, 0.5, 1.0)),
@@ -43,23 +43,23 @@ class Pen:
 
     colour: int = 7  # of AutoCAD's index, in the DXF file: 1 red, 3 green, 5 blue, 7 white or black, 8 grey
     ink: str = style.INK  # on paper
-    width: float = THIN  # [mm]
+    width: float = THIN_LINE_MM  # [mm]
     dashes: str = ""  # of LINE_TYPES
     face: str = ""  # colour within closed outlines; '' for none
 
 
 PENS = {
     "EDGE": Pen(),
-    "OUTLINE": Pen(width=THICK),
-    "FRAME": Pen(width=THICK),
+    "OUTLINE": Pen(width=THICK_LINE_MM),
+    "FRAME": Pen(width=THICK_LINE_MM),
     "CENTRE": Pen(8, dashes="CENTER"),
     "HIDDEN": Pen(8, dashes="DASHED"),
-    "SECTION": Pen(width=THICK, face="#dfe6ec"),
+    "SECTION": Pen(width=THICK_LINE_MM, face="#dfe6ec"),
     "DIMENSION": Pen(),
     "TEXT": Pen(),
     "NOTE": Pen(1, ink=style.ACCENT),
     "TABLE": Pen(),
-    "MARK": Pen(1, ink=marking.COLOUR),
+    "MARK": Pen(1, ink=marking.MARK_COLOUR),
 }
 
 
@@ -79,7 +79,7 @@ class Drawing:
     @property
     def origin(self) -> NDArray[np.float64]:
         """Place (2,) [mm] of the present sheet in the DXF file."""
-        return np.array([(len(self.sheets) - 1) * (A3[0] + APART), 0.0])
+        return np.array([(len(self.sheets) - 1) * (A3[0] + SHEET_GAP_MM), 0.0])
 
     def new_sheet(self) -> None:
         """Begin another sheet, to the right of the former ones."""
@@ -117,7 +117,7 @@ class Drawing:
             self.outline(ring, layer)
 
     def text(
-        self, x: float, y: float, words: str, size: float = LETTERS, align: str = "left",
+        self, x: float, y: float, words: str, size: float = NUMBER_HEIGHT_MM, align: str = "left",
         turn: float = 0.0, bold: bool = False, layer: str = "TEXT",
     ) -> None:  # fmt: skip
         """Write one line; ``align`` is 'left', 'center' or 'right' of the place, ``turn`` is in degrees."""
@@ -130,7 +130,7 @@ class Drawing:
 
     def table(
         self, left: float, top: float, widths: Sequence[float], rows: Sequence[Sequence[str]],
-        size: float = SMALL, line: float = 4.6,
+        size: float = TABLE_LETTER_HEIGHT_MM, line: float = 4.6,
     ) -> float:  # fmt: skip
         """Draw a table whose first row is its head; return the height of its lower border [mm]."""
         right, low = left + sum(widths), top - line * len(rows)
@@ -145,29 +145,30 @@ class Drawing:
     # dimensions
 
     def length(
-        self, one: ArrayLike, other: ArrayLike, off: ArrayLike, scale: float = 1.0, text: str = "<>",
-        size: float = LETTERS, decimals: int = 2,
+        self, start: ArrayLike, end: ArrayLike, off: ArrayLike, scale: float = 1.0, text: str = "<>",
+        size: float = NUMBER_HEIGHT_MM, decimals: int = 2,
     ) -> None:  # fmt: skip
         """Dimension the distance of two places [mm]: its line is moved off by a vector (2,) square to it.
 
         ``text`` has '<>' for the number, which is measured: the distance over the ``scale``.
         """
-        one, other, off = (np.asarray(p, float) for p in (one, other, off))
-        across = other - one
+        start, end, off = (np.asarray(p, float) for p in (start, end, off))
+        across = end - start
         turn = np.degrees(np.arctan2(across[1], across[0]))
         if np.abs(off).max() > 1e-9:  # its line is square to the way it is moved off
             turn = np.degrees(np.arctan2(-off[0], off[1]))
         turn = (turn + 89.999) % 180.0 - 89.999
         self._measured(
             self.space.add_linear_dim(
-                base=self._at(one + off), p1=self._at(one), p2=self._at(other), angle=float(turn), text=text,
-                dimstyle=self._dimension_style(scale, size, decimals), dxfattribs=self._look("DIMENSION"),
+                base=self._at(start + off), p1=self._at(start), p2=self._at(end), angle=float(turn),
+                text=text, dimstyle=self._dimension_style(scale, size, decimals),
+                dxfattribs=self._look("DIMENSION"),
             )
         )  # fmt: skip
 
     def ordinate(
         self, place: ArrayLike, end: ArrayLike, origin: ArrayLike, upright: bool, scale: float = 1.0,
-        size: float = LETTERS,
+        size: float = NUMBER_HEIGHT_MM,
     ) -> None:  # fmt: skip
         """Dimension a place from an origin, along X or ``upright`` along Y; the number stands at ``end``."""
         place, end = np.asarray(place, float), np.asarray(end, float)
@@ -182,7 +183,7 @@ class Drawing:
 
     def angle(
         self, middle: ArrayLike, radius: float, start: float, end: float, text: str = "<>",
-        size: float = LETTERS,
+        size: float = NUMBER_HEIGHT_MM,
     ) -> None:  # fmt: skip
         """Dimension an angle [deg] counter-clockwise about a middle, on an arc of a radius [mm]."""
         self._measured(
@@ -195,7 +196,7 @@ class Drawing:
 
     def round_size(
         self, middle: ArrayLike, radius: float, turn: float, scale: float = 1.0, diameter: bool = False,
-        size: float = LETTERS, text: str = "<>", decimals: int = 2,
+        size: float = NUMBER_HEIGHT_MM, text: str = "<>", decimals: int = 2,
     ) -> None:  # fmt: skip
         """Dimension a radius, or a diameter, of a circle at an angle [deg]."""
         add = self.space.add_diameter_dim if diameter else self.space.add_radius_dim
@@ -250,10 +251,10 @@ class Drawing:
     def figure(self, sheet: int = 0, low: ArrayLike = (0.0, 0.0), high: ArrayLike = A3) -> Figure:
         """Return a sheet between two corners [mm] as a figure of true size."""
         low, high = np.asarray(low, float), np.asarray(high, float)
-        figure = Figure(figsize=tuple((high - low) / INCH), facecolor="white")
+        figure = Figure(figsize=tuple((high - low) / INCH_MM), facecolor="white")
         axes = figure.add_axes((0, 0, 1, 1), xlim=(low[0], high[0]), ylim=(low[1], high[1]))
         axes.set_axis_off()
-        shift = np.array([sheet * (A3[0] + APART), 0.0])
+        shift = np.array([sheet * (A3[0] + SHEET_GAP_MM), 0.0])
         lines: dict[str, list[Any]] = {}
         for layer, kind, value, bold in self.sheets[sheet]:
             parts = dxf.primitives(value) if kind == "entity" else ((kind, value),)
@@ -316,7 +317,7 @@ class Drawing:
         pen = self._pen(layer)
         dashes = [size / pen.width for size in LINE_TYPES[pen.dashes][1]] if pen.dashes else ()
         return {
-            f"linewidth{plural}": 72.0 / INCH * pen.width,
+            f"linewidth{plural}": 72.0 / INCH_MM * pen.width,
             f"linestyle{plural}": (0, dashes) if dashes else "-",
             "gid": layer,
         }
@@ -355,11 +356,11 @@ def layer_kind(layer: str) -> str:
     return layer.removeprefix("BENT_").partition("_")[0]
 
 
-def spread(wanted: ArrayLike, apart: float) -> NDArray[np.float64]:
-    """Return places (N,) near the wanted ones, in their order, of which no two are nearer than ``apart``."""
+def spread(wanted: ArrayLike, gap: float) -> NDArray[np.float64]:
+    """Return places (N,) near the wanted ones, in their order, of which no two are nearer than ``gap``."""
     wanted = np.asarray(wanted, float)
     order = np.argsort(wanted, kind="stable")
-    steps = np.arange(len(order)) * apart
+    steps = np.arange(len(order)) * gap
     lower = np.maximum.accumulate(wanted[order] - steps)
     upper = np.minimum.accumulate((wanted[order] - steps)[::-1])[::-1]
     places = np.empty(len(order))

@@ -364,7 +364,7 @@ def _layout(solid, trace, rows) -> tuple[Any, ...]:
     places, points = trace.positions / solid.size, shading.outermost(solid.points)
     displacement = places[rows[-1], :2] - places[rows[0], :2]
     angle = np.arctan2(displacement[1], displacement[0])
-    along = np.array([np.cos(angle - shading.TURN), np.sin(angle - shading.TURN), 0.0])
+    along = np.array([np.cos(angle - shading.STANCE_TURN_RAD), np.sin(angle - shading.STANCE_TURN_RAD), 0.0])
     stances = [
         shading.placed(points, turn.inv().apply([0.0, 0.0, -1.0]), place[2], turn.inv().apply(along))
         for turn, place in zip(trace.turns[rows], places[rows])

@@ -393,7 +393,7 @@ def _part(axes, posture, heading, size) -> None:
     axes.plot(*middle, "+", color=CONTACT, markersize=9, markeredgewidth=1.6, zorder=5)
     if posture.axis is not None:
         along = turned(posture.axis, heading) * 0.6 * size
-        axes.plot([-along[0], along[0]], [-along[1], along[1]], zorder=4, **shading.AXIS)
+        axes.plot([-along[0], along[0]], [-along[1], along[1]], zorder=4, **shading.ROLLING_AXIS_LINE)
 
 
 def _legend(figure, posture, pressed) -> None:
@@ -409,7 +409,7 @@ def _legend(figure, posture, pressed) -> None:
             mpl_lines.Line2D([], [], marker="x", linestyle="", color=NORMAL, markeredgewidth=2, label=label)
         )
     if posture.axis is not None:
-        handles.append(mpl_lines.Line2D([], [], label="rolling axis", **shading.AXIS))
+        handles.append(mpl_lines.Line2D([], [], label="rolling axis", **shading.ROLLING_AXIS_LINE))
     figure.legend(
         handles=handles,
         fontsize=8,

@@ -108,13 +108,13 @@ def _drive(study) -> dict[Any, Any]:
     }
 
 
-def _figures(one) -> dict[Any, Any]:
+def _figures(motion) -> dict[Any, Any]:
     return {
-        "vibration_angle_at_the_springs_deg": one.spring_angle / DEG,
-        "vibration_angle_at_the_track_deg": one.track_angle / DEG,
-        "phase_deg": one.phase / DEG,
-        "throw_number": one.throw_number,
-        "velocity_mm_s": one.velocity / MM_S if np.isfinite(one.velocity) else None,
+        "vibration_angle_at_the_springs_deg": motion.spring_angle / DEG,
+        "vibration_angle_at_the_track_deg": motion.track_angle / DEG,
+        "phase_deg": motion.phase / DEG,
+        "throw_number": motion.throw_number,
+        "velocity_mm_s": motion.velocity / MM_S if np.isfinite(motion.velocity) else None,
     }
 
 
@@ -134,11 +134,11 @@ def _rocking(study) -> dict[Any, Any]:
 
 def order(study) -> dict[Any, Any]:
     """Return what an order asked for and what was sized for it, as a dict."""
-    asked, size, room = study.order, study.order.size, study.order.lying
-    wanted = (None, None) if asked.wanted is None else (asked.wanted[0], asked.wanted[1] / DEG)
+    wish, size, room = study.order, study.order.size, study.order.lying
+    wanted = (None, None) if wish.wanted is None else (wish.wanted[0], wish.wanted[1] / DEG)
     rates, held = (study.rates(v) / PER_MINUTE for v in (study.velocities, study.controlled))
     return {
-        "target_per_minute": asked.target / PER_MINUTE,
+        "target_per_minute": wish.target / PER_MINUTE,
         "parts_per_minute": study.lowest.rate / PER_MINUTE,
         "lowest_at_fill_percent": 100.0 * study.lowest.level,
         "lowest_with": study.lowest.control,
@@ -149,12 +149,12 @@ def order(study) -> dict[Any, Any]:
         "rate_empty_bowl": rates[-1],
         "rate_full_bowl_controlled": held[0],
         "rate_empty_bowl_controlled": held[-1],
-        "handbook_per_minute": asked.handbook / PER_MINUTE,
+        "handbook_per_minute": wish.handbook / PER_MINUTE,
         **dict(zip(("aspect", "heading_deg"), wanted)),
-        "rule": asked.rule,
-        "answer": asked.answer,
-        "share_counted": asked.flow.share,
-        "mean_length_mm": asked.flow.length / MM,
+        "rule": wish.rule,
+        "answer": wish.answer,
+        "share_counted": wish.flow.share,
+        "mean_length_mm": wish.flow.length / MM,
         "longest_mm": room.longest / MM,
         "tallest_mm": room.tallest / MM,
         "part_width_mm": room.width / MM,
@@ -164,36 +164,36 @@ def order(study) -> dict[Any, Any]:
         "clearance_mm": size.clearance / MM,
         "bend_mm": size.bend / MM,
         "climb_deg": size.climb / DEG,
-        "steepest_climb_deg": asked.steepest / DEG,
+        "steepest_climb_deg": wish.steepest / DEG,
         "turn_rise_mm": size.pitch / MM,
-        "hopper_l": asked.hopper / LITRE,
+        "hopper_l": wish.hopper / LITRE,
         "sheet": sheets.quotation(study),
     }
 
 
 def _springs(study) -> dict[Any, Any]:
-    made, machine = study.springs, study.bowl.machine
+    springs, machine = study.springs, study.bowl.machine
     return {
-        "leaf_stiffness_n_per_mm": made.leaf_stiffness / N_MM,
+        "leaf_stiffness_n_per_mm": springs.leaf_stiffness / N_MM,
         "leaves": int(machine.leaves),
         "leaf_width_mm": machine.leaf_width / MM,
         "leaf_thickness_mm": machine.leaf_thickness / MM,
         "leaf_length_mm": machine.leaf_length / MM,
-        "stiffness_n_per_mm": made.stiffness / N_MM,
-        "stiffness_with_over_without_twist": made.twist,
+        "stiffness_n_per_mm": springs.stiffness / N_MM,
+        "stiffness_with_over_without_twist": springs.twist,
         "bowl_mass_kg": machine.bowl_mass,
         "bowl_inertia_kg_m2": machine.bowl_inertia,
         "base_mass_kg": machine.base_mass,
         "base_inertia_kg_m2": machine.base_inertia,
         "spring_radius_mm": machine.spring_radius / MM,
         "spring_angle_deg": machine.spring_angle / DEG,
-        "effective_mass_kg": made.effective_mass,
-        "effective_mass_base_held_kg": made.effective_mass_held,
-        "natural_frequency_hz": made.natural_frequency,
-        "natural_frequency_without_twist_hz": made.natural_frequency_without_twist,
-        "natural_frequency_base_held_hz": made.natural_frequency_held,
-        "natural_frequency_rigid_clamps_hz": made.natural_frequency_rigid,
-        "natural_frequency_rigid_clamps_end_hz": made.natural_frequency_rigid_end,
+        "effective_mass_kg": springs.effective_mass,
+        "effective_mass_base_held_kg": springs.effective_mass_held,
+        "natural_frequency_hz": springs.natural_frequency,
+        "natural_frequency_without_twist_hz": springs.natural_frequency_without_twist,
+        "natural_frequency_base_held_hz": springs.natural_frequency_held,
+        "natural_frequency_rigid_clamps_hz": springs.natural_frequency_rigid,
+        "natural_frequency_rigid_clamps_end_hz": springs.natural_frequency_rigid_end,
         "drive_frequency_hz": study.stroke.frequency,
         "above_drive_percent": 100.0 * study.detuning,
         "gain": study.gain,
@@ -208,7 +208,7 @@ def _springs(study) -> dict[Any, Any]:
 
 
 def _stroke(study) -> dict[Any, Any]:
-    moved, found, bowl = study.stroke, study.answer, study.bowl
+    moved, answer, bowl = study.stroke, study.answer, study.bowl
     return {
         "controller_percent": 100.0 * bowl.sizing.controller,
         "peak_to_peak_mm": moved.peak_to_peak / MM,
@@ -221,15 +221,15 @@ def _stroke(study) -> dict[Any, Any]:
             "peak_vertical": moved.vertical,
         },
         "acceleration_ratio": moved.acceleration / bowl.gravity,
-        "throw_number": found.throw_number,
+        "throw_number": answer.throw_number,
         "hop_height_mm": hop(bowl).height / MM,
         "hop_flight_mm": hop(bowl).flight / MM,
         "vibration_angle_deg": bowl.drive.vibration_angle / DEG,
         "vibration_angle_at_the_track_deg": bowl.drive.vibration_angle / DEG,
         "vibration_angle_at_the_springs_deg": bowl.machine.spring_angle / DEG,
-        "velocity_mm_s": found.velocity / MM_S,
-        "regime": found.regime,
-        "hardest_impact_mm_s": found.hardest_impact / MM_S,
+        "velocity_mm_s": answer.velocity / MM_S,
+        "regime": answer.regime,
+        "hardest_impact_mm_s": answer.hardest_impact / MM_S,
     }
 
 
@@ -244,39 +244,41 @@ def angles(study):
     )
 
 
-def leaf_sets(found):
+def leaf_sets(sets):
     """Return sets of leaves as a frame.
 
     Parameters
     ----------
-    found : sequence of LeafSet
+    sets : sequence of LeafSet
     """
-    named = {"change": [one.name for one in found]} if any(one.name for one in found) else {}
+    named = (
+        {"change": [leaf_set.name for leaf_set in sets]} if any(leaf_set.name for leaf_set in sets) else {}
+    )
     return tables.frame(
         named
         | {
-            "leaf_thickness_mm": [one.thickness / MM for one in found],
-            "leaves": [one.leaves for one in found],
-            "natural_frequency_hz": [one.natural_frequency for one in found],
-            "by_t_squared_hz": [one.by_square for one in found],
-            "above_drive_percent": [100.0 * one.detuning for one in found],
-            "gain": [one.gain for one in found],
-            "leaf_stress_mpa": [one.stress / MPA for one in found],
+            "leaf_thickness_mm": [leaf_set.thickness / MM for leaf_set in sets],
+            "leaves": [leaf_set.leaves for leaf_set in sets],
+            "natural_frequency_hz": [leaf_set.natural_frequency for leaf_set in sets],
+            "by_t_squared_hz": [leaf_set.by_square for leaf_set in sets],
+            "above_drive_percent": [100.0 * leaf_set.detuning for leaf_set in sets],
+            "gain": [leaf_set.gain for leaf_set in sets],
+            "leaf_stress_mpa": [leaf_set.stress / MPA for leaf_set in sets],
         }
     )
 
 
 def emptying(study):
     """Return the bowl from full to empty as a frame, with rates where parts are counted."""
-    found = study.emptying
+    emptied = study.emptying
     columns = {
-        "fill_percent": 100.0 * found.levels,
-        "parts_kg": found.masses,
-        "natural_frequency_hz": found.natural_frequencies,
-        "gain": found.gains,
-        "stroke_over_that_of_the_empty_bowl": found.strokes,
-        "vibration_angle_at_the_track_deg": found.angles / DEG,
-        "spring_stroke_over_that_of_the_empty_bowl": found.springs,
+        "fill_percent": 100.0 * emptied.levels,
+        "parts_kg": emptied.masses,
+        "natural_frequency_hz": emptied.natural_frequencies,
+        "gain": emptied.gains,
+        "stroke_over_that_of_the_empty_bowl": emptied.strokes,
+        "vibration_angle_at_the_track_deg": emptied.angles / DEG,
+        "spring_stroke_over_that_of_the_empty_bowl": emptied.springs,
         "velocity_mm_s": study.velocities / MM_S,
         "velocity_controlled_mm_s": study.controlled / MM_S,
     }
@@ -292,18 +294,22 @@ def summary(study, tried=None):
     return tables.frame({name: [row[name] for row in rows] for name in ("quantity", "value")})
 
 
-def measured_summary(one):
+def measured_summary(condition):
     """Return what was measured beside what should be, and the likely cause, as a table."""
-    rows = [("parts in the bowl [%]", f"{100.0 * one.fill:.3g}", "")]
+    rows = [("parts in the bowl [%]", f"{100.0 * condition.fill:.3g}", "")]
     pairs = (
-        ("stroke, peak to peak [mm]", one.should["stroke"] / MM, one.stroke and one.stroke / MM),
-        ("acceleration, peak [m/s2]", one.should["acceleration"], one.acceleration),
-        ("frequency [Hz]", one.should["frequency"], one.frequency),
-        ("velocity of a part [mm/s]", one.velocity_should / MM_S, one.velocity / MM_S),
+        (
+            "stroke, peak to peak [mm]",
+            condition.should["stroke"] / MM,
+            condition.stroke and condition.stroke / MM,
+        ),
+        ("acceleration, peak [m/s2]", condition.should["acceleration"], condition.acceleration),
+        ("frequency [Hz]", condition.should["frequency"], condition.frequency),
+        ("velocity of a part [mm/s]", condition.velocity_should / MM_S, condition.velocity / MM_S),
     )
     rows += [(name, f"{should:.4g}", _measured_text(now)) for name, should, now in pairs]
-    rows.append(("natural frequency, as drawn [Hz]", f"{one.natural_frequency:.4g}", ""))
-    rows += [("likely cause" if k == 0 else "", cause, "") for k, cause in enumerate(one.causes)]
+    rows.append(("natural frequency, as drawn [Hz]", f"{condition.natural_frequency:.4g}", ""))
+    rows += [("likely cause" if k == 0 else "", cause, "") for k, cause in enumerate(condition.causes)]
     return tables.frame(dict(zip(("quantity", "should be", "measured"), zip(*rows))))
 
 
@@ -311,20 +317,24 @@ def _measured_text(value) -> str:
     return "-" if value is None or math.isnan(value) else f"{value:.4g}"
 
 
-def measured_document(one) -> dict[Any, Any]:
+def measured_document(condition) -> dict[Any, Any]:
     """Return a MeasuredMachine as the JSON document."""
-    now = {"stroke_mm": one.stroke and one.stroke / MM, "acceleration_m_s2": one.acceleration}
+    now = {
+        "stroke_mm": condition.stroke and condition.stroke / MM,
+        "acceleration_m_s2": condition.acceleration,
+    }
     return {
-        "fill_percent": 100.0 * one.fill,
-        "measured": now | {"frequency_hz": one.frequency, "velocity_mm_s": _finite_velocity(one.velocity)},
+        "fill_percent": 100.0 * condition.fill,
+        "measured": now
+        | {"frequency_hz": condition.frequency, "velocity_mm_s": _finite_velocity(condition.velocity)},
         "should": {
-            "stroke_mm": one.should["stroke"] / MM,
-            "acceleration_m_s2": one.should["acceleration"],
-            "frequency_hz": one.should["frequency"],
-            "velocity_mm_s": _finite_velocity(one.velocity_should),
+            "stroke_mm": condition.should["stroke"] / MM,
+            "acceleration_m_s2": condition.should["acceleration"],
+            "frequency_hz": condition.should["frequency"],
+            "velocity_mm_s": _finite_velocity(condition.velocity_should),
         },
-        "natural_frequency_hz": one.natural_frequency,
-        "causes": list(one.causes),
+        "natural_frequency_hz": condition.natural_frequency,
+        "causes": list(condition.causes),
     }
 
 

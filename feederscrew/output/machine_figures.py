@@ -9,11 +9,11 @@ from feederscrew.output import machine_sheet as sheets
 from feederscrew.output import style
 from feederscrew.units import DEG, MM, PER_MINUTE
 
-WIDE, HIGH = 1760, 1500  # [px] of the page
-SHEET, TRACK, FLOOR, FILL, BASE = "#22303c", "#b9cbd8", "#eef2f5", "#e9d9b6", "#c9d0d6"
-STEEL, FREE, HELD = "#7d8b97", "#d55e00", "#0072b2"
-ROOM = 1.34  # of the bowl's radius, shown to each side
-SMALL, TINY = 8.5, 7.5  # [pt]
+MACHINE_PAGE_WIDTH_PX, MACHINE_PAGE_HEIGHT_PX = 1760, 1500  # [px] of the page
+SHEET_EDGE, TRACK_RING_FACE, FLOOR, FILL, BASE = "#22303c", "#b9cbd8", "#eef2f5", "#e9d9b6", "#c9d0d6"
+SPRING_FACE, UNCONTROLLED_COLOUR, CONTROLLED_COLOUR = "#7d8b97", "#d55e00", "#0072b2"
+SHOWN_RADII = 1.34  # of the bowl's radius, shown to each side
+SIZE_TEXT_PT, NOTE_TEXT_PT = 8.5, 7.5  # [pt]
 PITCH = 2.2  # thicknesses from leaf to leaf: one between them as a spacer
 DIMENSION = {"arrowstyle": "<->", "color": style.INK, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
 LEADER = {"arrowstyle": "-", "color": style.INK, "linewidth": 0.7, "shrinkA": 1, "shrinkB": 0}
@@ -32,11 +32,11 @@ def bowl(study, tried=None):
     -------
     Figure
     """
-    page = style.page(WIDE, HIGH)
+    page = style.page(MACHINE_PAGE_WIDTH_PX, MACHINE_PAGE_HEIGHT_PX)
     _title(page, study, tried)
-    half = ROOM * study.bowl.track.radius / MM
+    half = SHOWN_RADII * study.bowl.track.radius / MM
     above, section = page.add_axes((0.015, 0.40, 0.475, 0.50)), page.add_axes((0.51, 0.40, 0.475, 0.50))
-    share = 0.50 * HIGH / (0.475 * WIDE)
+    share = 0.50 * MACHINE_PAGE_HEIGHT_PX / (0.475 * MACHINE_PAGE_WIDTH_PX)
     for axes in (above, section):
         axes.set_axis_off()
         axes.set(xlim=(-half, half), ylim=(-half * share, half * share))
@@ -69,31 +69,37 @@ def _title(page, study, tried) -> None:
         va="center",
     )
     if study.mismatch is not None:
-        said = f"the springs do not make it: they make {study.mismatch.machine.text}"
-        page.text(0.02, 0.912, said, fontsize=9.5, color=style.ACCENT, va="center")
+        remark = f"the springs do not make it: they make {study.mismatch.machine.text}"
+        page.text(0.02, 0.912, remark, fontsize=9.5, color=style.ACCENT, va="center")
 
 
 def _from_above(axes, study, half) -> None:
     """Wall, track, floor, the springs' circle and the part on the track."""
     track, machine = study.bowl.track, study.bowl.machine
     radius, width, at = track.radius / MM, track.width / MM, machine.spring_radius / MM
-    axes.add_patch(Circle((0, 0), radius - width, facecolor=FLOOR, edgecolor=STEEL, linewidth=0.8))
-    axes.add_patch(Wedge((0, 0), radius, 0, 360, width=width, facecolor=TRACK, edgecolor="none"))
-    axes.add_patch(Circle((0, 0), radius, fill=False, edgecolor=SHEET, linewidth=2.2))
-    axes.add_patch(Circle((0, 0), at, fill=False, edgecolor=STEEL, linewidth=0.9, linestyle=(0, (5, 3))))
+    axes.add_patch(Circle((0, 0), radius - width, facecolor=FLOOR, edgecolor=SPRING_FACE, linewidth=0.8))
+    axes.add_patch(Wedge((0, 0), radius, 0, 360, width=width, facecolor=TRACK_RING_FACE, edgecolor="none"))
+    axes.add_patch(Circle((0, 0), radius, fill=False, edgecolor=SHEET_EDGE, linewidth=2.2))
+    axes.add_patch(
+        Circle((0, 0), at, fill=False, edgecolor=SPRING_FACE, linewidth=0.9, linestyle=(0, (5, 3)))
+    )
     for place, leaves in zip(*_banks(study)):
         _bank(axes, at, place, leaves, machine)
     _parts(axes, study, radius)
-    _way(axes, radius - 0.5 * width)
+    _draw_direction(axes, radius - 0.5 * width)
     _across(axes, -radius, radius, -radius - 0.10 * half, f"D {2 * radius:.4g}", radius)
     turn = np.radians(-38)
     on_track = (radius - 0.5 * width) * np.array([np.cos(turn), np.sin(turn)])
     axes.annotate(
-        f"track {width:.3g}", on_track, (1.17 * radius, -0.72 * radius), fontsize=SMALL,
+        f"track {width:.3g}", on_track, (1.17 * radius, -0.72 * radius), fontsize=SIZE_TEXT_PT,
         ha="center", va="center", color=style.INK, arrowprops=LEADER,
     )  # fmt: skip
-    axes.text(0, 0, f"springs on\nradius {at:.4g}", fontsize=SMALL, color=style.INK, ha="center", va="center")
-    axes.text(-ROOM * radius, half, "from above", fontsize=10, fontweight="bold", color=style.INK, va="top")
+    axes.text(
+        0, 0, f"springs on\nradius {at:.4g}", fontsize=SIZE_TEXT_PT, color=style.INK, ha="center", va="center"
+    )
+    axes.text(
+        -SHOWN_RADII * radius, half, "from above", fontsize=10, fontweight="bold", color=style.INK, va="top"
+    )
 
 
 def _banks(study) -> tuple[Any, ...]:
@@ -112,7 +118,9 @@ def _bank(axes, radius, place, leaves, machine) -> None:
             radius * outward + x * 0.5 * width * outward + (step + y * 0.5 * thick) * along
             for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))
         ]
-        axes.add_patch(Polygon(corners, closed=True, facecolor=STEEL, edgecolor=SHEET, linewidth=0.5))
+        axes.add_patch(
+            Polygon(corners, closed=True, facecolor=SPRING_FACE, edgecolor=SHEET_EDGE, linewidth=0.5)
+        )
 
 
 def _parts(axes, study, radius) -> None:
@@ -130,11 +138,11 @@ def _parts(axes, study, radius) -> None:
         outward, ahead = np.array([np.cos(place), np.sin(place)]), np.array([-np.sin(place), np.cos(place)])
         corners = np.outer(radius - to_wall - outline[:, 1], outward) + np.outer(outline[:, 0], ahead)
         axes.add_patch(
-            Polygon(corners, closed=True, facecolor="#f2c48f", edgecolor=SHEET, linewidth=0.7, zorder=3)
+            Polygon(corners, closed=True, facecolor="#f2c48f", edgecolor=SHEET_EDGE, linewidth=0.7, zorder=3)
         )
 
 
-def _way(axes, radius) -> None:
+def _draw_direction(axes, radius) -> None:
     """An arrow the way the parts climb: counter-clockwise."""
     turn = np.radians(np.linspace(28, 78, 40))
     axes.plot(radius * np.cos(turn), radius * np.sin(turn), color=style.INK, linewidth=1.1)
@@ -156,25 +164,41 @@ def _in_section(axes, study, half) -> None:
     level = rules.fill_height * depth
     axes.add_patch(Rectangle((-radius, foot), 2 * radius, level, facecolor=FILL, edgecolor="none"))
     _turns(axes, study, radius, width, foot, depth, sheet)
-    axes.add_patch(Rectangle((-radius, foot - sheet), 2 * radius, sheet, color=SHEET))
+    axes.add_patch(Rectangle((-radius, foot - sheet), 2 * radius, sheet, color=SHEET_EDGE))
     for side in (-1, 1):
         axes.add_patch(
-            Rectangle((side * radius - (side < 0) * sheet, foot - sheet), sheet, depth + sheet, color=SHEET)
+            Rectangle(
+                (side * radius - (side < 0) * sheet, foot - sheet), sheet, depth + sheet, color=SHEET_EDGE
+            )
         )
         _leaves(axes, side * machine.spring_radius / MM, foot - sheet, machine, _banks(study)[1][0])
     reach = 1.25 * machine.spring_radius / MM
-    axes.add_patch(Rectangle((-reach, foot - leaf - base), 2 * reach, base, facecolor=BASE, edgecolor=STEEL))
-    axes.text(
-        0, foot - leaf - 0.5 * base, _base(machine), fontsize=SMALL, color=style.INK, ha="center", va="center"
+    axes.add_patch(
+        Rectangle((-reach, foot - leaf - base), 2 * reach, base, facecolor=BASE, edgecolor=SPRING_FACE)
     )
-    axes.text(0, foot - 0.5 * leaf, _set(machine), fontsize=SMALL, color=style.INK, ha="center", va="center")
-    axes.text(0, foot + 0.5 * level, _full(study), fontsize=SMALL, color=style.INK, ha="center", va="center")
+    axes.text(
+        0,
+        foot - leaf - 0.5 * base,
+        _base(machine),
+        fontsize=SIZE_TEXT_PT,
+        color=style.INK,
+        ha="center",
+        va="center",
+    )
+    axes.text(
+        0, foot - 0.5 * leaf, _set(machine), fontsize=SIZE_TEXT_PT, color=style.INK, ha="center", va="center"
+    )
+    axes.text(
+        0, foot + 0.5 * level, _full(study), fontsize=SIZE_TEXT_PT, color=style.INK, ha="center", va="center"
+    )
     _upright(axes, 1, radius, foot, foot + depth)
     rise = np.tan(track.climb) * 2.0 * np.pi * radius
     if 0.0 < 1.5 * rise <= depth:
         _upright(axes, -1, radius, foot + 0.5 * rise, foot + 1.5 * rise)
-    axes.text(0, foot + depth, _climb(study), fontsize=SMALL, color=style.INK, ha="center", va="top")
-    axes.text(-ROOM * radius, half, "in section", fontsize=10, fontweight="bold", color=style.INK, va="top")
+    axes.text(0, foot + depth, _climb(study), fontsize=SIZE_TEXT_PT, color=style.INK, ha="center", va="top")
+    axes.text(
+        -SHOWN_RADII * radius, half, "in section", fontsize=10, fontweight="bold", color=style.INK, va="top"
+    )
 
 
 def _turns(axes, study, radius, width, foot, depth, sheet) -> None:
@@ -190,8 +214,8 @@ def _turns(axes, study, radius, width, foot, depth, sheet) -> None:
                     (left, foot + height - sheet),
                     width,
                     sheet,
-                    facecolor=STEEL,
-                    edgecolor=SHEET,
+                    facecolor=SPRING_FACE,
+                    edgecolor=SHEET_EDGE,
                     linewidth=0.5,
                 )
             )
@@ -203,7 +227,7 @@ def _leaves(axes, place, top, machine, count) -> None:
     lean = 0.5 * length * np.sin(tilt)
     for step in np.arange(count) - 0.5 * (count - 1):
         x = place + PITCH * step * machine.leaf_thickness / MM
-        axes.plot([x - lean, x + lean], [top - length * np.cos(tilt), top], color=SHEET, linewidth=1.4)
+        axes.plot([x - lean, x + lean], [top - length * np.cos(tilt), top], color=SHEET_EDGE, linewidth=1.4)
 
 
 def _base(machine) -> str:
@@ -223,9 +247,9 @@ def _full(study) -> str:
 
 def _climb(study) -> str:
     track, turns = study.bowl.track, study.turns
-    said = f"climb {track.climb / DEG:.3g}°" if track.climb > 0.0 else "level track"
-    said += f", {turns:.3g} turns" if np.isfinite(turns) else ""
-    return f"{said}\nbowl {study.bowl.machine.bowl_mass:.3g} kg, {study.bowl.machine.bowl_inertia:.3g} kg m²"
+    words = f"climb {track.climb / DEG:.3g}°" if track.climb > 0.0 else "level track"
+    words += f", {turns:.3g} turns" if np.isfinite(turns) else ""
+    return f"{words}\nbowl {study.bowl.machine.bowl_mass:.3g} kg, {study.bowl.machine.bowl_inertia:.3g} kg m²"
 
 
 def _across(axes, left, right, y, text, radius) -> None:
@@ -244,9 +268,9 @@ def _upright(axes, side, radius, low, high) -> None:
     for y in (low, high):
         axes.plot([side * radius, x + 0.02 * side * radius], [y, y], color=style.INK, linewidth=0.5, zorder=0)
     axes.annotate("", (x, low), (x, high), arrowprops=DIMENSION)
-    way = "left" if side > 0 else "right"
+    align = "left" if side > 0 else "right"
     place = (x + 0.03 * side * radius, 0.5 * (low + high))
-    axes.text(*place, f"{high - low:.3g}", fontsize=9, color=style.INK, va="center", ha=way)
+    axes.text(*place, f"{high - low:.3g}", fontsize=9, color=style.INK, va="center", ha=align)
 
 
 def _curves(page, study) -> None:
@@ -259,8 +283,8 @@ def _curves(page, study) -> None:
     )
     what = "Parts a minute as the bowl empties" if ordered else "Velocity as the bowl empties [mm/s]"
     style.tidy(left, title=what, x="fill [%]")
-    left.plot(fill, free, color=FREE, marker="o", markersize=3, label="amplitude left alone")
-    left.plot(fill, held, color=HELD, linewidth=1.8, label="amplitude controlled")
+    left.plot(fill, free, color=UNCONTROLLED_COLOUR, marker="o", markersize=3, label="amplitude left alone")
+    left.plot(fill, held, color=CONTROLLED_COLOUR, linewidth=1.8, label="amplitude controlled")
     left.set(
         xlim=(103, -3),
         ylim=(min(0.0, 1.05 * np.nanmin(free)), 1.22 * max(np.nanmax(free), np.nanmax(held), 1e-9)),

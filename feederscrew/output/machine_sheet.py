@@ -85,10 +85,10 @@ def two_axis(drive) -> str:
 
 def angles(study, *, phase=True):
     """Return the angle of the motion at the springs and at the track, as text for titles and drawings."""
-    made = study.bowl.machine.spring_angle / DEG, study.bowl.drive.vibration_angle / DEG
-    said = f"{made[0]:.3g}° at the springs, {made[1]:.3g}° to the track"
+    degrees = study.bowl.machine.spring_angle / DEG, study.bowl.drive.vibration_angle / DEG
+    words = f"{degrees[0]:.3g}° at the springs, {degrees[1]:.3g}° to the track"
     led = phase and drive_sizing.is_two_axis(study.bowl.drive)
-    return f"{said}, phase {study.bowl.drive.phase / DEG:.4g}°" if led else said
+    return f"{words}, phase {study.bowl.drive.phase / DEG:.4g}°" if led else words
 
 
 def _part(study) -> Iterator[Any]:
@@ -100,27 +100,27 @@ def _part(study) -> Iterator[Any]:
     yield "size [mm]", f"{size}; at most {room.longest / MM:.4g} along the wall, {room.tallest / MM:.4g} high"
 
 
-def _asked_of_trial(found) -> Iterator[Any]:
+def _asked_of_trial(tried) -> Iterator[Any]:
     """What a trial was of, for a machine that has no order."""
-    if found is not None:
-        yield "orientation that leaves", found.wanted
-        yield "rate asked for [1/min]", f"{found.target / PER_MINUTE:.6g}"
+    if tried is not None:
+        yield "orientation that leaves", tried.wanted
+        yield "rate asked for [1/min]", f"{tried.target / PER_MINUTE:.6g}"
 
 
-def _tried(found) -> Iterator[Any]:
+def _tried(tried) -> Iterator[Any]:
     """What a trial has delivered, before what is computed."""
-    if found is not None:
-        ends = ", ".join(f"{end / PER_MINUTE:.4g}" for end in (found.low, found.high))
+    if tried is not None:
+        ends = ", ".join(f"{end / PER_MINUTE:.4g}" for end in (tried.low, tried.high))
         yield (
             "rate as its trial showed [1/min]",
-            f"{found.delivered / PER_MINUTE:.4g} ({ends}): {found.status}",
+            f"{tried.delivered / PER_MINUTE:.4g} ({ends}): {tried.status}",
         )
 
 
-def rate_of_trial(found) -> str:
+def rate_of_trial(tried) -> str:
     """Return what a trial has delivered as text for titles and drawings."""
-    value, low = (f"{end / PER_MINUTE:.4g}" for end in (found.delivered, found.low))
-    return f"{value}/min, at least {low}: {found.status}"
+    value, low = (f"{end / PER_MINUTE:.4g}" for end in (tried.delivered, tried.low))
+    return f"{value}/min, at least {low}: {tried.status}"
 
 
 def material(part):
@@ -133,24 +133,24 @@ def _box(part):
 
 
 def _rates(study) -> Iterator[Any]:
-    asked = study.order
+    order = study.order
     rates = study.rates(study.velocities) / PER_MINUTE
-    yield "rate asked for [1/min]", f"{asked.target / PER_MINUTE:.6g}"
+    yield "rate asked for [1/min]", f"{order.target / PER_MINUTE:.6g}"
     low = study.lowest
     at = f"at {100 * low.level:.3g} % of the fill, {low.control}"
     yield "lowest rate, full to empty [1/min]", f"{low.rate / PER_MINUTE:.4g} {at}"
     at_this = study.rates(study.answer.velocity) / PER_MINUTE
     yield "rate at this stroke [1/min]", f"{at_this:.4g}; {rates[0]:.4g} of a full bowl left alone"
-    yield "handbook, 1500 E / l [1/min]", f"{asked.handbook / PER_MINUTE:.4g}"
-    yield "orientation that counts", _orientation(asked)
-    yield "whose probabilities", asked.answer
+    yield "handbook, 1500 E / l [1/min]", f"{order.handbook / PER_MINUTE:.4g}"
+    yield "orientation that counts", _orientation(order)
+    yield "whose probabilities", order.answer
 
 
-def _orientation(asked) -> str:
-    share = f"{100 * asked.flow.share:.3g} % of the parts"
-    if asked.wanted is None:
+def _orientation(order) -> str:
+    share = f"{100 * order.flow.share:.3g} % of the parts"
+    if order.wanted is None:
         return f"every one that passes track and devices, {share}"
-    return f"aspect {asked.wanted[0]} at {asked.wanted[1] / DEG:.3g} deg, {share}"
+    return f"aspect {order.wanted[0]} at {order.wanted[1] / DEG:.3g} deg, {share}"
 
 
 def _bowl(study) -> Iterator[Any]:
@@ -212,39 +212,42 @@ def _readings(study) -> Iterator[Any]:
 
 
 def _travel(study) -> Iterator[Any]:
-    found, bowl = study.answer, study.bowl
+    answer, bowl = study.answer, study.bowl
     upright = (bowl.drive.vibration_angle + bowl.track.climb) / DEG
     yield (
         "vibration angle [deg]",
         f"{bowl.drive.vibration_angle / DEG:.3g} to the track, {upright:.3g} to the horizontal",
     )
-    yield "velocity at this stroke [mm/s]", f"{_known(found.velocity / MM_S)}, {regime_words(found.regime)}"
-    yield "hardest impact [mm/s]", _known(found.hardest_impact / MM_S)
+    yield (
+        "velocity at this stroke [mm/s]",
+        f"{_finite_words(answer.velocity / MM_S)}, {regime_words(answer.regime)}",
+    )
+    yield "hardest impact [mm/s]", _finite_words(answer.hardest_impact / MM_S)
     if study.order is None:
-        full, empty = (_known(study.velocities[k] / MM_S) for k in (0, -1))
+        full, empty = (_finite_words(study.velocities[k] / MM_S) for k in (0, -1))
         yield "velocity from full to empty [mm/s]", f"{full} to {empty}, amplitude left alone"
 
 
-def _known(value) -> str:
+def _finite_words(value) -> str:
     """A number to three digits; 'none' where there is none, as without a steady state."""
     return f"{value:.3g}" if math.isfinite(value) else "none"
 
 
 def _springs(study) -> Iterator[Any]:
-    made, under = study.springs, study.bowl.machine
+    springs, under = study.springs, study.bowl.machine
     leaf = " x ".join(
         f"{side / MM:.3g}" for side in (under.leaf_width, under.leaf_thickness, under.leaf_length)
     )
-    each = f"{made.leaf_stiffness / N_MM:.5g} N/mm each"
+    each = f"{springs.leaf_stiffness / N_MM:.5g} N/mm each"
     yield "leaves", f"{under.leaves:.0f} of {leaf} mm, {shared(study)}, {each}"
     place = f"radius {under.spring_radius / MM:.4g} mm, motion there {under.spring_angle / DEG:.3g} deg"
-    yield "springs", f"{place}, {made.stiffness / N_MM:.5g} N/mm with twist"
-    held = f"base held {made.effective_mass_held:.4g}"
-    yield "effective mass [kg]", f"{made.effective_mass:.4g} ({held})"
-    plain = f"without twist {made.natural_frequency_without_twist:.4g}"
-    rigid = f"{made.natural_frequency_rigid:.4g} to {made.natural_frequency_rigid_end:.4g}"
+    yield "springs", f"{place}, {springs.stiffness / N_MM:.5g} N/mm with twist"
+    held = f"base held {springs.effective_mass_held:.4g}"
+    yield "effective mass [kg]", f"{springs.effective_mass:.4g} ({held})"
+    plain = f"without twist {springs.natural_frequency_without_twist:.4g}"
+    rigid = f"{springs.natural_frequency_rigid:.4g} to {springs.natural_frequency_rigid_end:.4g}"
     plain += f"; rigid clamps {rigid}"
-    yield "natural frequency [Hz]", f"{made.natural_frequency:.4g} ({plain})"
+    yield "natural frequency [Hz]", f"{springs.natural_frequency:.4g} ({plain})"
     yield "above the drive [%], gain", f"{100 * study.detuning:.3g}, {study.gain:.3g}"
     yield from _rocking(study)
     most = study.bowl.sizing.fatigue_stress / MPA
@@ -262,11 +265,12 @@ def _rocking(study) -> Iterator[Any]:
     x, y, z = study.solid.centre / MM
     yield "centre of mass [mm]", f"{np.hypot(x, y):.3g} from the axis, {z:.3g} over the floor's edge"
     as_is, balanced = (
-        f"{100 * (one.least - 1.0):+.2g} to {100 * (one.greatest - 1.0):+.2g}" for one in study.rocking
+        f"{100 * (rocking.least - 1.0):+.2g} to {100 * (rocking.greatest - 1.0):+.2g}"
+        for rocking in study.rocking
     )
     weight, angle = study.solid.balance
-    said = f"with {weight / GRAM:.3g} g on the wall at {angle / DEG:.0f} deg {balanced}"
-    yield "stroke round the bowl [%]", f"{as_is}; {said}"
+    words = f"with {weight / GRAM:.3g} g on the wall at {angle / DEG:.0f} deg {balanced}"
+    yield "stroke round the bowl [%]", f"{as_is}; {words}"
 
 
 def shared(study) -> str:
@@ -278,10 +282,10 @@ def shared(study) -> str:
 
 def _other_leaves(study) -> Iterator[Any]:
     """What other sets of leaves do; makers who reckon with t^2 beside beam theory's t^3."""
-    for one in study.changes[1:]:
-        found = f"{one.natural_frequency:.4g} Hz, gain {one.gain:.3g}"
-        thicker = one.thickness != study.bowl.machine.leaf_thickness
-        yield one.name, f"{found} by t^3; {one.by_square:.4g} Hz by RNA's t^2" if thicker else found
+    for leaf_set in study.changes[1:]:
+        words = f"{leaf_set.natural_frequency:.4g} Hz, gain {leaf_set.gain:.3g}"
+        thicker = leaf_set.thickness != study.bowl.machine.leaf_thickness
+        yield leaf_set.name, f"{words} by t^3; {leaf_set.by_square:.4g} Hz by RNA's t^2" if thicker else words
     rules = study.bowl.sizing
     window = f"{100 * rules.least_detuning:.3g} to {100 * rules.greatest_detuning:.3g} %"
     yield f"leaves that tune it {window}", _few(study.sets)
@@ -290,6 +294,6 @@ def _other_leaves(study) -> Iterator[Any]:
 def _few(sets):
     """Up to five sets, of each thickness the one with the fewest leaves."""
     first: dict[float, str] = {}
-    for one in sets:
-        first.setdefault(one.thickness, f"{one.leaves} of {one.thickness / MM:g} mm")
+    for leaf_set in sets:
+        first.setdefault(leaf_set.thickness, f"{leaf_set.leaves} of {leaf_set.thickness / MM:g} mm")
     return ", ".join(list(first.values())[:5]) or "none of this width and length"

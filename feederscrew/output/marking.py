@@ -11,7 +11,7 @@ from feederscrew.bowl.verified import FALLS_SHORT
 from feederscrew.output import offers
 
 MARK = "FALLS SHORT - not for manufacture"
-COLOUR, STRENGTH = "#d40000", 0.45  # of the letters, and how much they hide [1]
+MARK_COLOUR, STRENGTH = "#d40000", 0.45  # of the letters, and how much they hide [1]
 DIAGONAL_SHARE, SIDE_SHARE = 0.75, 0.88  # [1] of the diagonal and the longer side that a mark takes at most
 LETTER_WIDTH = 0.62  # [1] of a bold letter over its size, in the mean
 POINTS = 72.0  # of an inch
@@ -139,7 +139,7 @@ def _write(figure, mark) -> None:
     size, turn = diagonal(figure.get_size_inches(), mark)
     figure.text(
         0.5, 0.5, mark, fontsize=POINTS * size, rotation=np.degrees(turn), ha="center", va="center",
-        rotation_mode="anchor", fontweight="bold", color=COLOUR, alpha=STRENGTH, zorder=100,
+        rotation_mode="anchor", fontweight="bold", color=MARK_COLOUR, alpha=STRENGTH, zorder=100,
     ).set_in_layout(False)  # fmt: skip
 
 
@@ -155,7 +155,10 @@ def pictures(offered, mark) -> list[Any]:
     -------
     list of Offer
     """
-    return [_marked(one, mark) if mark and one.is_picture else one for one in offered]
+    return [
+        _marked(offered_file, mark) if mark and offered_file.is_picture else offered_file
+        for offered_file in offered
+    ]
 
 
 def _marked(offer, mark):

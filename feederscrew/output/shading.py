@@ -20,7 +20,7 @@ mpl_patches = heavy("matplotlib.patches")
 
 AWAY = 4.0  # sizes from the centre of mass to where rays start
 MISSED = -1
-SINGLE = np.float32  # what the caster keeps, and more than a picture shows
+SINGLE_PRECISION = np.float32  # what the caster keeps, and more than a picture shows
 
 
 class Rays:
@@ -42,8 +42,8 @@ class Rays:
         self.points = points / self.size
         self.faces = np.asarray(faces)
         smooth = corner_normals(self.points, self.faces)
-        self.corner_normals = None if smooth is None else smooth.astype(SINGLE)
-        self._single = self.points.astype(SINGLE)
+        self.corner_normals = None if smooth is None else smooth.astype(SINGLE_PRECISION)
+        self._single = self.points.astype(SINGLE_PRECISION)
         self._scene = EmbreeScene()
         TriangleMesh(self._scene, self._single, self.faces.astype(np.int32))
 
@@ -66,13 +66,13 @@ class Rays:
         facets : (N,) int
             Which are met; ``MISSED`` where none is.
         """
-        origins = np.ascontiguousarray(origins, dtype=SINGLE)
-        directions = np.broadcast_to(np.asarray(direction, dtype=SINGLE), origins.shape)
-        found = self._scene.run(origins, np.ascontiguousarray(directions), output=True)
-        met = found["primID"] != MISSED
-        normals = np.zeros(origins.shape, dtype=SINGLE)
-        normals[met] = self._normals(found["primID"][met], found["u"][met], found["v"][met])
-        return np.where(met, found["tfar"], SINGLE(np.inf)), normals, found["primID"]
+        origins = np.ascontiguousarray(origins, dtype=SINGLE_PRECISION)
+        directions = np.broadcast_to(np.asarray(direction, dtype=SINGLE_PRECISION), origins.shape)
+        hits = self._scene.run(origins, np.ascontiguousarray(directions), output=True)
+        is_hit = hits["primID"] != MISSED
+        normals = np.zeros(origins.shape, dtype=SINGLE_PRECISION)
+        normals[is_hit] = self._normals(hits["primID"][is_hit], hits["u"][is_hit], hits["v"][is_hit])
+        return np.where(is_hit, hits["tfar"], SINGLE_PRECISION(np.inf)), normals, hits["primID"]
 
     def _normals(self, triangle, u, v):
         if self.corner_normals is None:
@@ -98,9 +98,9 @@ class Camera:
 
     def origins(self, across, up):
         """Return the ray starts (rows, columns, 3) for a grid of image positions, in sizes of the solid."""
-        u, v = np.meshgrid(np.asarray(across, SINGLE), np.asarray(up, SINGLE))
-        right, above, back = (axis.astype(SINGLE) for axis in (self.right, self.up, self.back))
-        return u[..., None] * right + v[..., None] * above + SINGLE(AWAY) * back
+        u, v = np.meshgrid(np.asarray(across, SINGLE_PRECISION), np.asarray(up, SINGLE_PRECISION))
+        right, above, to_viewer = (axis.astype(SINGLE_PRECISION) for axis in (self.right, self.up, self.back))
+        return u[..., None] * right + v[..., None] * above + SINGLE_PRECISION(AWAY) * to_viewer
 
     def cast(self, solid, across, up):
         """Return depths behind the ray starts (rows, columns) and normals (rows, columns, 3) over a grid."""
@@ -120,7 +120,7 @@ class Camera:
         return distances > away - slack
 
 
-SMOOTH = np.radians(20.0)  # facets that meet under less are one curved side
+SMOOTH_ANGLE_RAD = np.radians(20.0)  # facets that meet under less are one curved side
 MOST_FACETS = 200_000  # beyond it a facet is smaller than a pixel
 
 
@@ -150,12 +150,12 @@ def corner_normals(points, faces):
     place = place.reshape(-1)
     sums = np.column_stack([np.bincount(place, np.repeat(areas[:, k], 3)) for k in range(3)])
     mean = _units(sums)[place].reshape(-1, 3, 3)
-    bent = np.einsum("fki,fi->fk", mean, own) < np.cos(SMOOTH)
+    bent = np.einsum("fki,fi->fk", mean, own) < np.cos(SMOOTH_ANGLE_RAD)
     return np.where(bent[..., None], own[:, None, :], mean)
 
 
 def curved_sides(faces, normals):
-    """Return the facets joined across every edge that bends less than ``SMOOTH``.
+    """Return the facets joined across every edge that bends less than ``SMOOTH_ANGLE_RAD``.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def curved_sides(faces, normals):
     """
     first, second = _across_edges(faces)
     cosine = np.einsum("ei,ei->e", normals[first], normals[second])
-    joined = cosine > np.cos(SMOOTH)
+    joined = cosine > np.cos(SMOOTH_ANGLE_RAD)
     size = len(faces)
     graph = coo_matrix((np.ones(joined.sum()), (first[joined], second[joined])), shape=(size, size))
     return connected_components(graph, directed=False)[1]
@@ -191,9 +191,9 @@ def _units(vectors):
 
 
 ELEVATION = np.radians(27.0)  # of the viewer above the floor
-TURN = np.radians(32.0)  # of the part's long side out of the picture's plane
-FEW = 20_000  # points that are quick to handle all of
-CELLS = 24  # from the middle of the sphere of directions to its side, for more points than that
+STANCE_TURN_RAD = np.radians(32.0)  # of the part's long side out of the picture's plane
+MAX_QUICK_POINTS = 20_000  # points that are quick to handle all of
+DIRECTION_CELLS = 24  # from the middle of the sphere of directions to its side, for more points than that
 SHADOW = 1.18  # of the part's plan: the floor its shadow darkens
 BACK_TALL = 0.02  # of the size: below it neither end counts as the taller
 
@@ -238,7 +238,7 @@ def stance(points, down, height) -> Stance:
 
 
 def placed(points, down, height, along) -> Stance:
-    """Return the stance whose floor axis ``along``, a unit vector, is ``TURN`` out of the picture's plane."""
+    """Return the stance whose floor axis ``along``, a unit vector, is turned out of the picture's plane."""
     across = np.cross(along, down)
     camera = _camera(along, across, -down)
     plan = points @ np.column_stack([along, across])
@@ -260,11 +260,14 @@ def outermost(points):
     -------
     (N, 3) float
     """
-    if len(points) <= FEW:
+    if len(points) <= MAX_QUICK_POINTS:
         return points
     radii = np.linalg.norm(points, axis=1)
-    cells = np.rint(CELLS * points / np.maximum(radii, 1e-30)[:, None]).astype(np.int64) + CELLS
-    keys = cells @ np.array([(2 * CELLS + 1) ** 2, 2 * CELLS + 1, 1])
+    cells = (
+        np.rint(DIRECTION_CELLS * points / np.maximum(radii, 1e-30)[:, None]).astype(np.int64)
+        + DIRECTION_CELLS
+    )
+    keys = cells @ np.array([(2 * DIRECTION_CELLS + 1) ** 2, 2 * DIRECTION_CELLS + 1, 1])
     order = np.lexsort((-radii, keys))
     first = np.flatnonzero(np.diff(keys[order], prepend=-1))
     return points[order[first]]
@@ -297,26 +300,26 @@ def _any_across(down):
 
 
 def _camera(x, y, z) -> Camera:
-    right = np.cos(TURN) * x + np.sin(TURN) * y
-    ahead = np.cos(TURN) * y - np.sin(TURN) * x
-    back = np.sin(ELEVATION) * z - np.cos(ELEVATION) * ahead
-    return Camera(right, np.cross(back, right), back)
+    right = np.cos(STANCE_TURN_RAD) * x + np.sin(STANCE_TURN_RAD) * y
+    ahead = np.cos(STANCE_TURN_RAD) * y - np.sin(STANCE_TURN_RAD) * x
+    to_viewer = np.sin(ELEVATION) * z - np.cos(ELEVATION) * ahead
+    return Camera(right, np.cross(to_viewer, right), to_viewer)
 
 
-SAMPLES = 3  # rays a pixel, each way
+RAYS_PER_PIXEL = 3  # rays a pixel, each way
 BAND = 16  # rows of pixels drawn at a time: all their rays in the caches of a processor
-RIM = 2  # rows of samples beyond a band that have a say in its edges
+EDGE_RIM_ROWS = 2  # rows of samples beyond a band that have a say in its edges
 PAPER = np.array([1.0, 1.0, 1.0])
-STEEL = np.array([0.72, 0.79, 0.86])
-PALE = np.array([0.86, 0.86, 0.86])  # of an aspect the part does not stay on
-EDGE = np.array([0.13, 0.17, 0.22])
+STEEL_COLOUR = np.array([0.72, 0.79, 0.86])
+PALE_COLOUR = np.array([0.86, 0.86, 0.86])  # of an aspect the part does not stay on
+EDGE_COLOUR = np.array([0.13, 0.17, 0.22])
 LIGHTS = (  # towards the light, across and up the image and to the viewer; and how strong it is
     (np.array([-0.45, 0.60, 0.66]), 0.52),
     (np.array([0.75, 0.05, 0.66]), 0.22),
 )
 AMBIENT = 0.42
-SHARP = np.cos(np.radians(24.0))  # a turn of the surface that is drawn as an edge
-STEP = 0.02  # [size] a jump in depth that is drawn as an outline
+CREASE_COSINE = np.cos(np.radians(24.0))  # a turn of the surface that is drawn as an edge
+OUTLINE_JUMP_SIZES = 0.02  # [size] a jump in depth that is drawn as an outline
 FLOOR_GRID = 160  # cells each way of the shadow map
 SHADE = 0.42  # darkness of the floor where the part touches it
 
@@ -349,7 +352,7 @@ class Shot:
         return across, up
 
 
-def picture(solid, stance, frame, colour=STEEL):
+def picture(solid, stance, frame, colour=STEEL_COLOUR):
     """Render the solid on the floor as an image.
 
     Parameters
@@ -368,20 +371,20 @@ def picture(solid, stance, frame, colour=STEEL):
     (rows, columns, 3) float
         Red, green and blue from 0 to 1, the top row first.
     """
-    across, up = frame.positions(SAMPLES)
-    floor = _floor(solid, stance, *frame.positions()).astype(SINGLE)
+    across, up = frame.positions(RAYS_PER_PIXEL)
+    floor = _floor(solid, stance, *frame.positions()).astype(SINGLE_PRECISION)
     covered, columns = _covered(stance.bounds, across, up)
     image = np.empty_like(floor)
     for first in range(0, frame.rows, BAND):
-        samples = floor[first : first + BAND].repeat(SAMPLES, axis=0).repeat(SAMPLES, axis=1)
-        start = SAMPLES * first
+        samples = floor[first : first + BAND].repeat(RAYS_PER_PIXEL, axis=0).repeat(RAYS_PER_PIXEL, axis=1)
+        start = RAYS_PER_PIXEL * first
         rows = _within(covered, start, start + len(samples))
         if rows.start < rows.stop:
-            cast = _within(covered, rows.start - RIM, rows.stop + RIM)
-            kept = slice(rows.start - cast.start, rows.stop - cast.start)
+            cast = _within(covered, rows.start - EDGE_RIM_ROWS, rows.stop + EDGE_RIM_ROWS)
+            drawn_rows = slice(rows.start - cast.start, rows.stop - cast.start)
             part = samples[rows.start - start : rows.stop - start, columns]
-            _draw(part, kept, solid, stance.camera, across[columns], up[cast], colour, up[0] - up[1])
-        image[first : first + BAND] = averaged(samples, SAMPLES)
+            _draw(part, drawn_rows, solid, stance.camera, across[columns], up[cast], colour, up[0] - up[1])
+        image[first : first + BAND] = averaged(samples, RAYS_PER_PIXEL)
     return image
 
 
@@ -391,12 +394,12 @@ def averaged(samples, each):
     return samples.reshape(rows, each, columns, each, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
 
 
-def _draw(image, kept, solid, camera, across, up, colour, step) -> None:
-    """Draw on an image what the rays of its rows meet; they are the rows ``kept`` of those that are cast."""
+def _draw(image, drawn_rows, solid, camera, across, up, colour, step) -> None:
+    """Draw on an image what the rays of its rows meet: ``drawn_rows`` of the rows that are cast."""
     depths, normals = camera.cast(solid, across, up)
-    met = np.isfinite(depths[kept])
-    image[met] = lit(normals[kept][met], camera, colour)
-    image[edges(depths, normals, camera, step)[kept]] = EDGE
+    is_hit = np.isfinite(depths[drawn_rows])
+    image[is_hit] = lit(normals[drawn_rows][is_hit], camera, colour)
+    image[edges(depths, normals, camera, step)[drawn_rows]] = EDGE_COLOUR
 
 
 def _within(rows, start, stop):
@@ -414,26 +417,30 @@ def _covered(bounds, across, up) -> tuple[Any, ...]:
 
 def lit(normals, camera: Camera, colour):
     """Return the colour of matt surfaces (N, 3) under the lights; from behind it is that from the front."""
-    seen = normals @ np.column_stack([camera.right, camera.up, camera.back]).astype(SINGLE)
-    seen *= np.where(seen[:, 2:] < 0.0, SINGLE(-1.0), SINGLE(1.0))
-    light = np.full(len(seen), AMBIENT, dtype=SINGLE)
+    by_camera = normals @ np.column_stack([camera.right, camera.up, camera.back]).astype(SINGLE_PRECISION)
+    by_camera *= np.where(by_camera[:, 2:] < 0.0, SINGLE_PRECISION(-1.0), SINGLE_PRECISION(1.0))
+    light = np.full(len(by_camera), AMBIENT, dtype=SINGLE_PRECISION)
     for towards, strength in LIGHTS:
-        light += strength * np.maximum(seen @ (towards / np.linalg.norm(towards)).astype(SINGLE), 0.0)
-    return light[:, None] * colour.astype(SINGLE)
+        light += strength * np.maximum(
+            by_camera @ (towards / np.linalg.norm(towards)).astype(SINGLE_PRECISION), 0.0
+        )
+    return light[:, None] * colour.astype(SINGLE_PRECISION)
 
 
 def edges(depths, normals, camera, step):
     """Return which samples lie on an outline (two wide) or on a sharp edge (one wide)."""
-    met = np.isfinite(depths)
-    depths = np.where(met, depths, 2.0 * AWAY)
-    facing = np.maximum(np.abs(normals @ camera.back.astype(SINGLE)), 0.05)
+    is_hit = np.isfinite(depths)
+    depths = np.where(is_hit, depths, 2.0 * AWAY)
+    facing = np.maximum(np.abs(normals @ camera.back.astype(SINGLE_PRECISION)), 0.05)
     slope = step * np.sqrt(1.0 - np.minimum(facing, 1.0) ** 2) / facing  # depth a flat surface gains a sample
-    outline, crease = np.zeros_like(met), np.zeros_like(met)
+    outline, crease = np.zeros_like(is_hit), np.zeros_like(is_hit)
     for axis in (0, 1):
         near, far = (np.s_[:-1, :], np.s_[1:, :]) if axis == 0 else (np.s_[:, :-1], np.s_[:, 1:])
-        jump = np.abs(depths[near] - depths[far]) > STEP + 2.0 * np.maximum(slope[near], slope[far])
-        bend = np.einsum("rci,rci->rc", normals[near], normals[far]) < SHARP
-        both = met[near] & met[far]
+        jump = np.abs(depths[near] - depths[far]) > OUTLINE_JUMP_SIZES + 2.0 * np.maximum(
+            slope[near], slope[far]
+        )
+        bend = np.einsum("rci,rci->rc", normals[near], normals[far]) < CREASE_COSINE
+        both = is_hit[near] & is_hit[far]
         outline[near] |= jump
         outline[far] |= jump
         crease[near] |= bend & both
@@ -492,17 +499,17 @@ def reduced_mesh(vertices, faces, most=MOST_VIEWER_FACETS) -> tuple[Any, ...]:
     """
     cells, lowest = FINEST, vertices.min(axis=0)
     extent = np.ptp(vertices, axis=0).max()
-    kept, corners = faces, vertices
-    while len(kept) > most:
+    reduced, corners = faces, vertices
+    while len(reduced) > most:
         grid = np.floor((vertices - lowest) * (cells / extent)).astype(np.int64)
         _, place = np.unique(grid, axis=0, return_inverse=True)
         place = place.ravel()
         count = np.bincount(place)
         corners = np.column_stack([np.bincount(place, vertices[:, k]) / count for k in range(3)])
-        kept = place[faces]
-        kept = kept[(kept != np.roll(kept, 1, axis=1)).all(axis=1)]
+        reduced = place[faces]
+        reduced = reduced[(reduced != np.roll(reduced, 1, axis=1)).all(axis=1)]
         cells /= np.sqrt(2.0)
-    return corners, kept
+    return corners, reduced
 
 
 def encoded(array, kind) -> str:
@@ -515,14 +522,14 @@ def short(value) -> float:
     return float(f"{value:.7g}")
 
 
-def viewed(part, back) -> dict[Any, Any]:
+def viewed(part, to_viewer) -> dict[Any, Any]:
     """Return what a scene of the viewer tells of a part and of the viewer's place.
 
     Parameters
     ----------
     part : Part
         With a mesh.
-    back : (3,) float
+    to_viewer : (3,) float
         Towards the viewer.
 
     Returns
@@ -539,8 +546,8 @@ def viewed(part, back) -> dict[Any, Any]:
         "radius": short(np.sqrt((points**2).sum(axis=1).max())),
         "facets": len(faces),
         "all": len(part.faces),
-        "azimuth": short(np.degrees(np.arctan2(back[1], back[0]))),
-        "elevation": short(np.degrees(np.arctan2(back[2], np.hypot(*back[:2])))),
+        "azimuth": short(np.degrees(np.arctan2(to_viewer[1], to_viewer[0]))),
+        "elevation": short(np.degrees(np.arctan2(to_viewer[2], np.hypot(*to_viewer[:2])))),
     }
 
 
@@ -549,11 +556,11 @@ def track(vertices, faces) -> dict[Any, Any]:
     return {"positions": encoded(vertices / MM, "<f4"), "index": encoded(faces, "<u4")}
 
 
-STEPS = 60  # pieces an edge of the contact polygon is cut into, to see which are hidden
-LINE = {"color": style.ACCENT, "linewidth": 1.3, "solid_capstyle": "round"}
-HIDDEN = {"color": style.ACCENT, "linewidth": 0.8, "linestyle": (0, (3, 2)), "alpha": 0.8}
+CONTACT_EDGE_PIECES = 60  # pieces an edge of the contact polygon is cut into, to see which are hidden
+CONTACT_LINE = {"color": style.ACCENT, "linewidth": 1.3, "solid_capstyle": "round"}
+HIDDEN_CONTACT_LINE = {"color": style.ACCENT, "linewidth": 0.8, "linestyle": (0, (3, 2)), "alpha": 0.8}
 BEYOND = 0.08  # [size] how far a rolling axis sticks out at both ends
-AXIS: dict[str, Any] = {"color": "#0072b2", "linewidth": 0.9, "linestyle": (0, (9, 2.5, 2, 2.5))}
+ROLLING_AXIS_LINE: dict[str, Any] = {"color": "#0072b2", "linewidth": 0.9, "linestyle": (0, (9, 2.5, 2, 2.5))}
 ROUND_LENGTHS = np.array([1.0, 2.0, 5.0])
 
 
@@ -600,9 +607,9 @@ def contact(axes, solid, standing, polygon) -> None:
     )
     pieces = _pieces(polygon)
     ends = camera.project(pieces.reshape(-1, 3)).reshape(-1, 2, 2)
-    seen = camera.sees(solid, pieces.mean(axis=1))
-    for shown, look in ((seen, LINE), (~seen, HIDDEN)):
-        for run in _runs(shown):
+    is_seen = camera.sees(solid, pieces.mean(axis=1))
+    for flags, look in ((is_seen, CONTACT_LINE), (~is_seen, HIDDEN_CONTACT_LINE)):
+        for run in _runs(flags):
             chain = np.vstack([ends[run, 0], ends[run[-1], 1]])
             axes.plot(chain[:, 0], chain[:, 1], zorder=3, **look)
 
@@ -625,7 +632,7 @@ def rolling_axis(axes, solid, standing, direction) -> None:
         return
     along = solid.points @ direction
     ends = standing.camera.project(np.outer([along.min() - BEYOND, along.max() + BEYOND], direction))
-    axes.plot(*ends.T, zorder=4, scalex=False, scaley=False, **AXIS)
+    axes.plot(*ends.T, zorder=4, scalex=False, scaley=False, **ROLLING_AXIS_LINE)
 
 
 def scale_bar(axes, right, y, pixel) -> None:
@@ -646,16 +653,16 @@ def marks_legend(axes, left, y, *, rolling) -> None:
     """Draw what the marks mean, in one line of text from ``left`` on; the axis only if one is drawn."""
     centre_of_mass(axes, 9.0, (left + 9.0, y))
     axes.text(left + 26, y, "centre of mass", fontsize=7, color=style.INK, va="center")
-    axes.plot([left + 170, left + 198], [y, y], **LINE)
+    axes.plot([left + 170, left + 198], [y, y], **CONTACT_LINE)
     axes.text(left + 208, y, "contact, dashed where hidden", fontsize=7, color=style.INK, va="center")
     if rolling:
-        axes.plot([left + 460, left + 500], [y, y], **AXIS)
+        axes.plot([left + 460, left + 500], [y, y], **ROLLING_AXIS_LINE)
         axes.text(left + 510, y, "axis it rolls about", fontsize=7, color=style.INK, va="center")
 
 
 def _pieces(polygon) -> np.ndarray:
     """Every edge of a closed polygon cut up: (K * STEPS, 2, 3) ends of the pieces."""
-    share = np.linspace(0.0, 1.0, STEPS + 1)[:, None]
+    share = np.linspace(0.0, 1.0, CONTACT_EDGE_PIECES + 1)[:, None]
     chains = [(1.0 - share) * a + share * b for a, b in zip(polygon, np.roll(polygon, -1, axis=0))]
     return np.concatenate([np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains])
 
@@ -668,7 +675,7 @@ def _runs(flags) -> list[Any]:
 
 METAL = np.array([0.90, 0.91, 0.92])  # the track
 PAIR_SAMPLES = 2  # rays a pixel, each way
-COARSE = 40  # rays each way to find out what is hidden
+HIDDEN_TEST_RAYS = 40  # rays each way to find out what is hidden
 THROUGH = 0.45  # of its colour: the part where something is in front of it
 
 
@@ -702,16 +709,16 @@ def pair_picture(track, part, centre, camera, half, columns, rows) -> tuple[Any,
     across, up = frame.positions(PAIR_SAMPLES)
     depths, normals = camera.cast(whole, across, up)
     near, own = _part_alone(part, centre, camera, whole.size, across, up)
-    met, there = np.isfinite(depths), np.isfinite(near)
-    is_part = there & (near <= np.where(met, depths, np.inf) + 1e-3)
+    is_hit, there = np.isfinite(depths), np.isfinite(near)
+    is_part = there & (near <= np.where(is_hit, depths, np.inf) + 1e-3)
     image = np.ones((*depths.shape, 3))
-    for mask, colour in ((met & ~is_part, METAL), (met & is_part, STEEL)):
+    for mask, colour in ((is_hit & ~is_part, METAL), (is_hit & is_part, STEEL_COLOUR)):
         image[mask] = lit(normals[mask], camera, colour)
     step = up[0] - up[1]
-    image[edges(depths, normals, camera, step)] = EDGE
+    image[edges(depths, normals, camera, step)] = EDGE_COLOUR
     hidden = there & ~is_part
-    shape = lit(own[hidden], camera, STEEL)
-    shape[edges(near, own, camera, step)[hidden]] = EDGE
+    shape = lit(own[hidden], camera, STEEL_COLOUR)
+    shape[edges(near, own, camera, step)[hidden]] = EDGE_COLOUR
     image[hidden] += THROUGH * (shape - image[hidden])
     return averaged(image, PAIR_SAMPLES), frame, whole.size
 
@@ -726,12 +733,12 @@ def shown_share(track, part, centre, camera, half) -> float:
     """
     (ground, sides), (corners, faces) = track, part
     whole = Rays(np.vstack([ground, corners]), np.vstack([sides, faces + len(ground)]), centre)
-    across = up = np.linspace(-half, half, COARSE) / whole.size
+    across = up = np.linspace(-half, half, HIDDEN_TEST_RAYS) / whole.size
     depths, _ = camera.cast(whole, across, up)
     near, _ = _part_alone(part, centre, camera, whole.size, across, up)
     there = np.isfinite(near)
-    seen = there & (near <= np.where(np.isfinite(depths), depths, np.inf) + 1e-3)
-    return float(seen.sum() / max(there.sum(), 1))
+    is_seen = there & (near <= np.where(np.isfinite(depths), depths, np.inf) + 1e-3)
+    return float(is_seen.sum() / max(there.sum(), 1))
 
 
 def _part_alone(part, centre, camera, size, across, up) -> tuple[Any, ...]:
@@ -750,17 +757,17 @@ def _part_alone(part, centre, camera, size, across, up) -> tuple[Any, ...]:
     return (near - AWAY) / scale + AWAY, normals
 
 
-DOWN = np.array([0.0, 0.0, -1.0])
-ROOM = 1.08  # of the picture over the part in it
+DOWNWARDS = np.array([0.0, 0.0, -1.0])
+THUMBNAIL_MARGIN = 1.08  # of the picture over the part in it
 
 
-def thumbnail(solid, found, row, size):
+def thumbnail(solid, aspects, row, size):
     """Return the picture of a solid on one aspect.
 
     Parameters
     ----------
     solid : Rays
-    found : Aspects
+    aspects : Aspects
         Of the same part.
     row : int
         Of the aspect.
@@ -771,7 +778,7 @@ def thumbnail(solid, found, row, size):
     -------
     (height, width, C) float [1]
     """
-    standing = stance(outermost(solid.points), found.normals[row], found.heights[row] / solid.size)
+    standing = stance(outermost(solid.points), aspects.normals[row], aspects.heights[row] / solid.size)
     return _framed(solid, standing, size)
 
 
@@ -784,13 +791,13 @@ def on_its_lowest(solid, size):
     size : (2,) int [px]
         Width and height.
     """
-    standing = stance(outermost(solid.points), DOWN, -float(solid.points[:, 2].min()))
+    standing = stance(outermost(solid.points), DOWNWARDS, -float(solid.points[:, 2].min()))
     return _framed(solid, standing, size)
 
 
 def _framed(solid, standing, size):
     """The picture of a solid in the middle of it."""
     lowest, highest = standing.framed
-    pixel = ROOM * max((highest - lowest) / size)
+    pixel = THUMBNAIL_MARGIN * max((highest - lowest) / size)
     left, bottom = 0.5 * (lowest + highest) - 0.5 * pixel * np.array(size)
     return np.clip(picture(solid, standing, Shot(left, bottom, pixel, *size)), 0.0, 1.0)

@@ -12,7 +12,7 @@ from feederscrew.units import MM
 
 BOWL_HEADER = "feeder bowl: the bowl as a solid, in mm"
 HEADER_BYTES = 80  # of a binary STL
-BETWEEN = 10e-3  # [m] from segment to segment
+SEGMENT_GAP_M = 10e-3  # [m] from segment to segment
 ZIP_DATE = (1980, 1, 1, 0, 0, 0)  # of each file in the archive: the same bytes twice
 TYPES = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -89,7 +89,7 @@ def bowl_3mf(solid, title, mark=""):
 
 def segments_3mf(pieces, title, mark=""):
     """Return segments of a bowl as the bytes of a 3MF file, one object each, beside each other."""
-    across = np.cumsum([0.0, *(segment.size[0] + BETWEEN for segment in pieces)])
+    across = np.cumsum([0.0, *(segment.size[0] + SEGMENT_GAP_M for segment in pieces)])
     moved = zip(across, pieces)
     return pack_3mf(
         [(segment.name, segment.vertices + [x, 0.0, 0.0], segment.faces) for x, segment in moved], title, mark

@@ -14,7 +14,9 @@ NOT_EXACT = (
     "the fillet below the track is six ruled strips",
     "slanted edges of cuts are splines",
 )
-WALL = "the wall is no surface of revolution: it is ruled between splines through 16 places a quarter turn"
+RULED_WALL_NOTE = (
+    "the wall is no surface of revolution: it is ruled between splines through 16 places a quarter turn"
+)
 
 
 def offers(study, tried=None, mark=None, fields=None) -> tuple[Any, ...]:
@@ -46,8 +48,10 @@ def offers(study, tried=None, mark=None, fields=None) -> tuple[Any, ...]:
         if cut is None
         else (
             *(
-                _file(f"bowl_{one.name}.stl", mark, solid_files.binary_stl, one.vertices, one.faces, mark)
-                for one in cut.pieces
+                _file(
+                    f"bowl_{piece.name}.stl", mark, solid_files.binary_stl, piece.vertices, piece.faces, mark
+                )
+                for piece in cut.pieces
             ),
             _file(
                 "bowl_segments.3mf", mark, solid_files.segments_3mf, cut.pieces, f"{title}, in segments", mark
@@ -124,20 +128,20 @@ def document(solid) -> dict[Any, Any]:
 
 def _step(solid) -> dict[Any, Any]:
     """What the STEP file was found to be when it was opened again."""
-    found, leans = solid.step, solid.plan.stairs is not None
+    step, leans = solid.step, solid.plan.stairs is not None
     return {
-        "volume_mm3": found.volume / MM**3,
-        "faces": found.faces,
-        "track_off_mm": found.off / MM,
-        "not_exact": [*NOT_EXACT, *([WALL] if leans else [])],
+        "volume_mm3": step.volume / MM**3,
+        "faces": step.faces,
+        "track_off_mm": step.off / MM,
+        "not_exact": [*NOT_EXACT, *([RULED_WALL_NOTE] if leans else [])],
     }
 
 
 def _segments(cut) -> dict[Any, Any]:
     return {
         "segments": [
-            {"name": one.name, "size_mm": [x / MM for x in one.size], "volume_mm3": one.volume / MM**3}
-            for one in cut.pieces
+            {"name": piece.name, "size_mm": [x / MM for x in piece.size], "volume_mm3": piece.volume / MM**3}
+            for piece in cut.pieces
         ],
         "dowels": cut.dowels,
         "dowel_mm": cut.dowel / MM,

@@ -6,25 +6,27 @@ import numpy as np
 
 from feederscrew.output import marking, shading, style
 from feederscrew.output.page.blocks import Notes, Views
-from feederscrew.output.shading import SINGLE, Camera, Rays
+from feederscrew.output.shading import SINGLE_PRECISION, Camera, Rays
 from feederscrew.solidbowl import riding
 from feederscrew.units import MM
 
-COLUMNS, ROWS = 1500, 1050  # [px]
-SIDE, HIGH = -118.0, 40.0  # [deg] from where it is seen, from the outlet's begin
-PART = np.array([0.93, 0.55, 0.20])
-MARGIN = 1.03
+BOWL_PICTURE_COLUMNS, BOWL_PICTURE_ROWS = 1500, 1050  # [px]
+BOWL_AZIMUTH_DEG, BOWL_ELEVATION_DEG = -118.0, 40.0  # [deg] from where it is seen, from the outlet's begin
+RIDER_COLOUR = np.array([0.93, 0.55, 0.20])
+BOWL_PICTURE_MARGIN = 1.03
 BAND = 16  # rows of pixels at a time
-UPRIGHT = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
-TURN = (
+UPRIGHT_QUATERNION = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
+TURN_HINT = (
     "The bowl as one closed body, parts on its track. Drag it to turn it, or use the arrow keys; "
     "double-click sets it back."
 )
-CLOSE = 0.9  # of how far other views reach: from every side the whole bowl is seen
-MOST = 60_000  # facets of all parts together
-SHARP = np.cos(np.radians(20.0))  # of the normals on both sides of an edge that is drawn
-STEP = 0.006  # of the solid's size: places along an edge at which it is looked at
-OFF = 2e-3  # of the solid's size: by which a place is moved off the surface before it is looked at
+VIEW_REACH_RATIO = 0.9  # of how far other views reach: from every side the whole bowl is seen
+MAX_RIDER_FACETS = 60_000  # facets of all parts together
+DRAWN_EDGE_COSINE = np.cos(np.radians(20.0))  # of the normals on both sides of an edge that is drawn
+EDGE_STEP_SIZES = 0.006  # of the solid's size: places along an edge at which it is looked at
+SURFACE_OFFSET_SIZES = (
+    2e-3  # of the solid's size: by which a place is moved off the surface before it is looked at
+)
 
 
 def figure(study):
@@ -39,13 +41,15 @@ def figure(study):
     -------
     Figure
     """
-    return style.pixels(_image(study.solid.with_lugs, study.order.part, COLUMNS, ROWS))
+    return style.pixels(
+        _image(study.solid.with_lugs, study.order.part, BOWL_PICTURE_COLUMNS, BOWL_PICTURE_ROWS)
+    )
 
 
 def parts(solid, part) -> tuple[Any, ...]:
     """Return the parts along the track of a bowl as one mesh, vertices (V, 3) [m] and faces (F, 3)."""
     own = part.vertices - part.centre_of_mass
-    placed = [riding.place_rider(solid.plan, one, own, s) for one, s in solid.riders]
+    placed = [riding.place_rider(solid.plan, rider, own, s) for rider, s in solid.riders]
     if not placed:
         return np.zeros((0, 3)), np.zeros((0, 3), int)
     faces = [part.faces + len(own) * k for k in range(len(placed))]
@@ -53,39 +57,44 @@ def parts(solid, part) -> tuple[Any, ...]:
 
 
 def _image(solid, part, columns, rows):
-    looked = camera(np.degrees(solid.plan.turned) + SIDE, HIGH)
+    looked = camera(np.degrees(solid.plan.turned) + BOWL_AZIMUTH_DEG, BOWL_ELEVATION_DEG)
     points, faces = parts(solid, part)
     centre = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
     corners = np.concatenate([solid.vertices, points])
     whole = Rays(corners, np.concatenate([solid.faces, faces + len(solid.vertices)]), centre)
     across, up = _frame(looked.project(whole.points), columns, rows)
     image = np.full((rows, columns, 3), 255, dtype=np.uint8)  # numbers of eight bytes: 100 MB more
-    each = shading.SAMPLES
+    each = shading.RAYS_PER_PIXEL
     for first in range(0, rows, BAND):
         place = slice(max(0, each * first - 2), each * (first + BAND) + 2)
         drawn = _drawn(whole, len(solid.faces), looked, across, up[place])
-        kept = drawn[each * first - place.start :][: each * min(BAND, rows - first)]
-        image[first : first + BAND] = np.rint(255.0 * shading.averaged(kept, each))
+        pixels = drawn[each * first - place.start :][: each * min(BAND, rows - first)]
+        image[first : first + BAND] = np.rint(255.0 * shading.averaged(pixels, each))
     return image
 
 
-def _frame(seen, columns, rows) -> tuple[Any, ...]:
+def _frame(projected, columns, rows) -> tuple[Any, ...]:
     """Positions of the samples across and up the picture."""
-    low, high = seen.min(axis=0), seen.max(axis=0)
-    pixel = MARGIN * max((high - low)[0] / columns, (high - low)[1] / rows) / shading.SAMPLES
+    low, high = projected.min(axis=0), projected.max(axis=0)
+    pixel = (
+        BOWL_PICTURE_MARGIN * max((high - low)[0] / columns, (high - low)[1] / rows) / shading.RAYS_PER_PIXEL
+    )
     middle = 0.5 * (low + high)
-    counts = columns * shading.SAMPLES, rows * shading.SAMPLES
+    counts = columns * shading.RAYS_PER_PIXEL, rows * shading.RAYS_PER_PIXEL
     across, up = (pixel * (np.arange(n) + 0.5 - 0.5 * n) for n in counts)
     return middle[0] + across, (middle[1] + up)[::-1]
 
 
 def _drawn(whole, bowl, looked, across, up):
     """The samples of some rows; the first ``bowl`` facets are the bowl's, the others those of parts."""
-    depths, normals, met = looked.meet(whole, across, up)
-    image = np.ones((*depths.shape, 3), dtype=SINGLE)
-    for drawn, colour in (((met >= 0) & (met < bowl), shading.STEEL), (met >= bowl, PART)):
+    depths, normals, facets = looked.meet(whole, across, up)
+    image = np.ones((*depths.shape, 3), dtype=SINGLE_PRECISION)
+    for drawn, colour in (
+        ((facets >= 0) & (facets < bowl), shading.STEEL_COLOUR),
+        (facets >= bowl, RIDER_COLOUR),
+    ):
         image[drawn] = shading.lit(normals[drawn], looked, colour)
-    image[shading.edges(depths, normals, looked, up[0] - up[1])] = shading.EDGE
+    image[shading.edges(depths, normals, looked, up[0] - up[1])] = shading.EDGE_COLOUR
     return image
 
 
@@ -110,7 +119,7 @@ def blocks(solid, part, why="", mark="") -> list[Any]:
         return [Notes((f"the bowl as a solid: {why}",))] if why else []
     text = f"{2.0 * solid.plan.path.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
     captions = ((marking.marked_title("bowl", mark), text, ()),)
-    return [Views(scene(solid, part), captions, "solid-bowl", "The", hint=TURN, printed=True, mark=mark)]
+    return [Views(scene(solid, part), captions, "solid-bowl", "The", hint=TURN_HINT, printed=True, mark=mark)]
 
 
 def scene(solid, part) -> dict[Any, Any]:
@@ -130,29 +139,31 @@ def scene(solid, part) -> dict[Any, Any]:
     """
     middle = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
     points, faces = parts(solid, part)
-    points, faces = shading.reduced_mesh((points - middle) / MM, faces, MOST)
+    points, faces = shading.reduced_mesh((points - middle) / MM, faces, MAX_RIDER_FACETS)
     bowl = solid.vertices - middle
     return {
         **shading.track(points * MM, faces),
         "radius": shading.short(np.sqrt((bowl**2).sum(axis=1).max()) / MM),
         "facets": len(faces),
         "all": len(faces),
-        "azimuth": shading.short(np.degrees(solid.plan.turned) + SIDE),
-        "elevation": shading.short(HIGH),
+        "azimuth": shading.short(np.degrees(solid.plan.turned) + BOWL_AZIMUTH_DEG),
+        "elevation": shading.short(BOWL_ELEVATION_DEG),
         "unmarked": True,
         "colour": "parts",
-        "reach": CLOSE,
+        "reach": VIEW_REACH_RATIO,
         "tracks": [shading.track(bowl, solid.faces)],
-        "poses": [{"name": "bowl", "quaternion": UPRIGHT, "height": 0.0, "contact": [], "track": 0}],
+        "poses": [
+            {"name": "bowl", "quaternion": UPRIGHT_QUATERNION, "height": 0.0, "contact": [], "track": 0}
+        ],
     }
 
 
 def camera(azimuth, elevation) -> Camera:
     """Return the camera that looks from an azimuth and an elevation [deg]."""
     a, e = np.radians(azimuth), np.radians(elevation)
-    back = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+    to_viewer = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
     right = np.array([-np.sin(a), np.cos(a), 0.0])
-    return Camera(right, np.cross(back, right), back)
+    return Camera(right, np.cross(to_viewer, right), to_viewer)
 
 
 def lines(vertices, faces, looked):
@@ -172,20 +183,22 @@ def lines(vertices, faces, looked):
     centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     rays = Rays(vertices, faces, centre)
     a, b, push = _edges(rays.points, faces, looked.back)
-    count = np.maximum(1, np.ceil(np.sqrt(((b - a) ** 2).sum(axis=1)) / STEP)).astype(int)
+    count = np.maximum(1, np.ceil(np.sqrt(((b - a) ** 2).sum(axis=1)) / EDGE_STEP_SIZES)).astype(int)
     owner = np.repeat(np.arange(len(a)), count)
     place = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
     ends = [a[owner] + (b - a)[owner] * ((place + k) / count[owner])[:, None] for k in (0, 1)]
-    middle = 0.5 * (ends[0] + ends[1]) + OFF * push[owner] + OFF * looked.back
-    seen = looked.sees(rays, middle, slack=OFF)
+    middle = (
+        0.5 * (ends[0] + ends[1]) + SURFACE_OFFSET_SIZES * push[owner] + SURFACE_OFFSET_SIZES * looked.back
+    )
+    visible = looked.sees(rays, middle, slack=SURFACE_OFFSET_SIZES)
     same = owner[1:] == owner[:-1]  # pieces of one edge that are seen one after the other are one
-    first = seen & ~np.append(False, same & seen[:-1])
-    last = seen & ~np.append(same & seen[1:], False)
+    first = visible & ~np.append(False, same & visible[:-1])
+    last = visible & ~np.append(same & visible[1:], False)
     pieces = np.stack([looked.project(ends[0][first]), looked.project(ends[1][last])], axis=1)
     return pieces * rays.size + looked.project(centre[None])[0]
 
 
-def _edges(points, faces, back) -> tuple[Any, ...]:
+def _edges(points, faces, to_viewer) -> tuple[Any, ...]:
     """Ends of the edges that are drawn, and the direction off the surface there."""
     corners = points[faces]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -193,11 +206,11 @@ def _edges(points, faces, back) -> tuple[Any, ...]:
     sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     owner = np.tile(np.arange(len(faces)), 3)
     order = np.lexsort(np.sort(sides, axis=1).T)
-    one, other = owner[order[0::2]], owner[order[1::2]]
+    first, second = owner[order[0::2]], owner[order[1::2]]
     pair = sides[order[0::2]]
-    cosine = (normal[one] * normal[other]).sum(axis=1)
-    facing = (normal * back).sum(axis=1)
-    drawn = (cosine < SHARP) | ((facing[one] > 1e-6) != (facing[other] > 1e-6))
-    drawn &= (facing[one] > -1e-6) | (facing[other] > -1e-6)
-    push = (normal[one] + normal[other])[drawn]
+    cosine = (normal[first] * normal[second]).sum(axis=1)
+    facing = (normal * to_viewer).sum(axis=1)
+    drawn = (cosine < DRAWN_EDGE_COSINE) | ((facing[first] > 1e-6) != (facing[second] > 1e-6))
+    drawn &= (facing[first] > -1e-6) | (facing[second] > -1e-6)
+    push = (normal[first] + normal[second])[drawn]
     return points[pair[drawn, 0]], points[pair[drawn, 1]], push

@@ -31,15 +31,15 @@ def offers(study, settings, step=False, mark="", fields=None):
         Table, document and picture; of one orientation with devices that isolate it the bowl file and the
         drawings as well.
     """
-    found = [
+    files = [
         offer.table("tooling.csv", tables.frame, study),
         offer.document("tooling.json", tables.document, study),
         offer.picture("tooling.png", "Orientations and what isolates them", picture, study),
     ]
     if study.design is None or not study.design.devices:
-        return marking.pictures(found, mark)
-    found = [
-        *found,
+        return marking.pictures(files, mark)
+    files = [
+        *files,
         offer.text("tooling.yaml", tables.bowl_file, study, settings),
         offer.text("tooling.dxf", _drawn, "dxf", study, mark, fields),
         offer.text("tooling.svg", _drawn, "svg", study, mark, fields),
@@ -47,7 +47,7 @@ def offers(study, settings, step=False, mark="", fields=None):
         *([offer.text(marking.file_name("tooling.step", mark), _quoted, study, mark)] if step else []),
         *_views(study),
     ]
-    return marking.pictures(found, mark)
+    return marking.pictures(files, mark)
 
 
 def picture(study):
@@ -59,13 +59,13 @@ def picture(study):
     return figures.chain(_devices(study), study.orientations, study.shares, study.wanted)
 
 
-def chain_picture(devices, every, shares):
+def chain_picture(devices, orientations, shares):
     """Offer the picture of a bowl's own devices.
 
     Parameters
     ----------
     devices : sequence of Device
-    every : sequence of Orientation
+    orientations : sequence of Orientation
     shares : (M,) float [1]
 
     Returns
@@ -76,28 +76,28 @@ def chain_picture(devices, every, shares):
     def draw():
         from feederscrew.output import tooling_figures as figures
 
-        return figures.chain(devices, every, shares)
+        return figures.chain(devices, orientations, shares)
 
     return offer.picture("tooling.png", "Each orientation where each device bears least", draw)
 
 
 def _views(study) -> list[Any]:
     """The part over the cuts in three dimensions, where there is a cut to see."""
-    seen = [device.picture for device in study.design.devices if device.placed and not device.turns]
-    if not any(seen):
+    pictures = [device.picture for device in study.design.devices if device.placed and not device.turns]
+    if not any(pictures):
         return []
 
-    given = study.design.devices, study.orientations, study.shares, study.wanted
-    return [solid_picture(*given)]
+    arguments = study.design.devices, study.orientations, study.shares, study.wanted
+    return [solid_picture(*arguments)]
 
 
-def solid_picture(devices, every, shares, wanted):
+def solid_picture(devices, orientations, shares, wanted):
     """Offer the picture of a part over the cuts, in three dimensions.
 
     Parameters
     ----------
     devices : sequence of Device
-    every : sequence of Orientation
+    orientations : sequence of Orientation
     shares : (M,) float [1]
     wanted : int
 
@@ -109,7 +109,7 @@ def solid_picture(devices, every, shares, wanted):
     def draw():
         from feederscrew.output import tooling_views
 
-        return tooling_views.figure(devices, every, shares, wanted)
+        return tooling_views.figure(devices, orientations, shares, wanted)
 
     text = "The part over the cut: what passes, and the nearest that falls"
     return offer.picture("tooling_3d.png", text, draw)
@@ -118,14 +118,14 @@ def solid_picture(devices, every, shares, wanted):
 def _drawn(kind, study, mark, fields):
     from feederscrew.output import tooling_drawing as drawing
 
-    made = _strip(study)
-    one = study.orientations[study.wanted]
-    outline = np.add(one.outline, [0.0, one.distance])
-    places = [station.start + 0.5 * station.length for station in made.stations if station.hole is None]
-    ghosts = [(outline, place) for place in (0.6 * one.length, *places)]
-    titles = [("tooling for", study.part.name), ("leaves as", one.name)]
+    section = _strip(study)
+    wanted = study.orientations[study.wanted]
+    outline = np.add(wanted.outline, [0.0, wanted.distance])
+    places = [station.start + 0.5 * station.length for station in section.stations if station.hole is None]
+    ghosts = [(outline, place) for place in (0.6 * wanted.length, *places)]
+    titles = [("tooling for", study.part.name), ("leaves as", wanted.name)]
     return getattr(drawing, kind)(
-        made, ghosts, mark, thickness=study.bowl.sizing.sheet, fields=fields, titles=titles
+        section, ghosts, mark, thickness=study.bowl.sizing.sheet, fields=fields, titles=titles
     )
 
 

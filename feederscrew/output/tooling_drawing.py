@@ -17,12 +17,12 @@ from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
 from feederscrew.tooling.track_sections import Station, TrackSection
 from feederscrew.units import DEG, MM
 
-APART = 20.0  # [mm] between the views
-NARROW = 1e-9  # [m] the line of the wall needs no width
-WALL = 2e-3  # [m] thickness the wall is drawn with
+VIEW_GAP_MM = 20.0  # [mm] between the views
+WALL_LINE_WIDTH_M = 1e-9  # [m] the line of the wall needs no width
+DRAWN_WALL_M = 2e-3  # [m] thickness the wall is drawn with
 EDGES = f"edges broken at most {CUT_BORDER_RADIUS_M / MM:.3g} mm"  # as they are tried
 SHOP = f"values ±0.1 mm; {EDGES}; lands 1 mm and the sheet's thickness at least"
-PENS = {  # of the layers of devices
+DEVICE_PENS = {  # of the layers of devices
     "TRACK": Pen(7, "#22303c", 0.25, face="#eef1f4"),
     "WALL": Pen(8, "#22303c", 0.25, face="#9aa5b1"),
     "CUT": Pen(1, "#d55e00", 0.35, face="#ffffff"),
@@ -43,7 +43,7 @@ MANY_CORNERS = 12  # beyond which an outline is one of arcs,
 ARC_ANGLE_RAD = 20.0 * DEG  # and what turns less is a chord of an arc
 NARROW_MM = 8.0  # of paper: a dimension that has no room for its number between others
 CROSS = 2.0  # [mm] of paper: half of a sensor's cross
-COLUMNS = 9.0, 56.0, 21.0, 19.0, 20.0, 17.0, 160.0  # [mm] of the list of devices
+DEVICE_LIST_COLUMNS_MM = 9.0, 56.0, 21.0, 19.0, 20.0, 17.0, 160.0  # [mm] of the list of devices
 LINE_LETTERS = 92  # of a line in the last column
 
 
@@ -57,9 +57,9 @@ class View:
 
     def placed(self, places: ArrayLike) -> NDArray[np.float64]:
         """Return places (..., 2) [mm] of the sheet."""
-        found = np.array(places, float)
-        found[..., 0] = np.minimum(found[..., 0], self.right)
-        return np.asarray(self.at) + found / MM * self.scale
+        lengths = np.array(places, float)
+        lengths[..., 0] = np.minimum(lengths[..., 0], self.right)
+        return np.asarray(self.at) + lengths / MM * self.scale
 
 
 def dxf(strip: TrackSection, ghosts: Sequence = (), mark: str = "", **sheet: object) -> bytes:
@@ -108,7 +108,7 @@ def draw(
     low, high : (2,) float [mm]
         Corners of all that is drawn.
     """
-    drawing, view = Drawing(PENS), View()
+    drawing, view = Drawing(DEVICE_PENS), View()
     length, width = strip.length / MM, strip.width / MM
     for name, rings in _plan(strip).items():
         for ring in rings:
@@ -117,18 +117,18 @@ def draw(
         drawing.outline(view.placed(np.add(ring, [place, 0.0])), "GHOST")
     dimension_devices(drawing, strip.stations, view, strip.width)
     top = draw_wall_bores(drawing, strip.stations, view, width + 28.0)
-    low = -WALL / MM - NUMBERS - 20.0
+    low = -DRAWN_WALL_M / MM - NUMBERS - 20.0
     for line in _notes(mark, thickness):
         drawing.text(0.0, low, line, 3.0)
         low -= 5.0
     rows = device_rows(strip.stations, lambda s: s / strip.track.radius / DEG)
-    low = drawing.table(0.0, low, COLUMNS, rows)
-    right = max(length, sum(COLUMNS), _openings(drawing, strip))
+    low = drawing.table(0.0, low, DEVICE_LIST_COLUMNS_MM, rows)
+    right = max(length, sum(DEVICE_LIST_COLUMNS_MM), _openings(drawing, strip))
     names = [*titles, ("scale", "1:1"), ("sizes", "mm"), *title_fields(fields)]
     for k, (name, value) in enumerate(names):
         drawing.text(0.0, top + 6.0 + 5.0 * (len(names) - 1 - k), f"{name}: {value}", 3.0)
     top += 6.0 + 5.0 * len(names)
-    bent_low = _bent(drawing, strip, ghosts, low - APART)
+    bent_low = _bent(drawing, strip, ghosts, low - VIEW_GAP_MM)
     corners = np.array([-16.0, bent_low - 8.0]), np.array([right + 12.0, top + 6.0])
     drawing.mark(mark, corners[0], tuple(corners[1] - corners[0]))
     return drawing, *corners
@@ -175,7 +175,7 @@ def dimension_devices(drawing: Drawing, stations: Sequence[Station], view: View,
             drawing.lines([middle + arms[:2], middle + arms[2:]], "SENSOR")
     wanted = np.unique(np.round(along, 8))
     ends = spread(view.placed(np.column_stack([wanted, 0.0 * wanted]))[:, 0], TEXT_GAP)
-    foot = -WALL / MM * min(view.scale, 1.0)
+    foot = -DRAWN_WALL_M / MM * min(view.scale, 1.0)
     for place, end in zip(wanted, ends):
         begin = view.placed([place, 0.0]) + [0.0, foot]
         drawing.ordinate(begin, (end, view.at[1] + foot - NUMBERS + 4.0), view.at, False, view.scale)
@@ -185,19 +185,19 @@ def dimension_devices(drawing: Drawing, stations: Sequence[Station], view: View,
 def _lengths(station: Station, right: float) -> list[float]:
     """Lengths along the wall [m] that a device is made by, from the datum."""
     standing, start = station.standing, station.start
-    found = [start + jet.at[0] for jet in standing.jets[:1]]
+    lengths = [start + jet.at[0] for jet in standing.jets[:1]]
     if standing.sensor is not None:
-        found.insert(0, start + standing.sensor.at)
+        lengths.insert(0, start + standing.sensor.at)
     if station.hole is not None:
-        found += [float(x) for x in np.unique(np.round(cut_corners(station.hole)[:, 0], 9))]
+        lengths += [float(x) for x in np.unique(np.round(cut_corners(station.hole)[:, 0], 9))]
         if station.device.hangs:
-            found = [x for x in found if x < min(float(station.hole[:, 0].max()), right) - 1e-9]
+            lengths = [x for x in lengths if x < min(float(station.hole[:, 0].max()), right) - 1e-9]
     if station.blade is not None:
-        found.append(float(station.blade[0, 0]))
-    found += [start + slope.begin for slope in standing.slopes]
+        lengths.append(float(station.blade[0, 0]))
+    lengths += [start + slope.begin for slope in standing.slopes]
     if station.drop > 0.0:
-        found.append(start + 0.5 * station.length)
-    return sorted(found) or [start]
+        lengths.append(start + 0.5 * station.length)
+    return sorted(lengths) or [start]
 
 
 def cut_corners(hole: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -221,22 +221,25 @@ def _dimension_cut(drawing: Drawing, hole: NDArray[np.float64], view: View, widt
     inside = cut_corners(hole)
     inside[:, 0] = np.minimum(inside[:, 0], view.right)
     left, right = inside[:, 0].min(), inside[:, 0].max()
-    for side, x, way in ((inside[:, 0] <= left + 1e-9, left, -1.0), (inside[:, 0] > left + 1e-9, right, 1.0)):
+    for side, x, sign in (
+        (inside[:, 0] <= left + 1e-9, left, -1.0),
+        (inside[:, 0] > left + 1e-9, right, 1.0),
+    ):
         heights = {round(float(y), 9) for y in inside[side, 1] if 1e-9 < y < width - 1e-9}
-        if way > 0.0:
+        if sign > 0.0:
             heights -= {round(float(y), 9) for y in inside[~side, 1]}
-        corners = [max((c for c in inside if abs(c[1] - y) < 1e-8), key=lambda c: way * c[0])
+        corners = [max((c for c in inside if abs(c[1] - y) < 1e-8), key=lambda c: sign * c[0])
                    for y in sorted(heights)]  # fmt: skip
         ends = spread([float(view.placed(c)[1]) for c in corners], TEXT_GAP)
         for corner, end in zip(corners, ends):
-            beside = float(view.placed([x, 0.0])[0]) + way * 9.0
+            number_x = float(view.placed([x, 0.0])[0]) + sign * 9.0
             origin = view.placed([corner[0], 0.0])
-            drawing.ordinate(view.placed(corner), (beside, end), origin, True, view.scale)
+            drawing.ordinate(view.placed(corner), (number_x, end), origin, True, view.scale)
     stops = np.unique(np.round(inside[:, 0], 9))
     above = float(view.placed([0.0, width])[1]) + 4.0
-    for one, other in itertools.pairwise(stops):
-        _dimension_width(drawing, hole, 0.5 * (one + other), view, width)
-        ends = view.placed([[one, width], [other, width]])
+    for start, stop in itertools.pairwise(stops):
+        _dimension_width(drawing, hole, 0.5 * (start + stop), view, width)
+        ends = view.placed([[start, width], [stop, width]])
         row = 3.8 if ends[1][0] - ends[0][0] < NARROW_MM else 0.0
         drawing.length(ends[0], ends[1], (0.0, above + row - ends[0][1]), view.scale)
 
@@ -340,17 +343,17 @@ def _wrapped(words: str) -> list[str]:
 def _plan(strip: TrackSection) -> dict[str, list[NDArray[np.float64]]]:
     """Rings of each layer, unrolled."""
     length, width = strip.length, strip.width
-    found = {
+    layers = {
         "TRACK": [_rectangle(0.0, 0.0, length, width)],
-        "WALL": [_rectangle(0.0, -WALL, length, -NARROW)],
+        "WALL": [_rectangle(0.0, -DRAWN_WALL_M, length, -WALL_LINE_WIDTH_M)],
     }
     for station in strip.stations:
         if station.edge is not None:
-            found.setdefault(station.device.layer, []).append(station.edge)
-    cuts = [one.hole for one in strip.stations if one.hole is not None and one.edge is None]
-    found |= {_numbered("CUT", place): [ring] for place, ring in enumerate(cuts)}
+            layers.setdefault(station.device.layer, []).append(station.edge)
+    cuts = [station.hole for station in strip.stations if station.hole is not None and station.edge is None]
+    layers |= {_numbered("CUT", place): [ring] for place, ring in enumerate(cuts)}
     blades = [station.blade for station in strip.stations if station.blade is not None]
-    return found | ({"GATE": blades} if blades else {})
+    return layers | ({"GATE": blades} if blades else {})
 
 
 def _bent(drawing: Drawing, strip: TrackSection, ghosts: Sequence, top: float) -> float:
@@ -374,7 +377,7 @@ def _bent(drawing: Drawing, strip: TrackSection, ghosts: Sequence, top: float) -
 
 def _openings(drawing: Drawing, strip: TrackSection) -> float:
     """Draw the openings of gates to the right of the track, each on its own layer; return their right end."""
-    right, count = strip.length / MM + APART + 15.0, 0
+    right, count = strip.length / MM + VIEW_GAP_MM + 15.0, 0
     for station in strip.stations:
         if not station.openings:
             continue
@@ -391,8 +394,8 @@ def _openings(drawing: Drawing, strip: TrackSection) -> float:
         for y, end in zip(places, spread([right + y for y in places], TEXT_GAP)):
             drawing.ordinate((right + y, 0.0), (end, -NUMBERS), (right, 0.0), False)
         drawing.text(right, -NUMBERS - 6.0, f"opening of the {station.device.name}", 2.5)
-        right, count = widest + APART + 15.0, count + 1
-    return right - APART
+        right, count = widest + VIEW_GAP_MM + 15.0, count + 1
+    return right - VIEW_GAP_MM
 
 
 def _numbered(name: str, place: int) -> str:

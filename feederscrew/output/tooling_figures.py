@@ -18,36 +18,39 @@ from feederscrew.tooling.isolating.proposal import (
 from feederscrew.tooling.orientations import Hanging
 from feederscrew.units import MM
 
-WIDTH = 1200  # pixels
-LEAST = 900  # pixels: room for the lines over the rows
-LEFT, COLUMN, ROW, HEAD, FOOT, OUT = 230, 300, 170, 134, 30, 210  # pixels
-PASSES, FALLS = "#0072b2", "#d55e00"
-TRACK, AIR, PART, TOUCHING = "#e3e8ec", "#ffffff", "#9fb3c4", "#56697a"
-WIDEST = 420  # pixels of a column
-LONG, BROAD = 9, 2200  # rows from which there are two panels of them, if no more pixels wide than so
-LINE = 17  # pixels between lines of text
-KEY = (
+LIMITS_PAGE_WIDTH_PX = 1200  # pixels
+MIN_PAGE_WIDTH_PX = 900  # pixels: room for the lines over the rows
+FATE_COLUMN_PX, DEVICE_COLUMN_PX, ROW, PAGE_HEAD_PX, PAGE_FOOT_PX, OUT = 230, 300, 170, 134, 30, 210  # pixels
+PASSED_COLOUR, REJECTED_COLOUR = "#0072b2", "#d55e00"
+TRACK_FACE, AIR_FACE, PART_FACE, TOUCHING = "#e3e8ec", "#ffffff", "#9fb3c4", "#56697a"
+MAX_DEVICE_COLUMN_PX = 420  # pixels of a column
+MAX_ROWS_OF_ONE_PANEL, MAX_TWO_PANELS_PX = (
+    9,
+    2200,
+)  # rows from which there are two panels of them, if no more pixels wide than so
+TEXT_LINE_PX = 17  # pixels between lines of text
+READING_NOTES = (
     "from above: wall below, parts move to the right",
     "light: part, dark: what touches the track, outline: hull of the support, dot: weight",
 )
-LETTERS = 38  # of a line of text in the last column
-NARROW = 24  # the same in the first column
+LAST_COLUMN_LETTERS = 38  # of a line of text in the last column
+FIRST_COLUMN_LETTERS = 24  # the same in the first column
 SHRINK = 0.82  # of a size in points
-BESIDE = 1.0  # [mm] from the left end of what is drawn
-SHEET, DEEP = "#c3ccd4", 2.0  # [mm] of a rail as drawn
-BAR = 120  # pixels: at most as long is a bar
-STEPS = (1.0, 2.0, 5.0)
-ALIKE = 1.02  # scales that differ by less are one
+PROFILE_MARGIN_MM = 1.0  # [mm] from the left end of what is drawn
+RAIL_FACE, RAIL_DEPTH_MM = "#c3ccd4", 2.0  # [mm] of a rail as drawn
+MAX_SCALE_BAR_PX = 120  # pixels: at most as long is a bar
+SCALE_BAR_STEPS = (1.0, 2.0, 5.0)
+SAME_SCALE_RATIO = 1.02  # scales that differ by less are one
 
 
-def chain(devices, every, shares, wanted=None):
+def chain(devices, orientations, shares, wanted=None):
     """Draw each orientation at the worst place of each device that it meets, a row each.
 
     Parameters
     ----------
     devices : sequence of Device
         In the order parts meet them.
-    every : sequence of Orientation
+    orientations : sequence of Orientation
     shares : (M,) float [1]
     wanted : int, optional
         The orientation that shall leave, drawn first.
@@ -56,39 +59,47 @@ def chain(devices, every, shares, wanted=None):
     -------
     Figure
     """
-    shown = [device for device in devices if device.placed]
-    rows = _rows(every, shares, wanted)
-    wide = LEFT + min(max(COLUMN, (WIDTH - LEFT) / max(len(shown), 1)), WIDEST) * len(shown) + OUT
-    wide = max(LEAST, wide)
-    panels = 2 if len(rows) > LONG and 2 * wide <= BROAD else 1
+    placed = [device for device in devices if device.placed]
+    rows = _rows(orientations, shares, wanted)
+    wide = (
+        FATE_COLUMN_PX
+        + min(
+            max(DEVICE_COLUMN_PX, (LIMITS_PAGE_WIDTH_PX - FATE_COLUMN_PX) / max(len(placed), 1)),
+            MAX_DEVICE_COLUMN_PX,
+        )
+        * len(placed)
+        + OUT
+    )
+    wide = max(MIN_PAGE_WIDTH_PX, wide)
+    panels = 2 if len(rows) > MAX_ROWS_OF_ONE_PANEL and 2 * wide <= MAX_TWO_PANELS_PX else 1
     high = -(-len(rows) // panels)
-    page = style.page(panels * wide, HEAD + ROW * high + FOOT)
-    column = (wide - LEFT - OUT) / max(len(shown), 1)
+    page = style.page(panels * wide, PAGE_HEAD_PX + ROW * high + PAGE_FOOT_PX)
+    column = (wide - FATE_COLUMN_PX - OUT) / max(len(placed), 1)
     title = "Each orientation where each device bears least" if wanted is None else (
-        f"What lets {every[wanted].name} leave: each orientation where each device bears least"
+        f"What lets {orientations[wanted].name} leave: each orientation where each device bears least"
     )  # fmt: skip
-    _heading(page, title, _missing(every, rows, shares))
+    _heading(page, title, _missing(orientations, rows, shares))
     for panel in range(panels):
-        for place, device in enumerate(shown):
-            left = panel * wide + LEFT + place * column + 8
-            write_text(page, left, HEAD - 22, _device(device, place), weight="bold")
-        write_text(page, (panel + 1) * wide - OUT + 8, HEAD - 22, "as it leaves", weight="bold")
-    size = _scale(every, rows, column)
+        for place, device in enumerate(placed):
+            left = panel * wide + FATE_COLUMN_PX + place * column + 8
+            write_text(page, left, PAGE_HEAD_PX - 22, _device(device, place), weight="bold")
+        write_text(page, (panel + 1) * wide - OUT + 8, PAGE_HEAD_PX - 22, "as it leaves", weight="bold")
+    size = _scale(orientations, rows, column)
     draw_scale_bar(page, panels * wide - 16, 66, size)  # below the title, which may be as long
     for place, k in enumerate(rows):
         panel, line = divmod(place, high)
-        left, top = panel * wide, HEAD + line * ROW
-        found = track_sections.until_returned(shown, every[k], every)
+        left, top = panel * wide, PAGE_HEAD_PX + line * ROW
+        passages = track_sections.until_returned(placed, orientations[k], orientations)
         if panel == 0:
             draw_rule(page, top)
-        _told(page, (left + 16, top), every[k], shares[k], found, k == wanted)
-        for step, one in enumerate(found):
-            _cell(page, (left + LEFT + step * column, top, column, ROW), one, size)
-        if found and all(one.verdict.passes > 0.0 for one in found):
+        _write_fate(page, (left + 16, top), orientations[k], shares[k], passages, k == wanted)
+        for step, passage in enumerate(passages):
+            _cell(page, (left + FATE_COLUMN_PX + step * column, top, column, ROW), passage, size)
+        if passages and all(passage.verdict.passes > 0.0 for passage in passages):
             box = left + wide - OUT + 8, top + 8, OUT - 24, ROW - 38
-            draw_leaving(page, box, found[-1].after, size, PASSES)
-        if every[k].returned:
-            _bare(page, (left + LEFT, top, column, ROW), every[k], size)
+            draw_leaving(page, box, passages[-1].after, size, PASSED_COLOUR)
+        if orientations[k].returned:
+            _bare(page, (left + FATE_COLUMN_PX, top, column, ROW), orientations[k], size)
     return page
 
 
@@ -103,113 +114,132 @@ def limits(study):
     -------
     Figure
     """
-    every, shares = study.orientations, study.shares
-    rows = _rows(every, shares, None)
-    page = style.page(WIDTH, HEAD + ROW * len(rows) + FOOT)
-    _heading(page, tooling_tables.isolation_words(study), _missing(every, rows, shares))
+    orientations, shares = study.orientations, study.shares
+    rows = _rows(orientations, shares, None)
+    page = style.page(LIMITS_PAGE_WIDTH_PX, PAGE_HEAD_PX + ROW * len(rows) + PAGE_FOOT_PX)
+    _heading(page, tooling_tables.isolation_words(study), _missing(orientations, rows, shares))
     for left, text in (
-        (LEFT + 8, "from above"),
-        (LEFT + COLUMN + 8, "along the track"),
+        (FATE_COLUMN_PX + 8, "from above"),
+        (FATE_COLUMN_PX + DEVICE_COLUMN_PX + 8, "along the track"),
         (830, "isolated by"),
     ):
-        write_text(page, left, HEAD - 22, text, weight="bold")
-    size = _scale(every, rows, COLUMN)
+        write_text(page, left, PAGE_HEAD_PX - 22, text, weight="bold")
+    size = _scale(orientations, rows, DEVICE_COLUMN_PX)
     for place, k in enumerate(rows):
-        top, one, found = HEAD + place * ROW, every[k], study.designs[k]
+        top, orientation, design = PAGE_HEAD_PX + place * ROW, orientations[k], study.designs[k]
         draw_rule(page, top)
-        _measured(page, top, one, shares[k])
-        colour = style.INK if found is None else PASSES if study.isolates(k) else FALLS
-        _above(_axes(page, (LEFT, top, COLUMN, ROW), size, True), one, None, None, colour)
-        _ahead(_axes(page, (LEFT + COLUMN, top, COLUMN, ROW), size, False), one, None, colour)
+        _measured(page, top, orientation, shares[k])
+        colour = style.INK if design is None else PASSED_COLOUR if study.isolates(k) else REJECTED_COLOUR
+        _above(
+            _axes(page, (FATE_COLUMN_PX, top, DEVICE_COLUMN_PX, ROW), size, True),
+            orientation,
+            None,
+            None,
+            colour,
+        )
+        _ahead(
+            _axes(page, (FATE_COLUMN_PX + DEVICE_COLUMN_PX, top, DEVICE_COLUMN_PX, ROW), size, False),
+            orientation,
+            None,
+            colour,
+        )
         for line, text in enumerate(_isolated(study, k)):
-            write_text(page, 830, top + 30 + line * LINE, text, colour=colour)
+            write_text(page, 830, top + 30 + line * TEXT_LINE_PX, text, colour=colour)
     return page
 
 
-def _cell(page, box, found, size) -> None:
+def _cell(page, box, passage, size) -> None:
     """One orientation at one device."""
-    good = found.verdict.passes > 0.0
-    colour = PASSES if good else FALLS
-    axes = _axes(page, box, size, found.picture == "above")
-    if found.picture == "turned":
-        _turned(page, axes, found, box, colour)
+    good = passage.verdict.passes > 0.0
+    colour = PASSED_COLOUR if good else REJECTED_COLOUR
+    axes = _axes(page, box, size, passage.picture == "above")
+    if passage.picture == "turned":
+        _turned(page, axes, passage, box, colour)
         return
-    if found.picture == "above":
-        _above(axes, found.orientation, found.hole, found, colour)
+    if passage.picture == "above":
+        _above(axes, passage.orientation, passage.hole, passage, colour)
     else:
-        _ahead(axes, found.after if found.device.leans else found.orientation, found.opening, colour)
-    if found.verdict.onto:
-        write_text(page, box[0] + 8, box[1] + ROW - 12, turned_words(found), colour=colour)
+        _ahead(axes, passage.after if passage.device.leans else passage.orientation, passage.opening, colour)
+    if passage.verdict.onto:
+        write_text(page, box[0] + 8, box[1] + ROW - 12, turned_words(passage), colour=colour)
         return
-    word = "hangs" if found.verdict.hangs else "passes" if good else f"is {found.fate}"
-    write_text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, {margin_words(found.verdict)}", colour=colour)
+    word = "hangs" if passage.verdict.hangs else "passes" if good else f"is {passage.fate}"
+    write_text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, {margin_words(passage.verdict)}", colour=colour)
 
 
-def _bare(page, box, one, size) -> None:
+def _bare(page, box, orientation, size) -> None:
     """One orientation that the bare track returns: it meets no device."""
-    _above(_axes(page, box, size, True), one, None, None, FALLS)
-    write_text(page, box[0] + 8, box[1] + ROW - 12, "meets no device", colour=FALLS)
+    _above(_axes(page, box, size, True), orientation, None, None, REJECTED_COLOUR)
+    write_text(page, box[0] + 8, box[1] + ROW - 12, "meets no device", colour=REJECTED_COLOUR)
 
 
-def _turned(page, axes, found, box, colour) -> None:
+def _turned(page, axes, passage, box, colour) -> None:
     """The part before and after a device that may turn it: along a step, across a ledge."""
-    along = not found.device.inwards
-    turned = found.after is not found.orientation
-    one, other = (_side(k, along) for k in (found.orientation, found.after))
-    wide = one.bounds[2] - one.bounds[0]
+    along = not passage.device.inwards
+    turned = passage.after is not passage.orientation
+    before, after = (_side(k, along) for k in (passage.orientation, passage.after))
+    wide = before.bounds[2] - before.bounds[0]
     if turned:
-        room = 0.5 * (axes.get_xlim()[1] - wide - (other.bounds[2] - other.bounds[0]))
-        other = affinity.translate(other, wide + max(min(room, 12.0), 2.0) - other.bounds[0], 0.0)
-        fill_area(axes, other, f"{PART}b0", colour, 4, width=1.8)
-    one = affinity.translate(one, -one.bounds[0], 0.0)
-    fill_area(axes, one, "none" if turned else f"{PART}b0", "#4d5b68" if turned else colour, 5, width=1.2)
-    right = (other if turned else one).bounds[2]
+        room = 0.5 * (axes.get_xlim()[1] - wide - (after.bounds[2] - after.bounds[0]))
+        after = affinity.translate(after, wide + max(min(room, 12.0), 2.0) - after.bounds[0], 0.0)
+        fill_area(axes, after, f"{PART_FACE}b0", colour, 4, width=1.8)
+    before = affinity.translate(before, -before.bounds[0], 0.0)
+    fill_area(
+        axes, before, "none" if turned else f"{PART_FACE}b0", "#4d5b68" if turned else colour, 5, width=1.2
+    )
+    right = (after if turned else before).bounds[2]
     axes.plot([0.0, right], [0.0, 0.0], color=style.INK, lw=1.5, zorder=6)
-    share = max(share for _, share in found.verdict.onto)
-    word = f"turns into {found.after.name}" if turned else "stays as it lies"
+    share = max(share for _, share in passage.verdict.onto)
+    word = f"turns into {passage.after.name}" if turned else "stays as it lies"
     word += f", {100.0 * share:.3g} %" if share < 0.9995 else ""
     write_text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, quasi-static", colour=colour)
 
 
-def _side(one, along):
+def _side(orientation, along):
     """What is seen of an orientation from the side, or along the track [mm], from its own left end."""
-    x, y, up = one.posture.corners.T
-    turn = one.heading
+    x, y, up = orientation.posture.corners.T
+    turn = orientation.heading
     level = np.cos(turn) * x - np.sin(turn) * y if along else np.sin(turn) * x + np.cos(turn) * y
     return shapely.MultiPoint(np.column_stack([level, up]) / MM).convex_hull
 
 
-def _above(axes, one, hole, found, colour) -> None:
+def _above(axes, orientation, hole, passage, colour) -> None:
     """The part on the track from above: wall below, moving to the right."""
     right = axes.get_xlim()[1]
-    half = min(0.95 * max(one.length, one.width) / MM, right)
-    track = shapely.box(-half, 0.0, half, one.track.width / MM)
-    curved = curved_track(track, one.track.radius / MM)
-    fill_area(axes, curved if hole is None else curved.difference(in_mm(hole)), TRACK, "#b8c2cb", 1)
-    outline = np.add(one.outline, [0.0, one.distance]) / MM
-    axes.add_patch(Polygon(outline, fc=PART, ec="#4d5b68", lw=0.9, alpha=0.45, zorder=3))
-    touching = in_mm(track_sections.foot_area(one))
+    half = min(0.95 * max(orientation.length, orientation.width) / MM, right)
+    track = shapely.box(-half, 0.0, half, orientation.track.width / MM)
+    curved = curved_track(track, orientation.track.radius / MM)
+    fill_area(axes, curved if hole is None else curved.difference(in_mm(hole)), TRACK_FACE, "#b8c2cb", 1)
+    outline = np.add(orientation.outline, [0.0, orientation.distance]) / MM
+    axes.add_patch(Polygon(outline, fc=PART_FACE, ec="#4d5b68", lw=0.9, alpha=0.45, zorder=3))
+    touching = in_mm(track_sections.foot_area(orientation))
     if hole is not None:
         fill_area(axes, in_mm(hole).intersection(curved), "none", style.INK, 6, width=0.8)
     left_over = touching if hole is None else touching.difference(in_mm(hole))
     fill_area(axes, left_over, TOUCHING, TOUCHING, 4)
-    hull = left_over.convex_hull if found is None else shapely.MultiPoint(found.supported / MM).convex_hull
+    hull = (
+        left_over.convex_hull if passage is None else shapely.MultiPoint(passage.supported / MM).convex_hull
+    )
     fill_area(axes, hull, "none", colour, 5, width=1.8)
-    weight = 0.0, (one.distance - one.shift) / MM
+    weight = 0.0, (orientation.distance - orientation.shift) / MM
     axes.plot(*weight, "o", ms=5.5, color=colour, mec="white", mew=0.8, zorder=7)
 
 
-def _ahead(axes, one, opening, colour) -> None:
+def _ahead(axes, orientation, opening, colour) -> None:
     """The part seen along the track, the wall at the left, in the opening of a gate."""
     top = axes.get_ylim()[1]
-    right = min(axes.get_xlim()[1], one.track.width / MM, 1.5 * max(one.length, one.width) / MM)
+    right = min(
+        axes.get_xlim()[1],
+        orientation.track.width / MM,
+        1.5 * max(orientation.length, orientation.width) / MM,
+    )
     if opening is not None:
         plate = shapely.box(0.0, 0.0, right, top).difference(in_mm(opening))
         fill_area(axes, plate, "#c3ccd4", "#8593a0", 2)
-    shown, line = profile_along_track(one, top, right)
+    profile, line = profile_along_track(orientation, top, right)
     axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)
-    fill_area(axes, shown, f"{PART}b0", "none", 4)
-    fill_area(axes, shown, "none", colour, 5, width=1.8)
+    fill_area(axes, profile, f"{PART_FACE}b0", "none", 4)
+    fill_area(axes, profile, "none", colour, 5, width=1.8)
 
 
 def _axes(page, box, size, middle):
@@ -224,66 +254,70 @@ def _axes(page, box, size, middle):
     return axes
 
 
-def _scale(every, rows, column):
+def _scale(orientations, rows, column):
     """Millimetres a pixel at which every row's part fits its cell."""
-    needed = [(1.25 * max(one.length, one.width) / column, 1.2 * max(one.width, one.height) / (ROW - 38))
-              for one in (every[k] for k in rows)]  # fmt: skip
+    needed = []
+    for orientation in (orientations[k] for k in rows):
+        high = 1.2 * max(orientation.width, orientation.height) / (ROW - 38)
+        needed.append((1.25 * max(orientation.length, orientation.width) / column, high))
     return max(max(pair) for pair in needed) / MM
 
 
 def _heading(page, title, missing) -> None:
     write_text(page, 16, 26, title, size=11, weight="bold")
-    for line, text in enumerate([*KEY, missing]):
-        write_text(page, 16, 50 + LINE * line, text, size=8)
+    for line, text in enumerate([*READING_NOTES, missing]):
+        write_text(page, 16, 50 + TEXT_LINE_PX * line, text, size=8)
 
 
-def _told(page, at, one, share, found, is_wanted) -> None:
+def _write_fate(page, at, orientation, share, passages, is_wanted) -> None:
     """What becomes of an orientation, at the left of its row."""
     left, top = at
-    if all(passage.verdict.passes > 0.0 for passage in found):
-        word = track_sections.passage_fate(one, found)
-        colour = PASSES if word.startswith("leaves") else FALLS
+    if all(passage.verdict.passes > 0.0 for passage in passages):
+        word = track_sections.passage_fate(orientation, passages)
+        colour = PASSED_COLOUR if word.startswith("leaves") else REJECTED_COLOUR
     else:
-        word, colour = f"{found[-1].fate} by {found[-1].device.name}", FALLS
-    write_text(page, left, top + 30, one.name, size=12, weight="bold", colour=colour)
+        word, colour = f"{passages[-1].fate} by {passages[-1].device.name}", REJECTED_COLOUR
+    write_text(page, left, top + 30, orientation.name, size=12, weight="bold", colour=colour)
     write_text(page, left, top + 52, f"{100.0 * share:.3g} % of the parts")
-    lines = textwrap.wrap(word, NARROW)
+    lines = textwrap.wrap(word, FIRST_COLUMN_LETTERS)
     for line, text in enumerate(lines):
-        write_text(page, left, top + 52 + (1 + line) * LINE, text, colour=colour)
+        write_text(page, left, top + 52 + (1 + line) * TEXT_LINE_PX, text, colour=colour)
     if is_wanted:
-        write_text(page, left, top + 52 + (1 + len(lines)) * LINE, "wanted", weight="bold")
+        write_text(page, left, top + 52 + (1 + len(lines)) * TEXT_LINE_PX, "wanted", weight="bold")
 
 
-def _measured(page, top, one, share) -> None:
+def _measured(page, top, orientation, share) -> None:
     """Share and limits of an orientation, at the left of its row."""
-    write_text(page, 16, top + 24, one.name, size=12, weight="bold")
-    balcony = f"{one.balcony / MM:.2f} mm" if np.isfinite(one.balcony) else "none"
+    write_text(page, 16, top + 24, orientation.name, size=12, weight="bold")
+    balcony = f"{orientation.balcony / MM:.2f} mm" if np.isfinite(orientation.balcony) else "none"
     lines = [
         ("of the parts", f"{100.0 * share:.3g} %"), ("track at least", balcony),
-        ("canyon up to", f"{one.canyon / MM:.2f} mm"),
-        ("gap up to", f"{one.gap / MM:.2f} mm"), ("height", f"{one.height / MM:.2f} mm"),
+        ("canyon up to", f"{orientation.canyon / MM:.2f} mm"),
+        ("gap up to", f"{orientation.gap / MM:.2f} mm"), ("height", f"{orientation.height / MM:.2f} mm"),
     ]  # fmt: skip
     for place, (name, value) in enumerate(lines):
-        write_text(page, 16, top + 50 + place * LINE, name)
-        write_text(page, 138, top + 50 + place * LINE, value)
+        write_text(page, 16, top + 50 + place * TEXT_LINE_PX, name)
+        write_text(page, 138, top + 50 + place * TEXT_LINE_PX, value)
 
 
 def _isolated(study, place) -> list[Any]:
     """Lines on what isolates an orientation, or why nothing does: the trial's word first."""
-    found, tried = study.designs[place], study.trial_of(place)
-    if found is None:
+    design, tried = study.designs[place], study.trial_of(place)
+    if design is None:
         return ["not asked for"]
-    result = textwrap.wrap(" and ".join(cut.device.name for cut in found.cuts) or "no device", LETTERS)
+    result = textwrap.wrap(
+        " and ".join(cut.device.name for cut in design.cuts) or "no device", LAST_COLUMN_LETTERS
+    )
     if study.isolates(place):
-        margin = f"margin {found.margin / MM:.2f} mm" if np.isfinite(found.margin) else ""
+        margin = f"margin {design.margin / MM:.2f} mm" if np.isfinite(design.margin) else ""
         return [
             *result,
             f"{100.0 * tooling_tables.leaving(study, place)['efficiency']:.3g} % of the parts leave",
             margin,
         ]
-    reasons = (*(() if tried is None else tried.faults), *found.reasons)
-    why = textwrap.shorten("; ".join(reasons), 4 * LETTERS, placeholder=" ...")
-    return ["not isolated", *textwrap.wrap(why, LETTERS)]
+    reasons = (*(() if tried is None else tried.faults), *design.reasons)
+    why = textwrap.shorten("; ".join(reasons), 4 * LAST_COLUMN_LETTERS, placeholder=" ...")
+    return ["not isolated", *textwrap.wrap(why, LAST_COLUMN_LETTERS)]
 
 
 def _device(device, place) -> str:
@@ -293,15 +327,15 @@ def _device(device, place) -> str:
     return f"{place + 1}  {device.name}{value}{play}"
 
 
-def _rows(every, shares, wanted):
+def _rows(orientations, shares, wanted):
     """The orientations that have a row: the wanted one, then what comes often enough, likeliest first."""
-    often = [k for k in range(len(every)) if shares[k] >= LEAST_SHARE and k != wanted]
+    often = [k for k in range(len(orientations)) if shares[k] >= LEAST_SHARE and k != wanted]
     often.sort(key=lambda k: -round(float(shares[k]), 9))
     return ([] if wanted is None else [wanted]) + (often or ([] if wanted is not None else [0]))
 
 
-def _missing(every, rows, shares) -> str:
-    left = [every[k].name for k in range(len(every)) if k not in rows]
+def _missing(orientations, rows, shares) -> str:
+    left = [orientations[k].name for k in range(len(orientations)) if k not in rows]
     if not left:
         return ""
     return f"without a row, as less than {100.0 * LEAST_SHARE:g} % of the parts come so: {', '.join(left)}"
@@ -347,26 +381,26 @@ def write_text(page, x, y, text, *, size=9, colour=style.INK, weight="normal") -
     )
 
 
-def profile_along_track(one, top, right) -> tuple[Any, ...]:
+def profile_along_track(orientation, top, right) -> tuple[Any, ...]:
     """Return what is seen of an orientation [mm], and the line (K, 2) [mm] of wall and track below it.
 
     Parameters
     ----------
-    one : Orientation
+    orientation : Orientation
     top, right : float [mm]
         How far wall and track are drawn.
     """
-    shown = in_mm(one.view_ahead)
-    if not one.groove:
-        return shown, np.array([[0.0, top], [0.0, 0.0], [right, 0.0]])
-    angle, lean = one.groove, 2.0 * one.groove - 0.5 * np.pi
-    y, z = np.concatenate([np.asarray(ring) for ring in one.silhouette]).T / MM
+    profile = in_mm(orientation.view_ahead)
+    if not orientation.groove:
+        return profile, np.array([[0.0, top], [0.0, 0.0], [right, 0.0]])
+    angle, lean = orientation.groove, 2.0 * orientation.groove - 0.5 * np.pi
+    y, z = np.concatenate([np.asarray(ring) for ring in orientation.silhouette]).T / MM
     shift = -float((y - z * np.tan(lean)).min())  # the other face begins at the wall's foot
-    shown = affinity.rotate(affinity.translate(shown, shift), angle, origin=(0.0, 0.0), use_radians=True)
+    profile = affinity.rotate(affinity.translate(profile, shift), angle, origin=(0.0, 0.0), use_radians=True)
     c, s = np.cos(angle), np.sin(angle)
-    left = max(BESIDE - shown.bounds[0], 0.0)
+    left = max(PROFILE_MARGIN_MM - profile.bounds[0], 0.0)
     faces = np.array([[-left, left * s / c], [0.0, 0.0], [right * c, right * s]])
-    return affinity.translate(shown, left), faces + [left, 0.0]
+    return affinity.translate(profile, left), faces + [left, 0.0]
 
 
 def curved_track(track, radius):
@@ -379,16 +413,21 @@ def curved_track(track, radius):
     return shapely.Polygon(np.vstack([np.column_stack([x, wall]), np.column_stack([x, far])[::-1]]))
 
 
-def turned_words(found) -> str:
+def turned_words(passage) -> str:
     """Say what a stretch that leans the track turns an orientation into, where statics tells."""
-    if found.after.name == found.orientation.name:
+    if passage.after.name == passage.orientation.name:
         return "may turn, not sure"
-    return f"turns into {found.after.name}, not sure"
+    return f"turns into {passage.after.name}, not sure"
 
 
 def scale_bar_length(size):
     """Return the length [mm] of a scale bar, 1, 2 or 5 times a power of ten, at ``size`` mm a pixel."""
-    return max(step * 10.0**k for k in range(-3, 5) for step in STEPS if step * 10.0**k <= BAR * size)
+    return max(
+        step * 10.0**k
+        for k in range(-3, 5)
+        for step in SCALE_BAR_STEPS
+        if step * 10.0**k <= MAX_SCALE_BAR_PX * size
+    )
 
 
 def draw_scale_bar(page, right, y, size) -> None:
@@ -401,36 +440,42 @@ def draw_scale_bar(page, right, y, size) -> None:
     write_text(page, left, y - 10, f"{length:g} mm", size=8)
 
 
-def draw_leaving(page, box, one, size, colour) -> None:
+def draw_leaving(page, box, orientation, size, colour) -> None:
     """Draw an orientation as it leaves in a box of pixels, ``size`` mm a pixel or, if need be, more."""
     left, top, wide, high = box
-    low, up = min(one.view_ahead.bounds[1], 0.0) / MM, one.view_ahead.bounds[3] / MM
-    across = max(one.view_ahead.bounds[2], *one.span) / MM if _hangs(one) else one.view_ahead.bounds[2] / MM
-    own = max(size, 1.05 * (across + _hangs(one) * DEEP) / wide, 1.05 * (up - low) / high)
+    low, up = min(orientation.view_ahead.bounds[1], 0.0) / MM, orientation.view_ahead.bounds[3] / MM
+    across = (
+        max(orientation.view_ahead.bounds[2], *orientation.span) / MM
+        if _hangs(orientation)
+        else orientation.view_ahead.bounds[2] / MM
+    )
+    own = max(size, 1.05 * (across + _hangs(orientation) * RAIL_DEPTH_MM) / wide, 1.05 * (up - low) / high)
     page_wide, page_high = page.get_size_inches() * style.DPI
     place = left / page_wide, 1.0 - (top + high) / page_high, wide / page_wide, high / page_high
     axes = page.add_axes(place)
     begin = min(low, -3.0 * own)
     axes.set(xlim=(-4.0 * own, (wide - 4.0) * own), ylim=(begin - 2.0 * own, begin + (high - 2.0) * own))
     axes.axis("off")
-    draw_along_track(axes, one, colour)
-    if own > ALIKE * size:
+    draw_along_track(axes, orientation, colour)
+    if own > SAME_SCALE_RATIO * size:
         draw_scale_bar(page, left + wide - 4.0, top + high + 24.0, own)
 
 
-def _hangs(one) -> bool:
-    return isinstance(one, Hanging)
+def _hangs(orientation) -> bool:
+    return isinstance(orientation, Hanging)
 
 
-def draw_along_track(axes, one, colour) -> None:
+def draw_along_track(axes, orientation, colour) -> None:
     """Draw an orientation [mm] as it leaves: the wall at the left, the track below it, rails cut across."""
-    shown, (_, top), (_, right) = in_mm(one.view_ahead), axes.get_ylim(), axes.get_xlim()
-    if _hangs(one):
-        first, last = (end / MM for end in one.span)
+    profile, (_, top), (_, right) = in_mm(orientation.view_ahead), axes.get_ylim(), axes.get_xlim()
+    if _hangs(orientation):
+        first, last = (end / MM for end in orientation.span)
         for low, high in ((0.0, first), (last, right)):
-            fill_area(axes, shapely.box(low, -DEEP, high, 0.0), SHEET, style.INK, 3)
-        axes.plot([0.0, 0.0], [min(shown.bounds[1], -DEEP), top], color=style.INK, lw=1.5, zorder=6)
+            fill_area(axes, shapely.box(low, -RAIL_DEPTH_MM, high, 0.0), RAIL_FACE, style.INK, 3)
+        axes.plot(
+            [0.0, 0.0], [min(profile.bounds[1], -RAIL_DEPTH_MM), top], color=style.INK, lw=1.5, zorder=6
+        )
     else:
-        shown, line = profile_along_track(one, top, right)
+        profile, line = profile_along_track(orientation, top, right)
         axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)
-    fill_area(axes, shown, f"{PART}b0", colour, 5, width=1.6)
+    fill_area(axes, profile, f"{PART_FACE}b0", colour, 5, width=1.6)

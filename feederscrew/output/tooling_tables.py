@@ -16,19 +16,22 @@ LEAVING = (  # efficiency and purity, of the trial where there is one
     "purity_static",
 )  # fmt: skip
 HIDDEN = ("reasons", *(name for name in LEAVING if "_" in name))  # the sentences of the trial have them
-SPARE = (  # left out of a table for people that is too wide, the first ones first
+TABLE_SPARE_COLUMNS = (  # left out of a table for people that is too wide, the first ones first
     ("smallest_cut", "largest_cut"),
     ("mirror", "wall_distance_mm", "balcony_mm", "canyon_mm", "gap_mm"),
     ("height_mm", "track_width_mm"), ("length_mm", "width_mm"), ("steady",), ("status",), ("purity",),
     ("left_over",),
 )  # fmt: skip
-CHAIN = (
+CHAIN_COLUMNS = (
     "device", "value", "margin_pass_mm", "margin_reject_mm", "smallest_cut", "largest_cut", "returns",
 )  # fmt: skip
-WORDS = {"margin_pass_mm": "passes_by_mm", "margin_reject_mm": "others_fail_by_mm"}  # for people
-WIDE = 34  # letters of a text in a table for people
+HEADINGS_FOR_PEOPLE = {
+    "margin_pass_mm": "passes_by_mm",
+    "margin_reject_mm": "others_fail_by_mm",
+}  # for people
+PEOPLE_TEXT_LETTERS = 34  # letters of a text in a table for people
 QUASI_STATIC = "quasi-static, until a trial confirms it"
-TRACK, WIDTH = "track", "track.width"
+TRACK_SECTION, TRACK_WIDTH_KEY = "track", "track.width"
 
 
 def document(study):
@@ -41,10 +44,10 @@ def document(study):
     }
     if study.design is None:
         return values
-    one = study.orientations[study.wanted]
+    orientation = study.orientations[study.wanted]
     return values | {
-        "aspect": one.aspect,
-        "heading_deg": one.heading / DEG,
+        "aspect": orientation.aspect,
+        "heading_deg": orientation.heading / DEG,
         "isolated": study.isolates(study.wanted),
         "status": status(study, study.wanted),
         "isolated_static": study.design.isolated,
@@ -70,7 +73,10 @@ def orientations(study) -> list[Any]:
     list of dict
     """
     rows = zip(study.orientations, study.shares, study.designs)
-    return [_row(one, share) | _designed(study, k, found) for k, (one, share, found) in enumerate(rows)]
+    return [
+        _row(orientation, share) | _designed(study, k, design)
+        for k, (orientation, share, design) in enumerate(rows)
+    ]
 
 
 def leaving(study, place) -> dict[Any, Any]:
@@ -79,13 +85,13 @@ def leaving(study, place) -> dict[Any, Any]:
     Of its trial where one was made, with the 95 % interval. Else the least by the static rule: without what
     may roll or rock on its way, and with what no verdict is sure to return counted as leaving.
     """
-    found, tried = study.designs[place], study.trial_of(place)
+    design, tried = study.designs[place], study.trial_of(place)
     if tried is not None:
         pure = (None, None) if np.isnan(tried.purity) else (tried.purity, tried.purity_ends[0])
         values = (tried.efficiency, *tried.efficiency_ends, *pure)
     else:
-        values = (found.least, found.least, found.efficiency, found.purity, found.purity)
-    return dict(zip(LEAVING, (*values, found.efficiency, found.purity), strict=True))
+        values = (design.least, design.least, design.efficiency, design.purity, design.purity)
+    return dict(zip(LEAVING, (*values, design.efficiency, design.purity), strict=True))
 
 
 def status(study, place) -> str:
@@ -105,8 +111,8 @@ def frame(study, *, people=False):
     """Return the rows as a table; for people with devices as the trade names them."""
     rows = orientations(study)
     if people:
-        for row, found in zip(rows, study.designs):
-            row["devices"] = row["devices"] and [cut.device.name for cut in found.cuts]
+        for row, design in zip(rows, study.designs):
+            row["devices"] = row["devices"] and [cut.device.name for cut in design.cuts]
     listed = {"devices": ", ", "left_over": " ", "reasons": "; "}
     for row in rows:
         for name, between in listed.items():
@@ -138,18 +144,18 @@ def summary(study, format="csv"):
         }
         for cut in study.design.cuts
     ]
-    names: tuple[str, ...] = CHAIN
+    names: tuple[str, ...] = CHAIN_COLUMNS
     if format == "table":
         rows = [_for_people(row, cut, _returned(study, cut)) for row, cut in zip(rows, study.design.cuts)]
-        names = tuple(WORDS.get(name, name) for name in CHAIN)
+        names = tuple(HEADINGS_FOR_PEOPLE.get(name, name) for name in CHAIN_COLUMNS)
     return tables.frame({name: [row[name] for row in rows] for name in names})
 
 
 def _for_people(row, cut, returned):
     """A device's row as the trade names it, its value in words, and headings that say whose margin it is."""
-    shown = {WORDS.get(name, name): value for name, value in row.items()}
-    returns = _few(returned, WIDE) if returned else row["returns"]
-    return shown | {"device": cut.device.full_name, "value": cut.device.value_words, "returns": returns}
+    cells = {HEADINGS_FOR_PEOPLE.get(name, name): value for name, value in row.items()}
+    returns = _few(returned, PEOPLE_TEXT_LETTERS) if returned else row["returns"]
+    return cells | {"device": cut.device.full_name, "value": cut.device.value_words, "returns": returns}
 
 
 def _few(text, most) -> str:
@@ -164,53 +170,56 @@ def _few(text, most) -> str:
 def _returned(study, cut) -> str:
     """'A@2 A@90, all of B, C': what a device returns, aspects of which it returns every orientation last."""
     names: dict[str, set[str]] = {}
-    for one in study.orientations:
-        names.setdefault(one.aspect, set()).add(one.name)
+    for orientation in study.orientations:
+        names.setdefault(orientation.aspect, set()).add(orientation.name)
     whole = [aspect for aspect, all_of in names.items() if all_of <= set(cut.returns)]
     single = " ".join(name for name in cut.returns if not any(name in names[aspect] for aspect in whole))
-    return ", ".join(shown for shown in (single, f"all of {', '.join(whole)}" if whole else "") if shown)
+    return ", ".join(words for words in (single, f"all of {', '.join(whole)}" if whole else "") if words)
 
 
 def remarks(study, efficiency=0.0) -> list[Any]:
     """Return what a reader should know: what cannot be told apart, and why."""
-    found = study.design
-    if found is None:
+    design = study.design
+    if design is None:
         return [isolation_words(study, efficiency)]
-    return [_lead(study, found), *found.reasons]
+    return [_lead(study, design), *design.reasons]
 
 
-def _lead(study, found) -> str:
+def _lead(study, design) -> str:
     """What becomes of the orientation asked for: what the trial says first."""
-    one, tried = study.orientations[study.wanted], study.trial_of(study.wanted)
+    orientation, tried = study.orientations[study.wanted], study.trial_of(study.wanted)
     shares = (
-        "at least " * (found.least < found.efficiency), 100.0 * found.least,
-        "at least " * bool(found.purity_is_least), 100.0 * found.purity,
+        "at least " * (design.least < design.efficiency), 100.0 * design.least,
+        "at least " * bool(design.purity_is_least), 100.0 * design.purity,
     )  # fmt: skip
     leave = "{}{:.3g} % of the parts offered leave so, {}{:.4g} % of what leaves".format(*shares)
-    if not found.efficiency > 0.0:
+    if not design.efficiency > 0.0:
         leave = "none of the parts offered leaves so"
     if tried is not None and tried.faults:
-        return f"{one.name} is not isolated: {tried.sentence.partition(': ')[2]}"
+        return f"{orientation.name} is not isolated: {tried.sentence.partition(': ')[2]}"
     if tried is None:
-        return f"{one.name} is {'' if study.isolates(study.wanted) else 'not '}isolated: {leave}"
+        return f"{orientation.name} is {'' if study.isolates(study.wanted) else 'not '}isolated: {leave}"
     return (
-        f"{one.name} is {'' if found.isolated else 'not '}isolated: of {tried.parts} parts tried "
-        f"{tried.figures}; by the static rule {100.0 * found.efficiency:.3g} % of those offered leave so, "
+        f"{orientation.name} is {'' if design.isolated else 'not '}isolated: of {tried.parts} parts tried "
+        f"{tried.figures}; by the static rule {100.0 * design.efficiency:.3g} % of those offered leave so, "
         f"and {tried.verdict}"
     )
 
 
 def trials(study) -> tuple[Any, ...]:
     """Return what the trials of other chains, or of a table's best, said: two lists, denied and confirmed."""
-    told = [one for k, one in enumerate(study.trials) if study.design is None or k]
+    other_trials = [trial for k, trial in enumerate(study.trials) if study.design is None or k]
     if study.design is None:
-        said = [(one.faults, one.sentence) for one in told]
+        sentences = [(trial.faults, trial.sentence) for trial in other_trials]
     else:
-        said = [
-            (one.faults, f"tried as well, {'; '.join(one.devices_words or one.devices)}: {one.sentence}")
-            for one in told
+        sentences = [
+            (
+                trial.faults,
+                f"tried as well, {'; '.join(trial.devices_words or trial.devices)}: {trial.sentence}",
+            )
+            for trial in other_trials
         ]
-    return [text for faults, text in said if faults], [text for faults, text in said if not faults]
+    return [text for faults, text in sentences if faults], [text for faults, text in sentences if not faults]
 
 
 def isolation_words(study, efficiency=0.0) -> str:
@@ -218,11 +227,11 @@ def isolation_words(study, efficiency=0.0) -> str:
     often = np.flatnonzero(study.shares >= LEAST_SHARE)
     designed = [k for k in often if study.designs[k] is not None]
     good = [study.isolates(k) and study.designs[k].efficiency >= efficiency for k in designed]
-    asked = f" with an efficiency of {100.0 * efficiency:.3g} % or more" if efficiency > 0.0 else ""
+    least = f" with an efficiency of {100.0 * efficiency:.3g} % or more" if efficiency > 0.0 else ""
     rarer = len(study.designs) - len(often)
     left_out = f" ({rarer} rarer not counted)" if rarer else ""
     come = f"in which {100.0 * LEAST_SHARE:g} % or more of the parts come"
-    return f"{sum(good)} of {len(good)} orientations {come} can be isolated{asked}{left_out}"
+    return f"{sum(good)} of {len(good)} orientations {come} can be isolated{least}{left_out}"
 
 
 def passages(study):
@@ -237,54 +246,59 @@ def passages(study):
     Frame
     """
     rows = list(zip(study.orientations, study.passages))
-    named = {"orientation": [one.name for one, _ in rows], "p_of all parts": study.shares}
+    named = {"orientation": [orientation.name for orientation, _ in rows], "p_of all parts": study.shares}
     for place, device in enumerate(study.devices):
-        margins = [_margin(met[place].verdict) if place < len(met) else None for _, met in rows]
+        margins = [
+            _margin(passages_of[place].verdict) if place < len(passages_of) else None
+            for _, passages_of in rows
+        ]
         named[f"{device.name} {place + 1}_mm"] = margins
-    return tables.frame(named | {"outcome": [_outcome(one, met) for one, met in rows]})
+    return tables.frame(
+        named | {"outcome": [_outcome(orientation, passages_of) for orientation, passages_of in rows]}
+    )
 
 
 def _margin(verdict):
     return verdict.margin / MM if verdict.sure else None
 
 
-def _outcome(one, met):
-    if met and met[-1].verdict.passes <= 0.0:
-        doubt = "" if met[-1].verdict.sure else ", not sure"
-        return f"{met[-1].fate} by the {met[-1].device.name}{doubt}"
-    return track_sections.passage_fate(one, met)
+def _outcome(orientation, ridden):
+    if ridden and ridden[-1].verdict.passes <= 0.0:
+        doubt = "" if ridden[-1].verdict.sure else ", not sure"
+        return f"{ridden[-1].fate} by the {ridden[-1].device.name}{doubt}"
+    return track_sections.passage_fate(orientation, ridden)
 
 
-def _row(one, share) -> dict[Any, Any]:
+def _row(orientation, share) -> dict[Any, Any]:
     return {
-        "aspect": one.aspect,
-        "heading_deg": one.heading / DEG,
+        "aspect": orientation.aspect,
+        "heading_deg": orientation.heading / DEG,
         "share": float(share),
-        "length_mm": one.length / MM,
-        "width_mm": one.width / MM,
-        "height_mm": one.height / MM,
-        "wall_distance_mm": one.distance / MM,
-        "balcony_mm": _finite(one.balcony / MM),
-        "canyon_mm": one.canyon / MM,
-        "gap_mm": one.gap / MM,
-        "mirror": one.mirror or None,
+        "length_mm": orientation.length / MM,
+        "width_mm": orientation.width / MM,
+        "height_mm": orientation.height / MM,
+        "wall_distance_mm": orientation.distance / MM,
+        "balcony_mm": _finite(orientation.balcony / MM),
+        "canyon_mm": orientation.canyon / MM,
+        "gap_mm": orientation.gap / MM,
+        "mirror": orientation.mirror or None,
     }
 
 
-def _designed(study, place, found):
-    if found is None:
+def _designed(study, place, design):
+    if design is None:
         names = "isolated status devices track_width_mm margin_mm steady"
         return dict.fromkeys([*names.split(), *LEAVING, "left_over", "reasons"])
     return {
         "isolated": study.isolates(place),
         "status": status(study, place),
-        "devices": [cut.device.kind for cut in found.cuts],
-        "track_width_mm": None if found.width is None else found.width / MM,
-        "margin_mm": found.margin / MM,
-        "steady": found.steady if found.cuts else None,
+        "devices": [cut.device.kind for cut in design.cuts],
+        "track_width_mm": None if design.width is None else design.width / MM,
+        "margin_mm": design.margin / MM,
+        "steady": design.steady if design.cuts else None,
         **leaving(study, place),
-        "left_over": list(found.left_over),
-        "reasons": list(found.reasons),
+        "left_over": list(design.left_over),
+        "reasons": list(design.reasons),
     }
 
 
@@ -341,15 +355,15 @@ def bowl_file(study, settings) -> str:
     """
     check_written(study.design.devices, "tooling.yaml")
     width = study.design.width
-    given = [s for s in settings if s.is_own and s.key.field != DEVICES_SECTION]
-    given = [s for s in given if width is None or s.key.name != WIDTH]
-    lines = [*_file_head(study), *(f"{s.key.word}: {s.text}" for s in given if not s.key.section)]
-    for section in dict.fromkeys(s.key.section for s in given if s.key.section):
+    settings_of_user = [s for s in settings if s.is_own and s.key.field != DEVICES_SECTION]
+    settings_of_user = [s for s in settings_of_user if width is None or s.key.name != TRACK_WIDTH_KEY]
+    lines = [*_file_head(study), *(f"{s.key.word}: {s.text}" for s in settings_of_user if not s.key.section)]
+    for section in dict.fromkeys(s.key.section for s in settings_of_user if s.key.section):
         lines += [f"{section}:"]
-        lines += [f"  {s.key.word}: {s.text}" for s in given if s.key.section == section]
-        lines += [_wide(width)] if width is not None and section == TRACK else []
-    if width is not None and not any(s.key.section == TRACK for s in given):
-        lines += [f"{TRACK}:", _wide(width)]
+        lines += [f"  {s.key.word}: {s.text}" for s in settings_of_user if s.key.section == section]
+        lines += [_wide(width)] if width is not None and section == TRACK_SECTION else []
+    if width is not None and not any(s.key.section == TRACK_SECTION for s in settings_of_user):
+        lines += [f"{TRACK_SECTION}:", _wide(width)]
     lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
     lines += [f"  - {device.kind}: {value_text(device)}" for device in study.design.before]
     lines += [f"  - {cut.device.kind}: {value_text(cut.device)}{_mark(cut)}" for cut in study.design.cuts]
@@ -366,12 +380,13 @@ def _mark(cut) -> str:
 
 
 def _file_head(study) -> list[Any]:
-    one, found = study.orientations[study.wanted], study.design
+    orientation, design = study.orientations[study.wanted], study.design
     return [
-        f"# Tooling that lets aspect {one.aspect} at heading {one.name.partition('@')[2]} deg leave.",
-        f"# By the static rule: efficiency {'at least ' * (found.least < found.efficiency)}"
-        f"{100.0 * found.least:.4g} %, purity {'at least ' * bool(found.purity_is_least)}"
-        f"{100.0 * found.purity:.4g} %, by {study.answer}.",
+        f"# Tooling that lets aspect {orientation.aspect} at heading "
+        f"{orientation.name.partition('@')[2]} deg leave.",
+        f"# By the static rule: efficiency {'at least ' * (design.least < design.efficiency)}"
+        f"{100.0 * design.least:.4g} %, purity {'at least ' * bool(design.purity_is_least)}"
+        f"{100.0 * design.purity:.4g} %, by {study.answer}.",
         *_tried(study.trial_of(study.wanted)),
     ]
 

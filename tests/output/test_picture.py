@@ -120,7 +120,7 @@ def test_background_is_paper_and_the_part_is_not():
 def test_each_face_of_a_box_has_its_own_shade():
     _, stand, _ = standing(box())
     normals = np.array([n for n in (*np.eye(3), *-np.eye(3)) if n @ stand.camera.back > 0.0])
-    shades = shading_output.lit(normals, stand.camera, shading_output.STEEL).mean(axis=1)
+    shades = shading_output.lit(normals, stand.camera, shading_output.STEEL_COLOUR).mean(axis=1)
     assert len(shades) == 3
     assert np.diff(np.sort(shades)).min() > 0.03
 

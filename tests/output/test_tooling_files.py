@@ -217,7 +217,7 @@ def test_no_gate_hides_the_part_that_is_drawn_at_it(lying):
 
 def test_a_picture_of_one_device_is_no_wider_than_what_it_shows(lying):
     bowl, every = lying
-    few, shares = every[: tooling_figures.LONG], np.full(len(every), 1.0 / len(every))
+    few, shares = every[: tooling_figures.MAX_ROWS_OF_ONE_PANEL], np.full(len(every), 1.0 / len(every))
     wide = [
         tooling_figures.chain(bowl.devices[:count], few, shares).get_size_inches()[0] for count in (1, 2, 3)
     ]
@@ -259,7 +259,7 @@ def test_rails_are_cut_across_under_what_hangs():
 def test_many_orientations_stand_in_two_panels(lying):
     """A page of one column of them was three times as high as wide."""
     bowl, every = lying
-    assert len(every) > tooling_figures.LONG
+    assert len(every) > tooling_figures.MAX_ROWS_OF_ONE_PANEL
     page = tooling_figures.chain(bowl.devices[:1], every, np.full(len(every), 1.0 / len(every)))
     named = {text.get_text(): text.get_position() for text in page.texts}
     places = {round(named[one.name][0], 3) for one in every}

@@ -116,7 +116,7 @@ def over_cuts(part, passages, orientations):
         of mass; and ``reach``, how far the view goes, in radii of the part.
     """
     tracks = [shading.track(*tooling_views.track_below(passage, orientations)) for passage in passages]
-    return shading.viewed(part, tooling_views.VIEW) | {
+    return shading.viewed(part, tooling_views.TO_VIEWER) | {
         "reach": REACH,
         "tracks": tracks,
         "poses": [_over_cut(passage, place) for place, passage in enumerate(passages)],

@@ -17,7 +17,18 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.output import DPI, style
-from feederscrew.output.shading import AWAY, EDGE, MISSED, STEEL, Camera, Rays, Shot, averaged, edges, lit
+from feederscrew.output.shading import (
+    AWAY,
+    EDGE_COLOUR,
+    MISSED,
+    STEEL_COLOUR,
+    Camera,
+    Rays,
+    Shot,
+    averaged,
+    edges,
+    lit,
+)
 from feederscrew.output.tooling_views import camera_at
 from feederscrew.output.trial.figures import LOOKS, solids, unrolled
 from feederscrew.output.trial.rides import ALWAYS, DeviceRide, rides_to_show
@@ -188,7 +199,7 @@ class FilmSet:
             mask = (facets != MISSED) & (first <= facets) & (facets < last)
             self.samples[mask] = _shaded(normals[mask], self.camera, colour)
         step = (self.up[0] - self.up[1]) / rays.size
-        self.samples[edges(depths, normals, self.camera, step)] = EDGE
+        self.samples[edges(depths, normals, self.camera, step)] = EDGE_COLOUR
         self.image = averaged(self.samples, SAMPLES)
         self.nearness = (AWAY - depths) * rays.size  # [m] towards the viewer; -inf where nothing is
         self.air = [self._cloud(cone) for cone in air_cones(stage, run.bowl.track.width)]  # of each jet
@@ -252,7 +263,7 @@ class FilmSet:
         inside = np.isfinite(depths)
         shades = np.ones((*depths.shape, 3))
         shades[inside] = _shaded(normals[inside], camera, colour)
-        shades[edges(depths, normals, camera, (self.up[0] - self.up[1]) / size) & inside] = EDGE
+        shades[edges(depths, normals, camera, (self.up[0] - self.up[1]) / size) & inside] = EDGE_COLOUR
         front = inside & (own >= nearness[box] - 1e-3 * size)
         hidden = inside & ~front
         samples[box][front] = shades[front]
@@ -339,7 +350,11 @@ def _poses(path: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.
 def _colour(ride: DeviceRide) -> NDArray[np.float64]:
     """Steel for a part that passes, else the colour of its fate."""
     rgb = LOOKS[ride.fate][0]
-    return STEEL if ride.fate == "passed" else np.array([int(rgb[n : n + 2], 16) / 255 for n in (1, 3, 5)])
+    return (
+        STEEL_COLOUR
+        if ride.fate == "passed"
+        else np.array([int(rgb[n : n + 2], 16) / 255 for n in (1, 3, 5)])
+    )
 
 
 def _blowing(scene: FilmSet, ride: DeviceRide, begin: float, end: float) -> list[bool]:
@@ -363,7 +378,11 @@ def _queue(part: Part, run: TrialRun, queue: QueuedParts) -> Iterator[tuple[NDAr
         for watch, pulses in zip(air.watches, queue.pulses):
             blowing[watch.jets] = any(begin <= time and before < end for begin, end in pulses)
         words = f"queue of {queue.parts}: {left} left, {returned} returned"
-        yield scene.drawn(poses, [STEEL] * len(poses), blowing.tolist()), words, f"{time:.2f} s, {speed}"
+        yield (
+            scene.drawn(poses, [STEEL_COLOUR] * len(poses), blowing.tolist()),
+            words,
+            f"{time:.2f} s, {speed}",
+        )
         before = time
 
 

@@ -36,7 +36,7 @@ def scene(part, *tried) -> tuple[Any, ...]:
         What each pose is, and what becomes of it.
     """
     rides, run, sent = rides_to_show(part, *tried), tried[0], tried[0].course
-    view = shading.viewed(part, tooling_views.VIEW)
+    view = shading.viewed(part, tooling_views.TO_VIEWER)
     cut = section(sent.stations[rides[0].place], run.bowl.track, ABOVE * view["radius"] * MM)
     paths = [_path(ride.path, sent.principal) for ride in rides]
     return view | {
