@@ -45,7 +45,8 @@ def gather(work, jobs) -> Any:
             raise
     finally:
         pool.shutdown(cancel_futures=True)
-    return [task.result() for task in tasks], partial
+    ended = takewhile(lambda task: not task.cancelled(), tasks)  # work may end before all it has begun
+    return [task.result() for task in ended], partial
 
 
 def in_batches(batch, count, size, jobs, progress=None) -> Any:

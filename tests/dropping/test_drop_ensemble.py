@@ -1,5 +1,6 @@
 """Launches, many drops and their counts."""
 
+import time
 from concurrent.futures import wait
 
 import drop_bodies
@@ -98,6 +99,19 @@ def test_an_interrupt_before_anything_is_there_is_passed_on(monkeypatch):
     monkeypatch.setattr(ensemble, "sample", stop)
     with pytest.raises(KeyboardInterrupt):
         seeded(count=300)
+
+
+def test_work_may_end_before_all_that_it_began():
+    """Draws that cannot hold any more end so: a task that waits is cancelled, which is no fault."""
+
+    def work(begin):
+        first = begin(int, 7)
+        begin(time.sleep, 0.2)  # on the only thread
+        begin(int, 9)
+        first.result()
+
+    results, partial = gather(work, 1)
+    assert results[0] == 7 and 9 not in results and not partial
 
 
 def test_a_fault_in_a_batch_is_told(monkeypatch):
