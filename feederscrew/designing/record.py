@@ -534,7 +534,8 @@ def _shortfalls(study: DesignStudy) -> Iterator[str]:
         ]
         yield from tuple(dict.fromkeys(lines))[:3]
         return
-    if low < RATE_KEPT * study.request.target:
+    followed = bool(study.queues) or study.robust.share >= DRAWS_HELD  # draws that fail end a proof
+    if followed and low < RATE_KEPT * study.request.target:
         yield (
             f"delivers {minute * study.delivered[0]:.3g}/min (at least {minute * low:.3g}) of the "
             f"{minute * study.request.target:.3g}/min asked for"
@@ -545,7 +546,7 @@ def _shortfalls(study: DesignStudy) -> Iterator[str]:
                 f"at {queue.fill} fill {minute * queue.rate:.3g}/min are delivered (at most "
                 f"{minute * queue.ends[1]:.3g})"
             )
-    if not purity >= PURE:
+    if followed and not purity >= PURE:
         text = "nothing left the queue" if np.isnan(purity) else f"purity {100.0 * purity:.3g} %"
         yield f"{text}, {100.0 * PURE:.3g} % are asked for{_instead(study)}"
     if study.jams:

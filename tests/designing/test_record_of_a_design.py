@@ -55,6 +55,13 @@ def test_it_holds_only_where_nothing_is_missing():
     assert "of the 40/min asked for" in study(queue(right=30, left=30, returned=20)).why
 
 
+def test_draws_that_fail_before_any_queue_are_what_it_lacks():
+    """No queue was followed: a rate of 0 and a purity of nothing would tell of one."""
+    without_queue = study(queue(), held=3, queues=())
+    assert without_queue.status != "holds" and len(without_queue.shortfalls) == 1
+    assert without_queue.shortfalls[0].startswith("3 of 20 draws")
+
+
 def test_the_bowl_file_says_what_counted_as_one(tmp_path):
     for up, said in (((), "of A@0, purity"), (("A", "B"), "of A@0, A, B at any heading counted in: a rule")):
         made = replace(study(queue()), request=DesignRequest(40.0 / 60.0, up=up))
