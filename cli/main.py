@@ -73,6 +73,7 @@ class Fence(click.Group):
             status = status if isinstance(status, int) else 0
             if was_heard() and status in (0, 1):  # what is there was given; make must not take it as done
                 status = INTERRUPTED
+        _leave_a_full_stderr()
         sys.exit(status)
 
     def _status(self, arguments, extra):
@@ -123,6 +124,15 @@ def _without_stdout(status):
     with contextlib.suppress(OSError, ValueError):  # a stream of a test has no number
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return status
+
+
+def _leave_a_full_stderr():
+    """Throw away what stderr cannot take: Python's own last flush of it would end in status 120."""
+    try:
+        sys.stderr.flush()
+    except (OSError, ValueError):
+        with contextlib.suppress(OSError, ValueError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
 
 
 def _of_the_system(error):

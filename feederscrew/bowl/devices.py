@@ -138,7 +138,7 @@ def check_written(chain: Iterable[Device], name: str) -> None:
     Raises
     ------
     FeederError
-        If a text is no device, or one of which some attribute is another.
+        If a text does not name a device, or some attribute of that device differs.
     """
     for device in chain:
         line = f"{device.kind}: {value_text(device)}"

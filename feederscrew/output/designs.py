@@ -831,4 +831,4 @@ def camera_from(place):
     """Return the view from a place (3,) [1] of which the third number is up."""
     towards_viewer = vectors.unit(place)
     right = vectors.unit(np.cross((0.0, 0.0, 1.0), towards_viewer))
-    return shading.Camera(right=right, up=np.cross(towards_viewer, right), back=towards_viewer)
+    return shading.Camera(right=right, up=np.cross(towards_viewer, right), towards_viewer=towards_viewer)

@@ -90,7 +90,7 @@ class Camera:
 
     right: np.ndarray  # (3,)
     up: np.ndarray  # (3,)
-    back: np.ndarray  # (3,) towards the viewer
+    towards_viewer: np.ndarray  # (3,) towards the viewer
 
     def project(self, points):
         """Project (N, 3) points to (N, 2), across and up the image, in the points' unit."""
@@ -99,7 +99,9 @@ class Camera:
     def origins(self, across, up):
         """Return the ray starts (rows, columns, 3) for a grid of image positions, in sizes of the solid."""
         u, v = np.meshgrid(np.asarray(across, SINGLE_PRECISION), np.asarray(up, SINGLE_PRECISION))
-        right, above, to_viewer = (axis.astype(SINGLE_PRECISION) for axis in (self.right, self.up, self.back))
+        right, above, to_viewer = (
+            axis.astype(SINGLE_PRECISION) for axis in (self.right, self.up, self.towards_viewer)
+        )
         return u[..., None] * right + v[..., None] * above + SINGLE_PRECISION(AWAY) * to_viewer
 
     def cast(self, solid, across, up):
@@ -109,14 +111,14 @@ class Camera:
     def meet(self, solid, across, up) -> tuple[Any, ...]:
         """Return depths, normals and facets (rows, columns), ``MISSED`` without one, over a grid."""
         origins = self.origins(across, up)
-        distances, normals, facets = solid.hits(origins.reshape(-1, 3), -self.back)
+        distances, normals, facets = solid.hits(origins.reshape(-1, 3), -self.towards_viewer)
         grid = origins.shape[:2]
         return distances.reshape(grid), normals.reshape(origins.shape), facets.reshape(grid)
 
     def sees(self, solid, points, slack=0.01, away=AWAY):
         """Return which of (N, 3) points, less than ``away`` behind the solid, it does not hide; (N,) bool."""
-        starts = points + away * self.back
-        distances = solid.hits(starts, -self.back)[0]
+        starts = points + away * self.towards_viewer
+        distances = solid.hits(starts, -self.towards_viewer)[0]
         return distances > away - slack
 
 
@@ -417,7 +419,9 @@ def _covered(bounds, across, up) -> tuple[Any, ...]:
 
 def lit(normals, camera: Camera, colour):
     """Return the colour of matt surfaces (N, 3) under the lights; from behind it is that from the front."""
-    by_camera = normals @ np.column_stack([camera.right, camera.up, camera.back]).astype(SINGLE_PRECISION)
+    by_camera = normals @ np.column_stack([camera.right, camera.up, camera.towards_viewer]).astype(
+        SINGLE_PRECISION
+    )
     by_camera *= np.where(by_camera[:, 2:] < 0.0, SINGLE_PRECISION(-1.0), SINGLE_PRECISION(1.0))
     light = np.full(len(by_camera), AMBIENT, dtype=SINGLE_PRECISION)
     for towards, strength in LIGHTS:
@@ -431,7 +435,7 @@ def edges(depths, normals, camera, step):
     """Return which samples lie on an outline (two wide) or on a sharp edge (one wide)."""
     is_hit = np.isfinite(depths)
     depths = np.where(is_hit, depths, 2.0 * AWAY)
-    facing = np.maximum(np.abs(normals @ camera.back.astype(SINGLE_PRECISION)), 0.05)
+    facing = np.maximum(np.abs(normals @ camera.towards_viewer.astype(SINGLE_PRECISION)), 0.05)
     slope = step * np.sqrt(1.0 - np.minimum(facing, 1.0) ** 2) / facing  # depth a flat surface gains a sample
     outline, crease = np.zeros_like(is_hit), np.zeros_like(is_hit)
     for axis in (0, 1):
@@ -452,7 +456,7 @@ def _floor(solid, stance, across, up):
     """White paper with the soft shadow of the part."""
     camera, axes = stance.camera, stance.floor_axes
     start = camera.origins(across, up) @ axes.T  # in floor axes
-    towards = -camera.back @ axes.T
+    towards = -camera.towards_viewer @ axes.T
     reach = (-stance.height - start[..., 2]) / towards[2]
     spot = start[..., :2] + reach[..., None] * towards[:2]
     shadow, lowest, cell = _shadow(solid, stance)

@@ -182,13 +182,15 @@ def lines(vertices, faces, looked):
     """
     centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     rays = Rays(vertices, faces, centre)
-    a, b, push = _edges(rays.points, faces, looked.back)
+    a, b, push = _edges(rays.points, faces, looked.towards_viewer)
     count = np.maximum(1, np.ceil(np.sqrt(((b - a) ** 2).sum(axis=1)) / EDGE_STEP_SIZES)).astype(int)
     owner = np.repeat(np.arange(len(a)), count)
     place = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
     ends = [a[owner] + (b - a)[owner] * ((place + k) / count[owner])[:, None] for k in (0, 1)]
     middle = (
-        0.5 * (ends[0] + ends[1]) + SURFACE_OFFSET_SIZES * push[owner] + SURFACE_OFFSET_SIZES * looked.back
+        0.5 * (ends[0] + ends[1])
+        + SURFACE_OFFSET_SIZES * push[owner]
+        + SURFACE_OFFSET_SIZES * looked.towards_viewer
     )
     visible = looked.sees(rays, middle, slack=SURFACE_OFFSET_SIZES)
     same = owner[1:] == owner[:-1]  # pieces of one edge that are seen one after the other are one

@@ -230,7 +230,7 @@ def camera_at(angle, turn=0.0) -> Camera:
     to_viewer /= np.sqrt((to_viewer**2).sum())
     right = np.cross(up, to_viewer)
     right /= np.sqrt((right**2).sum())
-    return Camera(right=right, up=np.cross(to_viewer, right), back=to_viewer)
+    return Camera(right=right, up=np.cross(to_viewer, right), towards_viewer=to_viewer)
 
 
 def _marks(axes, passage, orientations, camera, centre, colour) -> None:

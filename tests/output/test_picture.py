@@ -68,14 +68,16 @@ def test_the_image_covers_the_projected_area():
     grid = np.arange(-1.2, 1.2, step)
     depths, _ = stand.camera.cast(solid, grid, grid)
     faces = np.array([SIDES[1] * SIDES[2], SIDES[0] * SIDES[2], SIDES[0] * SIDES[1]]) / solid.size**2
-    assert np.isfinite(depths).sum() * step**2 == pytest.approx(faces @ np.abs(stand.camera.back), rel=0.01)
+    assert np.isfinite(depths).sum() * step**2 == pytest.approx(
+        faces @ np.abs(stand.camera.towards_viewer), rel=0.01
+    )
 
 
 def test_the_part_hides_the_back_of_its_contact_polygon_only():
     solid, stand, found = standing(box())
     polygon = found.polygons[0] / solid.size
     edges = 0.5 * (polygon + np.roll(polygon, -1, axis=0))  # middle of each edge
-    nearness = edges @ stand.camera.back
+    nearness = edges @ stand.camera.towards_viewer
     seen = stand.camera.sees(solid, edges)
     assert seen[np.argsort(nearness)].tolist() == [False, False, True, True]
     assert not stand.camera.sees(solid, np.array([[0.0, 0.0, 0.0]]))[0]
@@ -91,10 +93,12 @@ def test_the_part_stands_on_the_floor():
 
 def test_the_camera_is_a_right_handed_frame_that_looks_down():
     _, stand, _ = standing(box())
-    frame = np.stack([stand.camera.right, stand.camera.up, stand.camera.back])
+    frame = np.stack([stand.camera.right, stand.camera.up, stand.camera.towards_viewer])
     assert frame @ frame.T == pytest.approx(np.eye(3), abs=1e-12)
     assert np.linalg.det(frame) == pytest.approx(1.0)
-    assert stand.camera.back @ stand.floor_axes[2] == pytest.approx(np.sin(shading_output.ELEVATION))
+    assert stand.camera.towards_viewer @ stand.floor_axes[2] == pytest.approx(
+        np.sin(shading_output.ELEVATION)
+    )
     assert stand.camera.up @ stand.floor_axes[2] == pytest.approx(np.cos(shading_output.ELEVATION))
 
 
@@ -119,7 +123,7 @@ def test_background_is_paper_and_the_part_is_not():
 
 def test_each_face_of_a_box_has_its_own_shade():
     _, stand, _ = standing(box())
-    normals = np.array([n for n in (*np.eye(3), *-np.eye(3)) if n @ stand.camera.back > 0.0])
+    normals = np.array([n for n in (*np.eye(3), *-np.eye(3)) if n @ stand.camera.towards_viewer > 0.0])
     shades = shading_output.lit(normals, stand.camera, shading_output.STEEL_COLOUR).mean(axis=1)
     assert len(shades) == 3
     assert np.diff(np.sort(shades)).min() > 0.03

@@ -254,7 +254,9 @@ def test_a_part_behind_a_blade_shines_through():
     part, blade = trimesh.creation.box((1.0, 1.0, 1.0)), trimesh.creation.box((4.0, 4.0, 0.1))
     blade.apply_translation((0.0, 0.0, 2.0))
     camera = Camera(
-        right=np.array([1.0, 0.0, 0.0]), up=np.array([0.0, 1.0, 0.0]), back=np.array([0.0, 0.0, 1.0])
+        right=np.array([1.0, 0.0, 0.0]),
+        up=np.array([0.0, 1.0, 0.0]),
+        towards_viewer=np.array([0.0, 0.0, 1.0]),
     )
     meshes = ((one.vertices, one.faces) for one in (blade, part))
     image, _, _ = shading.pair_picture(*meshes, np.zeros(3), camera, 1.5, 60, 60)

@@ -189,7 +189,7 @@ def scene(part, resting_aspects, rows):
     stances = [
         stance(near, resting_aspects.normals[row], resting_aspects.heights[row] / MM / radius) for row in rows
     ]
-    towards_viewer = stances[0].floor_axes @ stances[0].camera.back
+    towards_viewer = stances[0].floor_axes @ stances[0].camera.towards_viewer
     return shading.viewed(part, towards_viewer) | {
         "poses": [_pose(resting_aspects, row, standing) for row, standing in zip(rows, stances)],
     }

@@ -187,7 +187,7 @@ class FilmSet:
         middle = 0.5 * (flat.min(axis=0) + flat.max(axis=0))
         middle[1] -= 0.0 if places is corners else LOWERED * half
         self.centre = middle @ np.array([self.camera.right, self.camera.up])
-        self.centre += (places.mean(axis=0) @ self.camera.back) * self.camera.back
+        self.centre += (places.mean(axis=0) @ self.camera.towards_viewer) * self.camera.towards_viewer
         rays = Rays(corners, faces, self.centre)
         pixel = 2.0 * half / columns
         frame = Shot(-half, -0.5 * rows * pixel, pixel, columns, rows)
@@ -247,7 +247,7 @@ class FilmSet:
     ) -> tuple[slice, slice] | None:
         """Add one part, its rays cast along its own axes: its mesh is prepared once; where it is drawn."""
         turn = (Rotation.from_quat(pose[[4, 5, 6, 3]]) * self.principal).as_matrix()
-        axes = [turn.T @ axis for axis in (self.camera.right, self.camera.up, self.camera.back)]
+        axes = [turn.T @ axis for axis in (self.camera.right, self.camera.up, self.camera.towards_viewer)]
         camera, size = Camera(*axes), self.part.size
         offset = pose[:3] - self.centre
         x, y = offset @ self.camera.right, offset @ self.camera.up
@@ -259,7 +259,7 @@ class FilmSet:
         box = rows, columns
         across, up = (self.across[columns] - x) / size, (self.up[rows] - y) / size
         depths, normals = camera.cast(self.part, across, up)
-        own = (AWAY - depths) * size + offset @ self.camera.back
+        own = (AWAY - depths) * size + offset @ self.camera.towards_viewer
         inside = np.isfinite(depths)
         shades = np.ones((*depths.shape, 3))
         shades[inside] = _shaded(normals[inside], camera, colour)
@@ -307,7 +307,7 @@ def _bowl_around(stage: Stage, run: TrialRun, above: float, below: float) -> Mes
 
 def _from_above(camera: Camera) -> Camera:
     """A camera that looks more steeply down, over the wall that is nearer."""
-    towards_viewer = camera.back * [0.45, 0.45, 1.0]
+    towards_viewer = camera.towards_viewer * [0.45, 0.45, 1.0]
     towards_viewer /= np.linalg.norm(towards_viewer)
     return Camera(camera.right, np.cross(towards_viewer, camera.right), towards_viewer)
 

@@ -299,7 +299,7 @@ class ModelReader:
         MeshError
             If it is of an extension that changes the shape and is not read.
         KeyError, ValueError
-            If an attribute is missing, or is no number.
+            If an attribute is missing, or not a number.
         """
         if self.mark:
             self.mark, self.parser.CharacterDataHandler = "", None

@@ -49,7 +49,10 @@ def test_a_full_disk_under_stdout_is_one_line(arguments):
 
 
 @linux
-def test_a_full_disk_under_stderr_does_not_cost_the_answer():
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_full_disk_under_stderr_does_not_cost_the_answer(monkeypatch, unbuffered):
+    """Where stderr is buffered, Python's last flush of it once ended in status 120."""
+    monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
     with FULL.open("wb") as full:
         done = program("inertia", NUT, stdout=subprocess.PIPE, stderr=full)
     assert (done.returncode, b"volume" in done.stdout) == (0, True)
