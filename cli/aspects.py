@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli import grouped, options, waiting
+from feederscrew_cli import grouped, options, progress
 from feederscrew_cli.values import Number, Whole
 
 SURFACES = click.Choice(["soft", "medium", "hard"])
@@ -93,8 +93,8 @@ def _study(solid, chosen, out):
     if waits(solid):
         out.say("Compiling what large hulls need, once on this machine: about ten seconds.")
     out.say(f"Material: {solid.material}")
-    with out.step("aspects"), waiting.bar(out, "drops") as bar:
-        study = aspects_study(solid, **chosen, progress=bar.reach, before=lambda _: waiting.drops(out))
+    with out.step("aspects"), progress.bar(out, "drops") as bar:
+        study = aspects_study(solid, **chosen, progress=bar.reach, before=lambda _: progress.drops(out))
     if study.recommended is not None:
         out.say(f"Recommended: {study.recommended.rule}")
     out.warn(*study.aspects.warnings)

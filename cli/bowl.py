@@ -3,7 +3,7 @@
 import click
 from click.core import ParameterSource
 
-from feederscrew_cli import grouped, options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, progress
 
 TARGET = options.target("Parts that must leave the bowl: 120/min.  [needed with PART]")
 ASPECT = click.option(
@@ -98,7 +98,7 @@ def bowl(part, target, solid_request, measured, bowl, fields, pictures, out, wan
     effective = (columns.conditions(solid) if solid else {}) | bowls.texts(settings)
     name = solid.name if solid else bowls.name(path)
     with out.folder(name, identity | bowls.identity(path), effective) as folder:
-        waiting.conveying(out)
+        progress.conveying(out)
         shape = solids.solid_options(settings, **solid_request)
         tried, own = bowls.verified(path), (solid, bowls.record(settings), orientation.name(wanted))
         holding = tried if proof.holds(tried, *own) else None

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from feederscrew_cli import grouped, options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, progress
 from feederscrew_cli.values import Place
 
 
@@ -124,7 +124,7 @@ def _over_files(sources, launch, as_published, pictures, out):
 
     if any(Path(source).suffix.lower() != ".csv" for source in sources):
         raise click.UsageError("Missing option '--with' - or name CSV files that say which part they are of")
-    with waiting.bar(out, "files") as bar:
+    with progress.bar(out, "files") as bar:
         study = compare_sets(sources, launch=launch, as_published=as_published, progress=bar.reach)
     out.warn(*study.warnings)
     with out.folder("measured", study.inputs) as folder:

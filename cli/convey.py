@@ -1,10 +1,11 @@
 """``feeder convey``."""
 
 from dataclasses import replace
+from typing import Any
 
 import click
 
-from feederscrew_cli import completion, grouped, options, waiting
+from feederscrew_cli import completion, grouped, options, progress
 
 COMMAND_BY_RANGES = {1: "convey curve", 2: "convey map"}  # by how many keys are varied
 
@@ -37,20 +38,41 @@ def convey(bowl, spans, curve, best_phase, pictures, out):
     convey_phase.json, .csv and .png.
     """
     from feederscrew import bowl as bowls
+    from feederscrew.output import convey as convey_output
+    from feederscrew.output import offers
+    from feederscrew.studies import convey as studies
 
     _fitting(spans, curve, best_phase)
     settings, ranges, path = out.settings(bowl), bowls.key_ranges(spans), bowl["path"]
+    record = bowls.record(settings)
     alone = "convey radius" if curve else "convey phase" if best_phase else "convey"
     out = replace(out, command=COMMAND_BY_RANGES[len(ranges)] if ranges else alone)
+    study: Any
     with out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings)) as folder:
+        if ranges or curve or best_phase:
+            progress.conveying(out)
         if len(ranges) == 2:
-            _map(settings, ranges, curve, pictures, folder, out)
+            with out.step("map"):
+                study = studies.velocity_map(settings, ranges, drawn="radius" if curve else None)
+            out.say(*convey_output.map_remarks(study))
+            offered, frame = convey_output.map_offers(study), convey_output.cells(study)
+            document = {"cells": frame}
         elif ranges or curve:
-            _curve(settings, ranges, pictures, folder, out)
+            study = studies.curve(settings, *ranges) if ranges else studies.along_radius(record)
+            out.say(*convey_output.curve_remarks(study))
+            offered, frame = convey_output.curve_offers(study), convey_output.points(study)
+            document = {"cells": frame}
         elif best_phase:
-            _phase(settings, pictures, folder, out)
+            study = studies.best_phase(record)
+            offered, document = convey_output.phase_offers(study), convey_output.phase_document(study)
+            frame = convey_output.phase_summary(document)
         else:
-            _point(settings, pictures, folder, out)
+            study = studies.convey(record)
+            offered, document = convey_output.offers(study), convey_output.document(study)
+            out.warn(*convey_output.remarks(document), *study.warnings)
+            frame = convey_output.summary(document)
+        offers.write(folder, offered, pictures=pictures)
+        out.show(frame, document, spare=None if ranges or curve or best_phase else ())
 
 
 def _fitting(spans, curve, best_phase):
@@ -63,57 +85,3 @@ def _fitting(spans, curve, best_phase):
         )
     if curve and len(spans) == 1:
         raise click.UsageError("--bowl cannot be combined with exactly one --vary - leave one of them out")
-
-
-def _point(settings, pictures, folder, out):
-    from feederscrew import bowl as bowls
-    from feederscrew.output import convey as convey_output
-    from feederscrew.output import offers
-    from feederscrew.studies import convey as studies
-
-    study, texts = studies.convey(bowls.record(settings)), bowls.texts(settings)
-    document = convey_output.document(study) | {"bowl": texts}
-    out.warn(*convey_output.remarks(document), *study.warnings)
-    offers.write(folder, convey_output.offers(study, texts), pictures=pictures)
-    out.show(convey_output.summary(document), document, spare=())
-
-
-def _map(settings, ranges, curve, pictures, folder, out):
-    from feederscrew.output import convey as convey_output
-    from feederscrew.output import offers
-    from feederscrew.studies import convey as studies
-
-    waiting.conveying(out)
-    with out.step("map"):
-        study = studies.velocity_map(settings, ranges, drawn="radius" if curve else None)
-    out.say(*convey_output.map_remarks(study))
-    offers.write(folder, convey_output.map_offers(study), pictures=pictures)
-    frame = convey_output.cells(study)
-    out.show(frame, {"cells": frame})
-
-
-def _curve(settings, ranges, pictures, folder, out):
-    from feederscrew import bowl as bowls
-    from feederscrew.output import convey as convey_output
-    from feederscrew.output import offers
-    from feederscrew.studies import convey as studies
-
-    waiting.conveying(out)
-    study = studies.curve(settings, *ranges) if ranges else studies.along_radius(bowls.record(settings))
-    out.say(*convey_output.curve_remarks(study))
-    offers.write(folder, convey_output.curve_offers(study), pictures=pictures)
-    frame = convey_output.points(study)
-    out.show(frame, {"cells": frame})
-
-
-def _phase(settings, pictures, folder, out):
-    from feederscrew import bowl as bowls
-    from feederscrew.output import convey as convey_output
-    from feederscrew.output import offers
-    from feederscrew.studies import convey as studies
-
-    waiting.conveying(out)
-    study, texts = studies.best_phase(bowls.record(settings)), bowls.texts(settings)
-    best = convey_output.phase_document(study.best)
-    offers.write(folder, convey_output.phase_offers(study, texts), pictures=pictures)
-    out.show(convey_output.phase_summary(best), {"best_phase": best, "bowl": texts})

@@ -6,7 +6,7 @@ import os
 
 import click
 
-from feederscrew_cli import grouped, options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, progress
 from feederscrew_cli.interrupt import INTERRUPTED, held_back, noted
 from feederscrew_cli.values import Angle, Span, Whole
 
@@ -214,7 +214,7 @@ def _ended(study):
 def _stoppable(out):
     """What tells of a search, and ends it where a Ctrl-C was dropped while something loaded."""
     with noted() as let_through:
-        bar = waiting.design(out)
+        bar = progress.design(out)
 
         def tell(text):
             let_through()
@@ -222,7 +222,7 @@ def _stoppable(out):
             out.say(text)
 
         try:
-            yield {"tell": tell, "before": lambda: waiting.trial(out), "progress": bar.reach}
+            yield {"tell": tell, "before": lambda: progress.trial(out), "progress": bar.reach}
         finally:
             bar.end()
 

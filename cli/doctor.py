@@ -1,8 +1,23 @@
-"""``feeder doctor``."""
+"""``feeder doctor``: read from the installation itself, importing nothing heavy."""
+
+import os
+import platform
+import re
+import sys
+from importlib import metadata
+from pathlib import Path
 
 import click
 
+import feederscrew
 from feederscrew_cli import grouped
+
+DISTRIBUTION = "feederscrew"
+EXTRA = re.compile(r"extra\s*==\s*['\"]([^'\"]+)['\"]")
+PACKAGE_NAME = re.compile(r"[A-Za-z0-9._-]+")
+DEVELOPERS = ("test", "oracle", "docs")  # extras that a user has no need of
+KERNELS = "*.nbi"  # one index a compiled function
+SHELLS = ("bash", "zsh", "fish")
 
 
 @grouped.command(short_help="What is installed here, what is missing, and how to get it.")
@@ -12,9 +27,85 @@ def doctor():
     Print the versions of Python and of every library, and which extras are there. Of one that is not, the
     line that installs it is printed. Then where compiled kernels are kept, and how to turn on completion.
     """
-    from feederscrew_cli import health
-
-    for title, lines in health.report().items():
+    for title, lines in report().items():
         click.echo(click.style(title, bold=True))
         for name, value in lines:
             click.echo(f"  {name:<20} {value}")
+
+
+def report():
+    """Every finding.
+
+    Returns
+    -------
+    dict of str to list of (str, str)
+        Name and state by section.
+    """
+    needed, extras = requirements()
+    return {
+        "Program": [
+            ("feeder", feederscrew.__version__),
+            ("python", f"{platform.python_version()} ({sys.executable})"),
+            ("system", platform.platform()),
+        ],
+        "Libraries": [(name, installed(name) or "missing: pip install feederscrew") for name in needed],
+        "Extras": [(extra, _extra(extra, names)) for extra, names in extras.items()],
+        "Compiled kernels": kernels(),
+        "Shell": [("completion", completion()), ("colours", _colours())],
+    }
+
+
+def requirements():
+    """Libraries that are always needed, and those of each extra by its name."""
+    extras: dict[str, list[str]] = {}
+    needed = []
+    for line in metadata.requires(DISTRIBUTION) or []:
+        named, extra = PACKAGE_NAME.match(line), EXTRA.search(line)
+        name = named[0] if named else line
+        if extra is None:
+            needed.append(name)
+        elif name != DISTRIBUTION and extra[1] not in DEVELOPERS:
+            extras.setdefault(extra[1], []).append(name)
+    return sorted(needed), extras
+
+
+def installed(name):
+    """The version of a library, or None."""
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return None
+
+
+def _extra(extra, names):
+    there = {name: installed(name) for name in names}
+    missing = [name for name, version in there.items() if version is None]
+    if missing:
+        return f"missing {', '.join(missing)}: pip install '{DISTRIBUTION}[{extra}]'"
+    return ", ".join(f"{name} {version}" for name, version in there.items())
+
+
+def kernels():
+    """How many compiled functions are kept, and where; they are compiled on first use."""
+    own = os.environ.get("NUMBA_CACHE_DIR")
+    home = Path(own) if own else Path(feederscrew.__file__).parent
+    count = sum(1 for _ in home.rglob(KERNELS))
+    state = f"{count} functions kept" if count else "none yet: the first map or drop test compiles them"
+    writable = "" if os.access(home, os.W_OK) else " (not writable: set NUMBA_CACHE_DIR)"
+    return [("state", state), ("place", f"{home}{writable}")]
+
+
+def completion():
+    """The line that turns completion on in the shell that is in use."""
+    shell = Path(os.environ.get("SHELL", "")).name
+    if shell not in SHELLS:
+        return "for bash, zsh and fish: see docs/examples.md"
+    if shell == "fish":
+        return "_FEEDER_COMPLETE=fish_source feeder > ~/.config/fish/completions/feeder.fish"
+    return f'eval "$(_FEEDER_COMPLETE={shell}_source feeder)" in ~/.{shell}rc'
+
+
+def _colours():
+    if os.environ.get("NO_COLOR"):
+        return "off: NO_COLOR is set"
+    return "on" if sys.stdout.isatty() else "off: not a terminal"

@@ -1,13 +1,13 @@
 """``feeder drop``."""
 
 import os
+from dataclasses import replace
 
 import click
 
-from feederscrew_cli import grouped, options, tosses, waiting
-from feederscrew_cli import plate as plates
+from feederscrew_cli import grouped, options, progress
 from feederscrew_cli.interrupt import held_back
-from feederscrew_cli.values import Whole
+from feederscrew_cli.values import Number, Place, Whole
 
 # a launch preset and the ranges that replace its own
 CONDITIONS = (
@@ -41,6 +41,56 @@ TEST = (  # how often and how it is dropped
         "--trace", type=Whole(1, 1000), metavar="K", help="With -o: the motion of the first K drops."
     ),
 )
+REPLACED_BY_FILE = {"fall": "--height", "spin": "--spin", "speed": "--speed"}  # what the file says instead
+LAUNCHES = click.option(
+    "--launches",
+    metavar="FILE",
+    type=Place(),
+    help="Follow each launch of a CSV file from its own state, in place of random ones.",
+)
+PLATE_OPTIONS = {
+    "paths": "--config",
+    "overrides": "--set",
+    "amplitudes": "--amplitude",
+    "seconds": "--seconds",
+}
+
+
+def _plate_options(shaken, **others):
+    """The options of a plate, or None; a wrong call where they come without ``--plate``."""
+    if shaken:
+        return others
+    for keyword, option in PLATE_OPTIONS.items():
+        if others[keyword]:
+            raise click.UsageError(f"{option} is for a vibrating plate - give --plate as well")
+    return None
+
+
+PLATE = options.group(  # None unless it is given
+    "plate",
+    click.option("--plate", "shaken", is_flag=True, help="The plane vibrates with a bowl's drive."),
+    click.option(
+        "--config",
+        "paths",
+        metavar="FILE",
+        type=options.FILE,
+        multiple=True,
+        help="With --plate: the bowl file (YAML); give it again for a further plate.",
+    ),
+    options.overrides,
+    click.option(
+        "--amplitude",
+        "amplitudes",
+        metavar="LIST",
+        help="With --plate: a plate for each, '78%,80%,82%' of the bowl's or '0.3 mm,0.4 mm'.",
+    ),
+    click.option(
+        "--seconds",
+        type=Number(0.05, 3600.0),
+        help="With --plate: how long each part is on it.  [default: 5]",
+    ),
+    pack=_plate_options,
+)
 
 
 @grouped.command(
@@ -51,8 +101,8 @@ TEST = (  # how often and how it is dropped
 @options.launch
 @options.group("own", *CONDITIONS)
 @options.group("test", *TEST)
-@tosses.launches
-@plates.plate
+@LAUNCHES
+@PLATE
 @options.pictures
 @options.output
 def drop(part, launch, test, launches, plate, pictures, own, out):
@@ -93,9 +143,9 @@ def drop(part, launch, test, launches, plate, pictures, own, out):
         raise click.UsageError("--launches is for a plane at rest - leave out --launches or --plate")
     test["jobs"] = test["jobs"] or os.cpu_count()
     if plate:
-        plates.run(part, plate, launch, own, test, pictures, out)
+        _on_plates(part, plate, launch, own, test, pictures, out)
     elif launches:
-        tosses.run(part, launches, own, test | {"until": until, "traced": trace}, pictures, out)
+        _of_file(part, launches, own, test | {"until": until, "traced": trace}, pictures, out)
     else:
         _on_floor(part, launch, own, test | {"until": until, "traced": trace or 0}, pictures, out)
 
@@ -118,9 +168,87 @@ def _on_floor(part, launch, own, test, pictures, out):
 
     solid = out.part(part)
     with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:
-        with waiting.bar(out, "drops") as bar:
-            values = {"progress": bar.reach, "before": lambda: waiting.drops(out)}
+        with progress.bar(out, "drops") as bar:
+            values = {"progress": bar.reach, "before": lambda: progress.drops(out)}
             study = drop_study(solid, launch, **own, **values, **test)
         out.warn(*drop_output.remarks(study))
         offers.write(folder, drop_output.offers(study), pictures=pictures)
     out.show(drop_output.counts(study), drop_output.document(study))
+
+
+def _on_plates(part, plate, launch, own, test, pictures, out):
+    """Put the part on each plate, write and tell what becomes of it."""
+    with held_back():
+        from feederscrew.output import columns, offers
+        from feederscrew.output import plate as plate_output
+        from feederscrew.studies.plate import shake
+
+    bowls, names, inputs, values = _bowls(plate)
+    out = replace(out, command="drop plate")
+    solid = out.part(part)
+    out.say(*plate_output.notes(bowls))
+    inputs = solid.inputs | inputs
+    with out.folder(solid.name, inputs, columns.conditions(solid) | values) as folder:
+        with progress.bar(out, "parts") as bar:
+            document = {"progress": bar.reach, "before": lambda: progress.plate(out)}
+            study = shake(
+                solid, bowls, launch, **own, names=names, seconds=plate["seconds"], **document, **test
+            )
+        out.say(*plate_output.summary(study))
+        out.warn(*plate_output.remarks(study))
+        offers.write(folder, plate_output.offers(study), pictures=pictures)
+    frame = plate_output.plates(study)
+    out.show(
+        frame,
+        plate_output.document(study),
+        hidden=plate_output.HIDDEN_PLATE_COLUMNS,
+        spare=plate_output.spare(frame),
+    )
+
+
+def _bowls(plate):
+    """The Bowl of every plate, what each is called, the files they come from, and their values."""
+    from feederscrew import bowl as bowls
+
+    paths = plate["paths"] or (None,)
+    settings = [bowls.settings(path, plate["overrides"]) for path in paths]
+    driven = [
+        bowls.at_strokes(bowls.record(bowl_settings), plate["amplitudes"]) for bowl_settings in settings
+    ]
+    names = [name for name, plates in zip(bowls.bowl_names(paths), driven) for _ in plates]
+    files = {source: digest for path in paths for source, digest in bowls.identity(path).items()}
+    values = {
+        name: bowls.texts(bowl_settings) for name, bowl_settings in zip(bowls.bowl_names(paths), settings)
+    }
+    return [bowl for plates in driven for bowl in plates], names, files, values
+
+
+def _of_file(part, path, own, test, pictures, out):
+    """Follow the launches of a file, write and tell where they lead."""
+    context = click.get_current_context()
+    has_launch = context.get_parameter_source("launch") is click.core.ParameterSource.COMMANDLINE
+    foreign = ["--launch"] * has_launch + [
+        option for key, option in REPLACED_BY_FILE.items() if own[key] is not None
+    ]
+    foreign += [option for key, option in (("until", "--until"), ("traced", "--trace")) if test[key]]
+    if foreign:
+        raise click.UsageError(f"{foreign[0]} cannot be combined with --launches - leave one of them out")
+    with held_back():
+        from feederscrew.output import columns, offers
+        from feederscrew.output import tosses as tosses_output
+        from feederscrew.studies import tosses as tosses_study
+
+    out = replace(out, command="drop launches")
+    solid = out.part(part)
+    with progress.bar(out, "tosses") as bar:
+        values = {"progress": bar.reach, "before": lambda: progress.drops(out)}
+        run = {"runs": test["drops"], "seed": test["seed"], "jobs": test["jobs"]}
+        study = tosses_study.follow(solid, path, own, **values, **run)
+    inputs = solid.inputs | {study.launches.source: study.launches.sha256}
+    with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
+        out.warn(*tosses_output.remarks(study))
+        out.say(*tosses_output.summary(study))
+        offers.write(folder, tosses_output.offers(study), pictures=pictures)
+    out.show(
+        tosses_output.tosses(study), tosses_output.document(study), hidden=tosses_output.HIDDEN_TOSS_COLUMNS
+    )

@@ -39,7 +39,6 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out):
             solid, record(bowl_settings), aspect, heading=heading
         )
         out.say(*floor_output.remarks(study), *(floor_output.map_remarks(study) if folder else ()))
-        offered = floor_output.offers(study, texts(bowl_settings))
-        offers.write(folder, offered, pictures=pictures)
-    document = floor_output.document(study, texts(bowl_settings))
+        offers.write(folder, floor_output.offers(study), pictures=pictures)
+    document = floor_output.document(study)
     out.show(floor_output.printed(document, out.format), document)

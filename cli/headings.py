@@ -32,8 +32,8 @@ def headings(part, aspect, bowl, pictures, out):
     with out.folder(solid.name, solid.inputs, conditions) as folder:
         result = study(solid, record(bowl_settings), aspect)
         out.say(headings_output.answer(result), *headings_output.remarks(result))
-        offers.write(folder, headings_output.offers(result, texts(bowl_settings)), pictures=pictures)
-    frame, document = headings_output.frame(result), headings_output.document(result, texts(bowl_settings))
+        offers.write(folder, headings_output.offers(result), pictures=pictures)
+    frame, document = headings_output.frame(result), headings_output.document(result)
     out.show(
         frame, document, hidden=headings_output.HIDDEN_HEADING_COLUMNS, spare=headings_output.SPARE_COLUMNS
     )

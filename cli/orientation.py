@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from feederscrew_cli import options, waiting
+from feederscrew_cli import options, progress
 from feederscrew_cli.values import Angle, Place, Whole
 
 CHAIN_OPTIONS = (
@@ -122,10 +122,10 @@ def choice(taken):
 
 def telling(out):
     """Return the keywords of ``studies.rate.shares`` that tell how far it is."""
-    bar = waiting.bar(out, "parts")
+    bar = progress.bar(out, "parts")
 
     def before(drops):
-        (waiting.plate if drops is None else waiting.drops)(out)
+        (progress.plate if drops is None else progress.drops)(out)
         click.get_current_context().with_resource(bar)
 
     return {"before": before, "progress": bar.reach}

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import click
 
-from feederscrew_cli import grouped, options, orientation, talk, waiting
+from feederscrew_cli import grouped, options, orientation, progress, talk
 from feederscrew_cli.values import Place, Whole
 
 WANTED = (
@@ -64,7 +64,7 @@ def report(part, wanted, taken, bowl, out):
     from feederscrew.studies.report import report as study
 
     solid = out.part(part)
-    waiting.conveying(out)
+    progress.conveying(out)
     chosen = orientation.choice(taken) | orientation.telling(out)
     result = study(solid, bowl=bowl, **wanted, **chosen, command=repeated(out.arguments))
     tried, bowl_record = verified(bowl["path"]), record(result.settings)

@@ -59,4 +59,4 @@ def slide(betas, as_published, bowl, pictures, out):
         result = study(record(bowl_settings), betas, as_published=as_published)
         offers.write(folder, slide_output.offers(result), pictures=pictures)
     out.say(*slide_output.remarks(result))
-    out.show(slide_output.printed(result, out.format), slide_output.document(result, texts(bowl_settings)))
+    out.show(slide_output.printed(result, out.format), slide_output.document(result))

@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli import grouped, options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, progress
 from feederscrew_cli.interrupt import heeding
 from feederscrew_cli.progress import Progress
 from feederscrew_cli.values import Angle, Whole
@@ -130,7 +130,7 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request):
             result = study(solid, record, progress=heeding(bar.reach), **values)
         if not static:
             without_kinds = partial(tooling_without, part=solid, bowl=record, **values)
-            result = tooling_trials.own_trials(result, without_kinds, before=lambda: waiting.trial(out))
+            result = tooling_trials.own_trials(result, without_kinds, before=lambda: progress.trial(out))
         document = tables.document(result) | {"trial": tooling_trials.document(result.trials)}
         denied, agreed = tables.trials(result)
         out.warn(*result.warnings, *denied)

@@ -49,9 +49,8 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
         grid = study.over(bowl_settings, varied) if spans or folder else None
         out.say(*track_output.remarks(study), *(track_output.map_remarks(grid) if grid else ()))
         if folder:
-            offered = track_output.offers(study, texts(bowl_settings), grid)
-            offers.write(folder, offered, pictures=pictures)
-    document = track_output.document(study, texts(bowl_settings))
+            offers.write(folder, track_output.offers(study, grid), pictures=pictures)
+    document = track_output.document(study)
     out.show(track_output.cells(grid) if spans else track_output.frame_of(document, out.format), document)
 
 

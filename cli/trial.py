@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from feederscrew_cli import grouped, options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, progress
 from feederscrew_cli.interrupt import held_back
 from feederscrew_cli.values import Number, Place, Whole
 
@@ -112,7 +112,7 @@ def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent):
     with held_back():
         from feederscrew import bowl as bowls
         from feederscrew.output import columns, offers
-        from feederscrew.output.trial import files, tables
+        from feederscrew.output.trial import tables
         from feederscrew.studies import trial as studies
 
         if film:
@@ -131,10 +131,10 @@ def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent):
         | ({measured: measured_at_outlet.sha256} if measured_at_outlet else {})
     )
     with out.folder(solid.name, inputs, effective) as folder:
-        with waiting.bar(out, "runs") as bar:
+        with progress.bar(out, "runs") as bar:
             study = studies.trial(
                 solid, driven, aspect_shares=aspect_shares, measured=measured_at_outlet, progress=bar.reach,
-                before=lambda: waiting.trial(out), frames=films.QUEUE_FRAMES if film else 0,
+                before=lambda: progress.trial(out), frames=films.QUEUE_FRAMES if film else 0,
                 **sent | {"jobs": sent["jobs"] or os.cpu_count()},
             )  # fmt: skip
         document = tables.document(study)
@@ -145,7 +145,7 @@ def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent):
         if film:
             films.write_film(film, study)
             out.say(f"Wrote {film}")
-        offers.write(folder, files.offers(study), pictures=pictures)
+        offers.write(folder, tables.offers(study), pictures=pictures)
         frame = tables.frame(study, people=out.format == "table")
         hidden = tables.HIDDEN if not out.verbose else ("fell_mm", "seconds")
         out.show(frame, document, hidden=hidden, spare=tables.spare(study))

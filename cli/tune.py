@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli import grouped, options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, progress
 
 
 @grouped.command(short_help="Amplitude, angle or frequency that reaches a rate.", rare=("gap", "fill"))
@@ -35,14 +35,14 @@ def tune(part, target, wanted, taken, worst, bowl, out):
 
     solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
-    waiting.conveying(out)
+    progress.conveying(out)
     record = bowls.record(settings)
     shares = solid, taken, wanted["rule"]
     arriving, rough = orientation.arriving(out, *shares), orientation.few(*shares)
     with out.folder(solid.name, solid.inputs | arriving(record).inputs, effective) as folder:
         result = study(
             solid, record, target=target, arriving=arriving, rough=rough, worst=worst,
-            progress=waiting.progress_in_bar(out, "settings"), **wanted,
+            progress=progress.progress_in_bar(out, "settings"), **wanted,
         )  # fmt: skip
         tried = bowls.verified(bowl["path"])
         own = solid, record, orientation.name(wanted)

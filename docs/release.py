@@ -81,12 +81,14 @@ def build():
     """Build sdist and wheel in dist/, the wheel from the sdist, and try the wheel outside the checkout."""
     shutil.rmtree(ROOT / "dist", ignore_errors=True)
     with tempfile.TemporaryDirectory() as place:
-        programs = environment(sys.executable, Path(place) / "build", "build")
-        run(programs / "python", "-m", "build", "--outdir", ROOT / "dist", ROOT, cwd=place)
+        tools = environment(sys.executable, Path(place) / "build", "build", "uv")
+        run(tools / "python", "-m", "build", "--outdir", ROOT / "dist", ROOT, cwd=place)
         [wheel] = (ROOT / "dist").glob("*.whl")
         for minor, python in pythons().items():
             home = Path(place) / "py{}{}".format(*minor)
-            programs = environment(python, home, wheel)
+            programs = home / tools.name
+            run(tools / "uv", "venv", "--quiet", "--python", python, home, cwd=place)
+            run(tools / "uv", "pip", "install", "--quiet", "--python", programs / "python", wheel, cwd=place)
             shutil.copy(ROOT / "parts" / PART, home)
             run(programs / "python", "-m", "feederscrew", "--version", cwd=home)
             run(programs / "feeder", "aspects", PART, "-o", "results", cwd=home)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 MAX_TEXT_LENGTH = 360  # characters of a text in all,
 MAX_FIELD_LENGTH = 44  # and of one field
 MOST_LETTERS = 500  # of a text that says an answer
-VIEWS = "feederscrew.output.record_views"
+VIEWS_MODULE = "feederscrew.output.record_views"
 
 
 class ReadableRecord:
@@ -29,7 +29,7 @@ class ReadableRecord:
         cls.__repr__ = ReadableRecord.__repr__  # type: ignore[method-assign]  # or a dataclass makes its own
 
     def __repr__(self) -> str:
-        answer = import_module(VIEWS).answer(self)
+        answer = import_module(VIEWS_MODULE).answer(self)
         if answer is None:
             return text(self)
         line = printable(answer)
@@ -113,4 +113,4 @@ def _field(value: Any) -> str:
 
 
 def _view(kind: str) -> Callable[..., Any]:
-    return getattr(import_module(VIEWS), kind)
+    return getattr(import_module(VIEWS_MODULE), kind)

@@ -11,7 +11,7 @@ from feederscrew.tooling.devices.kinds import KINDS
 
 ROOT = Path(__file__).parent.parent
 ORDER = [
-    "version", "errors", "check", "units", "value_forms", "records", "running", "documents", "dxf",
+    "version", "heavy", "errors", "check", "units", "value_forms", "records", "running", "documents", "dxf",
     "geometry", "part", "resting", "tooling.devices", "bowl", "screw", "mechanics", "conveying", "dropping",
     "tooling", "rates", "trial", "machine", "solidbowl", "studies", "designing", "output", "thesis", "batch",
     "serving",
@@ -44,7 +44,7 @@ def tree(path):
 
 @cache
 def imports(path):
-    """Every dotted name a file imports, at its top or inside a function."""
+    """Every dotted name a file imports: at its top, inside a function, or when it is needed."""
     return tuple(_imports(path))
 
 
@@ -55,6 +55,8 @@ def _imports(path):
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path} imports relatively"
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
+        elif isinstance(node, ast.Call) and getattr(node.func, "id", "") == "heavy":
+            yield node.args[0].value
 
 
 def room(dotted):

@@ -33,6 +33,7 @@ from feederscrew.errors import FeederError
 from feederscrew.output import tables
 from feederscrew.output.batch import SHEET_NAME
 from feederscrew.output.folder import RECORD
+from feederscrew.output.page.as_html import html
 from feederscrew.part import loading
 
 MARKER = "batch.json"  # says that the folder is a batch's
@@ -267,7 +268,7 @@ def crew(jobs=None, scheduler=None):
     return Cluster(scheduler) if scheduler else Processes(jobs or processors())
 
 
-def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda kept: None) -> Batch:
+def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda is_reused: None) -> Batch:
     """Compute every part and write the folder of the batch.
 
     Parameters
@@ -282,7 +283,7 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
     resume : bool
         Leave alone what is there already, whole and of the same input.
     tell : function
-        Called for each part that is finished; ``kept`` says whether its results were there already.
+        Called for each part that is finished; ``is_reused`` says whether its results were there already.
 
     Returns
     -------
@@ -403,8 +404,6 @@ def _stopped(store, requests, finished):
 
 def _finished(store, requests, complete, workers) -> Batch:
     """Write the summary, the contact sheets and the index page, from what lies on the disk."""
-    from feederscrew.output.page.as_html import html
-
     rows = summary.rows(store, requests)
     sheets = workers.each(_contact_sheet, summary.sheets(store, rows))
     files = {

@@ -18,7 +18,7 @@ from feederscrew.documents import found_as, raise_all
 from feederscrew.errors import ConfigError, FeederError
 from feederscrew.output.folder import safe_name
 from feederscrew.part import aspect_names
-from feederscrew.part.reading.formats import CARD_FORMAT, FORMATS
+from feederscrew.part.reading.formats import CARD_FORMAT, MESH_FORMATS
 
 PART, NAMES, ASPECT, CONFIG = "part", "names", "aspect", "config"
 LISTED_OPTIONS = ("units", "density", "centre_of_mass", "body")
@@ -109,9 +109,12 @@ def _row(path, line, header, cells, faults) -> list[Any]:
 
 
 MESHES = {
-    suffix for name, file_format in FORMATS.items() if name != CARD_FORMAT for suffix in file_format.suffixes
+    suffix
+    for name, file_format in MESH_FORMATS.items()
+    if name != CARD_FORMAT
+    for suffix in file_format.suffixes
 }
-CARDS = set(FORMATS[CARD_FORMAT].suffixes)
+CARDS = set(MESH_FORMATS[CARD_FORMAT].suffixes)
 CARD_KEY = re.compile(rb"^(mass|inertia|aspects)\s*:", re.MULTILINE)
 LONGEST, MOST_BYTES = 80, 160  # letters and bytes of a folder's name
 

@@ -155,11 +155,15 @@ def index_pages(store, rows) -> dict[str, Page]:
     ]
     folders = [row["folder"] for row in rows]
     ends = [f"{folders[k]} to {folders[min(k + INDEX_ROWS, len(rows)) - 1]}" for k in starts] if rows else []
-    others = [Matrix(("pages",), tuple((MarkedCell(end, link=file),) for file, end in zip(files, ends)))]
+    page_links = [Matrix(("pages",), tuple((MarkedCell(end, link=file),) for file, end in zip(files, ends)))]
     pages: dict[str, Page] = {}
     for file, start in zip(files, starts):
         lines = tuple(_index_row(store, row) for row in rows[start : start + INDEX_ROWS])
-        blocks = (Matrix(INDEX_HEADINGS, lines, sortable=True), *others[: len(files) > 1], SUMMARY_LINK_TABLE)
+        blocks = (
+            Matrix(INDEX_HEADINGS, lines, sortable=True),
+            *page_links[: len(files) > 1],
+            SUMMARY_LINK_TABLE,
+        )
         subtitle = f"page {len(pages) + 1} of {len(files)}" if len(files) > 1 else ""
         pages[file] = Page(text, subtitle, (Chapter(blocks),))
     return pages

@@ -11,6 +11,7 @@ from feederscrew.batch.task import DONE, THUMBNAIL, Outcome
 from feederscrew.errors import FeederError
 from feederscrew.output import aspects, batch, columns, offers, proof, tables
 from feederscrew.output import convey as convey_output
+from feederscrew.output import drop as drop_output
 from feederscrew.output import rate as rate_output
 from feederscrew.part import load
 from feederscrew.rates import well_oriented
@@ -18,6 +19,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.resting.rules.recommended import launch_named
 from feederscrew.studies.aspects import AspectsStudy, with_drops
 from feederscrew.studies.convey import convey
+from feederscrew.studies.drop import drop
 from feederscrew.studies.rate import Shares, rate, shares
 
 SEED_DIGITS = 8  # hexadecimal, of the file's sha256
@@ -96,7 +98,7 @@ def _results(task) -> Outcome:
 def travel(conditions):
     """Return the document of ``convey.json``: the same for every part, a point mass."""
     well_oriented.velocity(conditions.bowl)  # raises where there is no steady state
-    return convey_output.document(convey(conditions.bowl)) | {"bowl": dict(conditions.texts)}
+    return convey_output.document(convey(conditions.bowl))
 
 
 def _rate(part, aspects, task, files) -> tuple[Any, ...]:
@@ -135,9 +137,6 @@ def _answered(part, task, files) -> tuple[Any, ...]:
         bowl = task.request.conditions.bowl
         fed_shares = shares(part, bowl, launch=choices.launch, rule=choices.rule, jobs=1)
         return AspectsStudy(part, fed_shares.aspects), {}
-    from feederscrew.output import drop as drop_output
-    from feederscrew.studies.drop import drop
-
     drops, seed = find(part, launch=choices.launched), int(task.sha256[:SEED_DIGITS], 16)
     study = drop(part, choices.launched, drops=choices.drops, seed=seed, aspects=drops)
     offers.write(files, drop_output.offers(study), pictures=choices.pictures)

@@ -9,11 +9,11 @@ from feederscrew import documents, units
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
 
-HEAD = ("quantity", "fill", "computed", "low", "high", "unit", "measured", "sample")
+SHEET_COLUMNS = ("quantity", "fill", "computed", "low", "high", "unit", "measured", "sample")
 RATE, YIELD, JAMS = "good parts at the discharge", "yield, good of what leaves", "jams"
 MAX_BYTES, MAX_HEAD_BYTES = 200_000, 1000  # of a sheet; of its first line
 SAMPLE = 100  # parts, where the sheet does not say how many were looked at
-OFF = 0.1  # [1] of a computed value without ends, from which a measured one is another
+UNBOUNDED_TOLERANCE = 0.1  # [1] of a computed value without ends, from which a measured one is another
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class SheetLine:
             sample = self.sample or SAMPLE
             return 100.0 * float(wilson([0.01 * self.computed * sample], sample)[0][0]), 100.0
         if low is None and high is None:
-            return (1.0 - OFF) * self.computed, (1.0 + OFF) * self.computed
+            return (1.0 - UNBOUNDED_TOLERANCE) * self.computed, (1.0 + UNBOUNDED_TOLERANCE) * self.computed
         return (0.0 if low is None else low), (float("inf") if high is None else high)
 
     @property
@@ -56,7 +56,7 @@ def is_sheet(path: str | Path) -> bool:
     try:
         with Path(path).open("rb") as file:
             first = file.read(MAX_HEAD_BYTES).decode("utf-8-sig", errors="replace").splitlines()
-        return tuple(cell.strip() for cell in next(csv.reader(first[:1]), ())) == HEAD
+        return tuple(cell.strip() for cell in next(csv.reader(first[:1]), ())) == SHEET_COLUMNS
     except (OSError, csv.Error):
         return False
 
@@ -84,7 +84,7 @@ def sheet(path: str | Path) -> tuple[SheetLine, ...]:
     try:
         text = io.StringIO(documents.decoded(data, str(path)), newline="")
         for place, row in enumerate(csv.DictReader(text), start=2):
-            values: dict = {n: _number(path, place, n, row.get(n)) for n in HEAD if n not in TEXT}
+            values: dict = {n: _number(path, place, n, row.get(n)) for n in SHEET_COLUMNS if n not in TEXT}
             if values["computed"] is None:
                 raise FeederError(f"{path}:{place}", "has no computed value", "leave that column as it was")
             texts: dict = {name: units.printable((row.get(name) or "").strip()) for name in TEXT}

@@ -25,12 +25,12 @@ from feederscrew.studies import solidbowl
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.rate import MIN_POSITIVE
 
-DRIVE = (
+DRIVE_TEXTS = (
     ("frequency", 1.0, "Hz"),
     ("vibration_angle", np.radians(1.0), "deg"),
     ("phase", np.radians(1.0), "deg"),
 )
-TRACK = (
+TRACK_TEXTS = (
     ("climb", np.radians(1.0), "deg"),
     ("bank", np.radians(1.0), "deg"),
     ("radius", 1e-3, "mm"),
@@ -67,7 +67,7 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
         return Built()
     listed = [s for s in settings if s.is_own and not s.key.name.startswith("devices")]
     user_lines = [f"{s.key.name}={s.text}" for s in listed]
-    own = [*_texts("drive", study.bowl.drive, DRIVE), *_texts("track", study.bowl.track, TRACK)]
+    own = [*_texts("drive", study.bowl.drive, DRIVE_TEXTS), *_texts("track", study.bowl.track, TRACK_TEXTS)]
     words = {line.partition("=")[0] for line in own} | {"drive.amplitude", "drive.peak_to_peak"}
     words |= {"sizing.fill_density"}
     kept_lines = [line for line in user_lines if line.partition("=")[0] not in words]

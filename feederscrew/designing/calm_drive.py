@@ -22,42 +22,25 @@ from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 
 LEAF_SPRING, TWO_AXIS, ANY = DRIVES = ("leaf-spring", "two-axis", "any")  # kinds that may be asked for
-CALM = 0.9  # throw number below which no part hops, with a reserve for the drive's own scatter
-THROW_NUMBERS = (
-    CALM,
-    1.3,
-    1.5,
-    1.8,
-    2.0,
-    2.3,
-    2.6,
-    3.0,
-)  # of leaf-spring drives; above 3.3 flights last longer
+CALM_THROW_NUMBER = 0.9  # throw number below which no part hops, with a reserve for the drive's own scatter
+# of leaf-spring drives; above 3.3 flights last longer
+THROW_NUMBERS = (CALM_THROW_NUMBER, 1.3, 1.5, 1.8, 2.0, 2.3, 2.6, 3.0)
 TRACK_ANGLES = tuple(math.radians(angle) for angle in (15.0, 20.0, 25.0, 30.0))  # at the track, usual ones
-CONTROLLED_HZ = (
-    30.0,
-    40.0,
-    50.0,
-    60.0,
-    80.0,
-    100.0,
-    120.0,
-    140.0,
-)  # that a frequency controller may be set to
+# that a frequency controller may be set to
+CONTROLLED_HZ = (30.0, 40.0, 50.0, 60.0, 80.0, 100.0, 120.0, 140.0)
 WAVES = (1.0, 2.0)  # half wave and full wave of the mains
 BANKS = tuple(np.radians((3.0, 0.0)))  # bring back to the wall what leaves it
 STEEP_BANKS = tuple(np.radians((8.0, 3.0)))  # hold there what rolls
 WORST = (0.6, 1.4)  # [1] of the nominal friction
-STEADY = 0.6  # of the velocity asked for that is left at the worst friction
-LEAST = 0.05  # [m/s] through tooling: what creeps rolls off the wall, or stands at a slot and falls in late
+LEAST_VELOCITY_KEPT = 0.6  # of the velocity asked for that is left at the worst friction
+# through tooling: what creeps rolls off the wall, or stands at a slot and falls in late
+LEAST_VELOCITY_M_S = 0.05
 STROKES = {"drive.amplitude", "drive.peak_to_peak"}  # keys that give it
-CALMER = (
-    0.45  # of the velocity, of a calm drive that turns or loses what is wanted: two steps reach ``LEAST``
-)
+CALMER = 0.45  # of the velocity, of a calm drive that turns or loses what is wanted
 CALMER_HOP = 0.5  # of the hop, of a drive that throws the part: half the energy of a landing
 LIVELIER_HOP = 2.5  # times the hop, of a drive that shakes off a blade what stays there at a calmer one
 LEAST_LIVELY_M = 1e-4  # hop of such a drive at least
-CALMER_STEP = 0.01  # [1] of the throw number: so much above ``CALM`` counts as that
+CALMER_STEP = 0.01  # [1] of the throw number: so much above ``CALM_THROW_NUMBER`` counts as that
 CALMER_SHARE = 0.9  # of the velocity: what is faster is no calmer drive
 HALVINGS = 12  # of the amplitude
 STROKE_STEP = 1e-6  # [m] to which an amplitude is rounded
@@ -151,8 +134,9 @@ def driven(plain_bowl: PlainBowl, velocity: float, *, hops: bool = False) -> Bow
     -------
     Bowl
         Of the drives that the machine can make, the one of the lowest hop, and of these the one of the least
-        stroke, that is as fast as asked for, and at the worst friction ``STEADY`` times that; else the
-        fastest. Through tooling no slower than ``LEAST``. What the user gave of the drive is kept.
+        stroke, that is as fast as asked for, and at the worst friction ``LEAST_VELOCITY_KEPT`` times that;
+        else the fastest. Through tooling no slower than ``LEAST_VELOCITY_M_S``. What the user gave of the
+        drive is kept.
 
     Notes
     -----
@@ -165,7 +149,7 @@ def driven(plain_bowl: PlainBowl, velocity: float, *, hops: bool = False) -> Bow
     ----------
     A. H. Redford, G. Boothroyd, "Vibratory feeding", Proc. Inst. Mech. Eng. 182, 135-152, 1967.
     """
-    velocity = velocity if hops else max(velocity, LEAST)
+    velocity = velocity if hops else max(velocity, LEAST_VELOCITY_M_S)
     levels = list(itertools.chain(*_kinds(plain_bowl, hops)))
     chosen = _calmest(plain_bowl, levels, velocity, _can_build)
     if chosen is None:
@@ -217,8 +201,10 @@ def calmer(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
         order = sorted(rows, key=_fast, reverse=True)
         return next((other for other in order if _fast(other) > 0.0 and _can_build(plain_bowl, other)), None)
     other = driven(plain_bowl, CALMER * speed(bowl))
-    gentler = throw_number(bowl) > CALM + CALMER_STEP or speed(other) <= CALMER_SHARE * speed(bowl)
-    return other if gentler and 0.0 < throw_number(other) <= CALM + CALMER_STEP else None
+    gentler = throw_number(bowl) > CALM_THROW_NUMBER + CALMER_STEP or speed(other) <= CALMER_SHARE * speed(
+        bowl
+    )
+    return other if gentler and 0.0 < throw_number(other) <= CALM_THROW_NUMBER + CALMER_STEP else None
 
 
 def livelier(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
@@ -314,7 +300,9 @@ def _angles(plain_bowl: PlainBowl) -> tuple[float, ...]:
 def _two_axis_drives(plain_bowl: PlainBowl, hops: bool) -> Iterator[Bowl]:
     """Every drive with two magnets, the simplest first."""
     plain, kept_keys = plain_bowl.bowl, plain_bowl.kept_keys
-    for throw, row in itertools.product((CALM, *LIVELY) if hops else (CALM,), ELLIPTIC):
+    for throw, row in itertools.product(
+        (CALM_THROW_NUMBER, *LIVELY) if hops else (CALM_THROW_NUMBER,), ELLIPTIC
+    ):
         own = dict(zip(("frequency", "vibration_angle", "phase"), row))
         kept_values = {name: getattr(plain.drive, name) for name in own if f"drive.{name}" in kept_keys}
         bowl = replace(plain, drive=replace(plain.drive, **own | kept_values))
@@ -353,12 +341,12 @@ def _slowed(bowl: Bowl, velocity: float) -> Bowl:
 
 def _fast(bowl: Bowl) -> float:
     """The velocity [m/s] that may be asked of a bowl: its own, or less where the worst friction slows it."""
-    return min(speed(bowl), slowest(bowl) / STEADY)
+    return min(speed(bowl), slowest(bowl) / LEAST_VELOCITY_KEPT)
 
 
 def _is_fast(bowl: Bowl, velocity: float) -> bool:
     """Whether a velocity [m/s] may be asked of a bowl."""
-    return speed(bowl) >= velocity and slowest(bowl) >= STEADY * velocity
+    return speed(bowl) >= velocity and slowest(bowl) >= LEAST_VELOCITY_KEPT * velocity
 
 
 def slowest(bowl: Bowl) -> float:

@@ -8,7 +8,7 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl import Bowl
 from feederscrew.designing import built_bowl, families, loop
 from feederscrew.designing.families import FamilyStudy
-from feederscrew.designing.record import OUTCOMES, DesignRequest, DesignStudy
+from feederscrew.designing.record import DESIGN_OUTCOMES, DesignRequest, DesignStudy
 from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
 from feederscrew.studies import arguments
@@ -151,8 +151,8 @@ def design(
         seed=arguments.whole("seed", seed, 0),
         jobs=arguments.whole("jobs", jobs),
     )
-    if request.outcome not in OUTCOMES:
-        raise ArgumentError("outcome", f"is {request.outcome!r}", f"give {listed(list(OUTCOMES))}")
+    if request.outcome not in DESIGN_OUTCOMES:
+        raise ArgumentError("outcome", f"is {request.outcome!r}", f"give {listed(list(DESIGN_OUTCOMES))}")
     plain = arguments.a_bowl(bowls.default() if bowl is None else bowl, overrides, settings)
     kept_keys = frozenset(kept_keys) | {setting.key.name for setting in plain.settings if setting.is_own}
     kept_settings = built_bowl.settings_of(plain, kept_keys)

@@ -16,7 +16,7 @@ from feederscrew.bowl.devices import check_written
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import calm_drive, proposals, short_trials
 from feederscrew.designing.record import DEVICE, DRIVE, PART, RATE_KEPT, Attempt, DesignRequest, RobustRun
-from feederscrew.designing.robust import HALF, denied, robust_run
+from feederscrew.designing.robust import LEAST_SHARE_LEAVING, denied, robust_run
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.part.record import Part
 from feederscrew.rates import arrivals, stream
@@ -29,13 +29,13 @@ from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.orientations import neck
 from feederscrew.trial import runs
 
-EACH = 2  # parts of each orientation in a short trial
+SHORT_TRIAL_PARTS = 2  # parts of each orientation in a short trial
 MENDED = 3  # times that one proposal is mended
-LOST = 2  # trials of it in which nothing leaves as wanted, and it is given up
+LOST_TRIALS = 2  # trials of it in which nothing leaves as wanted, and it is given up
 LIVELIER_TRIALS = 2  # livelier drives that one chain is tried at, where parts stay at a blade
 CALMER_TRIALS = 2  # calmer drives that one chain is tried at, where the drive loses what is wanted
 LEAST_USE = 0.5  # of the best clean rate: an orientation that promises less is not tried
-SHORT = 5  # short trials where no orientation comes often enough for the target at any calm drive
+TRIALS_OF_RARE = 5  # short trials where no orientation comes often enough for the target at any calm drive
 SCREENED = 6  # draws before a clean chain is proved
 ROLLS = 0.3  # of the parts that lie on a round side: then the bank is steep
 HOPELESS = 0.3  # [1] purity by the static rule, below which a chain is not tried
@@ -148,7 +148,7 @@ class Search:
     def enough(self, attempt: Attempt) -> float:
         """Return the share [1] of what is wanted that has to leave in a draw, for the target to be kept."""
         need = RATE_KEPT * self.request.target / max(attempt.rate, 1e-300)
-        return float(np.clip(need, HALF, 1.0))
+        return float(np.clip(need, LEAST_SHARE_LEAVING, 1.0))
 
     def avoid(
         self, place: tuple[float, int], proposal: proposals.Proposal, tried: short_trials.Tried
@@ -411,7 +411,7 @@ def _tracks(search):
             if search.shares is None:
                 search.shares = arriving(search, start)
             orientations, weights = offered(search, start)
-            rows = proposals.promising(orientations, weights, search.request)[: proposals.ROWS]
+            rows = proposals.promising(orientations, weights, search.request)[: proposals.PROPOSED_ROWS]
             search.tracks.append(_BankedTrack(plain_bowl, orientations, weights, rows, BANK_RANK**place))
         lying = [
             _promise(search, banked_track, row, LYING)
@@ -419,18 +419,18 @@ def _tracks(search):
             for row in banked_track.rows
         ]  # also of what may hang: infinite
         turns = any(
-            _share(search, banked_track, row) < proposals.RARE
+            _share(search, banked_track, row) < proposals.RARE_ORIENTATION
             for banked_track in search.tracks
             for row in banked_track.rows
         )
         if not any(rate >= search.request.target for rate in lying) and not turns:
-            search.most = search.first + SHORT
+            search.most = search.first + TRIALS_OF_RARE
     return search.tracks
 
 
 def _worth(search, track, row, recipe):
     """Whether an idea is one at all: what is not rare needs nothing that turns others into it."""
-    return not recipe.turns or _share(search, track, row) < proposals.RARE
+    return not recipe.turns or _share(search, track, row) < proposals.RARE_ORIENTATION
 
 
 def _bound(search, idea):
@@ -636,7 +636,7 @@ def _tried_out(search, plain_bowl, proposal, weights) -> Iterator[Any]:
         same = _showed(candidate) == before  # what was changed made no difference
         before = _showed(candidate)
         changed = None
-        if not (same or lost == LOST or search.spent):
+        if not (same or lost == LOST_TRIALS or search.spent):
             changed = proposals.better(
                 proposal, candidate.tried, candidate.orientations.lying, candidate.drawn
             )
@@ -871,12 +871,12 @@ def _short(search, bowl, orientations, weights, proposal):
     right = set(short_trials.wanted_rows(orientations, proposal.states(orientations)))
     first = [k for k in rows if k in right] or [proposal.row]
     tried = short_trials.single(
-        search.part, bowl, orientations, weights, proposal.rows, rows=first, each=EACH, **own
+        search.part, bowl, orientations, weights, proposal.rows, rows=first, each=SHORT_TRIAL_PARTS, **own
     )
     rows_besides = [k for k in rows if k not in first]
     if not tried.efficiency > 0.0 or not rows_besides:
         return tried
-    each = EACH if len(rows_besides) <= short_trials.FEW else 1
+    each = SHORT_TRIAL_PARTS if len(rows_besides) <= short_trials.FEW_OTHERS else 1
     return tried.joined(
         short_trials.single(
             search.part, bowl, orientations, weights, proposal.rows, rows=rows_besides, each=each, **own

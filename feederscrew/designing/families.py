@@ -13,8 +13,8 @@ from feederscrew.studies.aspects import answered
 from feederscrew.tooling.devices.kinds import KINDS
 
 PROPOSED = tuple(sorted(name for name, kind in KINDS.items() if kind.proposed))
-TRACK = ("track.radius", "track.width", "track.bank", "track.climb")
-OWN = "family"  # the folder of what is of all parts
+SHARED_TRACK_KEYS = ("track.radius", "track.width", "track.bank", "track.climb")
+FAMILY_FOLDER = "family"  # the folder of what is of all parts
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ def iron(study) -> tuple[Any, ...]:
 
 def named_apart(parts) -> None:
     """Say which two parts have one name; raises FeederError."""
-    names = [OWN, *(part.name.casefold() for part in parts)]
+    names = [FAMILY_FOLDER, *(part.name.casefold() for part in parts)]
     for k, name in enumerate(names[1:]):
         if name in names[: k + 1]:
             raise FeederError(
@@ -133,7 +133,7 @@ def _member(part, lead, plain, kept_keys, request, own):
     used = {device.kind for device in lead.devices}
     less = replace(request, without=(*request.without, *(name for name in PROPOSED if name not in used)))
     tracked = replace(plain, track=lead.bowl.track)
-    design = loop.design(part, tracked, kept_keys | set(TRACK), less, **own, with_nearest=False)
+    design = loop.design(part, tracked, kept_keys | set(SHARED_TRACK_KEYS), less, **own, with_nearest=False)
     if design.status == HOLDS or design.partial:
         return replace(design, request=request)
     other = loop.design(part, plain, kept_keys, request, **own)
@@ -153,7 +153,9 @@ def _of_one_chain(members, request, kept_keys, tell, before):
         cuts = tuple(_at(cut, limit, member) for cut, limit in zip(member.cuts, limits, strict=True))
         if [cut.device.text for cut in cuts] != [cut.device.text for cut in member.cuts]:
             tell(f"{member.part.name}: with the values of all")
-            member = prove_with_cuts(member, cuts, request, kept_keys | set(TRACK), tell=tell, before=before)
+            member = prove_with_cuts(
+                member, cuts, request, kept_keys | set(SHARED_TRACK_KEYS), tell=tell, before=before
+            )
         if member is not None and member.partial:
             raise KeyboardInterrupt
         if member is None or member.status != HOLDS:

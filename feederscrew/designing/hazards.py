@@ -26,7 +26,7 @@ from feederscrew.units import counted
 
 LIFT = 0.25e-3  # [m] that one part may lie higher than the next: play, burrs, dirt; as a design's margin
 CLEARS = 2  # status of a linear programme without a solution: so much higher nothing meets
-DIRECTIONS = check.frozen(  # (26, 3) to faces, edges and corners of a cube
+CUBE_DIRECTIONS = check.frozen(  # (26, 3) to faces, edges and corners of a cube
     vectors.unit(
         np.array([corner for corner in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(corner)])
     )
@@ -210,7 +210,8 @@ def _wedging(orientations: Sequence[Orientation], bowl: Bowl) -> Iterator[Risk]:
         return
 
 
-TURNS = 1.02  # times its breadth along the wall: what is no wider, turned as you like, is no strut
+# times its breadth along the wall: a part that is no longer, however turned, is no strut
+LEAST_STRUT_RATIO = 1.02
 
 
 def walls_between(orientation: Orientation, friction: float) -> tuple[float, float] | None:
@@ -238,7 +239,7 @@ def walls_between(orientation: Orientation, friction: float) -> tuple[float, flo
     corners = orientation.outline
     breadth = float(np.ptp(corners[:, 1]))
     longest = _longest(corners)
-    if longest <= TURNS * breadth:
+    if longest <= LEAST_STRUT_RATIO * breadth:
         return None
     return max(longest * math.cos(math.atan(friction)), breadth), longest
 
@@ -267,7 +268,7 @@ def strut(orientation: Orientation, width: float) -> float:
 
 
 LINES, NEAR, NESTED = 60, 0.02, 0.3  # lines through a part; of their longest; of a part that is in another
-ROUND = 0.5  # mean of the sides' normals: what touches on one side only slides off
+ONE_SIDED_LEAN = 0.5  # mean of the sides' normals: what touches on one side only slides off
 
 
 @dataclass(frozen=True, eq=False)
@@ -306,7 +307,7 @@ def stack(part: Part, friction: float) -> Stack | None:
     """
     solid, length, principal = solid_of(part)
     stacks = []
-    for direction in DIRECTIONS[len(DIRECTIONS) // 2 :]:
+    for direction in CUBE_DIRECTIONS[len(CUBE_DIRECTIONS) // 2 :]:
         axes = _upright(direction)
         corners = vectors.product(solid.vertices, axes.T)
         chord, low, high = chords(corners, solid.triangles, LINES)
@@ -319,7 +320,7 @@ def stack(part: Part, friction: float) -> Stack | None:
         side = float(np.median(np.maximum(*steep)))
         lean = np.hypot(*sides[1][:, :2].mean(axis=0))  # 0 where they touch all round
         deep = 1.0 - float(chord.max()) / whole
-        if deep > NESTED and side < np.arctan(friction) and lean < ROUND:
+        if deep > NESTED and side < np.arctan(friction) and lean < ONE_SIDED_LEAN:
             place = length * float(chord.max()) * vectors.product(principal, direction)
             stacks.append(Stack(check.frozen(place), length * whole, side))
     return min(stacks, key=lambda nested: vectors.norm(nested.place) / nested.height, default=None)
@@ -332,11 +333,11 @@ def _upright(upwards: np.ndarray) -> np.ndarray:
     return np.array([aside, np.cross(upwards, aside), upwards])
 
 
-CELLS = 36  # along the longest side of a part
+CELLS_ALONG_PART = 36  # along the longest side of a part
 HOLLOW = 0.03  # of its hull that is not of the part: with less nothing reaches into it
 TRIES, POSES = 3000, 24  # pairs that are laid out by chance; of them, the deepest that are pulled
-DEEP = 0.02  # of both parts that lies in the other's hull: less is no hooking
-BESIDE = 0.4  # of a part's radius by which poses differ that are both pulled
+LEAST_DEPTH_SHARE = 0.02  # of both parts that lies in the other's hull: less is no hooking
+POSE_DIFFERENCE = 0.4  # of a part's radius by which poses differ that are both pulled
 LOOSE = 0.8  # of the pulls: a closed ring that holds in more of them was never apart, as a link of a chain
 THINNEST = 0.25  # of a part: its edges and corners are less of it than its thinnest limb
 
@@ -379,7 +380,7 @@ def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle |
     Tangle or None
     """
     solid, length, principal = solid_of(part)
-    grid = cells(solid.vertices, solid.triangles, CELLS)
+    grid = cells(solid.vertices, solid.triangles, CELLS_ALONG_PART)
     if 1.0 - grid.solid.sum() / grid.hull.sum() < HOLLOW:
         return None
     section, mouth = _section(grid), _mouth(grid)
@@ -388,7 +389,9 @@ def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle |
     pulled = Pulled(solid, grid, length, friction)
     tried = [pulled.tried(turn, place, most) for turn, place in poses(grid, np.random.default_rng(seed))]
     holding = [
-        outcome for outcome in tried if outcome is not None and HELD <= outcome[3] / outcome[2] <= most
+        outcome
+        for outcome in tried
+        if outcome is not None and HOLDING_SHARE <= outcome[3] / outcome[2] <= most
     ]
     mouth = mouth if mouth >= section else np.nan
     if not holding:
@@ -426,7 +429,7 @@ def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[np.ndarray, np.nd
             continue
         moved_back = vectors.product(own - place, turn)
         deep = min(_within(grid, place + vectors.product(own, turn.T)), _within(grid, moved_back))
-        if deep > DEEP:
+        if deep > LEAST_DEPTH_SHARE:
             overlaps.append((deep, turn, place))
     return _distinct_poses(sorted(overlaps, key=lambda pose: -pose[0]), float(vectors.length(rim).max()))
 
@@ -443,7 +446,7 @@ def _distinct_poses(
     distinct: list[tuple[np.ndarray, np.ndarray]] = []
     for _, turn, place in overlaps:
         differs = (
-            vectors.length(place - other) + radius * np.abs(turn - spun).max() > BESIDE * radius
+            vectors.length(place - other) + radius * np.abs(turn - spun).max() > POSE_DIFFERENCE * radius
             for spun, other in distinct
         )
         if all(differs):
@@ -484,11 +487,11 @@ def _mouth(grid: Cells) -> float:
     return np.nan
 
 
-HELD = 0.75  # of the pulls, that do not part the two: then they may hook
+HOLDING_SHARE = 0.75  # of the pulls, that do not part the two: then they may hook
 PULL, SECONDS = 0.12, 0.06  # [sqrt(g L)] by which a pull changes their velocities; [sqrt(L/g)] to the next
 PULLS, SHAKES, SHAKEN = 40, 15, 1  # in one direction; then in any, away from each other in the mean; seed
 LEAKS, SEEN, SURE = 1.7, 400, 7  # cells deep; so many of its cells are looked at; pulls that hold, of a ring
-SUNK = 0.02  # of the unit of length: so deep in each other no two parts are
+OVERLAP_DEPTH = 0.02  # of the unit of length: so deep in each other no two parts are
 HIGH, FAR = 1e3, 1e6  # over the track and from the wall, in units of length; radius of the wall
 
 
@@ -514,13 +517,13 @@ class Pulled:
         It ends as soon as too few can hold, or of what is to hold in a share ``most`` [1], as too many do.
         """
         away = vectors.unit(place) if vectors.norm(place) > 0.0 else place
-        directions = [direction for direction in DIRECTIONS if vectors.dot(direction, away) > -1e-9]
+        directions = [direction for direction in CUBE_DIRECTIONS if vectors.dot(direction, away) > -1e-9]
         held = pulls = 0
         for left, direction in zip(range(len(directions))[::-1], directions):
             parted = self.parted(turn, place, direction)
             held += parted is False
             pulls += parted is not None
-            few = held + left < HELD * len(directions)
+            few = held + left < HOLDING_SHARE * len(directions)
             if few or (most < 1.0 and held == pulls == SURE):
                 return None
         return turn, place, pulls, held
@@ -542,7 +545,7 @@ class Pulled:
                 else vectors.unit(self.separation) + vectors.unit(rng.standard_normal(3))
             )
             depth = self.pull(PULL * own)
-            if self.through or (k == 0 and depth > SUNK):
+            if self.through or (k == 0 and depth > OVERLAP_DEPTH):
                 return None
             if vectors.norm(self.separation) > 2.0 * self.solid.radius:
                 return True

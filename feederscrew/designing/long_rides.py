@@ -14,8 +14,8 @@ from feederscrew.running import RunSettings
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.trial.long_ride import RideOfTrack, joined, ride_of_track
 
-OFTEN = 0.05  # [1] share from which an orientation rides
-EACH = 6  # parts of each; as many again where any of them turned or left
+RIDING_SHARE = 0.05  # [1] share from which an orientation rides
+RIDING_PARTS = 6  # parts of each; as many again where any of them turned or left
 DEPENDS = 0.05  # [1] of what arrives as wanted: a design that owes or loses more to turning says so
 
 
@@ -138,11 +138,11 @@ def long_ride(
         If the user stops it before all have arrived.
     """
     shares = np.asarray(shares, float)
-    often = [k for k in np.argsort(-shares, kind="stable") if shares[k] >= OFTEN]
+    often = [k for k in np.argsort(-shares, kind="stable") if shares[k] >= RIDING_SHARE]
     rows = list(dict.fromkeys([*(int(k) for k in often), *(k for k in wanted if shares[k] > 0.0)]))
-    ride = ride_of_track(part, bowl, lying, rows, each=EACH, run=RunSettings(run.seed, run.jobs))
+    ride = ride_of_track(part, bowl, lying, rows, each=RIDING_PARTS, run=RunSettings(run.seed, run.jobs))
     turned = [int(k) for k in np.flatnonzero(ride.turned)]
     if turned:
         more = RunSettings(run.seed + 1, run.jobs)
-        ride = joined(ride, ride_of_track(part, bowl, lying, turned, each=EACH, run=more))
+        ride = joined(ride, ride_of_track(part, bowl, lying, turned, each=RIDING_PARTS, run=more))
     return LongRide(ride, shares, ride.arriving(shares), tuple(int(k) for k in wanted))

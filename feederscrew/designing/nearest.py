@@ -27,7 +27,7 @@ TRIALS = 4  # short trials beside those of the search, of calmer drives and of o
 FREE_TRIALS = 6  # of other ways up, where only some were asked for
 SLIGHT = 1e-9  # of rounding
 FREE_CALMED = 2  # of them at a calmer drive
-DIGITS = 2  # of a rate that holds: it is rounded down
+RATE_DIGITS = 2  # of a rate that holds: it is rounded down
 Prove = Callable[[Search, Candidate], DesignStudy]
 Proofs = list[tuple[DesignStudy, Candidate]]
 
@@ -79,10 +79,10 @@ def rate_that_holds(study: DesignStudy) -> float:
 
 
 def _rounded_down(value: float) -> float:
-    """A number above 0 rounded down to ``DIGITS`` digits."""
+    """A number above 0 rounded down to ``RATE_DIGITS`` digits."""
     if not value > 0.0:
         return 0.0
-    step = 10.0 ** (np.floor(np.log10(value)) - DIGITS + 1)
+    step = 10.0 ** (np.floor(np.log10(value)) - RATE_DIGITS + 1)
     return float(np.floor(value / step + SLIGHT) * step)
 
 
@@ -366,7 +366,7 @@ def _calmed(search: Search, most: int) -> Iterator[Candidate]:
             break
         if (
             not candidate.attempt.efficiency > 0.0
-            and candidate.attempt.throw_number <= calm_drive.CALM + 1e-3
+            and candidate.attempt.throw_number <= calm_drive.CALM_THROW_NUMBER + 1e-3
         ):
             continue
         other = _calmer(search, candidate)

@@ -21,15 +21,15 @@ from feederscrew.tooling.isolating.design import RAIL
 from feederscrew.tooling.orientations import Orientation, neck
 from feederscrew.tooling.verdicts import DeviceEncounter
 
-ROWS = 6  # orientations for which chains are proposed, the most frequent first
+PROPOSED_ROWS = 6  # orientations for which chains are proposed, the most frequent first
 HOLES = names(searched=True)  # holes of several corners, which a shop's tolerance soon spoils
-MET = tuple(sorted(names(proposed=True, senses=False)))  # all that parts meet: a sensor and air are left
+TOUCHING_KINDS = tuple(sorted(names(proposed=True, senses=False)))  # a sensor and air are left out
 COST_CLASSES = (1, 2, 3)  # steel alone, steady air, a sensor with a valve
 SENSED = COST_CLASSES[-1]
 MARGINS = (5e-4, 2.5e-4)  # [m] to either side
 SWEEPS = (35, 20, 45, 30, 55)  # [deg] of a blade's face, in the order in which they are tried
-RARE = 0.2  # [1] share below which an orientation is worth a device that turns others into it
-ENOUGH = 0.985  # purity at which a chain is not made longer
+RARE_ORIENTATION = 0.2  # [1] share below which an orientation is worth a device that turns others into it
+ENOUGH_PURITY = 0.985  # purity at which a chain is not made longer
 ON_THE_TRACK = names(leans=True, grooved=False)  # a bank is the bowl's own, and tried by the loop
 VERDICTS = 3000  # of the search for holes: values that a shop's tolerance does not lose are found early
 GUARDS = tuple(kind for kind in numbered() if kind.carries)
@@ -76,7 +76,7 @@ def recipes_of(cost_class, request):
     if not own:
         return []
     outcomes = [outcome for outcome in ("hanging", "lying") if request.outcome in ("any", outcome)]
-    kinds = [(*left_out, *HOLES), *([(*left_out, *MET, *HOLES)] if cost_class == SENSED else [])]
+    kinds = [(*left_out, *HOLES), *([(*left_out, *TOUCHING_KINDS, *HOLES)] if cost_class == SENSED else [])]
     recipes = [
         Recipe(cost_class, margin, outcome, some)
         for margin in MARGINS for outcome in outcomes for some in kinds
@@ -187,7 +187,7 @@ def bare(orientations, shares, request, devices):
     )
     proposal = Proposal(best, (), tuple(devices), "no device", same, free)
     pure = short_trials.gain(orientations, shares, proposal.states(orientations)) / max(leaving.sum(), 1e-300)
-    return proposal if pure >= ENOUGH else None
+    return proposal if pure >= ENOUGH_PURITY else None
 
 
 def proposed(part, bowl, aspects, row, orientations, request, recipe):
@@ -215,7 +215,8 @@ def proposed(part, bowl, aspects, row, orientations, request, recipe):
         part, bowl, orientation.aspect, heading=orientation.heading, rule=request.rule, margin=recipe.margin,
         aspect_shares=aspects, seed=request.seed, verdicts=VERDICTS, outcome=recipe.outcome, without=without,
         turn=recipe.turns, air=recipe.cost_class > COST_CLASSES[0],
-        purity=ENOUGH, up=request.up, play=0.0, tolerance=0.0, vary=False,  # draws and the loop have them
+        purity=ENOUGH_PURITY, up=request.up,
+        play=0.0, tolerance=0.0, vary=False,  # draws and the loop have them
     ).design  # fmt: skip
     if (
         static_design is None
@@ -237,12 +238,14 @@ def proposed(part, bowl, aspects, row, orientations, request, recipe):
     if static_design.isolated:
         return proposal
     through = known_through(part, aspects, replace(bowl, devices=proposal.devices))
-    return _guarded_stops(proposal, through, request.rule) if hopeful >= ENOUGH else None
+    return _guarded_stops(proposal, through, request.rule) if hopeful >= ENOUGH_PURITY else None
 
 
 def _guarded_stops(proposal, through, rule):
     """The proposal with a drop before what stops some orientations; None where none tells them."""
-    stops = (through.stops.sum(axis=1) > 0.0) & (np.nan_to_num(through.rules[rule]) >= short_trials.SELDOM)
+    stops = (through.stops.sum(axis=1) > 0.0) & (
+        np.nan_to_num(through.rules[rule]) >= short_trials.SELDOM_SHARE
+    )
     if not stops.any():
         return proposal
     wanted = short_trials.wanted_rows(through, proposal.states(through))

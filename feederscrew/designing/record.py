@@ -1,7 +1,7 @@
 """What is asked of a design, and what it stands on."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -26,7 +26,7 @@ from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
 from feederscrew.trial.result import TrialRun
 from feederscrew.units import counted
 
-OUTCOMES = ("any", "lying", "hanging")
+DESIGN_OUTCOMES = ("any", "lying", "hanging")
 DRIVE, DEVICE, ARRIVAL, PART = CAUSES = ("drive", "device", "arrival", "part")
 HEADING_OFF = (
     ", heading off"  # behind the name of an aspect: it lies so, at a heading that is none of the known
@@ -127,6 +127,8 @@ class FilledQueue:
     climbs: int
     partial: bool = False  # stopped by the user
     left_instead: tuple[tuple[str, int], ...] = ()  # what left otherwise: ('C, heading off', 33), most first
+    # by the orientation in which whole parts came: how many something became of, how many left as wanted
+    counts_by_entry: tuple[tuple[int, int], ...] = ()
 
     @property
     def rate(self) -> float:
@@ -140,7 +142,7 @@ class FilledQueue:
         """95 % interval of that rate [1/s]: of the share of what is offered that leaves right."""
         if not self.pace > 0.0:
             return 0.0, 0.0
-        low, high = (float(end[0]) for end in wilson([self.right], self.offered))
+        low, high = share_interval((self,))
         return self.pace * low, self.pace * high
 
     @property
@@ -152,6 +154,43 @@ class FilledQueue:
     def pace(self) -> float:
         """Parts [1/s] that are offered; 0 where none leaves as wanted."""
         return self.rate * self.offered / self.right if self.right else 0.0
+
+
+def share_interval(queues: Iterable[FilledQueue], growth: float = 1.0) -> tuple[float, float]:
+    """Return the 95 % interval of the share of parts that leave as wanted, of those something became of.
+
+    Parts come in their orientations in exact shares, so only what becomes of each orientation is left to
+    chance. The proportions of the orientations, each with its Wilson interval, are added up by these shares.
+
+    Parameters
+    ----------
+    queues : iterable of FilledQueue
+    growth : float [1]
+        Of so many times as many parts, of which as many leave as wanted.
+
+    Returns
+    -------
+    low, high : float [1]
+
+    References
+    ----------
+    W. G. Cochran, "Sampling techniques", 3rd ed., 1977, sec. 5.3, for the sum over strata. Its interval: G.
+    Y. Zou, A. Donner, Statist. Med. 27, 1693-1702, 2008.
+    """
+    queues = tuple(queues)
+    right, offered = sum(queue.right for queue in queues), sum(queue.offered for queue in queues)
+    if not offered:
+        return 0.0, 1.0
+    counts = [queue.counts_by_entry for queue in queues]
+    strata = [(offered, right)]
+    if all(counts):
+        strata = [(sum(n for n, _ in entry), sum(k for _, k in entry)) for entry in zip(*counts, strict=True)]
+    parts, wanted = np.array([row for row in strata if row[0]], float).T
+    ends = [wilson([k * growth], n * growth) for n, k in zip(parts, wanted, strict=True)]
+    lows, highs = np.array(ends)[:, :, 0].T
+    share, of_each, weights = right / offered, wanted / parts, parts / offered
+    down, up = (np.sqrt(((weights * (end - of_each)) ** 2).sum()) for end in (lows, highs))
+    return max(float(share - down), 0.0), min(float(share + up), 1.0)
 
 
 @dataclass(frozen=True)
@@ -279,7 +318,7 @@ class DesignStudy(ReadableRecord):
         if self.slowest is None or not self.slowest.pace > 0.0:
             return 0.0, 0.0, 0.0
         right, offered = (sum(getattr(queue, k) for queue in self.queues) for k in ("right", "offered"))
-        low, high = (float(end[0]) for end in wilson([right], offered))
+        low, high = share_interval(self.queues)
         pace = self.slowest.pace
         return pace * (right / offered), pace * low, pace * high
 

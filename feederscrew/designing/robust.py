@@ -26,10 +26,10 @@ from feederscrew.tooling.fates import at_entry
 
 FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side
 CARRIED, CLEAN = " is carried through", 0.985  # and the purity from which that is let be
-ALIKE = 1e-4  # of the greatest: principal moments that a part of revolution has in common
-AGAIN = 3  # parts of each wanted orientation that are tried where one came back: a bowl brings more of them
-HALF = 0.5  # [1] of what is wanted that has to leave in a draw, where some of it comes back
-OTHERS = 3  # parts tried in each draw beside the wanted one, as they come
+EQUAL_MOMENTS = 1e-4  # of the greatest: principal moments that a part of revolution has in common
+RETRIED_PARTS = 3  # of each wanted orientation, where one came back: a bowl brings more of them
+LEAST_SHARE_LEAVING = 0.5  # [1] of what is wanted that has to leave in a draw, where some of it comes back
+OTHERS_DRAWN = 3  # parts tried in each draw beside the wanted one, as they come
 
 
 def drawn_bowl(bowl, lying, rng):
@@ -125,7 +125,7 @@ def drawn_part(part, tolerance, rng):
     size = [float(np.ptp(_along(part.vertices, axis))) for axis in axes]
     scales = 1.0 + rng.uniform(-tolerance, tolerance, 3) / size
     for a, b in ((0, 1), (1, 2)):
-        if abs(moments[b] - moments[a]) < ALIKE * moments.max():
+        if abs(moments[b] - moments[a]) < EQUAL_MOMENTS * moments.max():
             scales[b] = scales[a]
     return _scaled(part, axes, scales)
 
@@ -174,7 +174,7 @@ def matched(orientation, lying):
 
 def robust_run(
     part, bowl, orientations, shares, wanted, *, draws, tolerance, run, any_heading=(), spared=(),
-    enough=HALF, allowed=None,
+    enough=LEAST_SHARE_LEAVING, allowed=None,
 ) -> RobustRun:  # fmt: skip
     """Try draws of part, friction, drive and cuts.
 
@@ -198,7 +198,7 @@ def robust_run(
     spared : sequence of int
         Orientations that count as the wanted one and may be returned.
     enough : float [1]
-        Share of what is wanted that has to leave, where a part of it comes back: HALF at least.
+        Share of what is wanted that has to leave, where a part of it comes back: LEAST_SHARE_LEAVING or more.
     allowed : int, optional
         Draws that may fail: with one more the run ends, for the rest decides nothing. All draws without it.
 
@@ -207,7 +207,7 @@ def robust_run(
     RobustRun
         A draw holds where what is wanted leaves as wanted, and nothing of the others leaves or stays. Each
         draw tries the wanted orientation and some others, drawn by their shares. Where a wanted part comes
-        back, AGAIN more of each wanted orientation are tried: it is offered again, and costs rate.
+        back, RETRIED_PARTS more of each wanted orientation are tried: it is offered again, and costs rate.
     """
 
     def draw_one(draw) -> tuple[Any, ...]:
@@ -274,8 +274,8 @@ def _draw(
             returned = wanted_of(orientations, shares, wanted, spared)
             places = [matched(orientations.lying[k], lying) for k in returned]
             more = short_trials.single(
-                other, driven, oriented, even, wanted_rows, rows=list(dict.fromkeys(places)), each=AGAIN,
-                run=RunSettings(sum(seed) + 1), **own,
+                other, driven, oriented, even, wanted_rows, rows=list(dict.fromkeys(places)),
+                each=RETRIED_PARTS, run=RunSettings(sum(seed) + 1), **own,
             )  # fmt: skip
             weights = {place: float(shares[k]) for k, place in zip(returned, places)}
             spared = (*spared, *returned) if comes_through(more, weights, enough) else spared
@@ -285,7 +285,7 @@ def _draw(
 
 
 def drawn_rows(orientations, shares, rows, rng, spared=()) -> list[Any]:
-    """Return the orientations that one draw tries: a wanted one, then OTHERS parts as they come.
+    """Return the orientations that one draw tries: a wanted one, then OTHERS_DRAWN parts as they come.
 
     Parameters
     ----------
@@ -309,7 +309,7 @@ def drawn_rows(orientations, shares, rows, rng, spared=()) -> list[Any]:
     wanted = [k for k in wanted if k not in spared] or wanted
     likely = np.where([k in wanted for k in range(len(shares))], shares + 1e-12, 0.0)
     first = int(rng.choice(len(shares), p=likely / likely.sum()))
-    more = rng.choice(len(shares), OTHERS, p=shares / shares.sum())
+    more = rng.choice(len(shares), OTHERS_DRAWN, p=shares / shares.sum())
     return list(dict.fromkeys([first, *(int(k) for k in more)]))
 
 
@@ -333,11 +333,11 @@ def wanted_of(orientations, shares, rows, spared=()):
     own = short_trials.wanted_rows(orientations, short_trials.wanted_states(orientations, rows)[:1]) or [
         rows[0]
     ]
-    some = [k for k in own if k not in spared and shares[k] >= short_trials.SELDOM]
+    some = [k for k in own if k not in spared and shares[k] >= short_trials.SELDOM_SHARE]
     return some or [rows[0]]
 
 
-def comes_through(tried, weights, enough=HALF):
+def comes_through(tried, weights, enough=LEAST_SHARE_LEAVING):
     """Return whether enough of more parts of what is wanted leave, and the others come back.
 
     Parameters

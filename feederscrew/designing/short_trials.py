@@ -18,10 +18,10 @@ from feederscrew.tooling.orientations import Hanging, Orientation
 from feederscrew.trial import course, runs
 from feederscrew.trial.looks import AspectsBelow
 
-SELDOM = 5e-3  # [1] orientations that come less often are left out
-HELD = (course.HANGING, course.STOPPED)  # what is stuck on the bare track is pushed on by a queue
+SELDOM_SHARE = 5e-3  # [1] orientations that come less often are left out
+STUCK_FATES = (course.HANGING, course.STOPPED)  # what is stuck on the bare track is pushed on by a queue
 COUNTED = ("parts", "right", "wrong", "held")  # of each orientation tried
-FEW = 8  # so many other orientations are tried more than once
+FEW_OTHERS = 8  # so many other orientations are tried more than once
 LOW = 0.5  # mean free way between parts at low fill, over their length: a third of the row is empty
 GAP = 1.0 + LOW  # pitch of parts that come in a row at low fill, over their length
 
@@ -188,7 +188,7 @@ def gain(orientations: stream.Orientations, shares: np.ndarray, states: Sequence
 def often(shares: np.ndarray, rows: Sequence[int] = ()) -> list[int]:
     """Return the rows (R,) that come often enough to matter, the most frequent first; some in any case."""
     order = np.argsort(-shares, kind="stable")
-    return [int(k) for k in order if shares[k] >= SELDOM or k in rows]
+    return [int(k) for k in order if shares[k] >= SELDOM_SHARE or k in rows]
 
 
 def single(
@@ -253,7 +253,7 @@ def single(
     own = [followed.entered == k for k in rows]
     count = [[int((own_parts & some).sum()) for own_parts in own] for some in (
         np.ones(len(whole), bool), whole & as_wanted, whole & ~as_wanted,
-        np.isin(followed.fates, HELD),
+        np.isin(followed.fates, STUCK_FATES),
     )]  # fmt: skip
     moving = followed.velocities[np.isfinite(followed.velocities) & (followed.velocities > 0.0)]
     parts, right, wrong, held = (np.array(counts_of_rows) for counts_of_rows in count)

@@ -17,15 +17,15 @@ from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling.devices.kinds import KINDS, names
 from feederscrew.tooling.isolating.proposal import Design
 
-EACH = 2  # parts of each orientation
-MORE = 20  # parts beside those where the trial denies nothing, by the shares of the orientations
+PARTS_OF_EACH = 2  # parts of each orientation
+MORE_PARTS = 20  # parts beside those where the trial denies nothing, by the shares of the orientations
 BEST = 3  # designs of a table that are tried
 TRIES = 5  # designs of one orientation that are tried where the first ones are denied
 SEARCHES = 8  # designs that are looked for after a denied one
 # stretches that reject nothing: to leave them out makes no other chain
 KEPT = tuple(name for name in names(leans=True) if not KINDS[name].grooved)
-OFTEN = 0.02  # [1] shares of the orientations that are tried, and the one that is wanted
-RARE = 1e-3  # [1] of the wanted share: what comes less often than that changes no purity
+OFTEN_SHARE = 0.02  # [1] shares of the orientations that are tried, and the one that is wanted
+RARE_SHARE = 1e-3  # [1] of the wanted share: what comes less often than that changes no purity
 FURTHER = 8  # orientations that come less often than OFTEN and may leave, and are tried as well
 SLIGHT = 1e-9  # [1] of rounding
 
@@ -175,7 +175,7 @@ def _tried(study: ToolingStudy, design: Design, run: RunSettings) -> TriedDesign
         )  # fmt: skip
 
     try:
-        tried = single(rows, EACH, run)
+        tried = single(rows, PARTS_OF_EACH, run)
         further = further_parts(shares[rows])
         if not list(denied(tried)) and further.any():
             further_run = replace(run, seed=run.seed + 1, before=None)
@@ -210,14 +210,14 @@ def _tried(study: ToolingStudy, design: Design, run: RunSettings) -> TriedDesign
 
 def _rows_tried(oriented: stream.Orientations, shares: np.ndarray, wanted: int) -> list[int]:
     """Orientations that are tried: those that come often, and of the others those that may leave."""
-    often = [k for k in np.argsort(-shares, kind="stable") if shares[k] >= OFTEN or k == wanted]
-    may = (oriented.may_leave > 0.0) & (shares >= RARE * shares[wanted]) & (shares > 0.0)
+    often = [k for k in np.argsort(-shares, kind="stable") if shares[k] >= OFTEN_SHARE or k == wanted]
+    may = (oriented.may_leave > 0.0) & (shares >= RARE_SHARE * shares[wanted]) & (shares > 0.0)
     further = [k for k in np.argsort(-shares, kind="stable") if may[k] and k not in often]
     return [int(k) for k in (*often, *further[:FURTHER])]
 
 
 def further_parts(shares: np.ndarray) -> np.ndarray:
-    """Return how many of MORE parts are of each orientation: as the interval of a sum of shares asks for.
+    """Return how many of MORE_PARTS are of each orientation: as the interval of a sum of shares asks for.
 
     Its width is the root of the sum of the squares of share times proportion's interval, which is least where
     parts go with the shares (J. Neyman, J. R. Statist. Soc. 97, 558-625, 1934, for even spreads).
@@ -232,7 +232,9 @@ def further_parts(shares: np.ndarray) -> np.ndarray:
     (R,) int
     """
     total = float(shares.sum())
-    return np.floor(MORE * shares / total + 0.5).astype(int) if total > 0.0 else np.zeros(len(shares), int)
+    return (
+        np.floor(MORE_PARTS * shares / total + 0.5).astype(int) if total > 0.0 else np.zeros(len(shares), int)
+    )
 
 
 def shares_leaving(

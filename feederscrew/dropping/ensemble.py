@@ -16,7 +16,7 @@ from feederscrew.resting.rules.recommended import launched
 
 DROPS_A_BATCH = 250  # drops a core takes at a time
 DROPS_A_LOOK = 8 * DROPS_A_BATCH  # drops between two looks at the intervals, whatever the number of jobs
-MAX_DROPS = 1_000_000  # drops at which ``until`` gives up
+MAX_DROPS_UNTIL_WIDTH = 1_000_000  # drops at which ``until`` gives up
 NORMAL_95 = 1.959963984540054  # two-sided 95 % point
 RESTITUTION_GROUPS = 4  # of drops, by restitution
 NUMERICAL_SHARE_ERROR = (
@@ -131,7 +131,7 @@ def drop(shape, launch, rng, *, count=None, aim=None, jobs=1, steps=None, progre
     KeyboardInterrupt
         If no batch was finished.
     """
-    steps, count = steps or kernel.Steps(), MAX_DROPS if count is None else int(count)
+    steps, count = steps or kernel.Steps(), MAX_DROPS_UNTIL_WIDTH if count is None else int(count)
 
     def starts(size):
         return sample(launch, shape, size, rng)

@@ -141,20 +141,16 @@ def _merged(lows, tops, borders, least) -> tuple[Any, ...]:
         i = int(np.argmin(rises))
         if rises[i] >= least:
             break
-        _join(dips, edges, i)
+        # Dip i goes to the neighbour behind the lower of its two borders.
+        here, following = dips[i], dips[(i + 1) % len(dips)]
+        edges[following] = max(edges[here], edges[following])
+        dips.pop(i)
     rounded = bool(max(tops) - min(lows) < 2.0 * least)
     starts = np.array(
         [_border(tops, borders, dips[i - 1], k, SAME_TOP_SHARE * least) for i, k in enumerate(dips)]
     )
     share = np.mod(np.roll(starts, -1) - starts, 2.0 * np.pi) / (2.0 * np.pi)
     return np.array(dips), starts, np.where(share > 0.0, share, 1.0), rounded
-
-
-def _join(dips, edges, i) -> None:
-    """Give dip i to the neighbour behind the lower of its two borders."""
-    here, following = dips[i], dips[(i + 1) % len(dips)]
-    edges[following] = max(edges[here], edges[following])
-    dips.pop(i)
 
 
 def _border(tops, borders, before, after, level) -> float:

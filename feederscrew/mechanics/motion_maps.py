@@ -51,7 +51,7 @@ def floor_cells(posture, bowl, heading) -> dict[Any, Any]:
 
 TRACK_REGIMES = (*MOTION_STATES, "leaves the wall", "does not fit")  # a code is a place in this list
 LEAVES_WALL, DOES_NOT_FIT = len(MOTION_STATES), len(MOTION_STATES) + 1
-MAP_COLUMNS = (
+MOTION_MAP_COLUMNS = (
     "acceleration_x_m_s2", "normal_force_N", "wall_1_N", "wall_2_N",
     "radial_friction_N", "traction_N", "normal_line_offset_m", "normal_line_offset_across_m",
 )  # fmt: skip
@@ -109,7 +109,7 @@ def track_cells(posture, bowl, heading=None) -> dict[Any, Any]:
         ``TRACK_REGIMES``; NaN where the part does not fit; no acceleration where it hops.
     """
     shape = np.broadcast_shapes(*(np.shape(value) for _, _, value in _fields(bowl)))
-    columns = {name: np.full(shape, np.nan) for name in MAP_COLUMNS} | {
+    columns = {name: np.full(shape, np.nan) for name in MOTION_MAP_COLUMNS} | {
         "regime": np.full(shape, DOES_NOT_FIT)
     }
     for place, here in _seats(posture, bowl, heading, shape):
@@ -161,7 +161,7 @@ def _answers(motion) -> dict[Any, Any]:
     along = np.where(motion.state == HOP, np.nan, along)
     walls, offsets = np.moveaxis(motion.walls, -1, 0), np.moveaxis(motion.offset, -1, 0)
     values = (along, motion.normal_force, *walls, motion.radial_friction, motion.traction, *offsets)
-    return dict(zip(MAP_COLUMNS, values)) | {"regime": np.where(leaves, LEAVES_WALL, motion.state)}
+    return dict(zip(MOTION_MAP_COLUMNS, values)) | {"regime": np.where(leaves, LEAVES_WALL, motion.state)}
 
 
 def _fields(bowl) -> Iterator[Any]:

@@ -14,10 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew.geometry.polygons import cross, sides
+from feederscrew.heavy import heavy
 from feederscrew.mechanics import track_balance
 from feederscrew.mechanics.floor_balance import HOP
 from feederscrew.mechanics.track_balance import frame, loads
 from feederscrew.screw.screws import Point, Wrench, reactions, tipping_twists
+
+optimize = heavy("scipy.optimize")
 
 REVERSALS = {"upper": 0.5 * np.pi, "lower": 1.5 * np.pi}
 WALLS = ("wall_1", "wall_2")
@@ -184,17 +187,9 @@ def exists(seat, bowl, phase=0.5 * np.pi) -> bool:
     """
     if len(seat.contact) == 0:
         return False
-    from scipy.optimize import linprog  # a fifth of a second to load: only where a balance is in doubt
-
     axes = frame(bowl, seat.walls)
     load = loads(seat, bowl, axes, phase) / (seat.mass * bowl.gravity)
-    rays = _rays(seat, bowl, axes)
-    right = np.concatenate([-load, np.zeros(3)])
-    return linprog(np.zeros(len(rays)), A_eq=rays.T, b_eq=right, method="highs").status == 0
-
-
-def _rays(seat, bowl, axes) -> NDArray[np.float64]:
-    """Edges of the friction pyramids as wrenches about the centre of mass, its height the unit; (R, 6)."""
+    # edges of the friction pyramids as wrenches about the centre of mass, its height the unit
     angle = 2.0 * np.pi * np.arange(CONE_SIDES) / CONE_SIDES
     around = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     static, wall = (mu * (1.0 - CONE_MARGIN) for mu in (bowl.friction.static, bowl.friction.wall))
@@ -207,4 +202,6 @@ def _rays(seat, bowl, axes) -> NDArray[np.float64]:
         places.append(np.tile(place, (CONE_SIDES, 1)))
         forces.append(normal + wall * tangents)
     place, force = np.concatenate(places) / seat.height, np.concatenate(forces)
-    return np.concatenate([force, np.cross(place, force)], axis=1)
+    rays = np.concatenate([force, np.cross(place, force)], axis=1)
+    right = np.concatenate([-load, np.zeros(3)])
+    return optimize.linprog(np.zeros(len(rays)), A_eq=rays.T, b_eq=right, method="highs").status == 0

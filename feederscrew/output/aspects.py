@@ -7,10 +7,10 @@ import numpy as np
 
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
+from feederscrew.heavy import heavy
 from feederscrew.output import columns, style, tables, tipping_graph
 from feederscrew.output import offers as offer
 from feederscrew.output.columns import G_MM2, MM2, UJ
-from feederscrew.output.heavy import heavy
 from feederscrew.output.tables import Frame
 from feederscrew.part.record import Part
 from feederscrew.resting import names_file

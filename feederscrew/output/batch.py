@@ -4,8 +4,8 @@ import io
 import textwrap
 from typing import Any
 
+from feederscrew.heavy import heavy
 from feederscrew.output import style
-from feederscrew.output.heavy import heavy
 from feederscrew.part.record import Part
 
 mpl_image = heavy("matplotlib.image")

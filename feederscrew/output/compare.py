@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.heavy import heavy
 from feederscrew.output.tables import Frame
 from feederscrew.resting.rules import registry
 from feederscrew.studies.compare import CompareStudy, SetsStudy
@@ -300,8 +300,6 @@ def _set_document(set_study) -> dict[Any, Any]:
 
 def sets_figure(study: SetsStudy):
     """Draw the total variation of every set from every answer as a table of shades."""
-    from feederscrew.output import style
-
     answers = study.answers
     values = np.array(
         [[set_study.distances.get(name, np.nan) for name in answers] for set_study in study.sets]

@@ -4,12 +4,13 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew import bowl as bowls
 from feederscrew.conveying import answer, sensitivity, steady
 from feederscrew.conveying.answer import throw_of_flight
 from feederscrew.conveying.operating_point import PHASES
+from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.heavy import heavy
 from feederscrew.output.tables import heading
 from feederscrew.output.words import PHASE_WORDS, regime_words
 from feederscrew.studies.convey import ConveyStudy
@@ -31,7 +32,7 @@ SLIP_DIRECTIONS = {"forward": "slip up the track", "backward": "slip down the tr
 
 
 def document(study) -> dict[Any, Any]:
-    """Return a ConveyStudy as the JSON document, without the bowl's values."""
+    """Return a ConveyStudy as the JSON document."""
     conveying, change = study.answer, sensitivity.SENSITIVITY_CHANGE
     return {
         "status": conveying.status,
@@ -56,6 +57,7 @@ def document(study) -> dict[Any, Any]:
         "friction_doubt": _changed(conveying, study.doubt, sensitivity.FRICTION_DOUBT),
         "restitution_doubt": rebound(study.bowl, study.rebound),
         "validity": study.validity,
+        "bowl": bowls.texts(study.bowl.settings),
     }
 
 
@@ -221,10 +223,11 @@ def number(value) -> str:
     return "none" if np.isnan(value) else f"{value:.4g}"
 
 
-def phase_document(phase) -> dict[Any, Any]:
-    """Return a BestPhase for the JSON document."""
+def phase_document(study) -> dict[str, Any]:
+    """Return a ConveyPhase as the JSON document."""
+    phase = study.best
     over = zip(phase.frictions, phase.best_over_friction, phase.straight_over_friction)
-    return {
+    best_phase = {
         "phase_deg": float(np.degrees(phase.phase)),
         "velocity_mm_s": phase.velocity / MM_S,
         "straight_mm_s": phase.straight / MM_S,
@@ -236,10 +239,12 @@ def phase_document(phase) -> dict[Any, Any]:
             for share, best, straight in over
         ],
     }
+    return {"best_phase": best_phase, "bowl": bowls.texts(study.bowl.settings)}
 
 
-def phase_summary(best):
-    """Return the best phase as a frame for people; ``best`` is of ``document``."""
+def phase_summary(document):
+    """Return the document of the best phase as a frame for people."""
+    best = document["best_phase"]
     low, high = best["nine_tenths_from_deg"], best["nine_tenths_to_deg"]
     rows = [
         ("best drive.phase [deg]", number(best["phase_deg"])),
@@ -258,10 +263,10 @@ def phase_summary(best):
     return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
 
 
-def offers(study: ConveyStudy, settings) -> list[offer.Offer]:
+def offers(study: ConveyStudy) -> list[offer.Offer]:
     """Offer the files of a ConveyStudy."""
     return [
-        offer.document("convey.json", lambda: document(study) | {"bowl": settings}),
+        offer.document("convey.json", document, study),
         offer.picture("convey.png", "Plate and part over one steady cycle", _cycle, study),
     ]
 
@@ -275,12 +280,10 @@ def curve_offers(study) -> list[Any]:
     ]
 
 
-def phase_offers(study, settings) -> list[Any]:
-    """Offer the files of a ConveyPhase, as a list of Offer; ``settings`` as for ``offers``."""
+def phase_offers(study) -> list[Any]:
+    """Offer the files of a ConveyPhase, as a list of Offer."""
     return [
-        offer.document(
-            "convey_phase.json", lambda: {"best_phase": phase_document(study.best), "bowl": settings}
-        ),
+        offer.document("convey_phase.json", phase_document, study),
         *curve_offers(study.curve),
     ]
 

@@ -1,6 +1,8 @@
 """The page of ``feeder design``, of one part and of a family of parts."""
 
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
 from itertools import zip_longest
 from typing import Any
 
@@ -13,6 +15,8 @@ from feederscrew.output.page.blocks import (
     Chapter,
     CsvSheet,
     Heading,
+    MarkedCell,
+    Matrix,
     Notes,
     Page,
     Picture,
@@ -37,22 +41,45 @@ MEASURE = (
 )
 
 
-def page(study, built=None):
-    """Return the page of a DesignStudy and its Built bowl as HTML that needs no other file."""
-    return html(
-        Page(
-            study.part.name,
-            f"design of a bowl: {study.status}",
-            tuple(_sections(study, built)),
-            kind="design",
-        )
-    )
+SHOP = (  # what a shop reads of the machine, rows of its summary
+    "vibration angle [deg]", "leaves", "springs", "natural frequency [Hz]", "above the drive [%], gain",
+    "leaf stress [MPa]", "force of the magnet [N]",
+)  # fmt: skip
+FILES = {  # by ending: what they are
+    "pdf": "sheets of the bowl, its springs, its tooling and the sheet development of its track",
+    "dxf": "drawing with dimensions, to cut from",
+    "svg": "the same drawing, to look at",
+    "step": "solid with exact faces",
+    "3mf": "solid to print, in mm",
+    "stl": "solid as a mesh, in mm",
+    "yaml": "bowl file for the other commands of feeder",
+}
 
 
-def _sections(study, built) -> Iterator[Any]:
+def page(study, built=None, papers=()):
+    """Return the page of a design as HTML that needs no other file.
+
+    Parameters
+    ----------
+    study : DesignStudy
+    built : designing.beside.Built, optional
+    papers : sequence of Offer
+        The other files of the design: some are shown, and those to build from have a link.
+
+    Returns
+    -------
+    str
+    """
+    chapters = tuple(_sections(study, built, offer.by_name(papers)))
+    return html(Page(study.part.name, f"design of a bowl: {study.status}", chapters, kind="design"))
+
+
+def _sections(study, built, papers) -> Iterator[Any]:
     d = designs.document(study)
     answer = tuple(_answer(study, d))
     yield Chapter(answer, _tiles(d), study.warnings, anchor="answer", title="The answer")
+    if built is not None and study.delivers:
+        yield from _to_build(study, built, papers)
     history = designs.short_attempts(study)
     picture = Picture(
         "design_history.png", png(designs.history_figure(study)), "Each short trial of the loop"
@@ -67,21 +94,53 @@ def _sections(study, built) -> Iterator[Any]:
         yield Chapter(tuple(_played(study)), anchor="trial", title="The trial")
     if study.queues:
         yield Chapter(tuple(_proof(study, d)), anchor="proof", title="The proof")
-    if built is not None and study.delivers:
-        mark = marking.of_trial(designs.trial_of(study))
-        shown = tuple(solidbowl_views.blocks(built.drawn and built.drawn.solid, study.part, built.why, mark))
-        yield Chapter(shown, anchor="bowl", title="The bowl")
     if not study.delivers:  # nothing to build from, nothing to accept
         return
     sheet = designs.acceptance(study)
     blocks = (
         Text("Computed values, with empty cells for what is measured at the machine."),
         Table(sheet),
-        CsvSheet("acceptance.csv", text(sheet, "csv"), shown=False),
+        CsvSheet("acceptance.csv", text(sheet, "csv"), on_page=False),
         Heading("What to measure"),
         Notes(MEASURE),
     )
     yield Chapter(blocks, anchor="acceptance", title="Acceptance sheet")
+
+
+def _to_build(study, built, papers) -> Iterator[Chapter]:
+    """What a shop builds from: the bowl, its tooling, springs and drive, and the files of them."""
+    mark = marking.of_trial(designs.trial_of(study))
+    views = solidbowl_views.blocks(built.drawn and built.drawn.solid, study.part, built.why, mark)
+    yield Chapter(tuple(views), anchor="bowl", title="The bowl")
+    drawn = [
+        Picture(name, content if isinstance(content := papers[name].make(), bytes) else content.encode(), alt)
+        for name, alt in (
+            ("tooling_3d.png", "The part over the cut: what leaves, and what falls by least"),
+            ("tooling.png", "Each orientation at each device, and the section in which it leaves"),
+            ("tooling.svg", "The tooling unrolled, with its dimensions, and as it is bent"),
+        )
+        if name in papers
+    ]
+    if drawn:
+        lead = Text("The part over the cut, what each device does, and the drawing of the cuts.")
+        yield Chapter((lead, *drawn), anchor="tooling", title="The tooling")
+    if built.sheet is not None:
+        summary = machine.summary(built.sheet)
+        rows = [row for row in summary.rows() if row["quantity"] in SHOP]
+        springs = Table(frame({name: [row[name] for row in rows] for name in summary}))
+        bowl_pictures = [
+            Picture(picture.name, picture.make(), picture.alt)
+            for name, picture in papers.items()
+            if name == "bowl.png"
+        ]
+        yield Chapter((springs, *bowl_pictures), anchor="springs", title="Springs and drive")
+    listed = [(name, FILES.get(name.rpartition(".")[2])) for name in papers]
+    cells = tuple((MarkedCell(name, link=name), MarkedCell(what)) for name, what in listed if what)
+    if cells:
+        lead = Text("These files lie beside this page.")
+        yield Chapter(
+            (lead, Matrix(("file", "what it is"), cells)), anchor="files", title="Files to build from"
+        )
 
 
 def _answer(study, d) -> Iterator[Any]:
@@ -95,16 +154,16 @@ def _answer(study, d) -> Iterator[Any]:
     if d["bowl"]:
         yield Table(designs.two_columns(designs.dimensions(d)))
     if study.risks:
-        yield Notes(tuple(one.text for one in study.risks), loud=True)
+        yield Notes(tuple(risk.text for risk in study.risks), loud=True)
         yield from _pairs(study)
 
 
 def _pairs(study) -> Iterator[Any]:
     """Pictures of what may go wrong between two parts, or a part and two walls."""
-    for one in study.risks:
-        if one.pair is not None:
+    for risk in study.risks:
+        if risk.pair is not None:
             yield Picture(
-                f"risk_{one.kind}.png", png(designs.risk_picture(study.part, one)), one.text, printed=True
+                f"risk_{risk.kind}.png", png(designs.risk_picture(study.part, risk)), risk.text, printed=True
             )
 
 
@@ -138,7 +197,12 @@ def _played(study) -> Iterator[Any]:
     yield Text("Parts of the short trial at the device that decides.")
     scene, captions = playback.scene(study.part, *study.trials)
     yield Views(
-        scene, tuple((*one, ()) for one in captions), "trial-views", "Orientation", plays=True, printed=True
+        scene,
+        tuple((*caption, ()) for caption in captions),
+        "trial-views",
+        "Orientation",
+        plays=True,
+        printed=True,
     )
 
 
@@ -147,8 +211,6 @@ def _proof(study, d) -> Iterator[Any]:
         "A queue of parts that push each other, at three fills, and draws of part, friction, drive and cuts, "
         "each tried with parts of its own."
     )
-    from feederscrew.output.tables import frame
-
     if d["long_ride"]:
         yield Text(
             "Parts of each orientation that comes often first ride along the bare track to the tooling. They "
@@ -199,34 +261,34 @@ def offers(study, settings, built=None):
     if study.status == record.NOT_PROVED:
         return list(_unproved(study, settings))
     sheet, drawn = (None, None) if built is None else (built.sheet, built.drawn)
-    found = [
+    files = [
         offer.document("design.json", designs.document, study),
-        offer.text("design.html", page, study, built),
         offer.table("design_trials.csv", designs.attempts, study),
         offer.table("alternatives.csv", designs.alternatives, study),
         offer.picture("design_history.png", "Each short trial of the loop", designs.history_figure, study),
     ]
-    for one in study.risks:
-        if one.pair is not None:
-            found.append(
-                offer.picture(f"risk_{one.kind}.png", one.text, designs.risk_picture, study.part, one)
+    for item in study.risks:
+        if item.pair is not None:
+            files.append(
+                offer.picture(f"risk_{item.kind}.png", item.text, designs.risk_picture, study.part, item)
             )
     if study.bowl is None:
-        return found
-    found.append(offer.text("design.yaml", designs.bowl_file, study, settings, sheet))
+        return [*files, offer.text("design.html", page, study, built)]
+    files.append(offer.text("design.yaml", designs.bowl_file, study, settings, sheet))
     if not study.delivers:
-        return found
+        return [*files, offer.text("design.html", page, study, built)]
     tried = designs.trial_of(study)
-    found.append(offer.table("acceptance.csv", designs.acceptance, study))
+    files.append(offer.table("acceptance.csv", designs.acceptance, study))
     if sheet is not None:
-        found += machine.offers(sheet, tried)
+        files += machine.offers(sheet, tried)
     if drawn is not None:
-        found += solidbowl.offers(drawn, tried)
-        found.append(offer.document("bowl_solid.json", solidbowl.document, drawn.solid))
+        files += solidbowl.offers(drawn, tried)
+        files.append(offer.document("bowl_solid.json", solidbowl.document, drawn.solid))
     if study.tooling is not None:
         own = tooling.offers(study.tooling, settings, mark=marking.of_trial(tried))
-        found += [one for one in own if one.name != "tooling.yaml"]  # design.yaml has the devices
-    return found
+        files += [item for item in own if item.name != "tooling.yaml"]  # design.yaml has the devices
+    files = [replace(item, make=cache(item.make)) for item in files]  # the page shows some of them
+    return [*files, offer.text("design.html", page, study, built, files)]
 
 
 def _unproved(study, settings) -> Iterator[Any]:
@@ -243,7 +305,7 @@ def family_document(study) -> dict[Any, Any]:
         "status": study.status,
         "shared": study.shared,
         "partial": study.partial,
-        "parts": [designs.document(one) for one in study.members],
+        "parts": [designs.document(member) for member in study.members],
         "changeover": [
             {"what": what, "how": how, "values": dict(zip(_names(study), values))}
             for what, how, values in changes(study)
@@ -252,12 +314,12 @@ def family_document(study) -> dict[Any, Any]:
 
 
 def _names(study) -> list[Any]:
-    return [one.part.name for one in study.members]
+    return [member.part.name for member in study.members]
 
 
 def changes(study) -> list[Any]:
     """Return what differs between the parts: rows of what, how it is changed, and a text for each part."""
-    bowls = [one.bowl for one in study.members]
+    bowls = [member.bowl for member in study.members]
     if any(bowl is None for bowl in bowls):
         return []
     rows = [(f"track.{name}", SWAPPED, _values(bowls, "track", name, *how)) for name, *how in TRACK]
@@ -272,13 +334,15 @@ def _values(bowls, section, name, unit, text) -> tuple[Any, ...]:
 
 def _devices(study) -> Iterator[Any]:
     """A row for each place of each kind: the first gap of all parts, the second, ..."""
-    kinds = dict.fromkeys(one.kind for member in study.members for one in member.devices)
+    kinds = dict.fromkeys(device.kind for member in study.members for device in member.devices)
     for kind in kinds:
-        own = [[one for one in member.devices if one.kind == kind] for member in study.members]
+        own = [[device for device in member.devices if device.kind == kind] for member in study.members]
         for place, row in enumerate(zip_longest(*own), start=1):
-            values = tuple(NOTHING if one is None else one.text for one in row)
-            seen = row[0] is not None and row[0].senses and len({one and one.sees for one in row}) == 1
-            yield f"{kind} {place}", TAUGHT if seen else SWAPPED, values
+            values = tuple(NOTHING if device is None else device.text for device in row)
+            is_taught = (
+                row[0] is not None and row[0].senses and len({device and device.sees for device in row}) == 1
+            )
+            yield f"{kind} {place}", TAUGHT if is_taught else SWAPPED, values
 
 
 def changeover(study):
@@ -293,14 +357,14 @@ def family_summary(study):
     """Return what is printed: a row for each part, then what is changed."""
     minute = units.PER_MINUTE
     rows = [("status", study.status), ("one bowl for all", "yes" if study.shared else "no")]
-    for one in study.members:
-        rate, low, _ = (value / minute for value in one.delivered)
-        text = f"{one.status}, {one.wanted or NOTHING}"
-        text += "" if one.partial else f", {rate:.4g} a minute (at least {low:.4g})"
-        rows.append((one.part.name, text + (f": {one.why}" if one.why else "")))
-        told = designs.machine_facts(one)
-        if told is not None:
-            rows.append((f"machine of {one.part.name}", designs.machine_text(told)))
+    for member in study.members:
+        rate, low, _ = (value / minute for value in member.delivered)
+        text = f"{member.status}, {member.wanted or NOTHING}"
+        text += "" if member.partial else f", {rate:.4g} a minute (at least {low:.4g})"
+        rows.append((member.part.name, text + (f": {member.why}" if member.why else "")))
+        facts = designs.machine_facts(member)
+        if facts is not None:
+            rows.append((f"machine of {member.part.name}", designs.machine_text(facts)))
     for what, how, values in changes(study):
         rows.append((f"{how}: {what}", "; ".join(values)))
     return designs.two_columns([line for row in rows for line in designs.folded(*row)])
@@ -315,7 +379,7 @@ HOW = (
 
 def family_page(study):
     """Return the page of a FamilyStudy as HTML that needs no other file."""
-    names = " and ".join(one.part.name for one in study.members)
+    names = " and ".join(member.part.name for member in study.members)
     return html(
         Page(names, f"one bowl for several parts: {study.status}", tuple(_chapters(study)), kind="design")
     )
@@ -325,17 +389,17 @@ def _chapters(study) -> Iterator[Any]:
     answer = [Text(_family_status(study)), Table(frame(parts(study)))]
     answer += [Text("The machine that each part asks for:"), Notes(tuple(_machines(study)))]
     warned = tuple(
-        dict.fromkeys(f"{one.part.name}: {said}" for one in study.members for said in one.warnings)
+        dict.fromkeys(f"{member.part.name}: {line}" for member in study.members for line in member.warnings)
     )
     answer += [Notes(warned, loud=True)] if warned else []
-    answer += [Notes(tuple(said), loud=True) for said in (_risks(study),) if said]
+    answer += [Notes(tuple(line), loud=True) for line in (_risks(study),) if line]
     yield Chapter(tuple(answer), tuple(_family_tiles(study)), anchor="answer", title="The answer")
     changed = changeover(study)
     if changed["what"]:
         sheet = frame(changed)
         blocks: tuple = (
             Table(sheet),
-            CsvSheet("changeover.csv", text(sheet, "csv"), shown=False),
+            CsvSheet("changeover.csv", text(sheet, "csv"), on_page=False),
             Heading("How"),
             Notes(HOW),
         )
@@ -365,24 +429,24 @@ def _family_tiles(study) -> Iterator[Any]:
 
 
 def _machines(study) -> Iterator[Any]:
-    for one in study.members:
-        told = designs.machine_facts(one)
-        text = "no bowl" if told is None else designs.machine_text(told)
-        yield f"{one.part.name}: {text}"
+    for member in study.members:
+        facts = designs.machine_facts(member)
+        text = "no bowl" if facts is None else designs.machine_text(facts)
+        yield f"{member.part.name}: {text}"
 
 
 def _risks(study) -> list[Any]:
-    return [f"{one.part.name}: {risk.text}" for one in study.members for risk in one.risks]
+    return [f"{member.part.name}: {risk.text}" for member in study.members for risk in member.risks]
 
 
 def parts(study) -> dict[Any, Any]:
     """Return columns of what each part delivers, and where its own page is."""
     rows = []
-    for one in study.members:
-        d = designs.document(one)
+    for member in study.members:
+        d = designs.document(member)
         rows.append(
             {
-                "part": one.part.name,
+                "part": member.part.name,
                 "status": d["status"],
                 "leaves as": d["wanted"] or NOTHING,
                 "asked_per_minute": d["target_per_minute"],
@@ -391,7 +455,7 @@ def parts(study) -> dict[Any, Any]:
                 "purity": d["purity"],
                 "jams": d["jams"],
                 "devices": ", ".join(device["device"] for device in d["chain"]) or "none",
-                "page": f"{one.part.name}/design.html",
+                "page": f"{member.part.name}/design.html",
             }
         )
     return {name: [row[name] for row in rows] for name in rows[0]}

@@ -18,9 +18,9 @@ from feederscrew.designing import record
 from feederscrew.designing.record import NOT_PROVED
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
+from feederscrew.heavy import heavy
 from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import columns, style, tables
-from feederscrew.output.heavy import heavy
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
@@ -60,14 +60,14 @@ def document(study) -> dict[Any, Any]:
             "worst": study.robust.worst,
             "tolerance_mm": study.request.tolerance / MM,
         },
-        "chain": [{"device": one.kind, "value": one.text} for one in study.devices],
-        "alternatives": [alternative(one) for one in study.alternatives],
+        "chain": [{"device": item.kind, "value": item.text} for item in study.devices],
+        "alternatives": [alternative(item) for item in study.alternatives],
         "why": study.why,
         "cause": study.cause or None,
         "nearest": nearest(study),
         "left_instead": dict(study.left_instead),
-        "risks": [one.text for one in study.risks],
-        "findings": [risk(one) for one in study.risks],
+        "risks": [item.text for item in study.risks],
+        "findings": [risk(item) for item in study.risks],
         "trial_parts": study.trial_parts,
         "answer": study.source,
         "seed": study.request.seed,
@@ -76,7 +76,7 @@ def document(study) -> dict[Any, Any]:
         "machine": machine_facts(study),
         "bowl": bowl(study),
         "long_ride": [] if study.long_ride is None else study.long_ride.rows(),
-        "queues": [queue(one) for one in study.queues],
+        "queues": [queue(item) for item in study.queues],
         "attempts": attempts(study).rows(),
     }
 
@@ -85,33 +85,33 @@ NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed a
 CLASS_WORDS = ("steel alone", "steady air", "a sensor with a valve")
 
 
-def alternative(one) -> dict[Any, Any]:
+def alternative(option) -> dict[Any, Any]:
     """Return an Alternative as a dict: null where nothing was counted."""
-    value, low, _ = one.delivered or (None, None, None)
+    value, low, _ = option.delivered or (None, None, None)
     return {
-        "class": one.cost_class,
-        "status": one.status,
+        "class": option.cost_class,
+        "status": option.status,
         "delivered_per_minute": None if value is None else value / PER_MINUTE,
         "delivered_low": None if low is None else low / PER_MINUTE,
-        "purity": one.purity,
-        "yield": one.efficiency,
-        "chain": list(one.chain),
-        "needs": _needs(one),
-        "why": one.why or None,
+        "purity": option.purity,
+        "yield": option.efficiency,
+        "chain": list(option.chain),
+        "needs": _needs(option),
+        "why": option.why or None,
     }
 
 
-def _needs(one) -> list[Any]:
+def _needs(option) -> list[Any]:
     """What a chain needs beside steel, its cameras by what they see."""
-    cameras = [CAMERAS[view] for view in one.sees]
-    return [*cameras, *NEEDS[3][1:]] if cameras else list(NEEDS[one.cost_class])
+    cameras = [CAMERAS[view] for view in option.sees]
+    return [*cameras, *NEEDS[3][1:]] if cameras else list(NEEDS[option.cost_class])
 
 
 def alternatives(study):
     """Return the best of each cost class, one a row."""
     rows = []
-    for one in study.alternatives:
-        d = alternative(one)
+    for option in study.alternatives:
+        d = alternative(option)
         rows.append(
             d | {"chain": ", ".join(d["chain"]) or "none", "needs": ", ".join(d["needs"]) or "nothing more"}
         )
@@ -122,18 +122,18 @@ def alternatives(study):
     return tables.frame({name: [row[name] for row in rows] for name in names})
 
 
-def alternative_text(one) -> str:
+def alternative_text(option) -> str:
     """Return an Alternative as one sentence."""
     figures = ""
-    if one.delivered is not None and one.purity is not None:
+    if option.delivered is not None and option.purity is not None:
         figures = (
-            f", {one.delivered[0] / PER_MINUTE:.3g}/min, purity {100.0 * one.purity:.3g} %, "
-            f"yield {100.0 * one.efficiency:.3g} %"
+            f", {option.delivered[0] / PER_MINUTE:.3g}/min, purity {100.0 * option.purity:.3g} %, "
+            f"yield {100.0 * option.efficiency:.3g} %"
         )
-    chain = "; ".join(one.chain_words or one.chain)
-    needs = f"needs {units.listed(_needs(one))}" if chain and _needs(one) else ""
-    more = [text for text in (chain, needs, one.why) if text]
-    return f"{one.status}{figures}" + "".join(f"; {text}" for text in more)
+    chain = "; ".join(option.chain_words or option.chain)
+    needs = f"needs {units.listed(_needs(option))}" if chain and _needs(option) else ""
+    more = [text for text in (chain, needs, option.why) if text]
+    return f"{option.status}{figures}" + "".join(f"; {text}" for text in more)
 
 
 PROOF = (  # what a design has shown: none of it of one that is not proved
@@ -155,40 +155,40 @@ def long_ride(rows):
     """Return the rows of a long ride as a table."""
     if not rows:
         return None
-    others = [", ".join(f"{name}: {count}" for name, count in row["becomes"].items()) or "-" for row in rows]
+    becomes = [", ".join(f"{name}: {count}" for name, count in row["becomes"].items()) or "-" for row in rows]
     percent = {
         f"{name} [%]": [round(100.0 * row[f"share_{name}"], 1) for row in rows]
         for name in ("entering", "arriving")
     }
     counts = {name: [row[name] for row in rows] for name in ("orientation", "parts", "stays")}
-    return tables.frame({**counts, "becomes": others, "left": [row["left"] for row in rows], **percent})
+    return tables.frame({**counts, "becomes": becomes, "left": [row["left"] for row in rows], **percent})
 
 
 def nearest(study) -> dict[Any, Any] | None:
     """Return the nearest that holds as a dict, ``tried`` what was run for it; None of what holds."""
-    one = study.nearest
-    if one is None:
+    near = study.nearest
+    if near is None:
         return None
     return {
-        "rate_per_minute": None if one.rate is None else _digits(one.rate / PER_MINUTE),
-        "change": one.change or None,
-        "wanted": one.wanted,
-        "chain": list(one.chain),
-        "frequency_hz": one.frequency,
-        "peak_to_peak_mm": None if one.peak_to_peak is None else one.peak_to_peak / MM,
-        "throw_number": one.throw_number,
+        "rate_per_minute": None if near.rate is None else _digits(near.rate / PER_MINUTE),
+        "change": near.change or None,
+        "wanted": near.wanted,
+        "chain": list(near.chain),
+        "frequency_hz": near.frequency,
+        "peak_to_peak_mm": None if near.peak_to_peak is None else near.peak_to_peak / MM,
+        "throw_number": near.throw_number,
         "tried": {
-            "short_trials": one.trials,
-            "proofs": one.proofs,
-            "draws": one.draws,
-            "draws_held": one.draws_held,
-            "queue_seconds": one.queue_seconds,
-            "parts_left": one.parts_left,
-            "parts_right": one.parts_right,
-            "denied": list(one.denied),
+            "short_trials": near.trials,
+            "proofs": near.proofs,
+            "draws": near.draws,
+            "draws_held": near.draws_held,
+            "queue_seconds": near.queue_seconds,
+            "parts_left": near.parts_left,
+            "parts_right": near.parts_right,
+            "denied": list(near.denied),
         },
-        "helps": list(one.helps),
-        "text": one.text,
+        "helps": list(near.helps),
+        "text": near.text,
     }
 
 
@@ -229,7 +229,7 @@ def machine_facts(study) -> dict[Any, Any] | None:
         return None
     drive, two_axis = study.bowl.drive, is_two_axis(study.bowl.drive)
     velocity = answer(study.bowl).velocity
-    seen, leap = [one for one in study.devices if one.senses], hop(study.bowl)
+    sensing, leap = [device for device in study.devices if device.senses], hop(study.bowl)
     return {
         "drive": TWO_AXIS if two_axis else LEAF_SPRING,
         "drive_needs": TWO_MAGNETS if two_axis else ONE_SET if study.drive_mismatch is None else OTHER_SET,
@@ -245,93 +245,93 @@ def machine_facts(study) -> dict[Any, Any] | None:
         "hop_flight_mm": leap.flight / MM,
         "hop": leap.text,
         "velocity_mm_s": float(velocity) / MM_S if np.isfinite(velocity) else None,
-        "cameras": len(seen),
-        "cameras_see": [one.sees for one in seen],
-        "valves": len(seen),  # one for the pulses of each
-        "air": any(hasattr(one, "jet") for one in study.devices),
+        "cameras": len(sensing),
+        "cameras_see": [device.sees for device in sensing],
+        "valves": len(sensing),  # one for the pulses of each
+        "air": any(hasattr(device, "jet") for device in study.devices),
     }
 
 
-def machine_text(told) -> str:
+def machine_text(facts) -> str:
     """Return the dict of ``machine`` as one sentence."""
-    travels = "" if told["velocity_mm_s"] is None else f", {told['velocity_mm_s']:.3g} mm/s"
+    travels = "" if facts["velocity_mm_s"] is None else f", {facts['velocity_mm_s']:.3g} mm/s"
     return (
-        f"{_drive_kind(told)}; {told['frequency_hz']:.4g} Hz, {_angles(told)}, stroke "
-        f"{told['stroke_peak_to_peak_mm']:.3g} mm peak to peak, throw number {told['throw_number']:.3g}"
-        f"{travels}{_hops(told)}; {_served_by(told)}"
+        f"{_drive_kind(facts)}; {facts['frequency_hz']:.4g} Hz, {_angles(facts)}, stroke "
+        f"{facts['stroke_peak_to_peak_mm']:.3g} mm peak to peak, throw number {facts['throw_number']:.3g}"
+        f"{travels}{_hops(facts)}; {_served_by(facts)}"
     )
 
 
-def _angles(told) -> str:
+def _angles(facts) -> str:
     """The direction of the vibration at the springs, where they are drawn, and at the track."""
-    at_springs, at_track = (told[f"vibration_angle_at_the_{place}_deg"] for place in ("springs", "track"))
+    at_springs, at_track = (facts[f"vibration_angle_at_the_{place}_deg"] for place in ("springs", "track"))
     drawn = (
-        "" if at_springs is None or told["drive"] == TWO_AXIS else f"{at_springs:.3g} deg at the springs, "
+        "" if at_springs is None or facts["drive"] == TWO_AXIS else f"{at_springs:.3g} deg at the springs, "
     )
     return f"{drawn}{at_track:.3g} deg to the track"
 
 
-def _hops(told) -> str:
+def _hops(facts) -> str:
     """How a part hops, in words; '' where it does not."""
-    return f", parts hop {told['hop']}" if told["hop_height_mm"] > 0.0 else ""
+    return f", parts hop {facts['hop']}" if facts["hop_height_mm"] > 0.0 else ""
 
 
-def _drive_kind(told) -> str:
-    led = f", phase {told['phase_deg']:.4g} deg" if told["drive"] == TWO_AXIS else ""
-    return f"{told['drive']}{led}: {told['drive_needs']}"
+def _drive_kind(facts) -> str:
+    led = f", phase {facts['phase_deg']:.4g} deg" if facts["drive"] == TWO_AXIS else ""
+    return f"{facts['drive']}{led}: {facts['drive_needs']}"
 
 
-def _served_by(told) -> str:
+def _served_by(facts) -> str:
     """Cameras, valves and air, in words."""
-    seen = f" ({', '.join(CAMERAS[one] for one in told['cameras_see'])})" if told["cameras"] else ""
+    cameras = f" ({', '.join(CAMERAS[view] for view in facts['cameras_see'])})" if facts["cameras"] else ""
     counts = [
-        units.counted(told[name], name.removesuffix("s")) if told[name] else f"no {name.removesuffix('s')}"
+        units.counted(facts[name], name.removesuffix("s")) if facts[name] else f"no {name.removesuffix('s')}"
         for name in ("cameras", "valves")
     ]
-    return f"{counts[0]}{seen}, {counts[1]}, {'compressed air' if told['air'] else 'no air'}"
+    return f"{counts[0]}{cameras}, {counts[1]}, {'compressed air' if facts['air'] else 'no air'}"
 
 
-def _machine(told) -> Iterator[Any]:
+def _machine(facts) -> Iterator[Any]:
     """Rows of the dict of ``machine``."""
-    if told is None:
+    if facts is None:
         return
-    yield "drive", _drive_kind(told)
-    yield "frequency [Hz]", f"{told['frequency_hz']:.4g}"
-    yield "stroke, peak to peak [mm]", f"{told['stroke_peak_to_peak_mm']:.4g}"
-    yield "vibration angle", _angles(told)
-    yield "throw number", f"{told['throw_number']:.4g}"
-    if told["hop_height_mm"] > 0.0:
-        yield "a part hops", told["hop"]
-    if told["velocity_mm_s"] is not None:
-        yield "velocity [mm/s]", f"{told['velocity_mm_s']:.4g}"
-    yield "cameras, valves, air", _served_by(told)
+    yield "drive", _drive_kind(facts)
+    yield "frequency [Hz]", f"{facts['frequency_hz']:.4g}"
+    yield "stroke, peak to peak [mm]", f"{facts['stroke_peak_to_peak_mm']:.4g}"
+    yield "vibration angle", _angles(facts)
+    yield "throw number", f"{facts['throw_number']:.4g}"
+    if facts["hop_height_mm"] > 0.0:
+        yield "a part hops", facts["hop"]
+    if facts["velocity_mm_s"] is not None:
+        yield "velocity [mm/s]", f"{facts['velocity_mm_s']:.4g}"
+    yield "cameras, valves, air", _served_by(facts)
 
 
-def risk(one) -> dict[Any, Any]:
+def risk(pair_risk) -> dict[Any, Any]:
     """Return a Risk as a dict: of two parts how the second lies to the first, in the axes of the file."""
-    pair: dict | None = None if one.pair is None else {}
-    if pair is not None and one.pair.turn is not None:
-        pair = {"turn": one.pair.turn.tolist(), "place_mm": (one.pair.place / MM).tolist()}
+    pair: dict | None = None if pair_risk.pair is None else {}
+    if pair is not None and pair_risk.pair.turn is not None:
+        pair = {"turn": pair_risk.pair.turn.tolist(), "place_mm": (pair_risk.pair.place / MM).tolist()}
     elif pair is not None:
-        pair = {"walls_mm": one.pair.walls / MM}
-    return {"kind": one.kind, "text": one.text, "pair": pair}
+        pair = {"walls_mm": pair_risk.pair.walls / MM}
+    return {"kind": pair_risk.kind, "text": pair_risk.text, "pair": pair}
 
 
-def queue(one) -> dict[Any, Any]:
+def queue(filled) -> dict[Any, Any]:
     """Return a FilledQueue as a dict."""
     return {
-        "fill": one.fill,
-        "free_way": one.gaps,
-        "parts": one.parts,
-        "seconds": one.seconds,
-        "delivered_per_minute": None if one.partial else one.rate / PER_MINUTE,
-        "left": one.left,
-        "right": one.right,
-        "returned": one.returned,
-        "jams": one.jams,
-        "climbs": one.climbs,
-        "left_instead": ", ".join(f"{name}: {count} of {one.left}" for name, count in one.left_instead),
-        "partial": one.partial,
+        "fill": filled.fill,
+        "free_way": filled.gaps,
+        "parts": filled.parts,
+        "seconds": filled.seconds,
+        "delivered_per_minute": None if filled.partial else filled.rate / PER_MINUTE,
+        "left": filled.left,
+        "right": filled.right,
+        "returned": filled.returned,
+        "jams": filled.jams,
+        "climbs": filled.climbs,
+        "left_instead": ", ".join(f"{name}: {count} of {filled.left}" for name, count in filled.left_instead),
+        "partial": filled.partial,
     }
 
 
@@ -340,22 +340,22 @@ def attempts(study):
     rows = [
         {
             "trial": place,
-            "wanted": one.wanted,
-            "chain": ", ".join(one.chain) or "none",
-            "why": one.step,
-            "bank_deg": one.bank / DEG,
-            "velocity_mm_s": one.velocity / MM_S,
-            "parts": one.parts,
-            "efficiency": one.efficiency,
-            "purity": one.purity,
-            "stopped": one.stopped,
-            "peak_to_peak_mm": one.peak_to_peak / MM,
-            "throw_number": one.throw_number,
-            "rate_per_minute": one.rate / PER_MINUTE,
-            "denied": "; ".join(one.faults),
-            "cause": one.cause,
+            "wanted": attempt.wanted,
+            "chain": ", ".join(attempt.chain) or "none",
+            "why": attempt.step,
+            "bank_deg": attempt.bank / DEG,
+            "velocity_mm_s": attempt.velocity / MM_S,
+            "parts": attempt.parts,
+            "efficiency": attempt.efficiency,
+            "purity": attempt.purity,
+            "stopped": attempt.stopped,
+            "peak_to_peak_mm": attempt.peak_to_peak / MM,
+            "throw_number": attempt.throw_number,
+            "rate_per_minute": attempt.rate / PER_MINUTE,
+            "denied": "; ".join(attempt.faults),
+            "cause": attempt.cause,
         }
-        for place, one in enumerate(study.attempts, start=1)
+        for place, attempt in enumerate(study.attempts, start=1)
     ]
     names = (
         "trial", "wanted", "chain", "why", "bank_deg", "velocity_mm_s", "parts", "efficiency", "purity",
@@ -367,7 +367,7 @@ def attempts(study):
 def short_attempts(study):
     """Return the history as a page has room for it: of each device its kind, and one number if it has one."""
     history = attempts(study)
-    chains = [", ".join(map(_brief, one.chain)) or "none" for one in study.attempts]
+    chains = [", ".join(map(_brief, attempt.chain)) or "none" for attempt in study.attempts]
     names = [name for name in history if name != "peak_to_peak_mm"]  # the throw number says as much
     return tables.frame({name: chains if name == "chain" else history[name] for name in names})
 
@@ -384,9 +384,9 @@ def summary(study):
     if study.nearest is not None:
         why.append(("nearest that holds", study.nearest.text.removeprefix("nearest that holds: ")))
     first, *rows = outcome(d, study.devices)
-    rows = [first, *why, *rows, *dimensions(d), *(("risk", one) for one in d["risks"])]
-    for one in study.alternatives:
-        rows.append((f"with {CLASS_WORDS[one.cost_class - 1]}", alternative_text(one)))
+    rows = [first, *why, *rows, *dimensions(d), *(("risk", text) for text in d["risks"])]
+    for option in study.alternatives:
+        rows.append((f"with {CLASS_WORDS[option.cost_class - 1]}", alternative_text(option)))
     rows.append(("trials, parts", f"{len(d['attempts'])}, {d['trial_parts']}"))
     return two_columns([line for row in rows for line in folded(*row)])
 
@@ -412,8 +412,8 @@ def outcome(d, devices) -> list[Any]:
         ("asked for [1/min]", f"{d['target_per_minute']:.4g}"),
     ]
     proved = _result_rows(d) if d["status"] != record.NOT_PROVED else []
-    chain = [f"{one.full_name}: {one.value_words}" for one in devices] or ["none"]
-    return [*head, *proved, *((f"device {k}", one) for k, one in enumerate(chain, start=1))]
+    chain = [f"{item.full_name}: {item.value_words}" for item in devices] or ["none"]
+    return [*head, *proved, *((f"device {k}", item) for k, item in enumerate(chain, start=1))]
 
 
 def _leaves_as(d):
@@ -468,35 +468,44 @@ def acceptance(study):
 
 
 def _sheet(study) -> Iterator[Any]:
-    for one in study.queues:
-        low, high = one.ends
-        values = (f"{end / PER_MINUTE:.4g}" for end in (one.rate, low, high))
-        yield ("good parts at the discharge", one.fill, *values, "1/min", "", "")
-        yield ("yield, good of what leaves", one.fill, _share(one.right, one.left), "", "", "%", "", "")
+    for filled in study.queues:
+        low, high = filled.ends
+        values = (f"{end / PER_MINUTE:.4g}" for end in (filled.rate, low, high))
+        yield ("good parts at the discharge", filled.fill, *values, "1/min", "", "")
+        yield (
+            "yield, good of what leaves",
+            filled.fill,
+            _share(filled.right, filled.left),
+            "",
+            "",
+            "%",
+            "",
+            "",
+        )
         yield (
             "jams",
-            one.fill,
-            f"{one.jams}",
+            filled.fill,
+            f"{filled.jams}",
             "",
-            f"{3600.0 * (one.jams + 3) / one.seconds:.3g}",
+            f"{3600.0 * (filled.jams + 3) / filled.seconds:.3g}",
             "1/h",
             "",
             "",
         )
-    known = bowl(study)
-    if known is None:
+    sizes = bowl(study)
+    if sizes is None:
         return
     drive = study.bowl.drive
     peak = (2.0 * np.pi * drive.frequency) ** 2 * drive.amplitude
-    yield ("stroke on the sticker, peak to peak", "", f"{known['peak_to_peak_mm']:.4g}", "", "", "mm", "", "")
+    yield ("stroke on the sticker, peak to peak", "", f"{sizes['peak_to_peak_mm']:.4g}", "", "", "mm", "", "")
     yield ("acceleration, peak", "", f"{peak:.4g}", "", "", "m/s2", "", "")
     yield ("frequency of the drive", "", f"{drive.frequency:.4g}", "", "", "Hz", "", "")
-    yield ("vibration angle", "", f"{known['vibration_angle_deg']:.4g}", "", "", "deg", "", "")
-    if known["vibration_angle_at_the_springs_deg"] is not None:
-        at_springs = f"{known['vibration_angle_at_the_springs_deg']:.4g}"
+    yield ("vibration angle", "", f"{sizes['vibration_angle_deg']:.4g}", "", "", "deg", "", "")
+    if sizes["vibration_angle_at_the_springs_deg"] is not None:
+        at_springs = f"{sizes['vibration_angle_at_the_springs_deg']:.4g}"
         yield ("vibration angle at the springs", "", at_springs, "", "", "deg", "", "")
-    if known["phase_deg"]:
-        yield ("phase of the drive", "", f"{known['phase_deg']:.4g}", "", "", "deg", "", "")
+    if sizes["phase_deg"]:
+        yield ("phase of the drive", "", f"{sizes['phase_deg']:.4g}", "", "", "deg", "", "")
     yield ("drive setting", "", f"{100.0 * study.bowl.sizing.controller:.4g}", "", "", "%", "", "")
     yield (
         "reserve of the drive",
@@ -561,27 +570,27 @@ def bowl_file(study, settings, sheet=None) -> str:
     own |= {} if sheet is None else {"machine": sheet.bowl.machine, "sizing": sheet.bowl.sizing}
     set_here = {f"{section}.{row[0]}" for section in own for row in OWN[section]} | {"drive.peak_to_peak"}
     set_here |= {f"machine.{word}" for word in schema.UNBALANCE_NAMES if "machine" in own}
-    given = [
+    own_settings = [
         s for s in settings if s.is_own and s.key.field != DEVICES_SECTION and s.key.name not in set_here
     ]
     lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
     if study.drive_mismatch is not None:
         lines += [f"# Its drive: {study.drive_mismatch.text}."]
-    lines += [f"{s.key.word}: {s.text}" for s in given if not s.key.section]
-    for section in dict.fromkeys((*own, *(s.key.section for s in given if s.key.section))):
+    lines += [f"{s.key.word}: {s.text}" for s in own_settings if not s.key.section]
+    for section in dict.fromkeys((*own, *(s.key.section for s in own_settings if s.key.section))):
         lines += [f"{section}:"]
-        lines += [f"  {s.key.word}: {s.text}" for s in given if s.key.section == section]
+        lines += [f"  {s.key.word}: {s.text}" for s in own_settings if s.key.section == section]
         if section in own:
             lines += [f"  {word}: {_text(own[section], word, *unit)}" for word, *unit in OWN[section]]
         if section == "machine" and section in own:
             lines += [f"  {word}: {text}" for word, text in _unbalance(own[section])]
     if study.bowl.devices:
         lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
-        lines += [f"  - {one.kind}: {devices.value_text(one)}" for one in study.bowl.devices]
+        lines += [f"  - {item.kind}: {devices.value_text(item)}" for item in study.bowl.devices]
     bowl = _read_back(lines, study, own)
     if study.status == NOT_PROVED:
         lines += ["# Nothing is verified: it was stopped before all was tried."]
-    elif any(one.left for one in study.queues):
+    elif any(item.left for item in study.queues):
         lines += ["verified:  # void as soon as part, bowl or version is another"]
         lines += [f"  {word}: {value}" for word, value in _verified(study, bowl)]
     else:
@@ -593,17 +602,19 @@ def _read_back(lines, study, own):
     """The Bowl that commands read from these lines, which is the one that was tried in every value."""
     name, bowl = "design.yaml", study.bowl
     devices.check_written(bowl.devices, name)
-    found = bowls.record(reading.settings_of_text("\n".join(lines) + "\n", name))
+    bowl_read = bowls.record(reading.settings_of_text("\n".join(lines) + "\n", name))
     wrong = [
         f"{section}: {text}"
         for section, record in {"friction": bowl.friction, **own}.items()
-        for text in devices.differences(record, getattr(found, section))
+        for text in devices.differences(record, getattr(bowl_read, section))
     ]
-    wrong += devices.differences(bowl, found, ("drive", "friction", "track", "machine", "sizing", "devices"))
+    wrong += devices.differences(
+        bowl, bowl_read, ("drive", "friction", "track", "machine", "sizing", "devices")
+    )
     if wrong:
         mend = "this is a fault of feeder: report it with the command you gave"
         raise FeederError(name, f"is not the bowl that was tried: {'; '.join(wrong)}", mend)
-    return found
+    return bowl_read
 
 
 def _unbalance(machine) -> Iterator[Any]:
@@ -628,7 +639,7 @@ def trial_of(study) -> Verified | None:
     -------
     Verified or None
     """
-    if study.bowl is None or study.status == NOT_PROVED or not any(one.left for one in study.queues):
+    if study.bowl is None or study.status == NOT_PROVED or not any(filled.left for filled in study.queues):
         return None
     value, low, high = study.delivered
     purity = study.purity[0]
@@ -673,39 +684,39 @@ def accepted_summary(lines):
     """Return one row a line of the sheet."""
     rows = [
         {
-            "quantity": one.quantity,
-            "fill": one.fill,
-            "computed": f"{one.computed:.4g}",
-            "from": f"{one.ends[0]:.4g}",
-            "to": f"{one.ends[1]:.4g}",
-            "measured": "" if one.measured is None else f"{one.measured:.4g}",
-            "unit": one.unit,
-            "verdict": WORDS[one.agrees],
+            "quantity": line.quantity,
+            "fill": line.fill,
+            "computed": f"{line.computed:.4g}",
+            "from": f"{line.ends[0]:.4g}",
+            "to": f"{line.ends[1]:.4g}",
+            "measured": "" if line.measured is None else f"{line.measured:.4g}",
+            "unit": line.unit,
+            "verdict": WORDS[line.agrees],
         }
-        for one in lines
+        for line in lines
     ]
     return tables.frame({name: [row[name] for row in rows] for name in rows[0]})
 
 
 def accepted_document(lines) -> dict[Any, Any]:
     """Return the sheet as the JSON document."""
-    listed = [one.agrees for one in lines if one.agrees is not None]
+    listed = [line.agrees for line in lines if line.agrees is not None]
     return {
         "accepted": all(listed),
         "measured": len(listed),
         "lines": [
             {
-                "quantity": one.quantity,
-                "fill": one.fill,
-                "unit": one.unit,
-                "computed": one.computed,
-                "low": one.ends[0],
-                "high": one.ends[1] if one.ends[1] < float("inf") else None,
-                "measured": one.measured,
-                "sample": one.sample,
-                "agrees": one.agrees,
+                "quantity": line.quantity,
+                "fill": line.fill,
+                "unit": line.unit,
+                "computed": line.computed,
+                "low": line.ends[0],
+                "high": line.ends[1] if line.ends[1] < float("inf") else None,
+                "measured": line.measured,
+                "sample": line.sample,
+                "agrees": line.agrees,
             }
-            for one in lines
+            for line in lines
         ],
     }
 
@@ -728,8 +739,8 @@ def history_figure(study):
     figure = style.figure(7.0, 3.0)
     axes = figure.add_subplot()
     places = np.arange(1, len(study.attempts) + 1)
-    rates = [one.rate / PER_MINUTE for one in study.attempts]
-    clean = [one.clean for one in study.attempts]
+    rates = [attempt.rate / PER_MINUTE for attempt in study.attempts]
+    clean = [attempt.clean for attempt in study.attempts]
     colours = [CLEAN if good else DENIED for good in clean]
     style.tidy(axes, x="trial", y="parts per minute", grid="y")
     bars = axes.bar(
@@ -737,8 +748,10 @@ def history_figure(study):
     )
     target = study.request.target / PER_MINUTE
     line = axes.axhline(target, color=style.INK, linewidth=1.2, linestyle="--", label="asked for")
-    for place, rate, one in zip(places, rates, study.attempts):
-        axes.text(place, rate, one.wanted, ha="center", va="bottom", fontsize=7 if len(rates) < 12 else 5.5)
+    for place, rate, attempt in zip(places, rates, study.attempts):
+        axes.text(
+            place, rate, attempt.wanted, ha="center", va="bottom", fontsize=7 if len(rates) < 12 else 5.5
+        )
     axes.set_xticks(places)
     axes.set_xlim(0.4, max(len(places), FEWEST) + 0.6)
     axes.set_ylim(0.0, 1.12 * max([target, *rates]))
@@ -816,6 +829,6 @@ def bodies(part, pair) -> tuple[Any, ...]:
 
 def camera_from(place):
     """Return the view from a place (3,) [1] of which the third number is up."""
-    back = vectors.unit(place)
-    right = vectors.unit(np.cross((0.0, 0.0, 1.0), back))
-    return shading.Camera(right=right, up=np.cross(back, right), back=back)
+    towards_viewer = vectors.unit(place)
+    right = vectors.unit(np.cross((0.0, 0.0, 1.0), towards_viewer))
+    return shading.Camera(right=right, up=np.cross(towards_viewer, right), back=towards_viewer)

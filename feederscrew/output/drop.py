@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from feederscrew.dropping.traces import DropTrace, chosen
+from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.aspects import MARKS
-from feederscrew.output.heavy import heavy
 from feederscrew.output.tables import Frame
 from feederscrew.part.record import Part
 from feederscrew.studies.drop import DropStudy

@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.bowl import texts
 from feederscrew.geometry.polygons import centroid, turned
+from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, ON_THE_LINE, regime, rolls, stable_heading
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.heavy import heavy
 from feederscrew.output.tables import Frame
 from feederscrew.studies.floor import FloorStudy
 from feederscrew.units import MM, factor
@@ -81,7 +82,7 @@ def over_cycle(motion, course) -> dict[Any, Any]:
     }
 
 
-def document(study, settings) -> dict[str, Any]:
+def document(study) -> dict[str, Any]:
     """Return all of one FloorStudy, for JSON; of one as published, the upper reversal by print."""
     posture, bowl = study.posture, study.bowl
     now, values = instant(study.now, posture, bowl), {}
@@ -105,7 +106,7 @@ def document(study, settings) -> dict[str, Any]:
         "mean_velocity_m_s": mean_velocity(study),
         "settled": study.course.settled,
         "cycle": over_cycle(study.cycle, study.course),
-        "bowl": settings,
+        "bowl": texts(bowl.settings),
     }
 
 
@@ -633,11 +634,11 @@ MAP_ALTS = {
 }
 
 
-def offers(study: FloorStudy, settings) -> list[offer.Offer]:
+def offers(study: FloorStudy) -> list[offer.Offer]:
     """Offer the files of a FloorStudy."""
     plan = offer.picture("floor_plan.png", "The part from above, with the forces on it", _plan, study)
     return [
-        offer.document("floor.json", document, study, settings),
+        offer.document("floor.json", document, study),
         offer.table("floor_cycle.csv", over_cycle, study.cycle, study.course),
         *(offer.table(f"floor_{kind}.csv", map_cells, study, kind) for kind in MAPS),
         offer.table("floor_heading.csv", alignment, study),

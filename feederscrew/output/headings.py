@@ -4,11 +4,12 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.bowl import texts
 from feederscrew.geometry.polygons import turned
+from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.floor import CONTACT, PART
-from feederscrew.output.heavy import heavy
 from feederscrew.part.size_limits import small_part_remarks
 from feederscrew.studies.headings import HeadingsStudy
 from feederscrew.units import MM
@@ -37,13 +38,13 @@ def frame(study):
     return tables.frame({name: [row[name] for row in listed] for name in listed[0]})
 
 
-def document(study: HeadingsStudy, settings) -> dict[str, Any]:
+def document(study: HeadingsStudy) -> dict[str, Any]:
     """Return a HeadingsStudy as the JSON document."""
     return {
         "part": study.part.name,
         "answer": study.answer,
         "headings": rows(study),
-        "bowl": settings,
+        "bowl": texts(study.bowl.settings),
     }
 
 
@@ -168,10 +169,10 @@ def _track(axes, distance, track, size) -> None:
             axes.fill_between(x / MM, y / MM, y / MM - 0.12 * size / MM, color=WALL, alpha=0.35, linewidth=0)
 
 
-def offers(study: HeadingsStudy, settings) -> list[offer.Offer]:
+def offers(study: HeadingsStudy) -> list[offer.Offer]:
     """Offer the files of a HeadingsStudy."""
     return [
-        offer.document("headings.json", document, study, settings),
+        offer.document("headings.json", document, study),
         offer.table("headings.csv", frame, study),
         *(
             offer.picture(

@@ -9,7 +9,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from feederscrew.heavy import heavy
 from feederscrew.output import tables
+
+style = heavy("feederscrew.output.style")
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,17 +31,7 @@ class Offer:
 
 
 def table(name, make, *arguments, **keywords) -> Offer:
-    """Offer a CSV file.
-
-    Parameters
-    ----------
-    name : str
-        Of the file.
-    make : callable
-        Returns the frame, or its columns as a dict.
-    *arguments, **keywords
-        Handed to ``make``.
-    """
+    """Offer a CSV file; ``make`` returns the frame, or its columns as a dict, of the other arguments."""
 
     def view():
         return _framed(make(*arguments, **keywords))
@@ -60,26 +53,10 @@ def text(name, make, *arguments, **keywords) -> Offer:
 def picture(name, alt, draw, *arguments, **keywords) -> Offer:
     """Offer a PNG; ``draw`` returns the figure, and its module is imported by whoever asks for it.
 
-    Parameters
-    ----------
-    name : str
-        Of the file.
-    alt : str
-        What it shows, in a few words.
-    draw : callable
-        Returns the figure.
-    *arguments, **keywords
-        Handed to ``draw``.
+    ``alt`` is what it shows, in a few words; the other arguments are handed to ``draw``.
     """
-
     view = partial(draw, *arguments, **keywords)
-
-    def make():
-        from feederscrew.output import style
-
-        return style.png(view())
-
-    return Offer(name, make, alt, view)
+    return Offer(name, lambda: style.png(view()), alt, view)
 
 
 def write(folder, offered, *, pictures=True) -> None:

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from feederscrew.dropping.occupancy import MIN_TRANSITIONS
+from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.heavy import heavy
 from feederscrew.output.tables import Frame
 from feederscrew.resting.rules import registry
 from feederscrew.studies.plate import PlateStudy

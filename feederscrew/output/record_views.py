@@ -3,7 +3,7 @@
 import base64
 import math
 from collections.abc import Callable
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from html import escape
 from importlib import import_module
 from typing import Any
@@ -11,20 +11,20 @@ from typing import Any
 import numpy as np
 
 from feederscrew.errors import ArgumentError
+from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import MOTION_STATES
-from feederscrew.output import offers, tables
+from feederscrew.output import offers, style, tables
 from feederscrew.units import DEGREE, MINUTE, MM, counted, listed, printable
 
+shading = heavy("feederscrew.output.shading")
 UM, GRAM, PERCENT = 1e-6, 1e-3, 0.01  # [SI]
 MOST_SHARES = 8  # aspects in a line
 
 
 def answer(record: Any) -> str | None:
     """Return what a record answers, without its class: 'bracket: A 42 %, B 17 %'; None of another class."""
-    for kind in type(record).__mro__:
-        if kind.__name__ in LINES:
-            return LINES[kind.__name__](record)
-    return None
+    line = view_of(record).line
+    return None if line is None else line(record)
 
 
 def number(value: Any, unit_in_si: float = 1.0, digits: int = 3) -> str:
@@ -227,63 +227,60 @@ def _inertia(study: Any) -> str:
     return f"{study.part.name}: {mass} g, centre of mass {centre} mm, principal moments {moments} g mm2"
 
 
-LINES: dict[str, Callable[[Any], str]] = {
-    "Part": _part,
-    "Bowl": _bowl_line,
-    "Aspects": _aspects,
-    "AspectsStudy": lambda study: f"{study.part.name} {_aspects(study.aspects)}",
-    "Shares": lambda shares: _aspects(shares.aspects),
-    "Answer": _convey,
-    "ConveyStudy": lambda study: _convey(study.answer),
-    "SlideStudy": _slide,
-    "HeadingsStudy": _headings,
-    "FloorStudy": _floor,
-    "TrackStudy": _track,
-    "Rate": _rate,
-    "RateStudy": lambda study: f"{study.part.name} {_rate(study.rate)}",
-    "TuneStudy": _tune,
-    "MachineSheet": _machine,
-    "ToolingStudy": _tooling,
-    "TrialStudy": _trial,
-    "DesignStudy": _design,
-    "FamilyStudy": _family,
-    "CompareStudy": _compare,
-    "CalibrateStudy": _calibrate,
-    "DropStudy": _drop,
-    "PlateStudy": _plate,
-    "InertiaStudy": _inertia,
-    "ReportStudy": lambda study: f"{study.part.name} {_aspects(study.shares.aspects)}",
+@dataclass(frozen=True)
+class RecordView:
+    """How a record is shown: its answer in a line, and what offers the files of its command."""
+
+    line: Callable[[Any], str] | None = None
+    offers: str = ""  # module of ``output`` and its function, '' of a record that is no study
+    arguments: tuple[Any, ...] = ()  # that it is handed as well
+
+
+VIEWS = {  # by the name of the record's class
+    "Part": RecordView(_part),
+    "Bowl": RecordView(_bowl_line),
+    "Aspects": RecordView(_aspects),
+    "AspectsStudy": RecordView(
+        lambda study: f"{study.part.name} {_aspects(study.aspects)}", "aspects.offers"
+    ),
+    "Shares": RecordView(lambda shares: _aspects(shares.aspects)),
+    "Answer": RecordView(_convey),
+    "ConveyStudy": RecordView(lambda study: _convey(study.answer), "convey.offers"),
+    "ConveyCurve": RecordView(None, "convey.curve_offers"),
+    "ConveyPhase": RecordView(None, "convey.phase_offers"),
+    "ConveyMap": RecordView(None, "convey.map_offers"),
+    "SlideStudy": RecordView(_slide, "slide.offers"),
+    "HeadingsStudy": RecordView(_headings, "headings.offers"),
+    "FloorStudy": RecordView(_floor, "floor.offers"),
+    "TrackStudy": RecordView(_track, "track.offers"),
+    "Rate": RecordView(_rate),
+    "RateStudy": RecordView(lambda study: f"{study.part.name} {_rate(study.rate)}", "rate.offers"),
+    "TuneStudy": RecordView(_tune, "tune.offers"),
+    "MachineSheet": RecordView(_machine, "machine.offers"),
+    "ToolingStudy": RecordView(_tooling, "tooling.offers", ((),)),
+    "TrialStudy": RecordView(_trial, "trial.tables.offers"),
+    "DesignStudy": RecordView(_design, "design_pages.offers", ((),)),
+    "FamilyStudy": RecordView(_family, "design_pages.family_offers"),
+    "CompareStudy": RecordView(_compare, "compare.offers"),
+    "SetsStudy": RecordView(None, "compare.sets_offers"),
+    "FeedingStudy": RecordView(None, "compare.feeding_offers"),
+    "CalibrateStudy": RecordView(_calibrate, "calibrate.offers"),
+    "DropStudy": RecordView(_drop, "drop.offers"),
+    "PlateStudy": RecordView(_plate, "plate.offers"),
+    "InertiaStudy": RecordView(_inertia, "inertia.offers"),
+    "ReportStudy": RecordView(lambda study: f"{study.part.name} {_aspects(study.shares.aspects)}"),
 }
+
+
+def view_of(record: Any) -> RecordView:
+    """Return the RecordView of a record's class or of one that it is made from; an empty one without any."""
+    return next(
+        (VIEWS[kind.__name__] for kind in type(record).__mro__ if kind.__name__ in VIEWS), RecordView()
+    )
 
 
 MOST_ROWS = 60  # of a table in a notebook
 VIEW_PX = 360, 280  # [px] of a part
-# record: module and function that offer the files of its command, and what else that is handed
-OF: dict[str, tuple[Any, ...]] = {
-    "AspectsStudy": ("aspects", "offers"),
-    "CalibrateStudy": ("calibrate", "offers"),
-    "CompareStudy": ("compare", "offers"),
-    "SetsStudy": ("compare", "sets_offers"),
-    "ConveyStudy": ("convey", "offers", {}),
-    "ConveyCurve": ("convey", "curve_offers"),
-    "ConveyPhase": ("convey", "phase_offers", {}),
-    "ConveyMap": ("convey", "map_offers"),
-    "DesignStudy": ("design_pages", "offers", ()),
-    "DropStudy": ("drop", "offers"),
-    "FamilyStudy": ("design_pages", "family_offers"),
-    "FeedingStudy": ("compare", "feeding_offers"),
-    "FloorStudy": ("floor", "offers", {}),
-    "HeadingsStudy": ("headings", "offers", {}),
-    "InertiaStudy": ("inertia", "offers"),
-    "MachineSheet": ("machine", "offers"),
-    "PlateStudy": ("plate", "offers"),
-    "RateStudy": ("rate", "offers"),
-    "SlideStudy": ("slide", "offers"),
-    "ToolingStudy": ("tooling", "offers", ()),
-    "TrackStudy": ("track", "at_one_point"),
-    "TrialStudy": ("trial.files", "offers"),
-    "TuneStudy": ("tune", "offers"),
-}
 
 
 def frame(record, name=None):
@@ -345,8 +342,6 @@ def html(record):
 
 def _view_uri(part) -> str:
     """A part on the lowest side of its file, shaded, as the address of an image."""
-    from feederscrew.output import shading, style
-
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     image = style.pixels(np.round(255.0 * shading.on_its_lowest(solid, VIEW_PX)[..., :3]).astype(np.uint8))
     return f"data:image/png;base64,{base64.b64encode(style.png(image)).decode()}"
@@ -365,10 +360,10 @@ def _named(record, end) -> dict[Any, Any]:
 
 
 def _offered(record):
-    for kind in type(record).__mro__:
-        if kind.__name__ in OF:
-            module, function, *more = OF[kind.__name__]
-            return getattr(import_module(f"feederscrew.output.{module}"), function)(record, *more)
+    view = view_of(record)
+    if view.offers:
+        module, _, function = view.offers.rpartition(".")
+        return getattr(import_module(f"feederscrew.output.{module}"), function)(record, *view.arguments)
     resting = getattr(record, "resting", None)  # a report begins with it
     return [] if resting is None else _offered(resting)
 

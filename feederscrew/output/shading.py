@@ -11,8 +11,8 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull
 
+from feederscrew.heavy import heavy
 from feederscrew.output import style
-from feederscrew.output.heavy import heavy
 from feederscrew.units import MM
 
 ndimage = heavy("scipy.ndimage")

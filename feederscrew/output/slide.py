@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.bowl import texts
+from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.heavy import heavy
 from feederscrew.output.words import regime_words
 from feederscrew.studies.slide import SlideMap, SlideStudy
 
@@ -62,10 +63,10 @@ def summary(slides):
     return tables.frame({"at the bowl's own point": names, **columns})
 
 
-def document(study: SlideStudy, settings) -> dict[str, Any]:
+def document(study: SlideStudy) -> dict[str, Any]:
     """Return a SlideStudy as the JSON document."""
     maps = [_map(slide_map) for slide_map in study.maps]
-    return {"bowl": settings, "as_published": study.as_published, "maps": maps}
+    return {"bowl": texts(study.bowl.settings), "as_published": study.as_published, "maps": maps}
 
 
 def remarks(study):

@@ -134,8 +134,8 @@ def scene(solid, part) -> dict[Any, Any]:
     Returns
     -------
     dict
-        As ``report.scene.over_cuts`` has it: the parts in place of one, the bowl in place of the track, both
-        in mm about the bowl's middle.
+        As ``report.cutting.over_cuts`` has it: the parts in place of one, the bowl in place of the track,
+        both in mm about the bowl's middle.
     """
     middle = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
     points, faces = parts(solid, part)

@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from feederscrew.heavy import heavy
 from feederscrew.output import DPI
-from feederscrew.output.heavy import heavy
 from feederscrew.resting.rules import registry
 
 canvas = heavy("feederscrew.output.canvas")

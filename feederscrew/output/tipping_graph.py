@@ -5,12 +5,15 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.columns import UJ
 from feederscrew.output.tables import Frame
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.units import GRAVITY, MM
+
+shading = heavy("feederscrew.output.shading")
 
 
 def transitions(study: AspectsStudy) -> Frame:
@@ -110,8 +113,6 @@ def of_part(study: AspectsStudy, tips, shares):
     part, resting = study.part, study.aspects
     if part.vertices is None:
         return graph(part.name, resting.names, tips, shares)
-    from feederscrew.output import shading
-
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     drawn = partial(shading.thumbnail, solid, resting, size=ASPECT_PICTURE_PX)
     return graph(part.name, resting.names, tips, shares, drawn)

@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.geometry.polygons import outline, turned
+from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, regime
 from feederscrew.mechanics.track_balance import frame
 from feederscrew.output import offers as offer
@@ -28,12 +29,12 @@ from feederscrew.output.floor import (
     noiseless,
     none_slides,
     phase_axis,
+    regime_map,
     shown_value,
     state_band,
     state_legend,
     tips,
 )
-from feederscrew.output.heavy import heavy
 from feederscrew.studies.track import TrackStudy
 from feederscrew.units import MM
 
@@ -136,7 +137,7 @@ def over_cycle(motion, course) -> dict[Any, Any]:
     }
 
 
-def document(study: TrackStudy, settings) -> dict[str, Any]:
+def document(study: TrackStudy) -> dict[str, Any]:
     """Return all of one TrackStudy, for JSON; of one as published, the upper reversal by print."""
     values = {}
     if study.printed is not None:
@@ -165,7 +166,7 @@ def document(study: TrackStudy, settings) -> dict[str, Any]:
         "mean_velocity_m_s": mean_velocity(study),
         "settled": study.course.settled,
         "cycle": over_cycle(study.cycle, study.course),
-        "bowl": settings,
+        "bowl": bowls.texts(study.bowl.settings),
     }
 
 
@@ -539,34 +540,23 @@ def _contact(axes, polygon) -> None:
 MAP_COLUMN = "acceleration_x_m_s2"
 
 
-def offers(study: TrackStudy, settings, grid) -> list[offer.Offer]:
-    """Offer the files of a TrackStudy, with the map of a Grid of ``study.over``."""
-    printed_beside = [
-        offer.table("track_difference.csv", differences, study),
-        offer.table("track_omitted_terms.csv", omitted_terms, study),
-    ]
-    return [
-        offer.document("track.json", document, study, settings),
+def offers(study: TrackStudy, grid=None) -> list[offer.Offer]:
+    """Offer the files of a TrackStudy, with the map of a Grid of ``study.over`` where there is one."""
+    what = "The part on the track from above and from behind, with the forces on it"
+    offered = [
+        offer.document("track.json", document, study),
         offer.table("track_cycle.csv", over_cycle, study.cycle, study.course),
-        offer.table("track_map.csv", cells, grid),
-        *(printed_beside if study.printed is not None else []),
-        offer.picture(
-            "track_part.png",
-            "The part on the track from above and from behind, with the forces on it",
-            _part, study,
-        ),
-        offer.picture("track_cycle.png", "Reactions over one cycle", _cycle, study),
-        offer.picture("track_map.png", f"Acceleration along the track over {_axes(grid)}", _map, study, grid),
-    ]  # fmt: skip
-
-
-def at_one_point(study) -> list[Any]:
-    """Offer what needs no map, as a list of Offer."""
-    return [
-        offer.table("track_cycle.csv", over_cycle, study.cycle, study.course),
-        offer.picture("track_part.png", "The part on the track, with the forces on it", _part, study),
+        offer.picture("track_part.png", what, _part, study),
         offer.picture("track_cycle.png", "Reactions over one cycle", _cycle, study),
     ]
+    if study.printed is not None:
+        offered.append(offer.table("track_difference.csv", differences, study))
+        offered.append(offer.table("track_omitted_terms.csv", omitted_terms, study))
+    if grid is not None:
+        alt = f"Acceleration along the track over {_axes(grid)}"
+        offered.append(offer.table("track_map.csv", cells, grid))
+        offered.append(offer.picture("track_map.png", alt, _map, study, grid))
+    return offered
 
 
 def _part(study):
@@ -578,8 +568,6 @@ def _cycle(study):
 
 
 def _map(study, grid):
-    from feederscrew.output.floor import regime_map
-
     return regime_map(
         grid, MAP_COLUMN, title=_title(study), labels=labels(grid),
         value="acceleration V'_X at the upper reversal [m/s²]",

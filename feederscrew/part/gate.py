@@ -9,10 +9,13 @@ from numpy.typing import NDArray
 from feederscrew.errors import MeshError, SeveralBodiesError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.graphs import components
+from feederscrew.heavy import heavy
 from feederscrew.part import mass
 from feederscrew.part.repair import crossings, mending, topology
 from feederscrew.part.repair.mending import EXPORT_SOLID, cap_holes, find_holes
 from feederscrew.part.repair.topology import edge_table
+
+manifold3d = heavy("manifold3d")
 
 MAX_TOGETHER_BODIES = 1000
 BODY_OVERLAP_SHARE = 1e-6  # [1] of the smallest body: less is the file's rounding
@@ -156,16 +159,14 @@ def _union(bodies, where) -> NDArray[np.float64] | None:
 
     The one door of this room to manifold3d.
     """
-    from manifold3d import Error, Manifold, Mesh64, OpType
-
     volumes = [float(mass.tetrahedron_volumes(body).sum()) for body in bodies]
     solids = []
     for body in bodies:
         points, facets = topology.weld_corners(body.reshape(-1, 3), np.arange(3 * len(body)).reshape(-1, 3))
-        solids.append(Manifold(Mesh64(points, facets.astype(np.uint64))))
-    if any(solid.status() != Error.NoError for solid in solids):
+        solids.append(manifold3d.Manifold(manifold3d.Mesh64(points, facets.astype(np.uint64))))
+    if any(solid.status() != manifold3d.Error.NoError for solid in solids):
         raise MeshError(where, "holds bodies that may overlap and cannot be united", SAVE_APART)
-    mesh = Manifold.batch_boolean(solids, OpType.Add).to_mesh64()
+    mesh = manifold3d.Manifold.batch_boolean(solids, manifold3d.OpType.Add).to_mesh64()
     corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts).astype(int)]
     if sum(volumes) - float(mass.tetrahedron_volumes(corners).sum()) <= BODY_OVERLAP_SHARE * min(volumes):
         return None

@@ -11,6 +11,9 @@ from feederscrew import check
 from feederscrew.errors import MeshError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.vectors import solid_angles
+from feederscrew.heavy import heavy
+
+spatial = heavy("scipy.spatial")
 
 STRAIGHT_ANGLE_RAD = (
     3e-4  # [rad] a corner at which edges or facets turn by less is one of the file's rounding
@@ -80,20 +83,18 @@ def convex_hull(points, centre, where="part", centre_given=True) -> Hull:
     C. B. Barber, D. P. Dobkin, H. Huhdanpaa, "The quickhull algorithm for convex hulls", ACM Trans.
     Math. Softw. 22(4), 469-483, 1996.
     """
-    from scipy.spatial import ConvexHull, QhullError
-
     centre = check.shaped("centre", centre, (3,))
     points = check.shaped("points", points, (-1, 3)) - centre
     try:
-        qhull = ConvexHull(points)
+        qhull = spatial.ConvexHull(points)
         triangles, neighbours, areas = _orient_triangles(points, qhull)
         real = _turning_corners(points, triangles)
         if not real[triangles].all():
-            fewer = ConvexHull(points[real])
+            fewer = spatial.ConvexHull(points[real])
             if abs(fewer.volume - qhull.volume) < HULL_VOLUME_TOLERANCE * qhull.volume:
                 points, qhull = points[real], fewer
                 triangles, neighbours, areas = _orient_triangles(points, qhull)
-    except (QhullError, ValueError) as error:
+    except (spatial.QhullError, ValueError) as error:
         raise MeshError(where, "the part has no volume", "export it as a closed solid") from error
     used = np.zeros(len(points), dtype=bool)  # Qhull lists points in the middle of a facet among its vertices
     used[triangles] = True

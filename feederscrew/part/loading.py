@@ -15,12 +15,13 @@ from numpy.typing import NDArray
 from feederscrew import check, documents
 from feederscrew.errors import ArgumentError, MeshError, SeveralBodiesError, printable
 from feederscrew.geometry import graphs
+from feederscrew.heavy import heavy
 from feederscrew.part import aspect_names, card, gate, mass
 from feederscrew.part.density import find_density
 from feederscrew.part.gate import FARTHEST_CORNER
 from feederscrew.part.hull import CentreOutsideError, convex_hull
 from feederscrew.part.reading import formats, mesh_formats, scenes, threemf
-from feederscrew.part.reading.formats import CARD_FORMAT, FORMATS
+from feederscrew.part.reading.formats import CARD_FORMAT, MESH_FORMATS
 from feederscrew.part.reading.soup import (
     MAX_MESH_BYTES,
     MAX_TEXT_BYTES,
@@ -32,6 +33,8 @@ from feederscrew.part.reading.soup import (
 from feederscrew.part.record import Part
 from feederscrew.part.repair import topology
 from feederscrew.units import QuantityError, factor, quantity, quantity_text
+
+spatial = heavy("scipy.spatial")
 
 EXPORT_AGAIN = "export the part again"
 EXPORT_FEWER = "export it with fewer facets"
@@ -135,7 +138,7 @@ def read_soup(file) -> Soup:
 
 def _read(file, kind) -> Soup:
     """The triangles of a file of a known format; what its reader raises on damaged bytes is a line."""
-    title, data = FORMATS[kind].title, file.data
+    title, data = MESH_FORMATS[kind].title, file.data
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):  # what is not finite, the gate names
             warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
@@ -170,7 +173,7 @@ def _reason(error) -> Any:
 
 def is_card(file) -> bool:
     """Return whether the file is a part card: by its name, or by its content on standard input."""
-    if file.suffix in FORMATS[CARD_FORMAT].suffixes:
+    if file.suffix in MESH_FORMATS[CARD_FORMAT].suffixes:
         return True
     return formats.detect_format(file.data, file.suffix)[0] == CARD_FORMAT
 
@@ -185,10 +188,10 @@ def _bytes(source, where, stdin) -> Any:
 
 
 def _misnamed(file, kind) -> tuple[Any, ...]:
-    suffixes = {suffix for format in FORMATS.values() for suffix in format.suffixes}
-    if file.suffix not in suffixes or file.suffix in FORMATS[kind].suffixes:
+    suffixes = {suffix for format in MESH_FORMATS.values() for suffix in format.suffixes}
+    if file.suffix not in suffixes or file.suffix in MESH_FORMATS[kind].suffixes:
         return ()
-    return (f"named .{file.suffix} but its content is {FORMATS[kind].title}: read as that",)
+    return (f"named .{file.suffix} but its content is {MESH_FORMATS[kind].title}: read as that",)
 
 
 CRACK_SHARE = 1e-4  # [1] of the size: open surfaces whose rims are closer are of one body
@@ -245,7 +248,11 @@ def list_bodies(soup: Soup) -> tuple[FileBody, ...]:
         points, faces, None if soup.objects is None else soup.objects[facets]
     )
     volume = np.bincount(shell, mass.tetrahedron_volumes(points[faces]), minlength=number)
-    low, high = _surface_boxes(points, faces, shell, number)
+    # lowest and highest corner of each surface
+    low, high = np.full((number, 3), np.inf), np.full((number, 3), -np.inf)
+    for corner in range(3):
+        np.minimum.at(low, shell, points[faces[:, corner]])
+        np.maximum.at(high, shell, points[faces[:, corner]])
     of_body = _assign_cavities(points, faces, shell, np.where(is_open, 0.0, volume), low, high)
     bodies: list[FileBody] = []
     for number_of_body in dict.fromkeys(of_body[shell].tolist()):
@@ -376,12 +383,10 @@ def _file_surfaces(points, faces, objects) -> tuple[int, NDArray[np.int64], NDAr
     corners, of_shell = faces.ravel()[sides], shell[sides // 3]
     if len(corners) > MAX_RIM_CORNERS:
         return number, shell, is_open
-    from scipy.spatial import cKDTree
-
     used = np.unique(faces)
     reach = CRACK_SHARE * float(np.ptp(points[used], axis=0).max())
     ends = np.concatenate([corners, np.roll(faces, -1, axis=1).ravel()[sides]])
-    tree = cKDTree(points[ends])
+    tree = spatial.cKDTree(points[ends])
     if tree.count_neighbors(tree, reach) > topology.MAX_NEAR_PAIRS:
         return number, shell, is_open
     i, j = tree.query_pairs(reach, output_type="ndarray").T
@@ -390,15 +395,6 @@ def _file_surfaces(points, faces, objects) -> tuple[int, NDArray[np.int64], NDAr
     merged = np.zeros(count, dtype=bool)
     merged[group[is_open]] = True
     return count, group[shell], merged
-
-
-def _surface_boxes(points, faces, shell, number) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(N, 3) lowest and highest corner of each surface."""
-    low, high = np.full((number, 3), np.inf), np.full((number, 3), -np.inf)
-    for corner in range(3):
-        np.minimum.at(low, shell, points[faces[:, corner]])
-        np.maximum.at(high, shell, points[faces[:, corner]])
-    return low, high
 
 
 def _assign_cavities(points, faces, shell, volume, low, high) -> NDArray[np.int64]:
@@ -573,7 +569,7 @@ def _refuse_beside_card(**options) -> None:
 
 def _choose_unit(soup, wanted) -> tuple[Any, ...]:
     """The unit of the file's numbers; what to say where it is not the wanted one."""
-    stated, title = soup.unit, FORMATS[soup.format].title
+    stated, title = soup.unit, MESH_FORMATS[soup.format].title
     if stated is None or wanted in (None, stated):
         return wanted or stated or "mm", ()
     if soup.format == "glb":

@@ -18,8 +18,8 @@ from feederscrew.tooling.devices.orientation_names import place
 if TYPE_CHECKING:
     from feederscrew.dropping.arrival import Arrival
 
-UNDECIDED = "the shares at the track's entry are undecided: {}"
-STOPPED = "the parts on the floor were stopped after {}"
+UNDECIDED_REMARK = "the shares at the track's entry are undecided: {}"
+STOPPED_REMARK = "the parts on the floor were stopped after {}"
 TOO_LONG = (
     "the part is too small, or the drive too quick, to be followed on the moving floor: the closed form"
     " is taken"
@@ -45,8 +45,8 @@ def arrived(aspects: Aspects, arrival: "Arrival", seed: int) -> Aspects:
     parts = arrival.shaken.parts
     if not np.isfinite(arrival.p).all():
         return replace(aspects, warnings=(*aspects.warnings, NO_ARRIVALS_MESSAGE))
-    remarks: tuple[str, ...] = () if arrival.settled else (UNDECIDED.format(arrival.reason),)
-    remarks += (STOPPED.format(parts),) if arrival.shaken.partial else ()
+    remarks: tuple[str, ...] = () if arrival.settled else (UNDECIDED_REMARK.format(arrival.reason),)
+    remarks += (STOPPED_REMARK.format(parts),) if arrival.shaken.partial else ()
     rule = f"fed onto the moving floor, {parts} parts, seed {seed}"
     low, high = launched(arrival.p, arrival.low, arrival.high, aspects.stable)
     answer = Recommended(rule, LAUNCH, arrival.p, check.frozen(low), check.frozen(high))

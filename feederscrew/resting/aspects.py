@@ -567,7 +567,8 @@ def join_classes(faces, part, moments) -> NDArray[np.int64]:
         return np.arange(len(faces))
     carried = np.zeros_like(equal)
     for rotation in symmetries(faces, part, moments):
-        there = _are_parallel(vectors.product(axes, rotation.T), axes)
+        # parallel to the axis of another face; true where one has none
+        there = ~(np.abs(vectors.product(vectors.product(axes, rotation.T), axes.T)) < np.cos(SYMMETRY_ANGLE))
         carried |= there & _lie_on(vectors.product(middles, rotation.T), middles)
     return component_of(np.argwhere(carried & equal), len(faces))
 
@@ -579,11 +580,6 @@ def _lie_on(turned, middles) -> NDArray[np.bool_]:
     """
     gaps = turned[:, None] - middles
     return vectors.norm(gaps) < 2.0 * np.sin(0.5 * SYMMETRY_ANGLE)
-
-
-def _are_parallel(turned, axes) -> NDArray[np.bool_]:
-    """(N, N) bool: whether turned axes are parallel to others; true where one has none."""
-    return ~(np.abs(vectors.product(turned, axes.T)) < np.cos(SYMMETRY_ANGLE))
 
 
 def symmetries(faces, part, moments) -> NDArray[np.float64]:
@@ -660,18 +656,16 @@ def _by_landmarks(faces) -> NDArray[np.float64] | None:
     rarest = rarest[flat[rarest]]
     for a, b in ((a, b) for a in rarest[:1] for b in rarest[1:]):
         if vectors.length(vectors.cross(normals[a], normals[b])) > np.sin(SYMMETRY_ANGLE):
-            return _carrying(normals, a, b, np.flatnonzero(like[a] & flat), np.flatnonzero(like[b] & flat))
+            # rotations that take normals a and b to every pair of images that keeps their angle
+            a_images = np.flatnonzero(like[a] & flat)
+            b_images = np.flatnonzero(like[b] & flat)
+            c, d = (images.ravel() for images in np.meshgrid(a_images, b_images, indexing="ij"))
+            between = angle(normals[a], normals[b])
+            pairs = np.abs(angle(normals[c], normals[d]) - between) < SYMMETRY_ANGLE
+            pairs = np.flatnonzero(pairs & ((c != a) | (d != b)))[:MAX_ROTATIONS]
+            ends = _frames(normals[c[pairs]], normals[d[pairs]])
+            return vectors.product(ends, _frames(normals[a], normals[b]).T)
     return None
-
-
-def _carrying(normals, a, b, a_images, b_images) -> NDArray[np.float64]:
-    """(N, 3, 3) rotations taking normals a, b to every pair of images that keeps their angle."""
-    c, d = (images.ravel() for images in np.meshgrid(a_images, b_images, indexing="ij"))
-    between = angle(normals[a], normals[b])
-    pairs = np.abs(angle(normals[c], normals[d]) - between) < SYMMETRY_ANGLE
-    pairs = np.flatnonzero(pairs & ((c != a) | (d != b)))[:MAX_ROTATIONS]
-    ends = _frames(normals[c[pairs]], normals[d[pairs]])
-    return vectors.product(ends, _frames(normals[a], normals[b]).T)
 
 
 def _half_turns(axis, moments) -> NDArray[np.float64]:

@@ -10,7 +10,10 @@ from feederscrew import check
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import fitting
 from feederscrew.geometry.vectors import solid_angles
+from feederscrew.heavy import heavy
 from feederscrew.resting import landscape
+
+sparse = heavy("scipy.sparse")
 
 UNNAMED = landscape.NAMELESS  # label of a hull triangle or a sink that belongs to no face
 SADDLE_TIE = 1e-6  # of the highest saddle: what rounding in a file leaves between the saddles of mirror twins
@@ -323,6 +326,4 @@ def _claims(tumbling, labels) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 
 def _links(start, end, shape) -> Any:
     """Sparse matrix of equal parts, rows summing to 1, from each start to its ends."""
-    from scipy.sparse import csr_array  # the names of rules, of which this room is a part, need no SciPy
-
-    return csr_array((1.0 / np.bincount(start)[start], (start, end)), shape=shape)
+    return sparse.csr_array((1.0 / np.bincount(start)[start], (start, end)), shape=shape)

@@ -78,7 +78,16 @@ def tumble(hull) -> Tumbling:
     feet = _feet(edges, saddles)
     heights, saddle_heights = _facet_heights(edges, sinks), vectors.norm(feet)
     directions = feet / saddle_heights[:, None]
-    pairs, raw, arrived = _basins(edges, sinks, saddles, maxima, directions)
+    # the sinks each saddle joins, the boundary integrals of their basins, and whether every walk arrived
+    tops = np.zeros(len(edges.vertices), bool)
+    tops[maxima] = True
+    pairs, peaks = np.empty((2, len(saddles), 2), int)
+    raw = np.zeros(len(edges.normals))
+    trace = compiled.fitting(walks.trace_saddles, len(edges.origins), walks.trace_saddles_together)
+    trace(edges, tops, saddles, directions, _gauges(edges.normals), pairs, peaks, raw)
+    rank = np.full(len(edges.normals) + 1, -1)  # the last entry stands for a lost walk
+    rank[sinks] = np.arange(len(sinks))
+    pairs, raw, arrived = rank[pairs], raw[sinks], bool((pairs >= 0).all() and (peaks >= 0).all())
     areas = _areas(raw)
     falls = (pairs >= 0) & (heights[pairs] <= saddle_heights[:, None] + FACET_UNEVENNESS * hull.radius)
     doubts = _doubts(areas, len(sinks) - len(saddles) + len(maxima), arrived and falls.all())
@@ -95,19 +104,6 @@ def tumble(hull) -> Tumbling:
         maxima=check.frozen(maxima),
         doubts=doubts,
     )
-
-
-def _basins(edges, sinks, saddles, maxima, directions) -> tuple[NDArray[np.int64], NDArray[np.float64], bool]:
-    """(E, 2) sinks each saddle joins, (S,) boundary integrals of their basins, whether every walk arrived."""
-    tops = np.zeros(len(edges.vertices), bool)
-    tops[maxima] = True
-    pairs, peaks = np.empty((2, len(saddles), 2), int)
-    raw = np.zeros(len(edges.normals))
-    trace = compiled.fitting(walks.trace_saddles, len(edges.origins), walks.trace_saddles_together)
-    trace(edges, tops, saddles, directions, _gauges(edges.normals), pairs, peaks, raw)
-    rank = np.full(len(edges.normals) + 1, -1)  # the last entry stands for a lost walk
-    rank[sinks] = np.arange(len(sinks))
-    return rank[pairs], raw[sinks], bool((pairs >= 0).all() and (peaks >= 0).all())
 
 
 def _gauges(normals) -> NDArray[np.float64]:
@@ -248,7 +244,13 @@ def exact(ground, part, aspects, exponent=formulas.EXPONENTS["hard"]) -> Exact:
     tips, count = ground.tips, len(aspects.names)
     lifts = barriers.barriers(tips)
     lowest = _lowest(ground.rows, np.where(np.isfinite(lifts), lifts, np.nan), count)
-    angles = _tip_angles(ground.faces, lifts)
+    # tilt of the floor that tips the part off each face; NaN where nothing does
+    faces = ground.faces
+    angles = np.array([_rolling_tip_angle(*face) for face in zip(faces, lifts)])
+    flat = np.array([face.kind == "flat" for face in faces])
+    if flat.any():
+        flats = [face for face in faces if face.kind == "flat"]
+        angles[flat] = barriers.tip_angles([face.polygon for face in flats], [face.height for face in flats])
     return Exact(
         probabilities=_probabilities(ground, aspects.stable, exponent),
         barriers=check.frozen(lowest),
@@ -300,16 +302,6 @@ def transitions(ground) -> list[Transition]:
             if step.lift < best.lift:
                 lowest[step.start, step.end] = step
     return [lowest[pair] for pair in sorted(lowest)]
-
-
-def _tip_angles(faces, lifts) -> NDArray[np.float64]:
-    """(F,) [rad] tilt of the floor that tips the part off each face; NaN where nothing does."""
-    angles = np.array([_rolling_tip_angle(*face) for face in zip(faces, lifts)])
-    flat = np.array([face.kind == "flat" for face in faces])
-    if flat.any():
-        flats = [face for face in faces if face.kind == "flat"]
-        angles[flat] = barriers.tip_angles([face.polygon for face in flats], [face.height for face in flats])
-    return angles
 
 
 def _rolling_tip_angle(face, lift) -> float:

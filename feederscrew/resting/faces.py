@@ -15,7 +15,10 @@ from feederscrew.geometry.graphs import (
     join_groups,
     split_groups,
 )
+from feederscrew.heavy import heavy
 from feederscrew.resting.landscape import GENTLE_COSINE, RIPPLE_OF_RADIUS, SMOOTH_ANGLE, angle, edges, gentle
+
+spatial = heavy("scipy.spatial")
 
 ONE_PLANE = np.radians(0.2)  # between triangles of one facet
 LARGER = 1.5  # times the bend round most of a side: a facet between sharper bends was not cut by chance
@@ -478,14 +481,23 @@ def contact_outlines(vertices, corners, owners, normals) -> list[NDArray[np.floa
 
 def _of_extreme_points(points, normal) -> NDArray[np.float64]:
     """The same where some of the points lie within the outline or straight between others."""
-    from scipy.spatial import ConvexHull, QhullError
-
     plane = vectors.product(points, np.column_stack(_plane_axes(normal)))
     try:
-        corners = points[ConvexHull(plane).vertices]
-    except QhullError:  # a contact line: a sliver of the hull
+        corners = points[spatial.ConvexHull(plane).vertices]
+    except spatial.QhullError:  # a contact line: a sliver of the hull
         return points
-    return _without_straight_corners(corners)
+    # A finer triangulation brings corners on a line between their neighbours; rules that average over the
+    # edges of a contact would count its edges twice.
+    size = vectors.length(np.ptp(corners, axis=0))
+    while len(corners) > 3:
+        before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
+        twice = vectors.length(vectors.cross(corners - before, after - corners))
+        off = twice / np.maximum(vectors.length(after - before), SMALLEST_NORMAL)
+        straight = int(np.argmin(off))
+        if off[straight] > ON_A_LINE * size:
+            break
+        corners = np.delete(corners, straight, axis=0)
+    return corners
 
 
 def _plane_axes(normals) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -505,24 +517,6 @@ def _turn_at_every_corner(x, y, owners, count) -> NDArray[np.bool_]:
     off = (p * v - q * u) / np.maximum(np.hypot(p + u, q + v), SMALLEST_NORMAL)
     width, depth = (np.maximum.reduceat(at, first) - np.minimum.reduceat(at, first) for at in (x, y))
     return np.logical_and.reduceat(off > ON_A_LINE * np.hypot(width, depth)[owners], first)
-
-
-def _without_straight_corners(corners) -> NDArray[np.float64]:
-    """Corners (K, 3) of a polygon without those on a line between their neighbours.
-
-    A finer triangulation of the same face brings such corners, and rules that average over the edges of a
-    contact would count its edges twice.
-    """
-    size = vectors.length(np.ptp(corners, axis=0))
-    while len(corners) > 3:
-        before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
-        twice = vectors.length(vectors.cross(corners - before, after - corners))
-        off = twice / np.maximum(vectors.length(after - before), SMALLEST_NORMAL)
-        straight = int(np.argmin(off))
-        if off[straight] > ON_A_LINE * size:
-            break
-        corners = np.delete(corners, straight, axis=0)
-    return corners
 
 
 def rolling_height(polygon, axis, flat) -> float:

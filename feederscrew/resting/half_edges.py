@@ -62,7 +62,10 @@ def half_edges(hull) -> Edges:
     """
     origins = hull.triangles[:, [1, 2, 0]].ravel().astype(int)
     targets = hull.triangles[:, [2, 0, 1]].ravel().astype(int)
-    twins = _twins(hull.neighbours)
+    neighbours = hull.neighbours
+    owners, beyond = np.repeat(np.arange(len(neighbours)), 3), neighbours.ravel().astype(int)
+    first, second = (np.ascontiguousarray(column)[beyond] == owners for column in neighbours.T[:2])
+    twins = 3 * beyond + np.where(first, 0, np.where(second, 1, 2))
     borders = facet_borders(hull, origins, targets, twins, np.repeat(_facets(hull, twins), 3))
     facets, edges = borders.facets[::3], np.flatnonzero(borders.part)
     normals = _facet_normals(hull, facets)
@@ -179,32 +182,21 @@ def maxima(edges) -> NDArray[np.int64]:
     return np.flatnonzero(top)
 
 
-def _twins(neighbours) -> NDArray[np.int64]:
-    owners, beyond = np.repeat(np.arange(len(neighbours)), 3), neighbours.ravel().astype(int)
-    first, second = (np.ascontiguousarray(column)[beyond] == owners for column in neighbours.T[:2])
-    return 3 * beyond + np.where(first, 0, np.where(second, 1, 2))
-
-
 def _facets(hull, twins) -> NDArray[np.int64]:
     """Facet of each triangle: triangles joined across flat edges."""
     owners = np.repeat(np.arange(len(hull.triangles)), 3)
-    depths = _depths(hull, twins)
-    near = np.flatnonzero(np.minimum(depths, depths[twins]) <= COPLANAR * hull.radius)
-    if not len(near):
-        return np.arange(len(hull.triangles))
-    flat = near[_flat(hull, near, twins, depths)]
-    return components(owners[flat], owners[twins[flat]], len(hull.triangles))[1]
-
-
-def _depths(hull, twins) -> NDArray[np.float64]:
-    """(H,) [m] how far the corner off each edge, of the neighbour, lies below the triangle's plane."""
+    # how far the corner off each edge, of the neighbour, lies below the triangle's plane
     corners, depths = hull.triangles.ravel(), np.empty(len(twins))
     places, normals = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(hull.normals.T)
     for some in _blocks(len(twins)):
         triangles = np.arange(some.start, min(some.stop, len(twins))) // 3
         above = walks.dot(normals[:, triangles], places[:, corners[twins[some]]])
         depths[some] = hull.heights[triangles] - above
-    return depths
+    near = np.flatnonzero(np.minimum(depths, depths[twins]) <= COPLANAR * hull.radius)
+    if not len(near):
+        return np.arange(len(hull.triangles))
+    flat = near[_flat(hull, near, twins, depths)]
+    return components(owners[flat], owners[twins[flat]], len(hull.triangles))[1]
 
 
 def _flat(hull, near, twins, depths) -> NDArray[np.bool_]:
@@ -276,7 +268,10 @@ def facet_borders(hull, origins, targets, twins, facets) -> Borders:
     facets = _convex(hull, origins, twins, facets)
     while True:
         straightened = _straightened(origins, _bordered(targets, twins, facets))
-        needles = _of_two_edges(straightened)
+        edges = np.flatnonzero(straightened.part)  # needles are facets of two edges
+        needles = edges[
+            (straightened.ahead[straightened.ahead[edges]] == edges) & (edges < straightened.ahead[edges])
+        ]
         if not len(needles):
             return (
                 straightened if np.bincount(facets).all() else straightened._replace(facets=_numbered(facets))
@@ -348,12 +343,6 @@ def _straightened(origins, borders) -> Borders:
     part = np.zeros_like(borders.part)
     part[starts] = True
     return Borders(targets, twins, part, ahead, borders.facets)
-
-
-def _of_two_edges(borders) -> NDArray[np.int64]:
-    """Half-edges of facets with two edges, one of the two."""
-    edges = np.flatnonzero(borders.part)
-    return edges[(borders.ahead[borders.ahead[edges]] == edges) & (edges < borders.ahead[edges])]
 
 
 def _joined(facets, first, second) -> NDArray[np.int64]:

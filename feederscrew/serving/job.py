@@ -45,10 +45,10 @@ class DesignJob:
 
     def _read(self) -> None:
         """Keep what it says, and close the pipe at its end."""
-        said = self._process.stdout
-        if said is not None:
-            with said:
-                self._lines.extend(line.rstrip() for line in said)
+        output = self._process.stdout
+        if output is not None:
+            with output:
+                self._lines.extend(line.rstrip() for line in output)
 
     @property
     def is_running(self) -> bool:

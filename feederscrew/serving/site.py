@@ -26,7 +26,7 @@ from feederscrew.output.page.blocks import Chapter, Page, Table
 from feederscrew.output.report.resting import aspect_views
 from feederscrew.part import load
 from feederscrew.part.density import MATERIALS
-from feederscrew.part.reading.formats import CARD_FORMAT, FORMATS
+from feederscrew.part.reading.formats import CARD_FORMAT, MESH_FORMATS
 from feederscrew.studies.aspects import AspectsStudy, aspects
 
 HOST = "127.0.0.1"
@@ -34,7 +34,9 @@ NAMES = (HOST, "localhost")  # of this machine, as a browser may write them
 COOKIE = "feeder"
 PART_BYTES, VALUES_BYTES = 64 * 2**20, 4096  # that a part file and the values of a design may have
 MOST_UPLOADS = 200  # part files of one run
-ENDINGS = tuple(suffix for name, one in FORMATS.items() if name != CARD_FORMAT for suffix in one.suffixes)
+ENDINGS = tuple(
+    suffix for name, one in MESH_FORMATS.items() if name != CARD_FORMAT for suffix in one.suffixes
+)
 UNITS = ("mm", "cm", "m", "um", "in")
 MACHINES = {  # what a reader chooses: label, and the options of the design
     "50": ("leaf springs, 50 Hz mains", ("--drive", "leaf-spring", "--set", "machine.mains=50 Hz")),
@@ -327,7 +329,7 @@ def _design_options(values: dict[str, Any]) -> list[str]:
     """The options of ``feeder design``: each value is one of a list, or a number within bounds."""
     material, machine, units = (values.get(name) for name in ("material", "machine", "units"))
     rate = values.get("rate")
-    if material not in [known.name for known in MATERIALS]:
+    if material not in [density.name for density in MATERIALS]:
         raise Refusal(400, "material is not one of the list - choose one")
     if machine not in list(MACHINES):
         raise Refusal(400, "machine is not one of the list - choose one")

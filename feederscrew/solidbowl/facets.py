@@ -7,7 +7,10 @@ import shapely
 from shapely import affinity
 
 from feederscrew.errors import FeederError
+from feederscrew.heavy import heavy
 from feederscrew.units import MM
+
+manifold3d = heavy("manifold3d")
 
 MIN_PIECE_VOLUME_M3 = 1e-9  # [m3] a loose piece smaller than this is left out
 HOLE_SIDES = 48  # of a round hole
@@ -31,7 +34,6 @@ def swept(legs):
     -------
     Manifold [mm]
     """
-    from manifold3d import Manifold, Mesh64, triangulate
 
     legs = [in_space(*leg) for leg in legs]
     points = np.concatenate([legs[0], *(leg[1:] for leg in legs[1:])])
@@ -39,10 +41,10 @@ def swept(legs):
     k, row = np.arange(corners), corners * np.arange(count - 1)[:, None]
     a, b = row + k, row + (k + 1) % corners
     sides = np.stack([a, a + corners, b, b, a + corners, b + corners], axis=-1).reshape(-1, 3)
-    first, last = (np.asarray(triangulate([flattened(points[m]) / MM])) for m in (0, -1))
+    first, last = (np.asarray(manifold3d.triangulate([flattened(points[m]) / MM])) for m in (0, -1))
     faces = np.concatenate([sides, first, corners * (count - 1) + last[:, ::-1]])
-    mesh = Mesh64(points.reshape(-1, 3) / MM, faces.astype(np.uint64))
-    return sound(Manifold(mesh), "a swept body")
+    mesh = manifold3d.Mesh64(points.reshape(-1, 3) / MM, faces.astype(np.uint64))
+    return sound(manifold3d.Manifold(mesh), "a swept body")
 
 
 def in_space(sections, frames) -> np.ndarray:
@@ -72,9 +74,8 @@ def turned(profile, segments):
     -------
     Manifold [mm]
     """
-    from manifold3d import CrossSection
 
-    return CrossSection([np.asarray(profile) / MM]).revolve(segments)
+    return manifold3d.CrossSection([np.asarray(profile) / MM]).revolve(segments)
 
 
 def prism(area, low, high):
@@ -89,12 +90,13 @@ def prism(area, low, high):
     -------
     Manifold [mm]
     """
-    from manifold3d import CrossSection, FillRule, Manifold
 
     polygons = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
     rings = [ring for part in polygons for ring in (part.exterior, *part.interiors)]
-    flat = CrossSection([np.asarray(ring.coords)[:-1] / MM for ring in rings], FillRule.EvenOdd)
-    return Manifold.extrude(flat, (high - low) / MM).translate((0.0, 0.0, low / MM))
+    flat = manifold3d.CrossSection(
+        [np.asarray(ring.coords)[:-1] / MM for ring in rings], manifold3d.FillRule.EvenOdd
+    )
+    return manifold3d.Manifold.extrude(flat, (high - low) / MM).translate((0.0, 0.0, low / MM))
 
 
 def patch(ring, low, high):
@@ -134,23 +136,20 @@ def plank(area, thickness, axes, foot):
 
 def hull(places):
     """Return the convex hull of places (N, 3) [m] as a Manifold."""
-    from manifold3d import Manifold
 
-    return Manifold.hull_points(np.asarray(places) / MM)
+    return manifold3d.Manifold.hull_points(np.asarray(places) / MM)
 
 
 def united(bodies):
     """Return the union of a list of Manifolds."""
-    from manifold3d import Manifold, OpType
 
-    return Manifold.batch_boolean(list(bodies), OpType.Add)
+    return manifold3d.Manifold.batch_boolean(list(bodies), manifold3d.OpType.Add)
 
 
 def without(body, tools):
     """Return a Manifold with a list of others cut out of it."""
-    from manifold3d import Manifold, OpType
 
-    return Manifold.batch_boolean([body, *tools], OpType.Subtract) if tools else body
+    return manifold3d.Manifold.batch_boolean([body, *tools], manifold3d.OpType.Subtract) if tools else body
 
 
 def above(body, height):
@@ -196,9 +195,8 @@ def one_piece(body, where):
 
 def unplaced(solid):
     """Return a BowlSolid as a Manifold [mm] with its outlet at the angle 0, right-handed, to cast rays at."""
-    from manifold3d import Manifold, Mesh64
 
-    whole = Manifold(Mesh64(solid.vertices / MM, solid.faces.astype(np.uint64)))
+    whole = manifold3d.Manifold(manifold3d.Mesh64(solid.vertices / MM, solid.faces.astype(np.uint64)))
     whole = whole.rotate((0.0, 0.0, -float(np.degrees(solid.plan.turned))))
     return whole.mirror((0.0, 1.0, 0.0)) if solid.plan.left else whole
 
@@ -249,16 +247,14 @@ def first_met(body, start, towards) -> list[Any]:
 
 def placed(solid):
     """Return a BowlSolid as a Manifold [mm] as it stands in its files."""
-    from manifold3d import Manifold, Mesh64
 
-    return Manifold(Mesh64(solid.vertices / MM, solid.faces.astype(np.uint64)))
+    return manifold3d.Manifold(manifold3d.Mesh64(solid.vertices / MM, solid.faces.astype(np.uint64)))
 
 
 def rod(axis, middle, size, deep):
     """Return a round rod along an axis (0, 1, 2) about a place (3,) [m], ``deep`` [m] to either side."""
-    from manifold3d import Manifold
 
-    solid = Manifold.cylinder(2.0 * deep / MM, 0.5 * size / MM, circular_segments=24, center=True)
+    solid = manifold3d.Manifold.cylinder(2.0 * deep / MM, 0.5 * size / MM, circular_segments=24, center=True)
     solid = (solid.rotate((0.0, 90.0, 0.0)), solid.rotate((90.0, 0.0, 0.0)), solid)[axis]
     return solid.translate(tuple(np.asarray(middle) / MM))
 

@@ -169,21 +169,9 @@ def _unknown(name: str, own: Sequence[str], names: Sequence[str]) -> str:
 def override_texts(overrides: Overrides, settings: Mapping[str, Any]) -> tuple[str, ...]:
     """Return overrides and settings as texts, 'drive.frequency=50 Hz'; of one key the last holds.
 
-    Parameters
-    ----------
-    overrides : str, sequence of str, or dict of str to (str or float) [SI]
-        A dict is by the full name of a key.
-    settings : dict of str to (str or float or None) [SI]
-        By keyword of ``BowlSettings``.
-
-    Returns
-    -------
-    tuple of str
-
-    Raises
-    ------
-    ArgumentError
-        If a value is not one that its key may have, or no such key exists.
+    A dict of ``overrides`` is by the full name of a key, ``settings`` by keyword of ``BowlSettings``;
+    numbers are in SI units. Raises ArgumentError if a value is not one that its key may have, or no such
+    key exists.
     """
     texts = [_override(key, value, key.name) for key, value in _by_key(overrides)]
     for name, value in settings.items():
@@ -312,27 +300,9 @@ def several(name: str, items: object, wanted: type, mend: str) -> tuple[Any, ...
 
 
 def amount(name: str, value: Quantity, dimension: str, low: float = -math.inf) -> float:
-    """Return a quantity in SI units.
+    """Return a quantity of a dimension of ``units``, '2 mm' or a number in SI units, in SI units.
 
-    Parameters
-    ----------
-    name : str
-        The argument.
-    value : str or float
-        '2 mm', or a number in SI units.
-    dimension : str
-        A key of ``units.UNITS_BY_DIMENSION``.
-    low : float [SI]
-        The least that can be used.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    ArgumentError
-        If it is neither; the line names the argument.
+    Raises ArgumentError if ``value`` is neither, or below ``low`` [SI]; the line names the argument.
     """
     try:
         number = quantity(value, dimension) if isinstance(value, str) else value

@@ -162,19 +162,8 @@ def _dropped(part: Part, closed: Aspects, launch: str, drops: int | None, run: O
 def with_drops(closed: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:
     """Return the study with a drop test, whose answer takes the place of the closed form's.
 
-    Parameters
-    ----------
-    closed : Aspects
-        With the closed form's answer for the launch.
-    test : DropStudy
-        Of that part.
-    launch : str
-        By its present name.
-
-    Returns
-    -------
-    AspectsStudy
-        With a warning where the user stopped the test, or nothing came to rest.
+    ``closed`` has the closed form's answer for the launch. A warning says so where the user stopped the
+    test, or nothing came to rest.
     """
     tally = test.result.tally
     warnings: tuple[str, ...] = ()

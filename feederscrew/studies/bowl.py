@@ -158,17 +158,7 @@ class MachineSheet(ReadableRecord):
 
 
 def machine(settings: Sequence[Setting]) -> MachineSheet:
-    """Compute what a machine does with the bowl of a file.
-
-    Parameters
-    ----------
-    settings : tuple of Setting
-
-    Returns
-    -------
-    MachineSheet
-        Without an order.
-    """
+    """Compute what a machine does with the bowl of a file: a MachineSheet without an order."""
     bowl = _on_its_springs(answer.conveying(bowls.record(settings)), settings)
     rules = bowl.sizing
     density = rules.fill_density
@@ -191,35 +181,23 @@ def bowl(
     fill: float = 1.0,
     solid: SolidOptions | None = None,
 ) -> MachineSheet:
-    """Compute the bowl, the drive and the stroke that bring a part at a rate.
+    """Compute the bowl, the drive and the stroke that bring a part at a rate: a MachineSheet with its order.
 
     Parameters
     ----------
     settings : tuple of Setting
         What is given of track, drive, machine and devices is kept; the rest is sized.
-    part : Part
     target : float [1/s]
         Counted parts.
-    aspect : str, optional
-        That counts; without it, every orientation that stays on the track and passes the devices.
-    heading : float [rad], optional
-        As for ``queue.wanted``.
-    rule : str
+    aspect, heading, gap, fill
+        As for ``size_bowl``, in SI units.
     aspects : Aspects, optional
         Of the part, with the answer to take, where they are known already.
     as_tried : bool
         Whether a trial has shown what the settings say: their drive is kept, and what the static rule takes
         is only told.
-    gap : float [m]
-    fill : float [1]
-        As for ``rate``.
     solid : SolidOptions, optional
         Of the bowl as a solid: its rise and mass take the place of the estimate.
-
-    Returns
-    -------
-    MachineSheet
-        With its order.
 
     Raises
     ------

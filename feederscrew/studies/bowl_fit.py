@@ -55,22 +55,10 @@ def fit_bowl(path: str | Path, bowl_path: str | Path | None = None) -> BowlFit:
     for which the sum rises by less than chi-square's 95 % of one quantity, whatever the two others are. Where
     the best does not explain the velocities, intervals are wider by the root of what remains.
 
-    Parameters
-    ----------
-    path : str or Path
-        A CSV: columns of keys of the bowl file that were changed ('drive.amplitude'), then 'velocity_mm_s',
-        and 'spread_mm_s' and 'parts' where several parts were filmed.
-    bowl_path : str or Path, optional
-        The bowl file with what was not changed; the defaults without it.
-
-    Returns
-    -------
-    BowlFit
-
-    Raises
-    ------
-    ConfigError
-        If a file cannot be read, or there are fewer than three velocities.
+    The CSV ``path`` has columns of keys of the bowl file that were changed ('drive.amplitude'), then
+    'velocity_mm_s', and 'spread_mm_s' and 'parts' where several parts were filmed. The bowl file
+    ``bowl_path`` has what was not changed; the defaults without it. Raises ConfigError if a file cannot
+    be read, or there are fewer than three velocities.
     """
     rows = _read(path)
     measured, doubt = (np.array([row[place] for row in rows]) for place in (1, 2))

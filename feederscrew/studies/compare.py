@@ -166,23 +166,9 @@ def compare_sets(
 ) -> SetsStudy:
     """Study how far many measured sets are from every rule and from the recommended answer.
 
-    Parameters
-    ----------
-    files : iterable of str or Path
-        Files of counts whose head names the part file, from the folder of the counts.
-    launch, as_published
-        As for ``compare``.
-    progress : function, optional
-        Called after every file with how many are done, and of how many.
-
-    Returns
-    -------
-    SetsStudy
-
-    Raises
-    ------
-    FeederError
-        Every fault of the files.
+    The head of each of the ``files`` names the part file, from the folder of the counts; the rest is as
+    for ``compare``. ``progress`` is called after every file with how many are done, and of how many.
+    Raises every fault of the files.
     """
     names = [str(path) for path in files]
     if not 0 < len(names) <= MAX_FILES:

@@ -85,6 +85,7 @@ class ConveyCurve(ReadableRecord):
 class ConveyPhase(ReadableRecord):
     """What the phase of an elliptical drive does for a bowl."""
 
+    bowl: Bowl
     best: answer.BestPhase
 
     @property
@@ -133,17 +134,7 @@ def convey(bowl: Bowl, *, overrides: Overrides = (), **settings: Unpack[BowlSett
 
 
 def curve(settings: Sequence[Setting], span: KeyRange) -> ConveyCurve:
-    """Study a bowl along one of its keys.
-
-    Parameters
-    ----------
-    settings : tuple of Setting
-    span : KeyRange
-
-    Returns
-    -------
-    ConveyCurve
-    """
+    """Study a bowl along one of its keys."""
     columns = answer.cells(bowls.swept(settings, {span.key.name: np.array(span.values)}))
     cells = {name: np.broadcast_to(values, len(span.values)) for name, values in columns.items()}
     return ConveyCurve("curve", span.key.name, (grids.axis(span),), cells)
@@ -152,19 +143,7 @@ def curve(settings: Sequence[Setting], span: KeyRange) -> ConveyCurve:
 def along_radius(bowl: Bowl) -> ConveyCurve:
     """Study a bowl along its radius, inwards, where its angle is steeper.
 
-    Parameters
-    ----------
-    bowl : Bowl
-        Single values.
-
-    Returns
-    -------
-    ConveyCurve
-
-    Raises
-    ------
-    ConfigError
-        If the drive is elliptical.
+    Raises ConfigError if the drive is elliptical.
     """
     there = answer.inwards(bowl)
     axes = (
@@ -178,21 +157,9 @@ def along_radius(bowl: Bowl) -> ConveyCurve:
 def best_phase(bowl: Bowl) -> ConveyPhase:
     """Study a bowl over the phase of its drive.
 
-    Parameters
-    ----------
-    bowl : Bowl
-        Single values.
-
-    Returns
-    -------
-    ConveyPhase
-
-    Raises
-    ------
-    ConfigError
-        If the bowl cannot convey, or has no steady velocity at any phase.
+    Raises ConfigError if the bowl cannot convey, or has no steady velocity at any phase.
     """
-    return ConveyPhase(answer.best_phase(bowl))
+    return ConveyPhase(bowl, answer.best_phase(bowl))
 
 
 def velocity_map(
@@ -200,16 +167,7 @@ def velocity_map(
 ) -> ConveyMap:
     """Study a bowl over two of its keys.
 
-    Parameters
-    ----------
-    settings : tuple of Setting
-    ranges : two KeyRange
-    drawn : str, optional
-        What is drawn over it: the bowl's own 'point', or its points along the 'radius'.
-
-    Returns
-    -------
-    ConveyMap
+    ``drawn`` is what is drawn over the map: the bowl's own 'point', or its points along the 'radius'.
     """
     first, second = ranges
 

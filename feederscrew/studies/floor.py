@@ -42,34 +42,14 @@ class FloorStudy(ReadableRecord):
         return floor_balance.stable_heading(self.posture, self.bowl)
 
     def cells(self, bowl: Bowl, heading: float | np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the upper reversal for arrays of bowl settings and headings.
+        """Compute the upper reversal for arrays of bowl settings and headings theta [rad].
 
-        Parameters
-        ----------
-        bowl : Bowl
-            Fields may be arrays.
-        heading : array_like [rad]
-            theta.
-
-        Returns
-        -------
-        dict of str to array
-            As ``mechanics.motion_maps.floor_cells`` names them.
+        Arrays by name, as ``mechanics.motion_maps.floor_cells`` has them.
         """
         return motion_maps.floor_cells(self.posture, bowl, heading)
 
     def over_angle_and_friction(self, count: int) -> Grid:
-        """Compute the upper reversal over vibration angle and friction, as Figure 5-6.
-
-        Parameters
-        ----------
-        count : int
-            Values of either quantity.
-
-        Returns
-        -------
-        Grid
-        """
+        """Compute the upper reversal over ``count`` values of either quantity, as Figure 5-6."""
 
         def function(beta: Any, mu: Any) -> dict[str, np.ndarray]:
             varied = replace(self.bowl, drive=replace(self.bowl.drive, vibration_angle=beta))
@@ -80,17 +60,7 @@ class FloorStudy(ReadableRecord):
         return evaluate(angle, friction, function, motion_maps.FLOOR_REGIMES)
 
     def over_frequency_and_amplitude(self, count: int) -> Grid:
-        """Compute the upper reversal over frequency [Hz] and amplitude [mm], as Figure 5-7.
-
-        Parameters
-        ----------
-        count : int
-            Values of either quantity.
-
-        Returns
-        -------
-        Grid
-        """
+        """Compute it over ``count`` values of frequency [Hz] and of amplitude [mm], as Figure 5-7."""
 
         def function(f: Any, a: Any) -> dict[str, np.ndarray]:
             drive = replace(self.bowl.drive, frequency=f, amplitude=a)
@@ -103,13 +73,9 @@ class FloorStudy(ReadableRecord):
         return evaluate(frequency, amplitude, function, motion_maps.FLOOR_REGIMES)
 
     def alignment(self) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-        """Compute theta'' over every heading, a degree apart.
+        """Compute theta'' over every heading, (361,) [rad], a degree apart.
 
-        Returns
-        -------
-        headings : (361,) float [rad]
-        found : dict of str to (361,) float
-            As ``mechanics.motion_maps.floor_cells`` names them.
+        Arrays by name, as ``mechanics.motion_maps.floor_cells`` has them.
         """
         headings = np.radians(np.arange(-180.0, 181.0, 1.0))
         return headings, self.cells(self.bowl, headings)

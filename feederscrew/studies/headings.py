@@ -21,11 +21,16 @@ class HeadingsStudy(ReadableRecord):
     """The stable headings of a part on one or more aspects."""
 
     part: Part
-    track: Track
+    bowl: Bowl
     postures: tuple[Posture, ...]
     headings: tuple[wall.Headings, ...]  # one a posture
     chances: dict[str, float]  # probability of each aspect of the part by the answer that ranks them
     answer: str  # whose they are: 'hops, launch feed'
+
+    @property
+    def track(self) -> Track:
+        """The bowl's track."""
+        return self.bowl.track
 
     def only(self, aspect: str) -> HeadingsStudy:
         """Return the study of one of its aspects."""
@@ -76,7 +81,7 @@ def headings(
     postures = tuple(posture(part, resting, name) for name in names)
     return HeadingsStudy(
         part=part,
-        track=track,
+        bowl=bowl,
         postures=postures,
         headings=tuple(wall.headings(stance, track) for stance in postures),
         chances=dict(zip(resting.names, resting.chances[resting.ranking].tolist())),

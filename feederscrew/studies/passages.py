@@ -43,26 +43,9 @@ class PassagesStudy(ReadableRecord):
 
 
 def passages(part: Part, bowl: Bowl, aspects: Aspects, rule: str) -> PassagesStudy:
-    """Study what a bowl's devices do with each orientation of a part.
+    """Study what a bowl's devices do with each orientation of a part from a mesh.
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    bowl : Bowl
-    aspects : Aspects
-        Of that part.
-    rule : str
-        Whose probabilities are taken.
-
-    Returns
-    -------
-    PassagesStudy
-
-    Raises
-    ------
-    FeederError
-        If the part has very many facets.
+    The rule is whose probabilities are taken. Raises FeederError if the part has very many facets.
     """
     if any(device.placed for device in bowl.devices):
         refuse_many_facets(part)
@@ -128,25 +111,9 @@ def feeding(
 ) -> FeedingStudy:
     """Study what passed the devices of the bowl that a feeding test names.
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    counts : DeviceCounts
-    launch : str, optional
-        What was done to the part; without it what the head of the file says, else parts are fed onto the
-        moving floor of that bowl.
-    progress, before : function, optional
-        As for ``rate.shares``.
-
-    Returns
-    -------
-    FeedingStudy
-
-    Raises
-    ------
-    FeederError
-        If the file names no bowl, or a device that the bowl does not have.
+    The launch is what was done to the part; without it what the head of the file says, else parts are fed
+    onto the moving floor of that bowl. ``progress`` and ``before`` are as for ``rate.shares``. Raises
+    FeederError if the file names no bowl, or a device that the bowl does not have.
     """
     config, bowl = bowl_of(counts)
     launch = launch or counts.head.launch or None
@@ -182,21 +149,8 @@ def counted_flow(
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return which share of each aspect's parts comes to each counted device, and which goes on from it.
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    aspects : Aspects
-        Of that part.
-    bowl : Bowl
-        With its devices and its drive, as ``feeder rate`` takes them.
-    counts : DeviceCounts
-
-    Returns
-    -------
-    (2, D, A) float [1]
-    tuple of str
-        (D,) names of the devices.
+    (2, D, A) [1], and the names of the D devices. The bowl has its devices and its drive, as ``feeder
+    rate`` takes them.
     """
     followed = stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
     places = stream.counted_stations(followed, counts)

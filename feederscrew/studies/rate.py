@@ -147,16 +147,6 @@ def likeliest(part: Part, bowl: Bowl) -> Aspects:
 
     CHOOSING parts are fed first. Where the 95 % interval of the most frequent aspect is above those of all
     others, they decide. Else the answer is that of ``arriving``.
-
-    Parameters
-    ----------
-    part : Part
-    bowl : Bowl
-
-    Returns
-    -------
-    Aspects
-        Its ``likeliest`` is that of ``arriving``; its shares are of fewer parts.
     """
     from feederscrew.dropping import arrival
 
@@ -341,18 +331,9 @@ def the_shares(aspect_shares: object) -> Shares | None:
 
 
 def most_frequent(orientations: well_oriented.Orientations, rule: str) -> tuple[str, float]:
-    """Return the aspect and the heading in which most parts leave the bowl.
+    """Return the aspect and the heading [rad] in which most parts leave the bowl.
 
-    Parameters
-    ----------
-    orientations : Orientations
-    rule : str
-        Whose probabilities are taken.
-
-    Returns
-    -------
-    (str, float [rad])
-        Where none leaves, the ones most likely to land in.
+    Where none leaves, the ones most likely to land in, by the probabilities of the rule.
     """
     chance = np.nan_to_num(orientations.rules[rule])
     leaving = (chance[:, None] * orientations.leaving).sum(axis=0)[orientations.leaves_as]

@@ -49,18 +49,10 @@ Arrays = Mapping[str, np.ndarray]
 
 
 def read(key: Mapping[str, str]) -> dict[str, np.ndarray] | None:
-    """Return the arrays that are kept under a key.
+    """Return the arrays that are kept under a key, all that decides them.
 
-    Parameters
-    ----------
-    key : dict of str to str
-        All that decides them.
-
-    Returns
-    -------
-    dict of str to array, or None
-        Arrays of float, int or bool, closed to writing. None where there is no entry, or one that is
-        damaged, too large, of another key, no regular file, or in a folder that others may write to.
+    Arrays of float, int or bool, closed to writing. None where there is no entry, or one that is damaged, too
+    large, of another key, no regular file, or in a folder that others may write to.
     """
     folder = _folder()
     if folder is None or refusal() is not None:
@@ -71,14 +63,7 @@ def read(key: Mapping[str, str]) -> dict[str, np.ndarray] | None:
 
 
 def write(key: Mapping[str, str], arrays: Arrays) -> None:
-    """Keep arrays under a key, where there is room for them; a full disk leaves nothing behind.
-
-    Parameters
-    ----------
-    key : dict of str to str
-    arrays : dict of str to array
-        Of float, int or bool.
-    """
+    """Keep arrays of float, int or bool under a key; a full disk leaves nothing behind."""
     folder = _folder()
     if folder is None:
         return
@@ -255,18 +240,7 @@ class Simulation(Generic[Record]):
 def once(part: Part, aspects: Aspects, simulation: Simulation[Record]) -> Record:
     """Return what was simulated of a part before; else simulate it, and keep it if it is whole.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    aspects : Aspects
-        Of that part.
-    simulation : Simulation
-
-    Returns
-    -------
-    object
-        As ``simulation.make`` returns it, of this part or of one that no number tells from it.
+    As ``simulation.make`` returns it, of this part or of one that no number tells from it.
     """
     key = {
         "kind": simulation.kind,

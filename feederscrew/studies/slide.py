@@ -42,16 +42,10 @@ class SlideMap(ReadableRecord):
     level_hop: float  # [1] G of the hop on a level floor, the pole of mu_limit
 
     def sheet(self, highest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute the surface of [4.27] from zero up to a friction, on a grid that follows that edge.
+        """Compute the surface of [4.27] from zero up to a friction [1], on a grid that follows that edge.
 
-        Parameters
-        ----------
-        highest : float [1]
-            Friction at which the surface is cut; it ends at the map's highest G in any case.
-
-        Returns
-        -------
-        alpha_minus_theta, ratio, friction : (S, S) float [rad, 1, 1]
+        alpha - theta [rad], ratio [1] and friction [1], each (S, S); it ends at the map's highest G in
+        any case.
         """
         first, last = -np.pi / 2.0, np.pi / 2.0
         angles = MAX_ANGLE * np.sin(np.linspace(first, last, MAP_COLUMNS))[:, None]  # dense where it is steep
@@ -76,18 +70,7 @@ class SlideStudy(ReadableRecord):
     maps: tuple[SlideMap, ...]
 
     def fine(self, shape: tuple[int, int]) -> tuple[SlideMap, ...]:
-        """Compute the maps again for pictures.
-
-        Parameters
-        ----------
-        shape : (int, int)
-            Values of either axis.
-
-        Returns
-        -------
-        tuple of SlideMap
-            Without the negative branch of [4.27].
-        """
+        """Compute maps of ``shape`` values for pictures, without what [4.27] has below 0."""
         return tuple(sliding_map(self.bowl, slide_map.beta, shape=shape) for slide_map in self.maps)
 
 
@@ -133,29 +116,13 @@ def slide(
 def sliding_map(
     bowl: Bowl, beta: float, *, as_published: bool = False, shape: tuple[int, int] | None = None
 ) -> SlideMap:
-    """Compute the sliding map of a bowl at one vibration angle.
+    """Compute the sliding map of a bowl at the vibration angle ``beta`` [rad], in place of the bowl's own.
 
-    Parameters
-    ----------
-    bowl : Bowl
-        Its friction and track decide the regimes; its drive marks the operating point.
-    beta : float [rad]
-        Vibration angle, in place of the bowl's own.
-    as_published : bool
-        Keep [4.27] where it is negative: past the hop, and where the drive is reversed.
-    shape : (int, int), optional
-        Values of either axis, for pictures; by default steps of 3 deg and of a round G.
-
-    Returns
-    -------
-    SlideMap
-        Columns mu_limit [4.27] on a level floor, mu_forward and mu_backward of the bowl's track beside its
-        upright wall. What a drive across the track presses against the wall is without friction.
-
-    Raises
-    ------
-    ConfigError
-        If the drive is not ``limits.plain``.
+    Columns mu_limit [4.27] on a level floor, mu_forward and mu_backward of the bowl's track beside its
+    upright wall. What a drive across the track presses against the wall is without friction.
+    ``as_published`` keeps [4.27] where it is negative: past the hop, and where the drive is reversed.
+    ``shape`` has the values of either axis, for pictures; by default steps of 3 deg and of a round G.
+    Raises ConfigError if the drive is not ``limits.plain``.
     """
     direction = limits.plain(bowl).drive.direction
     ratio = float(limits.acceleration_ratio(bowl.drive.amplitude, bowl.drive.frequency, bowl.gravity))

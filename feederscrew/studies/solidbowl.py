@@ -46,30 +46,11 @@ def solid_options(
     step: bool = False,
     join: str | None = None,
 ) -> SolidOptions | None:
-    """Return what is asked of the solid, None where none is.
+    """Return what is wanted of the solid, None where none is.
 
-    Parameters
-    ----------
-    settings : tuple of Setting
-    solid : bool
-    material : str
-        Of ``materials.NAMES``.
-    chord : float [m]
-    bed : str, optional
-        Size of the printer's bed, '220x220x250mm'.
-    step : bool
-        A STEP file with exact faces as well.
-    join : str, optional
-        Of ``segments.JOINTS``: what holds segments together; None: dowels.
-
-    Returns
-    -------
-    Asked or None
-
-    Raises
-    ------
-    ArgumentError
-        If the bed is not three lengths, or what writes STEP is not installed.
+    The material is one of ``materials.NAMES``, ``chord`` in metres, the bed '220x220x250mm', ``join`` one
+    of ``segments.JOINTS``, dowels without it; ``step`` asks for a STEP file with exact faces. Raises
+    ArgumentError if the bed is not three lengths, or what writes STEP is not installed.
     """
     if not solid:
         return None
@@ -99,20 +80,9 @@ def solid_options(
 def drawable_climb(bowl: Bowl, part: Part, coming: stream.Orientations) -> float:
     """Return the climb [rad] of the track at which a bowl with its devices can be drawn as a solid.
 
-    A device that leads the track down needs room below it: a steeper track leaves more.
-
-    Parameters
-    ----------
-    bowl : Bowl
-        With its devices.
-    part : Part
-    coming : rates.stream.Orientations
-        Of the part along that track.
-
-    Returns
-    -------
-    float [rad]
-        The bowl's own climb where it is enough, or where none up to ``STEEPEST_RAD`` mends it.
+    A device that leads the track down needs room below it: a steeper track leaves more. The bowl's own
+    climb where it is enough, or where none up to ``STEEPEST_RAD`` mends it. ``coming`` is of the part
+    along that track.
     """
     rules, track = bowl.sizing, bowl.track
     depth = rules.outlet_height if rules.outlet_height > 0.0 else 2.0 * rules.depth * track.radius
@@ -134,18 +104,7 @@ def drawable_climb(bowl: Bowl, part: Part, coming: stream.Orientations) -> float
 
 
 def in_material(bowl: Bowl, options: SolidOptions | None) -> Bowl:
-    """Return the bowl with the thickness and density of what its solid is made of.
-
-    Parameters
-    ----------
-    bowl : Bowl
-    options : Asked or None
-        Without one the bowl stays as it is.
-
-    Returns
-    -------
-    Bowl
-    """
+    """Return the bowl with the thickness and density of its solid; as it is without options."""
     if options is None:
         return bowl
     made_of = material(options.material, bowl.sizing)
@@ -161,33 +120,13 @@ def solid(
     options: SolidOptions | None,
     counted: Mapping[str, Any],
 ) -> tuple[Size, BowlSolid | None]:
-    """Return the size of a bowl and its solid.
+    """Return the size of a bowl and its solid, None where none is asked for.
 
-    Parameters
-    ----------
-    bowl : Bowl
-        Its track and devices.
-    size : Size
-    part : Part
-    coming : rates.stream.Orientations
-        Of the part along that track and its devices.
-    options : Asked or None
-    counted : dict
-        ``rule`` whose probabilities are taken and ``target``, aspect and heading that are wanted, or None.
-
-    Returns
-    -------
-    Size
-        With rise, turns, mass and inertia of the solid in place of the estimate.
-    BowlSolid or None
-        None where none is asked for.
-
-    Raises
-    ------
-    TrackTooLow
-        If a device leads the track down too far, with the climb that mends it, where there is one.
-    FeederError
-        If the track does not fit the bowl, or what falls through a cut does not reach the floor.
+    Rise, turns, mass and inertia of the solid take the place of the estimate. ``coming`` is of the part
+    along the bowl's track and devices; ``counted`` has the ``rule`` whose probabilities are taken and the
+    ``target``, aspect and heading that are wanted, or None. Raises TrackTooLow if a device leads the
+    track down too far, with the climb that mends it, where there is one; FeederError if the track does
+    not fit the bowl, or what falls through a cut does not reach the floor.
     """
     if options is None:
         return size, None
@@ -236,21 +175,7 @@ def _least_climb(
 
 
 def of_sheet(sheet: Any, settings: Sequence[Setting], aspects: Aspects) -> BowlSolid | None:
-    """Return the solid, in steel, of a bowl that was sized without one.
-
-    Parameters
-    ----------
-    sheet : MachineSheet
-        With its order; it stays as it is.
-    settings : tuple of Setting
-        It was sized from.
-    aspects : Aspects
-        Of its part.
-
-    Returns
-    -------
-    BowlSolid
-    """
+    """Return the solid, in steel, of a MachineSheet with an order that was sized without one."""
     order, bowl = sheet.order, sheet.bowl
     coming = stream.follow_orientations(order.part, aspects, bowl.track, bowl.devices)
     wanted = solid_options(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)

@@ -366,13 +366,5 @@ def tooling_without(
     without: str | Sequence[str] = (),
     **request: Any,
 ) -> ToolingStudy:
-    """Return the study of an orientation with fewer kinds of devices, at once: no holes are searched.
-
-    Parameters
-    ----------
-    kinds : sequence of str
-        Not used, beside those of ``without``.
-    part, bowl, aspect, asked
-        As for ``tooling``.
-    """
+    """Return the study of an orientation without more kinds of devices, at once: without holes."""
     return tooling(part, bowl, aspect, without=(*listed(without), *kinds, *names(searched=True)), **request)

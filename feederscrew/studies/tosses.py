@@ -98,35 +98,14 @@ def follow(
     progress: Callable[..., None] | None = None,
     before: Callable[..., None] | None = None,
 ) -> TossStudy:
-    """Study where tosses lead whose states at the launch are known.
+    """Study where tosses of a part from a mesh lead whose states at the launch are known.
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    launches : str
-        Path of a file of launches: see ``toss_runs.read_launches``.
-    own : dict of str to (str or None), optional
-        ``restitution`` and ``friction`` as typed, a value or a range; else those of any launch.
-    runs : int, optional
-        Of each toss, over small changes of what is not known.
-    seed : int
-        Of those changes.
-    jobs : int
-        Cores to use; the answer does not depend on it.
-    progress : function, optional
-        Called with how many tosses are done, and of how many.
-    before : function, optional
-        Called once all inputs are found right, before anything is compiled.
-
-    Returns
-    -------
-    TossStudy
-
-    Raises
-    ------
-    FeederError
-        If the part has no shape, the file has a fault, or a value is out of range.
+    ``launches`` is the path of a file for ``toss_runs.read_launches``. ``own`` has ``restitution`` and
+    ``friction`` as typed, a value or a range; else they are those of any launch. Of each toss ``runs``
+    are made, over small changes of what is not known, drawn by ``seed``; ``jobs`` are cores, on which the
+    answer does not depend. ``progress`` is called with how many tosses are done, and of how many,
+    ``before`` once all inputs are right. Raises FeederError if the part has no shape, the file has a
+    fault, or a value is out of range.
     """
     check_run(runs, seed, jobs)
     read = toss_runs.read_launches(launches)

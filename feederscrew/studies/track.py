@@ -54,19 +54,10 @@ class TrackStudy(ReadableRecord):
     printed: ClassVar[Any] = None  # the upper reversal by print, in `thesis.motion`
 
     def over(self, settings: Sequence[Setting], ranges: Sequence[KeyRange] = ()) -> grids.Grid:
-        """Compute the upper reversal at every pair of two values of the bowl.
+        """Compute the upper reversal at every pair of two values of the bowl, else as it is.
 
-        Parameters
-        ----------
-        settings : tuple of Setting
-            Of the bowl; all but the two are kept.
-        ranges : sequence of KeyRange
-            Two, or none for bank and climb.
-
-        Returns
-        -------
-        Grid
-            Columns as ``mechanics.motion_maps`` names them, in SI; NaN where the part does not fit.
+        The ranges are two, or none for bank and climb. The columns of the Grid are those of
+        ``mechanics.motion_maps``, in SI; NaN where the part does not fit.
         """
         first, second = ranges or bowls.key_ranges(USUAL)
 

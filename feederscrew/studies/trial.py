@@ -247,23 +247,9 @@ def _further(
 
 
 def at_outlet(counts: str | PathLike[str], aspect_shares: Shares) -> profiles.Measured:
-    """Read what was measured of parts that left a bowl.
+    """Read what was measured of parts that left a bowl, a file of counts or shares by aspect or orientation.
 
-    Parameters
-    ----------
-    counts : str or Path
-        File of counts or shares, by aspect or by orientation.
-    aspect_shares : Shares
-        Of the part.
-
-    Returns
-    -------
-    Measured
-
-    Raises
-    ------
-    FeederError
-        Every fault of the file, each with its line.
+    Raises every fault of the file, each with its line.
     """
     return profiles.read_profile(counts, list(aspect_shares.aspects.names))
 

@@ -404,10 +404,10 @@ def _normal_force_line() -> str:
 @_evidence("seven-unknowns")
 def _seven_unknowns() -> str:
     printed, complete = banked_arc_chute().printed, banked_arc_chute().now
-    radial, beside = (study.radial_friction / MILLI for study in (printed, complete))
+    radial, coulomb = (study.radial_friction / MILLI for study in (printed, complete))
     return (
         f"While the Arc Chute slides at 10 deg of bank the print has R3 = {radial:.2f} mN and no d_y;"
-        f" Coulomb's friction acts against the sliding, so R3 = {beside:.2f} mN and"
+        f" Coulomb's friction acts against the sliding, so R3 = {coulomb:.2f} mN and"
         f" d_y = {complete.offset[..., 1] / MILLI:.3f} mm."
     )
 

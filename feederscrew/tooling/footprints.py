@@ -14,8 +14,14 @@ from feederscrew import check
 from feederscrew.geometry import polygons
 from feederscrew.geometry.compiled import zero_rows
 from feederscrew.geometry.polygons import turned
+from feederscrew.heavy import heavy
 from feederscrew.resting.posture import TOUCHING_SHARE
 from feederscrew.tooling.devices.openings import WALL_OVERCUT_M, gap
+
+crossing = heavy("feederscrew.tooling.kernel.crossing")
+passage = heavy("feederscrew.tooling.kernel.passage")
+ring_kernel = heavy("feederscrew.tooling.kernel.ring")
+unheld_kernel = heavy("feederscrew.tooling.kernel.unheld")
 
 SPOT = 1e-7  # [m] half the length of a single point of contact
 SECTOR_TOLERANCE = 1e-9  # [1] of an angle or a distance: what is beyond by more is so for certain
@@ -52,7 +58,6 @@ def standing(foot, distance, radius, shift=0.0):
     -------
     passage.Foot
     """
-    from feederscrew.tooling.kernel.passage import Foot
 
     foot, middle = _spots(foot), radius - distance
     starts = [*foot.rings, foot.edges[:, 0]]
@@ -64,7 +69,7 @@ def standing(foot, distance, radius, shift=0.0):
     along = (end - start) * [1.0, -1.0]
     corners = np.column_stack([foot.corners[:, 0], middle - foot.corners[:, 1]])
     hull, insets = _hull(corners[:, 0], middle + shift - corners[:, 1])
-    return Foot(
+    return passage.Foot(
         hull=hull,
         insets=insets,
         sides=np.column_stack([start[:, 0], middle - start[:, 1], along]),
@@ -102,17 +107,15 @@ def _sector(start, end, middle) -> np.ndarray:
 
 def scratch(foot, hole):
     """Return arrays for the verdict of feet and holes no larger than these."""
-    from feederscrew.tooling.kernel.crossing import CUTS, STRETCH
-    from feederscrew.tooling.kernel.passage import VerdictArrays
 
     rows = 6 * len(foot.sides) * len(hole.edges) + 1
     points = len(foot.corners) + rows + len(hole.nodes) + len(hole.edges)
-    return VerdictArrays(
-        rows=zero_rows(rows, STRETCH),
+    return passage.VerdictArrays(
+        rows=zero_rows(rows, crossing.STRETCH),
         events=np.empty(2 * rows),
         bounds=np.empty(2 * rows),
         movements=np.empty(2 * rows),
-        cuts=np.empty(CUTS),
+        cuts=np.empty(crossing.CUTS),
         keep=np.empty(len(foot.corners), dtype=np.int64),
         held=np.empty(len(hole.nodes), dtype=np.int64),
         active=np.empty(rows, dtype=np.int64),
@@ -128,7 +131,6 @@ def least(foot, hole, work=None, low=-np.inf, high=np.inf) -> tuple[Any, ...]:
 
     Source: docs/tooling.md, "1. The method".
     """
-    from feederscrew.tooling.kernel import passage
 
     out = np.empty(2)
     passage.least(foot, hole, work or scratch(foot, hole), low, high, out)
@@ -142,10 +144,9 @@ def unheld(foot, hole, work=None, enough=np.inf):
 
     Source: own; docs/tooling.md, "1. The method".
     """
-    from feederscrew.tooling.kernel import unheld as kernel
 
     turn = enough * (1.0 + SECTOR_TOLERANCE) / foot.centre
-    return float(kernel.longest(foot, hole, work or scratch(foot, hole), turn)) * foot.centre
+    return float(unheld_kernel.longest(foot, hole, work or scratch(foot, hole), turn)) * foot.centre
 
 
 def _hull(x, y) -> tuple[Any, ...]:
@@ -164,9 +165,8 @@ def over_ring(foot, low, high) -> float:
 
     Source: docs/tooling.md, "1. The method".
     """
-    from feederscrew.tooling.kernel import ring
 
-    return float(ring.over_ring(foot, low, high, ring_scratch(foot)))
+    return float(ring_kernel.over_ring(foot, low, high, ring_scratch(foot)))
 
 
 def balcony(foot, radius) -> float:
@@ -174,16 +174,14 @@ def balcony(foot, radius) -> float:
 
     Source: docs/tooling.md, "1. The method".
     """
-    from feederscrew.tooling.kernel import ring
 
-    return float(ring.balcony(foot, radius, _extent(foot, radius), ring_scratch(foot)))
+    return float(ring_kernel.balcony(foot, radius, _extent(foot, radius), ring_scratch(foot)))
 
 
 def canyon(foot, radius):
     """Return the greatest width [m] of a strip removed along the wall that a foot passes; 0 for none."""
-    from feederscrew.tooling.kernel import ring
 
-    return max(float(ring.canyon(foot, radius, _extent(foot, radius), ring_scratch(foot))), 0.0)
+    return max(float(ring_kernel.canyon(foot, radius, _extent(foot, radius), ring_scratch(foot))), 0.0)
 
 
 def longest_gap(foot, radius):

@@ -9,6 +9,9 @@ import shapely
 from feederscrew.geometry import shaded
 from feederscrew.geometry.polygons import turned
 from feederscrew.geometry.vectors import product
+from feederscrew.heavy import heavy
+
+border_kernel = heavy("feederscrew.tooling.kernel.border_distance")
 
 BORDER_STEP_M = 1e-4  # [m] between places of a border at which two are compared
 VIEW_DETAIL_SHARE = 1e-4  # of the part's size: corners that stand out by less are left out
@@ -85,7 +88,7 @@ def fitted(view, wanted, enough=0.0):
 
 def _fitted(view, wanted, enough):
     def off(turn):
-        return border_distance(_laid(view, turn), wanted)
+        return border_distance(_at_front_and_side(view, turn), wanted)
 
     best = off(0.0)
     if best <= enough:
@@ -110,7 +113,7 @@ def _fitted(view, wanted, enough):
     return min(best, here, there)
 
 
-def _laid(view, turn):
+def _at_front_and_side(view, turn):
     """A border turned about the middle, its front and its side laid where they were."""
     places, sides = view.places, view.sides
     if turn:
@@ -149,9 +152,10 @@ def border(area) -> Border:
 
 def border_distance(first, second) -> float:
     """Return the greatest distance [m] from a place of either Border to the other one."""
-    from feederscrew.tooling.kernel.border_distance import farthest
-
-    return max(farthest(first.places, second.sides), farthest(second.places, first.sides))
+    return max(
+        border_kernel.farthest(first.places, second.sides),
+        border_kernel.farthest(second.places, first.sides),
+    )
 
 
 def outline_distance(first, second) -> float:

@@ -8,10 +8,13 @@ import shapely
 from shapely import affinity
 
 from feederscrew import check
+from feederscrew.heavy import heavy
 from feederscrew.tooling import whole_surface
 from feederscrew.tooling.devices.openings import beyond_borders
 from feederscrew.tooling.track_sections import DRAWN_CHORD_M, bend_ring
 from feederscrew.units import MM
+
+manifold3d = heavy("manifold3d")
 
 PLATE, WALL = 3e-3, 3e-3  # [m] thickness of track and wall
 WALL_MARGIN_M = 5e-3  # [m] of the wall above the tallest part
@@ -98,12 +101,11 @@ def leaning_profile(radius, lean, high) -> np.ndarray:
 
 def _leaning(radius, start, stop, lean, high):
     """A body [mm]: a wall from the track's outer edge on, as wide as ``high`` [m] up its slope."""
-    from manifold3d import CrossSection, Manifold
 
     across = leaning_profile(radius, lean, high)
     round_once = int(np.ceil(np.pi / np.sqrt(2.0 * DRAWN_CHORD_M / radius)))
     turned, first = np.degrees((stop - start) / radius), np.degrees(start / radius) - 90.0
-    body = Manifold.revolve(CrossSection([across / MM]), round_once, turned)
+    body = manifold3d.Manifold.revolve(manifold3d.CrossSection([across / MM]), round_once, turned)
     return body.rotate((0.0, 0.0, first)).translate((0.0, radius / MM, 0.0))
 
 
@@ -155,12 +157,13 @@ def _bent(ring, radius):
 
 def _extruded(area, low, high):
     """A body [mm] over an area of the plane between two heights [m]."""
-    from manifold3d import CrossSection, FillRule, Manifold
 
     polygons = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
     rings = [ring for part in polygons for ring in (part.exterior, *part.interiors)]
-    flat = CrossSection([np.asarray(ring.coords)[:-1] / MM for ring in rings], FillRule.EvenOdd)
-    return Manifold.extrude(flat, (high - low) / MM).translate((0.0, 0.0, low / MM))
+    flat = manifold3d.CrossSection(
+        [np.asarray(ring.coords)[:-1] / MM for ring in rings], manifold3d.FillRule.EvenOdd
+    )
+    return manifold3d.Manifold.extrude(flat, (high - low) / MM).translate((0.0, 0.0, low / MM))
 
 
 def gate_area(section, station) -> tuple[Any, float, float]:

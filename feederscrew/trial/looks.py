@@ -18,7 +18,7 @@ from feederscrew.trial import part_poses
 SAME_REACH_SHARE = (
     0.05  # of the part's size: a part whose outline is off by more lies in no known orientation
 )
-DIRECTIONS = 160
+OUTLINE_DIRECTIONS = 160
 ASKEW_ANGLES = np.radians(
     np.linspace(-10.0, 10.0, 11)
 )  # by which a part may lie turned on the track and be known
@@ -40,7 +40,7 @@ class Looks:
     """
 
     def __init__(self, orientations, solid, length, principal, radius) -> None:
-        self.directions, self.corners = spread(DIRECTIONS), solid.corners[solid.outer]
+        self.directions, self.corners = spread(OUTLINE_DIRECTIONS), solid.corners[solid.outer]
         self.ups = {
             k: vectors.product(principal.T, cast(np.ndarray, orientation.posture.axes)[2])
             for k, orientation in enumerate(orientations)

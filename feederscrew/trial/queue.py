@@ -31,6 +31,7 @@ CLIMB_HEIGHT = 0.02  # ... as high over the track: a part has climbed on others
 WHOLE_PERIOD_TOLERANCE = (
     1e-6  # of a period: a time that is so little longer than whole periods is that of them
 )
+BLOCK = 40  # parts that come in exact shares
 POURED_SPACING = 1.05  # of the part's radius: apart along the track, and over it, where parts are poured
 
 
@@ -47,6 +48,8 @@ class QueuedParts:
     # (S + 1, A + 1) int, in which orientation whole ones left, the last is none of the known; on which aspect
     # those lay, whatever their heading, the last hung
     whole: np.ndarray
+    left_by_entry: np.ndarray  # (M, S + 1, A + 1) int, the same by the orientation in which they came
+    returned_by_entry: np.ndarray  # (M,) int
     returned: int  # fell back into the bowl
     jams: int  # stood at a device and were taken out
     climbs: int  # times that a part came to lie on others
@@ -90,6 +93,7 @@ class QueuePlan:
     # need; 0 where they come touching. None: they fall onto the track in any attitude, not in a row
     gaps: float | None = MEAN_GAP_SHARE
     frames: int = 0  # poses of all parts that are noted for a film
+    balanced: bool = False  # orientations in exact shares, in random order; else each is drawn by itself
 
 
 def queue_of(part, bowl, aspects, orientations, poses, shares, plan, run):
@@ -168,7 +172,9 @@ class PartsQueue:
             AspectsBelow(part, aspects),
             [isinstance(orientation, Hanging) for orientation in poses],
         )
-        self.left = np.zeros((len(poses) + 1, len(aspects.names) + 1), int)
+        self.left = np.zeros((len(orientations), len(poses) + 1, len(aspects.names) + 1), int)
+        self.returned_by_entry, self.entered = np.zeros(len(orientations), int), np.zeros(parts, int)
+        self.balanced, self.drawn = plan.balanced, []  # orientations of the parts to come
         self.returned = self.jams = self.climbs = self.relieved = 0
         self.way, self.free, self.touch, self.depth = [], [], [], 0.0
         self.pressure, self.whole, self.first, self.most = np.zeros(len(self.windows)), 0, None, 0
@@ -220,7 +226,7 @@ class PartsQueue:
         end = min((rear for rear, _, _ in reach.values()), default=0.0)
         while self.waiting:
             self.coming = self.coming or self.fresh()
-            state, gap = self.coming
+            row, state, gap = self.coming
             rear, front, _ = part_poses.extents(
                 state, self.part_in_bowl.solid.corners, self.part_in_bowl.radius
             )
@@ -231,12 +237,13 @@ class PartsQueue:
             n = self.waiting.pop(0)
             self.crowd.lay(n, part_poses.moved(state[None], place, self.part_in_bowl.radius)[0])
             self.mark[n], self.since[n], self.on_others[n] = place, self.time, False
+            self.entered[n] = row
             end = place + rear
         self.most = max(self.most, int(self.crowd.on.sum()))
 
     def fresh(self):
-        """A part that is about to enter: its state at the place 0, and the free way before it."""
-        k = min(int(np.searchsorted(self.chances, self.rng.random() * self.chances[-1])), len(self.every) - 1)
+        """A part about to enter: its orientation, its state at the place 0, and the free way before it."""
+        k = self.next_row()
         orientation = self.every[k]
         track = orientation.track
         if self.gaps is not None:
@@ -252,12 +259,27 @@ class PartsQueue:
                 self.apart
                 + 2.0 * self.gaps * self.rng.random() * orientation.length / self.part_in_bowl.length
             )
-            return state, gap
+            return k, state, gap
         radius, state = self.part_in_bowl.solid.radius, np.zeros(body.STATE)
         turn = self.rng.standard_normal(4)
         state[:3] = 0.0, radius * POURED_SPACING, radius * POURED_SPACING * (1.0 + self.rng.random())
         state[body.Q : body.Q + 4] = turn / np.sqrt((turn**2).sum())
-        return state, 0.0
+        return k, state, 0.0
+
+    def next_row(self):
+        """The orientation in which the next part comes.
+
+        Balanced, BLOCK parts come in their shares as nearly as whole parts can, in random order: a systematic
+        sample (W. G. Cochran, "Sampling techniques", 3rd ed., 1977, ch. 8).
+        """
+        last = len(self.every) - 1
+        if not self.balanced:
+            return min(int(np.searchsorted(self.chances, self.rng.random() * self.chances[-1])), last)
+        if not self.drawn:
+            points = (np.arange(BLOCK) + self.rng.random()) / BLOCK * self.chances[-1]
+            rows = np.minimum(np.searchsorted(self.chances, points), last)
+            self.drawn = self.rng.permutation(rows).tolist()
+        return self.drawn.pop()
 
     def ride(self, turn) -> None:
         """Move all for one period of the drive, and look what became of them."""
@@ -307,14 +329,12 @@ class PartsQueue:
             self.leave(n)
             self.send_back(n)
         elif fell or front < self.track.start / self.part_in_bowl.length:
-            self.returned += 1
-            self.send_back(n)
+            self.come_back(n)
         elif place - self.mark[n] > STANDING_WAY:
             self.mark[n], self.since[n] = place, self.time
         elif self.time - self.since[n] >= BACKED_UP_SECONDS and self.pushed_off(n, rear, front):
-            self.returned += 1
             self.relieved += 1
-            self.send_back(n)
+            self.come_back(n)
         else:
             self.stand(n, front, reach, order)
 
@@ -340,7 +360,13 @@ class PartsQueue:
         orientation = self.looks.of([state])[0]
         hangs = orientation != OTHER and self.hanging[orientation]
         self.whole += 1
-        self.left[orientation, OTHER if hangs else self.below.of([state])[0]] += 1
+        self.left[self.entered[n], orientation, OTHER if hangs else self.below.of([state])[0]] += 1
+
+    def come_back(self, n) -> None:
+        """Count a part that fell back into the bowl."""
+        self.returned += 1
+        self.returned_by_entry[self.entered[n]] += 1
+        self.send_back(n)
 
     def stand(self, n, front, reach, order) -> None:
         """A part that stands: what pushes it, and whether it is what holds the others up."""
@@ -387,7 +413,9 @@ class PartsQueue:
             seconds=seconds,
             counted=counted,
             delivered=self.whole + part - self.start if counted else 0.0,
-            whole=check.frozen(np.array(self.left)),
+            whole=check.frozen(self.left.sum(axis=0)),
+            left_by_entry=check.frozen(np.array(self.left)),
+            returned_by_entry=check.frozen(np.array(self.returned_by_entry)),
             returned=self.returned,
             jams=self.jams,
             climbs=self.climbs,

@@ -62,8 +62,8 @@ def test_a_cluster_may_lose_a_worker_and_says_when_it_loses_its_scheduler(tmp_pa
                 ran(requests, tmp_path / "there", workers=batch.Cluster(address))
         finished = []
 
-        def lose_one(kept):
-            finished.append(kept)
+        def lose_one(is_reused):
+            finished.append(is_reused)
             if len(finished) == 2:
                 running[-1].send_signal(signal.SIGKILL)
 
@@ -74,7 +74,7 @@ def test_a_cluster_may_lose_a_worker_and_says_when_it_loses_its_scheduler(tmp_pa
                 requests,
                 tmp_path / "out",
                 workers=batch.Cluster(address),
-                tell=lambda kept: running[0].kill(),
+                tell=lambda is_reused: running[0].kill(),
             )
     assert fault.value.lines == (
         f"{address}: the scheduler is lost - mend it, then start this command again with `resume`:"

@@ -65,12 +65,6 @@ def test_the_template_holds_the_defaults(file):
     assert origins["friction.kinetic"] == "as friction.static"
 
 
-def test_every_key_stands_in_the_template_with_its_meaning():
-    for key in schema.BOWL_KEYS:
-        assert f"{key.word}: " in documentation.template()
-        assert key.meaning in documentation.template()
-
-
 def test_commented_keys_of_the_template_are_valid_once_uncommented(file):
     text = documentation.template()
     for key in ("kinetic", "wall", "static_backward", "kinetic_backward"):
@@ -98,9 +92,7 @@ def test_the_schema_beside_it_is_as_the_program_has_it():
         ("drive:\n  amplitud: 0.5 mm\n", "2:3: unknown key 'amplitud' - did you mean amplitude?"),
         ("drve:\n  amplitude: 0.5 mm\n", "1:1: unknown key 'drve' - did you mean drive?"),
         ("amplitude: 0.5 mm\n", "1:1: unknown key 'amplitude' - write amplitude below 'drive:'"),
-        ("drive.amplitude: 1 mm\n", "1:1: unknown key 'drive.amplitude' - write amplitude below 'drive:'"),
         ("drive:\n  gravity: 9 m/s2\n", "2:3: unknown key 'gravity' - write gravity without indent"),
-        ("drive:\n  static: 0.4\n", "2:3: unknown key 'static' - write static below 'friction:'"),
         ("drive:\n  frequency: 60\n", "2:14: drive.frequency: '60' has no unit - write 60 Hz"),
         (
             "drive:\n  vibration_angle: 20 mm\n",
@@ -112,27 +104,16 @@ def test_the_schema_beside_it_is_as_the_program_has_it():
             "2:11: friction.static: 'yes' is not a number - write digits with a decimal point, as in 0.4",
         ),
         (
-            "friction:\n  static: .nan\n",
-            "2:11: friction.static: '.nan' is not a number - write digits with a decimal point, as in 0.4",
-        ),
-        (
             "drive:\n  vibration_angle: 120 deg\n",
             "2:20: drive.vibration_angle: '120 deg' is out of range - give 0 deg to 90 deg",
         ),
         ("restitution: -0.1\n", "1:14: restitution: '-0.1' is out of range - give 0 to 0.95"),
         ("restitution: [0.1]\n", "1:14: restitution is a list - write one value, such as 0.2"),
-        ("restitution: {a: 1}\n", "1:14: restitution is a mapping - write one value, such as 0.2"),
         ("gravity:\n", "1:9: gravity has no value - write 9.81 m/s2"),
         ("drive: 60 Hz\n", "1:8: 'drive' is a section, not a value - indent its keys below 'drive:'"),
-        ("drive: [1]\n", "1:8: 'drive' is a section, not a value - indent its keys below 'drive:'"),
         (
             "friction:\n  static: 0.4\n  kinetic: 0.6\n",
             "3:12: friction.kinetic 0.6 is above friction.static 0.4 (bowl.yaml:2:11)"
-            " - lower the kinetic coefficient or raise the static one",
-        ),
-        (
-            "friction:\n  kinetic: 0.7\n",
-            "2:12: friction.kinetic 0.7 is above friction.static 0.6 (default)"
             " - lower the kinetic coefficient or raise the static one",
         ),
         (
@@ -145,7 +126,6 @@ def test_the_schema_beside_it_is_as_the_program_has_it():
          "frequency, vibration_angle, direction, phase, second_harmonic, second_harmonic_phase, "
          "second_harmonic_angle"),
         ("- 1\n- 2\n", "1:1: no 'key: value' line - start from 'feeder config init'"),
-        ("just words\n", "1:1: no 'key: value' line - start from 'feeder config init'"),
     ],
 )  # fmt: skip
 def test_a_fault_in_a_file(file, text, line):
@@ -242,10 +222,6 @@ def test_kinetic_above_static_down_the_track():
     ]
 
 
-def test_a_missing_file_is_one_line():
-    assert told("nowhere.yaml") == ["nowhere.yaml: no such file - check the path"]
-
-
 def test_a_sweep_takes_its_followers_along():
     swept = bowl.swept(
         bowl.settings(None, ["drive.amplitude=1 mm"]),
@@ -254,11 +230,6 @@ def test_a_sweep_takes_its_followers_along():
     assert swept.friction.wall.tolist() == [0.2, 0.4]
     assert swept.drive.amplitude.tolist() == [[0.5e-3], [1e-3]]
     assert swept.drive.frequency == 50.0
-
-
-def test_a_sweep_leaves_what_is_given_alone():
-    given = bowl.settings(None, ["friction.kinetic=0.1"])
-    assert bowl.swept(given, {"friction.static": np.array([0.2, 0.4])}).friction.kinetic == 0.1
 
 
 def test_ranges():
@@ -283,15 +254,7 @@ def test_ranges():
             "friction.static: begins where it ends - give two different values, or set the one",
         ),
         ("friction.static=0:1:1", "friction.static: '1' is not a count - give a whole number from 2 to 2000"),
-        (
-            "friction.static=0:1:1e9",
-            "friction.static: '1e9' is not a count - give a whole number from 2 to 2000",
-        ),
         ("friction.static=0:11:5", "friction.static: '11' is out of range - give 0 to 10"),
-        (
-            "drive.frequency=1 mm:2:3",
-            "drive.frequency: '1 mm' is a length, not a frequency - give it in Hz",
-        ),
     ],
 )
 def test_a_fault_in_a_range(text, line):

@@ -39,26 +39,11 @@ def test_a_ring_comes_back_as_it_was_written(drawing):
     np.testing.assert_allclose(ring, RING, rtol=1e-12, atol=1e-15)
 
 
-def test_a_group_value_of_minus_infinity_is_a_line(drawing):
-    """It was an OverflowError in the reader."""
-    lines = drawing.read_text().split("\n")
-    units = lines.index("$INSUNITS") + 2
-    lines[units] = "-inf"
-    _refused(drawing, "\n".join(lines).encode())
-
-
 def test_a_pointer_of_git_lfs_in_place_of_a_drawing_is_named(tmp_path):
     """It was said to be no DXF: saving it as one would not help."""
     (tmp_path / "hole.dxf").write_bytes(POINTER)
     with pytest.raises(ConfigError, match=r"^bowl.yaml:3: .*hole\.dxf is a pointer.* git LFS.*git lfs pull"):
         dxf.closed_polylines(tmp_path / "hole.dxf", "HOLE", "bowl.yaml:3")
-
-
-def test_a_bug_of_ours_is_not_told_as_a_damaged_drawing(drawing, monkeypatch):
-    """It was: 'cannot be read as DXF'."""
-    monkeypatch.delattr(dxf.math, "dist")
-    with pytest.raises(AttributeError):
-        dxf.closed_polylines(drawing, "HOLE", "bowl.yaml:3")
 
 
 @pytest.mark.parametrize("cut", [12, 300, 3000])

@@ -36,20 +36,20 @@ def weaker(bowl):
 @pytest.mark.parametrize("velocity", (0.0, 0.08, 0.14, 0.2))
 def test_a_leaf_spring_drive_is_fast_enough_at_any_friction(velocity):
     made = calm_drive.driven(plain(), velocity)
-    asked = max(velocity, calm_drive.LEAST)
+    asked = max(velocity, calm_drive.LEAST_VELOCITY_M_S)
     assert made.drive.phase == 0.0
     assert made.drive.frequency in (50.0, 100.0)
     assert 14.9 < np.degrees(made.drive.vibration_angle) < 30.1
     assert throw_number(made) <= 3.0 + 1e-3
     assert made.drive.amplitude <= greatest_amplitude(made)
     assert calm_drive.speed(made) >= asked > calm_drive.slowest(weaker(made))
-    assert calm_drive.slowest(made) >= calm_drive.STEADY * asked
+    assert calm_drive.slowest(made) >= calm_drive.LEAST_VELOCITY_KEPT * asked
 
 
 def test_a_drive_that_low_friction_slows_is_not_taken():
     """At 50 Hz, 25 deg and throw number 0.9 a point mass makes 27 mm/s; 10 mm/s at 0.6 of the friction."""
     made = calm_drive.driven(plain(), 0.025, hops=True)
-    assert calm_drive.slowest(made) >= calm_drive.STEADY * 0.025
+    assert calm_drive.slowest(made) >= calm_drive.LEAST_VELOCITY_KEPT * 0.025
     assert throw_number(made) > 1.0
 
 
@@ -70,13 +70,15 @@ def test_no_drive_of_a_lower_hop_is_fast_enough(velocity):
                 drive = replace(made.drive, frequency=frequency, vibration_angle=angle)
                 other = replace(made, drive=drive)
                 other = calm_drive.with_amplitude(other, drive.amplitude * throw / throw_number(other))
-                enough = min(calm_drive.speed(other), calm_drive.slowest(other) / calm_drive.STEADY)
+                enough = min(
+                    calm_drive.speed(other), calm_drive.slowest(other) / calm_drive.LEAST_VELOCITY_KEPT
+                )
                 assert enough < velocity or hop(other).height > 0.8 * hop(made).height
 
 
 def test_above_2_the_friction_hardly_matters_and_below_1_it_does():
     fast, slow = calm_drive.driven(plain(), 0.1), calm_drive.driven(plain(), 0.012, hops=True)
-    assert throw_number(fast) > 2.0 and throw_number(slow) <= calm_drive.CALM
+    assert throw_number(fast) > 2.0 and throw_number(slow) <= calm_drive.CALM_THROW_NUMBER
     assert calm_drive.velocity_kept(fast) > 0.9 and calm_drive.velocity_kept(slow) < 0.75
 
 
@@ -118,7 +120,7 @@ def test_two_magnets_only_where_they_are_asked_for():
     assert fast.drive.phase == 0.0  # leaf springs do it
     made = calm_drive.driven(plain(drive=calm_drive.TWO_AXIS), 0.1)
     assert np.degrees(made.drive.phase) == pytest.approx(-60.0)
-    assert throw_number(made) <= calm_drive.CALM + 1e-3
+    assert throw_number(made) <= calm_drive.CALM_THROW_NUMBER + 1e-3
     assert calm_drive.slowest(made) > 0.8 * calm_drive.speed(made)
     kept = calm_drive.driven(given_bowl("drive.phase=-60 deg"), 0.1)
     assert np.degrees(kept.drive.phase) == pytest.approx(-60.0)
@@ -143,8 +145,8 @@ def test_where_none_is_fast_enough_the_fastest_is_taken(drive):
 
 def test_without_tooling_a_part_may_creep():
     calm, through = (calm_drive.driven(plain(), 0.01, hops=hops) for hops in (True, False))
-    assert throw_number(calm) <= calm_drive.CALM
-    assert calm_drive.speed(through) >= calm_drive.LEAST
+    assert throw_number(calm) <= calm_drive.CALM_THROW_NUMBER
+    assert calm_drive.speed(through) >= calm_drive.LEAST_VELOCITY_M_S
 
 
 def test_a_calmer_drive_hops_half_as_high_until_it_does_not_hop():
@@ -160,8 +162,8 @@ def test_a_two_axis_drive_is_calmed_by_its_speed():
     made = plain(drive=calm_drive.TWO_AXIS)
     first = calm_drive.driven(made, 0.14)
     second = calm_drive.calmer(made, first)
-    assert throw_number(second) <= calm_drive.CALM + 1e-3
-    assert calm_drive.LEAST <= calm_drive.speed(second) < 0.75 * calm_drive.speed(first)
+    assert throw_number(second) <= calm_drive.CALM_THROW_NUMBER + 1e-3
+    assert calm_drive.LEAST_VELOCITY_M_S <= calm_drive.speed(second) < 0.75 * calm_drive.speed(first)
 
 
 def test_another_kind_of_drive_is_refused():

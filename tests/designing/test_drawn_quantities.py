@@ -187,7 +187,7 @@ def test_each_draw_tries_the_wanted_orientation_and_others_by_their_shares(block
     rng, seen = np.random.default_rng(5), np.zeros(count)
     for _ in range(2000):
         rows = robust.drawn_rows(ways, shares, np.array([2]), rng)
-        assert rows[0] == 2 and len(rows) == len(set(rows)) <= 1 + robust.OTHERS
+        assert rows[0] == 2 and len(rows) == len(set(rows)) <= 1 + robust.OTHERS_DRAWN
         seen[rows] += 1
     absent = (1.0 - shares) ** 3  # of three parts as they come
     expected = np.where(np.arange(count) == 2, 1.0, 1.0 - absent)

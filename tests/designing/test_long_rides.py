@@ -11,6 +11,9 @@ from feederscrew.designing import long_rides, loop, queues
 from feederscrew.designing.record import DesignRequest, RobustRun
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import designs
+from feederscrew.resting.aspects import find
+from feederscrew.studies.rate import Shares
+from feederscrew.trial import long_ride as long_ride_of_trial
 from feederscrew.trial.long_ride import LEFT, RideOfTrack
 
 NAMES = ("A@0", "A@180", "B@0")
@@ -89,8 +92,9 @@ def test_those_that_turn_ride_again(monkeypatch):
 
 def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypatch):
     """Apart parts come as the ride has made them, touching as they entered; draws are half of each."""
-    monkeypatch.setattr(queues, "PARTS", 3)
-    monkeypatch.setattr(queues, "SECONDS", 1.0)
+    monkeypatch.setattr(queues, "TOUCHING_PARTS", 3)
+    monkeypatch.setattr(queues, "FILL_SECONDS", 1.0)
+    monkeypatch.setattr(long_ride_of_trial, "RIDE_M", 0.05)
     cube, seen = shapes.part(shapes.box(10, 10, 10)), []
     first = long_rides.long_ride
 
@@ -111,7 +115,9 @@ def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypat
     monkeypatch.setattr(loop, "robust_run", robust_run)
     monkeypatch.setattr(loop, "long_ride", ride)
     monkeypatch.setattr(queues, "filled", filled)
-    found = loop.design(cube, bowls.default(), frozenset(), DesignRequest(0.5, draws=1), with_nearest=False)
+    request = DesignRequest(0.5, draws=1, rule="csa")
+    shares = Shares(find(cube))
+    found = loop.design(cube, bowls.default(), frozenset(), request, shares=shares, with_nearest=False)
     ride = found.long_ride
     assert ride is not None and seen and drawn
     assert all(
@@ -120,4 +126,4 @@ def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypat
     )
     assert all(shares == pytest.approx(0.5 * (ride.arriving + ride.entering)) for shares in drawn)
     (row,) = designs.document(found)["long_ride"][:1]
-    assert row["parts"] >= long_rides.EACH and row["stays"] + row["left"] <= row["parts"]
+    assert row["parts"] >= long_rides.RIDING_PARTS and row["stays"] + row["left"] <= row["parts"]

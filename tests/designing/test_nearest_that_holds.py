@@ -31,7 +31,7 @@ BOWL = bowls.default()
 
 def queue(fill="normal", right=45, left=45, returned=5, jams=0, instead=()):
     return FilledQueue(
-        fill, 0.2, 12, queues.SECONDS, 60.0, float(left), right, left, returned, jams, 0, False, instead
+        fill, 0.2, 12, queues.FILL_SECONDS, 60.0, float(left), right, left, returned, jams, 0, False, instead
     )
 
 

@@ -27,7 +27,8 @@ def seen(leaving, lying):
     assert whole.sum(axis=1).tolist() == list(leaving)
     return QueuedParts(
         parts=12, on_track=9, poured=False, seconds=60.0, counted=50.0, delivered=float(sum(leaving)),
-        whole=whole, returned=3, jams=0, climbs=0, velocity=0.05,
+        whole=whole, left_by_entry=whole[None], returned_by_entry=np.array([3]), returned=3,
+        jams=0, climbs=0, velocity=0.05,
         gap=0.01, touching=0.2, pressure=np.zeros(0), depth=0.0, partial=False,
     )  # fmt: skip
 

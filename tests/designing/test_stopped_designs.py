@@ -8,20 +8,25 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import families, loop, proposals, queues, short_trials
+from feederscrew.designing import exploring, families, loop, proposals, queues, short_trials
 from feederscrew.designing.record import DesignRequest
 from feederscrew.designing.robust import robust_run
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
+from feederscrew.studies.rate import Shares
+from feederscrew.trial import long_ride
 
 CUBE = shapes.part(shapes.box(10, 10, 10))
-REQUEST = DesignRequest(40.0 / 60.0, draws=2)
+REQUEST = DesignRequest(40.0 / 60.0, draws=2, rule="csa")
+SHARES = Shares(find(CUBE))
 
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch):
-    monkeypatch.setattr(queues, "PARTS", 3)
-    monkeypatch.setattr(queues, "SECONDS", 1.0)
+    monkeypatch.setattr(queues, "TOUCHING_PARTS", 3)
+    monkeypatch.setattr(queues, "FILL_SECONDS", 1.0)
+    monkeypatch.setattr(long_ride, "RIDE_M", 0.05)
+    monkeypatch.setattr(exploring, "arriving", lambda *_: SHARES)
 
 
 def stopping(word):

@@ -208,7 +208,7 @@ def test_thick_coins_flipped_by_hand(thick, measured):
     part = shapes.part(shapes.cylinder(10.0, 20.0 * thick, 96))
     aspects = find(part)
     found = drop_test.test(
-        part, aspects, "flip", dict.fromkeys(launch_conditions.CONDITION_KEYS), drops=2000, run=RunSettings(5)
+        part, aspects, "flip", dict.fromkeys(launch_conditions.CONDITION_KEYS), drops=4000, run=RunSettings(5)
     )
     edge = found.tally.p[np.abs(aspects.heights - 0.01) < 1e-4].sum()
     assert edge == pytest.approx(measured, abs=0.03)

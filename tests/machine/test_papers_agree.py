@@ -44,6 +44,8 @@ def papers(tmp_path_factory):
     offered = {one.name: one for one in design_pages.offers(study, (), built)}
     (path.parent / "design.yaml").write_text(offered["design.yaml"].make())
     return {
+        "page": offered["design.html"].make(),
+        "files": set(offered),
         "study": study,
         "built": built,
         "design": json.loads(offered["design.json"].make()),
@@ -221,3 +223,14 @@ def test_the_title_block_has_orientation_and_rate_of_the_trial(papers):
     assert "all that pass" not in drawn and "FALLS SHORT" not in drawn
     short = drawn_words(papers["built"].drawn, replace(tried, status="falls short"))
     assert "FALLS SHORT - not for manufacture" in short
+
+
+def test_the_page_shows_the_springs_and_leads_to_each_file_to_build_from(papers):
+    """The links lead to files that lie beside the page; the springs are those of the bowl's own sheet."""
+    page = papers["page"]
+    links = re.findall(r'<td><a href="([^"]+)">', page)
+    assert {"bowl.pdf", "bowl.dxf", "bowl.stl", "design.yaml"} <= set(links) <= papers["files"]
+    springs = page.partition('id="springs"')[2].partition("</section>")[0]
+    for quantity in ("springs", "leaves", "vibration angle [deg]"):
+        assert f"<td>{papers['sheet'][quantity]}</td>" in springs
+    assert 'id="bowl.png"' in springs

@@ -56,22 +56,6 @@ def test_example_of_a_climbing_track():
     assert least_forward_angle(friction, climb) / DEG == pytest.approx(4.68, abs=5e-3)
 
 
-def test_limits_of_the_track_by_their_table():
-    ratio, b, c = 0.7, 25 * DEG, 4 * DEG
-    forward = (ratio * np.cos(b) - np.sin(c)) / (np.cos(c) - ratio * np.sin(b))
-    backward = (ratio * np.cos(b) + np.sin(c)) / (np.cos(c) + ratio * np.sin(b))
-    assert limits.forward_limit(ratio, b, climb=c) == pytest.approx(forward, rel=1e-14)
-    assert limits.backward_limit(ratio, b, climb=c) == pytest.approx(backward, rel=1e-14)
-
-
-@pytest.mark.parametrize("friction", [0.1, 0.4, 0.9])
-def test_onset_by_friction_angles(friction):
-    b, c, p = 25 * DEG, 4 * DEG, np.arctan(friction)
-    forward, backward = np.sin(c + p) / np.cos(b - p), np.sin(p - c) / np.cos(b + p)
-    assert limits.forward_ratio(friction, b, climb=c) == pytest.approx(forward, rel=1e-13)
-    assert limits.backward_ratio(friction, b, climb=c) == pytest.approx(backward, rel=1e-13)
-
-
 def test_no_backward_slip_before_the_hop_on_a_steep_drive():
     assert limits.backward_ratio(1.2, 50 * DEG, climb=3 * DEG) == np.inf
     assert limits.forward_ratio(1.2, 50 * DEG, climb=3 * DEG) < limits.hop_ratio(50 * DEG, 3 * DEG)
@@ -163,12 +147,6 @@ def test_the_least_forward_angle_parts_which_slip_comes_first(friction, climb, b
         assert (forward < backward) == (beta > least)
     elif np.tan(beta) * np.tan(climb) > 1.001:
         assert forward == np.inf
-
-
-def test_arrays_broadcast():
-    ratio, beta = np.linspace(0.0, 3.0, 7)[:, None], np.linspace(0.0, 1.5, 5)[None, :]
-    assert limits.forward_limit(ratio, beta).shape == (7, 5)
-    assert limits.regimes(ratio, beta, 0.4, climb=0.05).shape == (7, 5)
 
 
 @pytest.mark.parametrize(

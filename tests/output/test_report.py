@@ -16,9 +16,8 @@ from feederscrew.output.page import blocks, numbers
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.report import cutting, page
-from feederscrew.output.report.chapters import CHAPTERS
-from feederscrew.output.report.files import BESIDE
-from feederscrew.output.report.scene import scene
+from feederscrew.output.report.chapters import BESIDE, CHAPTERS
+from feederscrew.output.report.resting import scene
 from feederscrew.output.shading import reduced_mesh
 from feederscrew.part import load
 from feederscrew.resting import aspects

@@ -36,10 +36,6 @@ def chain(tmp_path, text):
     return bowls.read(path).devices
 
 
-def test_range_multiplies_ends():
-    assert Range(2.0, 1.0, 3.0) * Range(5.0, 4.0, 6.0) * 2.0 == Range(20.0, 8.0, 36.0)
-
-
 def test_probabilities_of_all_orientations_sum_to_one():
     _, _, known = stream(shapes.prism(LSHAPE, 15))
     for chances in known.rules.values():
@@ -57,12 +53,6 @@ def test_headings_equal_under_a_turn_are_one():
     # an L on its back does not map to itself by half a turn
     _, _, bracket = stream(shapes.prism(LSHAPE, 15))
     assert bracket.aspects.count("A") > 2
-
-
-def test_a_square_prism_has_one_heading_on_its_end():
-    _, found, known = stream(shapes.box(10, 10, 30))
-    end = found.names[int(np.argmax(found.heights))]
-    assert known.aspects.count(end) == 1
 
 
 def test_rate_is_the_product_of_its_chain():
@@ -215,10 +205,6 @@ def test_what_never_leaves_the_bowl(tmp_path):
     assert np.isnan(made.purity)
     with pytest.raises(FeederError, match="never leaves the bowl - see the devices"):
         well_oriented.parts_per_metre(known, target, "pmi")
-
-
-def test_no_devices():
-    assert bowls.read(None).devices == ()
 
 
 @pytest.mark.parametrize(

@@ -107,10 +107,6 @@ def test_the_balance_of_a_square_cuboid_is_the_ratio_of_barriers():
     assert shares[0] / shares[2] == pytest.approx((top - 0.3) / (top - 0.5))
 
 
-def test_a_cube_has_no_preference():
-    assert balance(box_tipping((1, 1, 1))) == pytest.approx(np.full(6, 1 / 6))
-
-
 def test_an_unnamed_sink_joins_the_face_behind_its_lowest_saddle():
     hull = convex_hull(CUBE * (1.0, 2.0, 3.0), np.array((0.01, 0.0, 0.0)))
     labels = sides_of(hull)

@@ -101,11 +101,6 @@ def test_a_finer_ladder_changes_little(monkeypatch):
     assert hop_shares(body.tips, body.hull.radius) == pytest.approx(coarse, abs=1e-3)
 
 
-def test_a_cube_is_fair():
-    body = find(shapes.part(shapes.box(10.0, 10.0, 10.0))).ground
-    assert hop_shares(body.tips, body.hull.radius) == pytest.approx(np.full(6, 1 / 6), rel=1e-9)
-
-
 def test_a_radius_is_needed():
     with pytest.raises(ValueError, match="radius"):
         hop_shares(CHAIN, 0.0)

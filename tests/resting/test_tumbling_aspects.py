@@ -139,11 +139,6 @@ def test_turning_moving_scaling_and_shuffling_change_nothing(body, scale):
     assert_alike(everything(mesh), everything(moved), scale)
 
 
-@pytest.mark.parametrize("body", BODIES)
-def test_cutting_the_surface_finer_changes_nothing(body):
-    assert_alike(everything(BODIES[body]), everything(shapes.subdivided(BODIES[body], 2)), 1.0)
-
-
 def test_a_heavy_bottom_takes_the_sides_that_a_micrometre_holds():
     """Sides with the foot 0.1 mm from their edge have a barrier of 1 um: the part rolls off them."""
     part = shapes.part(shapes.box(10.0, 10.0, 10.0))

@@ -13,21 +13,12 @@ from screw_samples import (
     moved,
     near,
     points,
-    random_screws,
     same,
     screws,
     vectors,
 )
 
 from feederscrew.screw import ORIGIN, Dual, Momentum, Point, Screw, Twist, Wrench
-
-
-def test_velocity_and_moment_about_another_point():
-    """By hand: v + w x r, m + f x r."""
-    wheel = Twist((0, 0, 2), (0, 0, 0), Point("hub", (1, 0, 0)))
-    np.testing.assert_array_equal(wheel.at(Point("rim", (1, 3, 0))).velocity, [-6, 0, 0])
-    lift = Wrench((0, 0, 5), (0, 0, 0), Point("A", (2, 0, 0)))
-    np.testing.assert_array_equal(lift.at(ORIGIN).moment, [0, -10, 0])
 
 
 @few
@@ -115,13 +106,6 @@ def test_dual_cross_product(a, b, c, displacement):
     near(cross.moment, wanted.moment, scale)
 
 
-def test_cross_product_of_crossing_lines_is_their_common_normal():
-    normal = Screw.on_axis((0, 0, 1), (1, 0, 0)).cross(Screw.on_axis((0, 0, 4), (0, 1, 0)))
-    np.testing.assert_allclose(normal.axis.direction, [0, 0, 1], atol=1e-15)
-    np.testing.assert_allclose(normal.axis.foot, [0, 0, 0], atol=1e-15)
-    assert (normal.pitch, normal.magnitude) == pytest.approx((0.0, 1.0), abs=1e-15)
-
-
 def test_kinds():
     """They do not mix; only a twist carries a momentum into a wrench."""
     twist, momentum, wrench = (kind((1, 2, 3), (4, 5, 6)) for kind in (Twist, Momentum, Wrench))
@@ -134,15 +118,6 @@ def test_kinds():
         twist - wrench
     with pytest.raises(ValueError, match=r"^two screws have three products"):
         twist * wrench
-
-
-def test_power_is_the_sum_over_the_points_of_force_times_velocity():
-    rng = np.random.default_rng(1)
-    force, place = rng.normal(size=(2, 8, 3))
-    twist = random_screws(rng, Twist)
-    total = Wrench.on_axis(place, force, np.linalg.norm(force, axis=-1)).sum()
-    velocity = twist.velocity + np.cross(twist.angular_velocity, place - twist.reference.coordinates)
-    near(twist.reciprocal(total), (force * velocity).sum())
 
 
 def test_batches():

@@ -10,7 +10,6 @@ from scipy.spatial import cKDTree
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
-from feederscrew.bowl.schema import BY_NAME
 from feederscrew.bowl.settings import effective, record
 from feederscrew.errors import FeederError
 from feederscrew.machine.drive_sizing import machine_for
@@ -303,12 +302,6 @@ def test_a_part_that_hangs_stays_where_its_rails_hold_it():
     assert middle[2] - foot[2] == pytest.approx(-4e-3, abs=2e-5)
 
 
-def test_the_same_bytes_twice():
-    one, other = (body(planned(CHAINS["narrowed and rails"])) for _ in range(2))
-    assert solid_files.bowl_stl(one) == solid_files.bowl_stl(other)
-    assert solid_files.bowl_3mf(one, "a & b") == solid_files.bowl_3mf(other, "a & b")
-
-
 def test_gates_are_parts_of_their_own():
     solid = body(planned(CHAINS["gate"]))
     assert [name for name, _, _ in solid.gates] == ["gate_1"]
@@ -453,10 +446,6 @@ def test_a_turn_below_a_cut_is_found():
     longer = replace(made, path=replace(made.path, end=made.path.end + 0.3), first=made.first + 0.3)
     with pytest.raises(FeederError, match="meets the track at"):
         ways_down(body(longer))
-
-
-def test_every_default_of_the_schema_is_read():
-    assert BY_NAME["sizing.sheet"].default == f"{1e3 * material('steel', RULES).wall:g} mm"
 
 
 def test_a_track_that_was_shortened_says_so():

@@ -25,7 +25,6 @@ from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.devices.pneumatics import thrust
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.verdicts import verdict
-from feederscrew.units import GRAVITY
 
 BOWL = """\
 drive: {{amplitude: 0.21 mm, frequency: {frequency} Hz, vibration_angle: 25 deg}}
@@ -96,18 +95,7 @@ COMMANDS = {
     "track": ["track", "box.stl"],
     "headings": ["headings", "box.stl"],
     "rate": ["rate", "box.stl", "--aspect", "A", "--rule", "quasistatic"],
-    "tune": ["tune", "box.stl", "--aspect", "A", "--rule", "quasistatic"],
-    "tooling": [
-        "tooling",
-        "box.stl",
-        "--aspect",
-        "A",
-        "--rule",
-        "quasistatic",
-        "--static",
-        "--without",
-        "sorter",
-    ],
+    "tooling": "tooling box.stl --aspect A --rule quasistatic --static --without sorter".split(),
     "bowl": ["bowl", "box.stl", "--rule", "quasistatic"],
     "drop": ["drop", "box.stl", "--plate", "--drops", "4"],
 }
@@ -121,7 +109,6 @@ def test_what_a_command_says_scales_with_gravity(run, name):
         Path(f"{k}.yaml").write_text(text)
         own = {
             "drop": ["--seconds", (0.2, 0.1)[k]],
-            "tune": ["--target", f"{(20, 40)[k]}/min"],
             "bowl": ["--target", f"{(20, 40)[k]}/min"],
         }.get(name, [])
         done = run(*COMMANDS[name], *own, "--config", f"{k}.yaml", "--format", "json", "--quiet")
@@ -218,9 +205,3 @@ def test_the_force_to_clear_is_that_of_the_bowls_gravity(gravity):
         weight = one.posture.mass * gravity
         least = min(one.grip * weight, weight * one.foot_reach / height)
         assert verdicts.force_to_clear(still, 1.0, height) == pytest.approx(least, rel=1e-6)
-
-
-def test_what_is_only_placed_has_the_standard_gravity():
-    part = shapes.part(shapes.box(20, 12, 5))
-    every = orientations(part, find(part), bowls.read(None, []).track)
-    assert {one.gravity for one in every} == {GRAVITY}

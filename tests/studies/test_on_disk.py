@@ -64,17 +64,6 @@ def test_other_code_does_not_find_it(runs, monkeypatch):
     assert runs()[1] == 2
 
 
-@pytest.mark.parametrize("damaged", [lambda told: told[:-3], lambda told: told[:-1] + b"?", lambda told: b""])
-def test_a_damaged_file_is_made_again(runs, damaged):
-    first, _ = runs()
-    (file,) = runs.folder.iterdir()
-    file.write_bytes(damaged(file.read_bytes()))
-    found, count = runs()
-    assert count == 2
-    np.testing.assert_array_equal(first.recommended.p, found.recommended.p)
-    assert runs()[1] == 2
-
-
 def test_without_a_place_to_write_all_goes_on(runs, monkeypatch, tmp_path):
     (tmp_path / "file").write_text("")
     for place in ("", str(tmp_path / "file" / "below")):

@@ -97,22 +97,6 @@ def test_erratum_floor_moment_is_projected_on_fixed_axes(printed_card):
     assert np.abs(printed - total)[1:].min() > 1e-5
 
 
-def test_erratum_4_43_prints_alpha_plus_theta():
-    """Eqs. [4.43], [4.46]: cos a cos t - sin a sin t is cos(a + t); the body axis needs cos(a - t)."""
-    alpha, theta = 0.5, 0.2
-    printed = np.cos(alpha) * np.cos(theta) - np.sin(alpha) * np.sin(theta)
-    assert printed == pytest.approx(np.cos(alpha + theta))
-    assert abs(printed - np.cos(alpha - theta)) > 0.1
-
-
-def test_alignment_coefficients_4_23_and_4_53(printed_card):
-    """Eqs. [4.23], [4.53]: 0.033 = 3.15 / 95.32 and 0.0037 = 2.82 / 755.91, per g and mm."""
-    name, card = printed_card
-    coefficient = card.offset / card.turning_inertia * 1e-6  # [1/(g mm)]
-    digits = {"arc_chute": ("0.033", 3), "magnet": ("0.0037", 4)}[name]
-    assert f"{coefficient:.{digits[1]}f}" == digits[0]
-
-
 def test_published_floor_on_the_card(printed_card):
     """By hand, of the Arc Chute: eqs. [4.14] to [4.18], eqs. [4.20] to [4.23], eqs. [4.25] to [4.27].
 
@@ -235,53 +219,6 @@ def test_no_radial_friction_at_the_printed_bank(name, bank):
     lever = levers_of_card(name, posture(part, find(part), ASPECTS[name]))
     printed = solve_track(lever, bowl(bank=bank * DEG), 0.0)
     assert abs(printed.radial_friction) < 1e-12 * lever.mass * 9.81
-
-
-def test_erratum_the_remark_on_r3_prints_64_44():
-    part = load(PARTS / "arc_chute.yaml")
-    lever = levers_of_card("arc_chute", posture(part, find(part), "5"))
-    assert abs(solve_track(lever, bowl(bank=64.44 * DEG), 0.0).radial_friction) > 1e-6
-    assert np.degrees(lever.wall_angle) == pytest.approx(64.22)
-
-
-def test_erratum_4_36_loses_a_term_of_4_29():
-    """Eq. [4.36] is [4.29] with sin(delta) for cos(delta) in one term, and without the last one."""
-    delta, beta, turn, e, h = 0.3, 0.4, 0.2, 3.15, 3.31
-    full = e * np.sin(beta) * np.cos(delta) + h * np.cos(beta) * np.cos(turn) * np.cos(delta)
-    full -= e * np.cos(beta) * np.sin(turn) * np.sin(delta)  # [4.29]
-    printed = e * np.sin(beta) * np.cos(delta) + h * np.cos(beta) * np.cos(turn) * np.sin(delta)  # [4.36]
-    lost = h * np.cos(beta) * np.cos(turn) * (np.cos(delta) - np.sin(delta))
-    assert full - printed == pytest.approx(lost - e * np.cos(beta) * np.sin(turn) * np.sin(delta))
-    assert abs(full - printed) > 1.0
-
-
-def test_erratum_wall_friction_is_not_along_x():
-    """Eqs. [4.32], [4.57]: each wall's tangent is turned by sigma and its friction has a radial part."""
-    part = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0)
-    courses = frame(bowl(climb=0.0, bank=0.0), part.walls).courses
-    assert courses[:, 0] == pytest.approx([np.cos(np.arcsin(0.1))] * 2)
-    assert courses[:, 1] == pytest.approx([-0.1, 0.1])
-
-
-def test_erratum_4_13_prints_the_moment_of_r_y_with_the_other_sign():
-    """Eq. [4.13]: -3.31 R_y there, +3.31 R_y in eq. [4.19]: the wrench sum has the latter."""
-    total = floor_wrench(3.31, 0.0, 0.0, 0.0, 0.0, 0.0, [1.0, 0.0], 0.0, 0.0)
-    assert total.moment[2] == pytest.approx(3.31)
-
-
-def test_erratum_the_arc_chute_has_two_side_levers():
-    """4.05 mm with the reactions, 4.01 mm with their friction; and 3.48 mm by the polar lever."""
-    part = load(PARTS / "arc_chute.yaml")
-    lever = levers_of_card("arc_chute", posture(part, find(part), "5"))
-    assert (lever.side, lever.friction_side) == pytest.approx((4.05e-3, 4.01e-3))
-    assert lever.wall * np.cos(lever.wall_angle) == pytest.approx(3.484e-3, abs=1e-6)
-
-
-def test_printed_reactions_may_pull(printed_card):
-    """The print assumes contact: at the upper reversal its wall pulls, the complete equations open it."""
-    name, card = printed_card
-    printed = solve_track(levers_of_card(name, card), bowl(bank=0.0, direction=10 * DEG), 0.0)
-    assert printed.walls.sum() < 0.0
 
 
 def test_at_rest_the_printed_part_does_not_accelerate(printed_card):

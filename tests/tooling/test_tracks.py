@@ -53,8 +53,6 @@ def test_a_dowel_leaves_out_of_the_groove_in_which_what_lies_across_turns():
     assert found[55.0] == pytest.approx(
         shares.sum() - shares[[one.returned for one in every]].sum(), abs=8e-3
     )
-    none = tooling(dowel, BOWL, "A", heading=0.0, rule="csa", verdicts=1, without="groove").design
-    assert none.efficiency == level.design.efficiency
 
 
 def test_a_track_gives_more_that_isolates_or_is_purer_or_brings_more():

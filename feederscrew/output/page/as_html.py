@@ -4,6 +4,7 @@ import base64
 import csv
 import io
 import json
+import re
 import struct
 from collections.abc import Iterator
 from html import escape as html_escape
@@ -26,6 +27,7 @@ UNEVEN = 1.5  # times the height of a column: the other is so high that its tabl
 PAIRS = 8  # rows from which a table of two columns that stands alone is set in two halves
 ALONE = 1.4  # times the size of a picture that has the whole width
 TALL = 1.5  # times its width: the height from which a picture has a page of paper to itself
+SCREEN = 360  # [px] of a telephone: a broader picture scrolls there, and says so
 BROAD = 1000  # [px] width from which a picture that is high as well takes half a page of paper
 LINE, HEADING = 29, 70  # [px] about the height of a row of a table, and of its head
 SCRIPTS = ("three.js", "viewer.js")
@@ -43,6 +45,7 @@ PLAYER = (
     "<output>0.00 s</output></span>"
 )
 LICENCE = "three.LICENSE.txt"
+SVG_SIZE = re.compile(rb'width="([\d.]+)pt" height="([\d.]+)pt"')
 
 
 def html(page) -> str:
@@ -56,11 +59,11 @@ def html(page) -> str:
     -------
     str
     """
-    every = [block for section in page.sections for block in section.blocks]
-    views = any(isinstance(block, kinds.Views) for block in every)
-    sortable = any(isinstance(block, kinds.Matrix) and block.sortable for block in every)
-    knobs = any(isinstance(block, kinds.Knobs) for block in every)
-    rows = (row for block in every if isinstance(block, kinds.Matrix) for row in block.rows)
+    all_blocks = [block for section in page.sections for block in section.blocks]
+    views = any(isinstance(block, kinds.Views) for block in all_blocks)
+    sortable = any(isinstance(block, kinds.Matrix) and block.sortable for block in all_blocks)
+    knobs = any(isinstance(block, kinds.Knobs) for block in all_blocks)
+    rows = (row for block in all_blocks if isinstance(block, kinds.Matrix) for row in block.rows)
     linked = any(entry.picture and entry.picture.link for row in rows for entry in row)
     policy = POLICY + LINKED_PICTURES * linked
     return "\n".join(
@@ -115,13 +118,13 @@ def _head(page) -> str:
 
 
 def _section(section) -> str:
-    body = "\n".join(_run(*run) for run in groupby(section.blocks, _beside))
+    body = "\n".join(_run(*run) for run in groupby(section.blocks, _may_share_row))
     anchor = f' id="{section.anchor}"' if section.anchor else ""
     title = f"<h2>{escape(section.title)}</h2>\n" if section.title else ""
     return f"<section{anchor}>\n{title}{body}\n</section>"
 
 
-def _beside(block):
+def _may_share_row(block):
     """Whether a block may stand beside another in a wide window: a picture or a small table."""
     if isinstance(block, kinds.Table):
         return len(block.frame) <= NARROW
@@ -131,15 +134,15 @@ def _beside(block):
     return width <= HALF and height <= TALL * width
 
 
-def _run(beside, blocks) -> str:
+def _run(in_columns, blocks) -> str:
     """Blocks that follow each other, in two columns of about the same height if they may be."""
     blocks = list(blocks)
-    if not beside or len(blocks) == 1:
+    if not in_columns or len(blocks) == 1:
         return "\n".join(map(_block, blocks))
     heights = [_height(block) for block in blocks]
     first = min(range(1, len(blocks)), key=lambda k: max(sum(heights[:k]), sum(heights[k:])))
     if _pairs(blocks[0]) and len(blocks) > 2 and sum(heights[first:]) > UNEVEN * sum(heights[:first]):
-        return f"{_block(blocks[0])}\n{_run(beside, blocks[1:])}"
+        return f"{_block(blocks[0])}\n{_run(in_columns, blocks[1:])}"
     halves = ("\n".join(map(_in_column, half)) for half in (blocks[:first], blocks[first:]))
     return '<div class="beside">\n' + "\n".join(f"<div>\n{half}\n</div>" for half in halves) + "\n</div>"
 
@@ -188,15 +191,25 @@ def _picture(picture, scale=1.0) -> str:
     """The picture at its own size or smaller; one that stands alone is larger."""
     width, height = (round(scale * pixels) for pixels in _size(picture))
     kind = "stand-in" if picture.printed else "plain"
+    kind += " scrolls" if width > SCREEN else ""
     kind += " tall" if height > TALL * width else " broad" if width > BROAD and height > 0.7 * width else ""
     return (
-        f'<figure id="{picture.file}" class="{kind}"><img src="{_data("image/png", picture.content)}" '
+        f'<figure id="{picture.file}" class="{kind}"><img src="{_data(_kind(picture), picture.content)}" '
         f'width="{width}" height="{height}" style="--own: {width}px" alt="{escape(picture.alt)}"></figure>'
     )
 
 
+def _kind(picture) -> str:
+    return "image/svg+xml" if picture.file.endswith(".svg") else "image/png"
+
+
 def _size(picture) -> list[Any]:
     """Width and height of a picture at its own size [px of a page]."""
+    if picture.file.endswith(".svg"):
+        size = SVG_SIZE.search(picture.content)
+        if size is None:
+            raise ValueError(f"{picture.file} says no size in points")
+        return [float(points) * CSS_DPI / 72 for points in size.groups()]
     return [pixels * CSS_DPI / DPI for pixels in struct.unpack(">2I", picture.content[16:24])]
 
 
@@ -312,10 +325,10 @@ FOLLOWING = (  # what the script shows: its name, what a reader calls it
 
 def _knobs(block) -> str:
     sliders = "\n".join(
-        f'<label><span>{escape(one.label)}</span><input type="range" name="{one.name}" min="{one.low:g}" '
-        f'max="{one.high:g}" step="any" value="{one.own:.10g}" data-own="{one.own:.10g}" '
-        f'data-unit="{escape(one.unit)}"><output></output></label>'
-        for one in block.knobs
+        f'<label><span>{escape(knob.label)}</span><input type="range" name="{knob.name}" min="{knob.low:g}" '
+        f'max="{knob.high:g}" step="any" value="{knob.own:.10g}" data-own="{knob.own:.10g}" '
+        f'data-unit="{escape(knob.unit)}"><output></output></label>'
+        for knob in block.knobs
     )
     tiles = "\n".join(
         f'<div class="tile"><span>{label}</span><strong data-shows="{name}"></strong></div>'
@@ -331,9 +344,8 @@ def _knobs(block) -> str:
         f'<div class="knobs" hidden>\n<div class="tiles">\n{tiles}\n</div>\n<div class="turned">\n'
         f'<div class="sliders">\n{sliders}\n<button type="button">as in the bowl file</button>\n</div>\n'
         f'<figure><canvas width="720" height="440" role="img" aria-label="Regimes over vibration angle and '
-        f'amplitude, with the operating point"></canvas>\n<figcaption>vibration angle 2 to 60 deg across, '
-        f"amplitude 0 to {block.values['top']:.3g} mm up; a click sets both\n"
-        f'<div class="keys">\n{keys}\n</div></figcaption></figure>\n</div>\n'
+        f'amplitude, with the operating point"></canvas>\n<figcaption>vibration angle across, amplitude '
+        f'up; a click sets both\n<div class="keys">\n{keys}\n</div></figcaption></figure>\n</div>\n'
         f'<script type="application/json" class="knob-values">{values}</script>\n</div>'
     )
 

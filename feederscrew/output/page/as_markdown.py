@@ -6,13 +6,13 @@ from feederscrew.output.page.numbers import cells
 ITALIC = "given"  # the mark of a cell that was not computed
 
 
-def markdown(page, beside="") -> str:
+def markdown(page, folder="") -> str:
     """Write a page as Markdown, without 3-D.
 
     Parameters
     ----------
     page : Page
-    beside : str
+    folder : str
         Folder of the pictures and tables, beside the text: 'report/', or '' for the same folder.
 
     Returns
@@ -26,11 +26,11 @@ def markdown(page, beside="") -> str:
         parts += ["**To watch**", "\n".join(warnings)]
     for section in page.sections:
         title = f"## {section.title}" if section.title else ""
-        parts += [title, *(_block(block, beside) for block in section.blocks)]
+        parts += [title, *(_block(block, folder) for block in section.blocks)]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def _block(block, beside):
+def _block(block, folder):
     match block:
         case kinds.Text(text):
             return _plain(text)
@@ -41,9 +41,9 @@ def _block(block, beside):
         case kinds.Table(frame):
             return _table(frame)
         case kinds.CsvSheet(file):
-            return f"[{file}]({beside}{file})"
+            return f"[{file}]({folder}{file})"
         case kinds.Picture(file=file, alt=alt):
-            return f"![{alt}]({beside}{file})"
+            return f"![{alt}]({folder}{file})"
         case kinds.Views() | kinds.Knobs():
             return ""
         case kinds.Heading(text, anchor):

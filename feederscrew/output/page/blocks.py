@@ -45,12 +45,12 @@ class CsvSheet:
 
     file: str
     csv: str
-    shown: bool = True
+    on_page: bool = True
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A PNG; ``printed`` for one that stands in for the 3-D views on paper."""
+    """A PNG, or an SVG sized in points; ``printed`` for one that stands in for the 3-D views on paper."""
 
     file: str
     content: bytes

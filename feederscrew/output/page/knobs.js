@@ -355,13 +355,20 @@ const conveying = (() => {
 
   function drawMap(block, data, bowl, typed) {
     const canvas = block.querySelector("canvas"), pen = canvas.getContext("2d"), top = data.top;
-    const wide = canvas.width, high = canvas.height, columns = 90, rows = 60;
+    const wide = canvas.width, high = canvas.height, columns = 144, rows = 88;
     for (let i = 0; i < columns; i++)
       for (let j = 0; j < rows; j++) {
         const angle = (ANGLES[0] + ((ANGLES[1] - ANGLES[0]) * (i + 0.5)) / columns) * DEG, amplitude = ((rows - j - 0.5) / rows) * top * 1e-3;
         pen.fillStyle = data.regimes[conveying.regime({ ...bowl, angle, amplitude })][1];
         pen.fillRect(Math.floor((i * wide) / columns), Math.floor((j * high) / rows), Math.ceil(wide / columns) + 1, Math.ceil(high / rows) + 1);
       }
+    pen.font = "20px sans-serif";
+    pen.lineWidth = 5;
+    pen.strokeStyle = "#fff";
+    pen.fillStyle = "#22303c";
+    const label = (text, x, y, align) => { pen.textAlign = align; pen.strokeText(text, x, y); pen.fillText(text, x, y); };
+    for (let angle = 10; angle <= 50; angle += 10) label(angle === 50 ? "50 deg" : String(angle), ((angle - ANGLES[0]) / (ANGLES[1] - ANGLES[0])) * wide, high - 8, "center");
+    for (let k = 1; k <= 3; k++) label(`${number((k * top) / 4, 2)}${k === 3 ? " mm" : ""}`, 8, high * (1 - k / 4) + 7, "left");
     const x = ((typed.angle - ANGLES[0]) / (ANGLES[1] - ANGLES[0])) * wide, y = (1 - typed.amplitude / top) * high;
     pen.beginPath();
     pen.arc(x, y, 8, 0, 2 * Math.PI);

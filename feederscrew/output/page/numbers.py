@@ -32,7 +32,11 @@ def cells(frame) -> tuple[Any, ...]:
     """
     numeric = [tables.is_numeric(column) for column in frame.values()]
     columns = [_column(name, column) for name, column in frame.items()]
-    return [tables.heading(name, known) for name, known in zip(frame, numeric)], numeric, list(zip(*columns))
+    return (
+        [tables.heading(name, is_number) for name, is_number in zip(frame, numeric)],
+        numeric,
+        list(zip(*columns)),
+    )
 
 
 def number(value, digits=DIGITS):

@@ -16,23 +16,22 @@ GIVEN = "The springs, the tuning and the drift of the machine of the bowl file."
 
 def bowl(case) -> Chapter | None:
     """Bowl, springs and drift: of a target, or of the machine in the bowl file; None without either."""
-    found = case.machine
-    if found is None:
+    sheet = case.machine
+    if sheet is None:
         return None
     mark = _mark(case)
-    drawn = offers.by_name(machine.offers(found, mark=mark))["bowl.png"]
-    sized = found.order is not None
+    drawn = offers.by_name(machine.offers(sheet, mark=mark))["bowl.png"]
+    sized = sheet.order is not None
     blocks = (
         Text(SIZED if sized else GIVEN),
         *_turned(case, mark),
-        *((Notes(found.remarks),) if found.remarks else ()),
         Picture(drawn.name, drawn.make(), drawn.alt),
-        Table(machine.summary(found)),
-        Table(machine.leaf_sets(found.changes)),
-        Table(machine.leaf_sets(found.sets)),
-        Table(_renamed(machine.emptying(found))),
+        Table(machine.summary(sheet)),
+        Table(machine.leaf_sets(sheet.changes)),
+        Table(machine.leaf_sets(sheet.sets)),
+        Table(_renamed(machine.emptying(sheet))),
     )
-    return Chapter(blocks, tiles=(_tile(found),), warnings=found.remarks)
+    return Chapter(blocks, tiles=(_tile(sheet),), warnings=sheet.remarks)
 
 
 def _mark(case):
@@ -51,16 +50,16 @@ def _turned(case, mark):
 
 def _renamed(frame):
     """A table of velocities at the strokes of a bowl that empties, which are not that of the bowl file."""
-    shown = {"velocity_mm_s": "velocity_as_it_empties_mm_s"}
-    return plain.frame({shown.get(name, name): column for name, column in frame.items()})
+    renamed = {"velocity_mm_s": "velocity_as_it_empties_mm_s"}
+    return plain.frame({renamed.get(name, name): column for name, column in frame.items()})
 
 
-def _tile(found) -> Tile:
-    if found.order is None:
-        above = number(100.0 * found.detuning, SHORT)
-        note = f"{above} % above the drive; gain {number(found.gain, SHORT)}"
-        return Tile("natural frequency", f"{number(found.springs.natural_frequency, SHORT)} Hz", note)
-    size, moved = found.order.size, found.stroke
+def _tile(sheet) -> Tile:
+    if sheet.order is None:
+        above = number(100.0 * sheet.detuning, SHORT)
+        note = f"{above} % above the drive; gain {number(sheet.gain, SHORT)}"
+        return Tile("natural frequency", f"{number(sheet.springs.natural_frequency, SHORT)} Hz", note)
+    size, moved = sheet.order.size, sheet.stroke
     stroke = f"{1e3 * moved.peak_to_peak:.3g} mm at {moved.frequency:.4g} Hz"
     note = f"track {1e3 * size.track_width:.3g} mm; stroke {stroke}"
     return Tile("needs a bowl of", f"{1e3 * size.diameter:.4g} mm", note)

@@ -4,10 +4,11 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from feederscrew import units
 from feederscrew.output import aspects as aspects_output
-from feederscrew.output import inertia, style, tables, tipping_graph
+from feederscrew.output import inertia, shading, style, tables, tipping_graph
 from feederscrew.output.offers import by_name
 from feederscrew.output.page.blocks import (
     Chapter,
@@ -21,7 +22,7 @@ from feederscrew.output.page.blocks import (
     Views,
 )
 from feederscrew.output.page.numbers import percent
-from feederscrew.output.report.scene import scene
+from feederscrew.output.shading import outermost, short, stance
 from feederscrew.part.record import Part
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.units import MM
@@ -51,37 +52,37 @@ def the_part(case) -> Chapter:
 def aspects(case):
     """Views, tables and chart of the aspects: one table of shapes and heights, one of probabilities."""
     part, study = case.part, case.resting
-    found = study.aspects
-    table, said = aspects_output.aspects(study), aspects_output.remarks(study)
+    sides = study.aspects
+    table, remarks = aspects_output.aspects(study), aspects_output.remarks(study)
     offered = by_name(aspects_output.offers(study))
     views: tuple[Any, ...] = tuple(aspect_views(part, study))
     if part.vertices is not None:
         views = (*views[:1], _picture(offered["aspects.png"], printed=True), *views[1:])
-    lines = (Notes(tuple(said)),) if said and part.vertices is not None else ()
+    lines = (Notes(tuple(remarks)),) if remarks and part.vertices is not None else ()
     straight = () if np.isfinite(table["rolling_circle_mm"]).any() else ("rolling_circle_mm",)
-    shown = table.without((*aspects_output.NORMALS, *straight))
-    chances = [name for name in shown if name.startswith("p_")]
-    shapes = Table(shown.without(chances))
+    columns = table.without((*aspects_output.NORMALS, *straight))
+    chances = [name for name in columns if name.startswith("p_")]
+    shapes = Table(columns.without(chances))
     return Chapter(
-        (*views, *lines, shapes, Table(shown.only(["aspect", *chances]))),
+        (*views, *lines, shapes, Table(columns.only(["aspect", *chances]))),
         tiles=(_tile(case),),
-        warnings=tuple(found.warnings),
+        warnings=tuple(sides.warnings),
     )
 
 
 def tips(case) -> Chapter:
     """The tipping graph, from exact tumbling."""
-    ways, found = case.resting.transitions, case.resting.aspects
-    shown = np.flatnonzero(found.stable)[: tipping_graph.MOST_GRAPH_ASPECTS]
-    shares = np.where(found.stable, found.probabilities["quasistatic"], np.nan)
-    drawn = tipping_graph.of_part(case.resting, ways, shares)
+    transitions, sides = case.resting.transitions, case.resting.aspects
+    rows = np.flatnonzero(sides.stable)[: tipping_graph.MOST_GRAPH_ASPECTS]
+    shares = np.where(sides.stable, sides.probabilities["quasistatic"], np.nan)
+    drawn = tipping_graph.of_part(case.resting, transitions, shares)
     table = tables.frame(
         {
-            "aspect": [found.names[row] for row in shown],
-            "p_quasistatic": shares[shown],
-            "lowest_lift_mm": found.barriers[shown] / MM,
-            "energy_uJ": found.barrier_energies[shown] / UJ,
-            "tilts_over_at_deg": np.degrees(found.tip_angles[shown]),
+            "aspect": [sides.names[row] for row in rows],
+            "p_quasistatic": shares[rows],
+            "lowest_lift_mm": sides.barriers[rows] / MM,
+            "energy_uJ": sides.barrier_energies[rows] / UJ,
+            "tilts_over_at_deg": np.degrees(sides.tip_angles[rows]),
         }
     )
     lead = Text(
@@ -93,7 +94,7 @@ def tips(case) -> Chapter:
     picture = Picture(
         "tipping.png", style.png(drawn), "Tipping graph: which aspect tips into which, and the lift it takes"
     )
-    return Chapter((lead, Table(table), picture), warnings=tuple(found.ground.tips.doubts))
+    return Chapter((lead, Table(table), picture), warnings=tuple(sides.ground.tips.doubts))
 
 
 def numbers(case) -> CsvSheet:
@@ -121,19 +122,27 @@ def _picture(offer, **keywords) -> Picture:
     return Picture(offer.name, offer.make(), offer.alt, **keywords)
 
 
-def _caption(found, row) -> tuple[Any, ...]:
-    kind = f"{found.forms[row]} ×{found.faces[row]}" if found.stable[row] else "not stable"
-    return found.names[row], kind, tuple(_bars(found, row)) if found.stable[row] else ()
+def _caption(resting_aspects, row) -> tuple[Any, ...]:
+    kind = (
+        f"{resting_aspects.forms[row]} ×{resting_aspects.faces[row]}"
+        if resting_aspects.stable[row]
+        else "not stable"
+    )
+    return (
+        resting_aspects.names[row],
+        kind,
+        tuple(_bars(resting_aspects, row)) if resting_aspects.stable[row] else (),
+    )
 
 
-def _bars(found, row) -> Iterator[Any]:
+def _bars(resting_aspects, row) -> Iterator[Any]:
     """The recommended answer with its interval; without one, every rule. The table has all of them."""
-    answer = found.recommended
+    answer = resting_aspects.recommended
     if answer is not None:
         share, low, high = (float(ends[row]) for ends in (answer.p, answer.low, answer.high))
         yield ShareBar("recommended", style.ANSWER, share, (low, high))
         return
-    for place, (rule, values) in enumerate(found.probabilities.items()):
+    for place, (rule, values) in enumerate(resting_aspects.probabilities.items()):
         label, colour = style.method(rule, place)
         yield ShareBar(label, colour, float(values[row]))
 
@@ -151,8 +160,48 @@ def _how_likely(case) -> str:
         share, low, high = (percent(ends[case.row]) for ends in (answer.p, answer.low, answer.high))
         return f"{share} % of drops ({low} to {high} %), {answer.rule}"
     chances = {rule: values[case.row] for rule, values in case.resting.aspects.probabilities.items()}
-    known = {rule: share for rule, share in chances.items() if np.isfinite(share)}
-    if not known:
+    shares = {rule: share for rule, share in chances.items() if np.isfinite(share)}
+    if not shares:
         return "no rule says how often"
-    low, high = percent(min(known.values())), percent(max(known.values()))
-    return f"{low} to {high} % of drops, by {len(known)} rules"
+    low, high = percent(min(shares.values())), percent(max(shares.values()))
+    return f"{low} to {high} % of drops, by {len(shares)} rules"
+
+
+def scene(part, resting_aspects, rows):
+    """What the viewer draws.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    resting_aspects : Aspects
+    rows : sequence of int
+        Which aspects.
+
+    Returns
+    -------
+    dict
+        As ``meshes.viewed``, for JSON, and ``poses``.
+    """
+    points = (part.vertices - part.centre_of_mass) / MM
+    radius = float(np.sqrt((points**2).sum(axis=1).max()))
+    near = outermost(points / radius)
+    stances = [
+        stance(near, resting_aspects.normals[row], resting_aspects.heights[row] / MM / radius) for row in rows
+    ]
+    towards_viewer = stances[0].floor_axes @ stances[0].camera.back
+    return shading.viewed(part, towards_viewer) | {
+        "poses": [_pose(resting_aspects, row, standing) for row, standing in zip(rows, stances)],
+    }
+
+
+def _pose(resting_aspects, row, standing) -> dict[Any, Any]:
+    """Name, rotation (x, y, z, w) from the file's axes to the floor's, height and contact polygon."""
+    return {
+        "name": resting_aspects.names[row],
+        "quaternion": [
+            short(q) for q in Rotation.from_matrix(np.array(standing.floor_axes)).as_quat(canonical=True)
+        ],
+        "height": short(resting_aspects.heights[row] / MM),
+        "contact": [short(x) for x in resting_aspects.polygons[row].ravel() / MM],
+    }

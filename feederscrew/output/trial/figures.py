@@ -41,22 +41,22 @@ def matrix(run):
     """
     rows = [k for k in np.argsort(-run.shares, kind="stable") if run.tried[k]][:MOST]
     out = [m for m in range(run.matrix.shape[1]) if run.matrix[rows, m].any()]
-    names = [one.name for one in run.orientations.states] + ["other"]
+    names = [item.name for item in run.orientations.states] + ["other"]
     lost = [fate for fate in range(course.RETURNED, len(course.FATES)) if run.counts[rows, fate].any()]
     counts = np.column_stack([run.matrix[rows][:, out], run.counts[rows][:, lost]])
-    shown = counts / run.tried[rows][:, None]
+    shares = counts / run.tried[rows][:, None]
     titles = [names[m] for m in out] + [
         STAYS.get(fate, course.FATES[fate].replace("_", "\n")) for fate in lost
     ]
     figure = style.figure(max(4.2, 1.8 + 0.62 * len(titles)), 1.5 + 0.3 * len(rows))
     axes = figure.add_subplot()
-    axes.imshow(shown, cmap="Blues", vmin=0.0, vmax=1.25, aspect="auto")
+    axes.imshow(shares, cmap="Blues", vmin=0.0, vmax=1.25, aspect="auto")
     axes.hlines(np.arange(1, len(rows)) - 0.5, -0.5, len(titles) - 0.5, color="white", linewidth=1.5)
     axes.vlines(np.arange(1, len(titles)) - 0.5, -0.5, len(rows) - 0.5, color="white", linewidth=1.5)
     for r, c in zip(*np.nonzero(counts)):
         axes.text(
             c, r, counts[r, c], ha="center", va="center", fontsize=8,
-            color="white" if shown[r, c] > 0.7 else style.INK,
+            color="white" if shares[r, c] > 0.7 else style.INK,
         )  # fmt: skip
     style.tidy(axes, title="Orientations in and out, parts", x="leaves as", y="comes as", grid="none")
     style.named_ticks(axes, range(len(titles)), titles)
@@ -78,38 +78,38 @@ def paths(run):
     -------
     Figure
     """
-    found, radius = run.course, run.bowl.track.radius
-    flat_paths = [[unrolled(path, radius) for path in ride.paths] for ride in found.rides]
+    sent, radius = run.course, run.bowl.track.radius
+    flat_paths = [[unrolled(path, radius) for path in ride.paths] for ride in sent.rides]
     widest = 1e3 * max(off.max(initial=0.0) for rides in flat_paths for _, off in rides)
-    longest = 1e3 * max(station.exit - station.begin for station in found.stations[: len(found.rides)])
+    longest = 1e3 * max(station.exit - station.begin for station in sent.stations[: len(sent.rides)])
     span, high = longest + 2.0 * SIDE_MARGIN_MM, 1.1 * widest + 2.0 * WALL_MARGIN_MM
     panel = PATHS_WIDTH_IN * high / span
-    figure = style.figure(PATHS_WIDTH_IN + 0.9, 0.7 + (panel + 0.75) * len(found.rides))
-    panels = figure.subplots(len(found.rides), 1, squeeze=False)[:, 0]
-    shown: dict[str, None] = {}  # fates in the picture
-    stations = zip(panels, found.stations, found.rides, found.riders, flat_paths)
+    figure = style.figure(PATHS_WIDTH_IN + 0.9, 0.7 + (panel + 0.75) * len(sent.rides))
+    panels = figure.subplots(len(sent.rides), 1, squeeze=False)[:, 0]
+    drawn_fates: dict[str, None] = {}  # fates in the picture
+    stations = zip(panels, sent.stations, sent.rides, sent.riders, flat_paths)
     for axes, station, ride, riders, flat in stations:
         _track(axes, station, radius)
         _air(axes, station)
-        for rider, (way, off), outcome in zip(riders, flat, ride.outcomes):
-            fate = course.FATES[found.fates[rider]]
+        for rider, (along, off), outcome in zip(riders, flat, ride.outcomes):
+            fate = course.FATES[sent.fates[rider]]
             fate = fate if outcome != runs.PASSED or fate == "turned" else "passed"  # turned: leaves so
             if fate == "returned" and any(
-                way.max(initial=-1.0) >= watch.place for watch in station.air.watches
+                along.max(initial=-1.0) >= watch.place for watch in station.air.watches
             ):
                 fate = "blown off"
             colour, line, mark = LOOKS[fate]
-            axes.plot(way / MM, off / MM, line, color=colour, linewidth=0.7, alpha=0.7)
-            if len(way):
-                axes.plot(way[-1] / MM, off[-1] / MM, mark, color=colour, markersize=4)
-            shown.setdefault(fate, None)
+            axes.plot(along / MM, off / MM, line, color=colour, linewidth=0.7, alpha=0.7)
+            if len(along):
+                axes.plot(along[-1] / MM, off[-1] / MM, mark, color=colour, markersize=4)
+            drawn_fates.setdefault(fate, None)
         title = f"{station.device.name}: {station.device.value_words}".removesuffix(": ")
         title = "\n".join(textwrap.wrap(title, PATHS_TITLE_LETTERS))
         style.tidy(axes, title=title, x="along the wall [mm]", y="from the wall [mm]", grid="none")
         axes.axhline(0.0, color=style.INK, linewidth=3.0)  # the wall
         left = station.begin / MM - SIDE_MARGIN_MM
         axes.set(xlim=(left, left + span), ylim=(-WALL_MARGIN_MM, high - WALL_MARGIN_MM), aspect="equal")
-    for fate in (fate for fate in LOOKS if fate in shown):
+    for fate in (fate for fate in LOOKS if fate in drawn_fates):
         colour, line, mark = LOOKS[fate]
         panels[0].plot([], [], line, color=colour, marker=mark, markersize=4, label=fate.replace("_", " "))
     figure.legend(fontsize=7, frameon=False, ncols=len(LOOKS), loc="outside lower center")
@@ -130,8 +130,8 @@ def _air(axes, station) -> None:
 
 def unrolled(path, radius) -> tuple[Any, ...]:
     """Return lengths along the wall and distances from it (K,) [m] of a path (K, 8), as far as it goes."""
-    known = path[np.isfinite(path[:, 0])]
-    x, y = known[:, 1], radius - known[:, 2]
+    followed = path[np.isfinite(path[:, 0])]
+    x, y = followed[:, 1], radius - followed[:, 2]
     return radius * np.arctan2(x, y), radius - np.hypot(x, y)
 
 

@@ -208,8 +208,8 @@ class FilmSet:
         """How much of each pixel (rows, columns, 1) a cone of air covers, from 0 to 1."""
         rays = Rays(*cone, self.centre)
         depths = self.camera.meet(rays, self.across / rays.size, self.up / rays.size)[0]
-        seen = np.isfinite(depths) & ((AWAY - depths) * rays.size > self.nearness)
-        return averaged(np.repeat(seen[..., None].astype(float), 3, axis=2), SAMPLES)[..., :1]
+        covered = np.isfinite(depths) & ((AWAY - depths) * rays.size > self.nearness)
+        return averaged(np.repeat(covered[..., None].astype(float), 3, axis=2), SAMPLES)[..., :1]
 
     def drawn(
         self,
@@ -289,8 +289,8 @@ def _bowl_around(stage: Stage, run: TrialRun, above: float, below: float) -> Mes
     """The rest of the bowl as a mesh: bare track and wall over the rest of the turn, a floor below."""
     radius, width = run.bowl.track.radius, run.bowl.track.width
     corners = np.concatenate(solids(stage))
-    way, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), radius)
-    first, last = way.min() / radius, way.max() / radius
+    along, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), radius)
+    first, last = along.min() / radius, along.max() / radius
     middle = shapely.Point(0.0, radius)
     full, inner = middle.buffer(radius, quad_segs=64), middle.buffer(radius - width, quad_segs=64)
     outer = middle.buffer(radius + WALL, quad_segs=64)
@@ -307,9 +307,9 @@ def _bowl_around(stage: Stage, run: TrialRun, above: float, below: float) -> Mes
 
 def _from_above(camera: Camera) -> Camera:
     """A camera that looks more steeply down, over the wall that is nearer."""
-    back = camera.back * [0.45, 0.45, 1.0]
-    back /= np.linalg.norm(back)
-    return Camera(camera.right, np.cross(back, camera.right), back)
+    towards_viewer = camera.back * [0.45, 0.45, 1.0]
+    towards_viewer /= np.linalg.norm(towards_viewer)
+    return Camera(camera.right, np.cross(towards_viewer, camera.right), towards_viewer)
 
 
 def _single_parts(part: Part, run: TrialRun, frames: int) -> Iterator[tuple[NDArray[np.float64], str, str]]:
@@ -450,9 +450,9 @@ def still_times(ride: DeviceRide, radius: float) -> NDArray[np.float64]:
     turns = Rotation.from_quat(path[:, [5, 6, 7, 4]])
     moves = np.linalg.norm(np.diff(path[:, 1:4], axis=0), axis=1)
     arcs = 0.5 * radius * (turns[1:] * turns[:-1].inv()).magnitude()
-    way = np.concatenate([[0.0], np.cumsum(moves + arcs)])
-    way += 1e-12 * np.arange(len(way))  # a part at rest has one place for many times
-    times = np.interp(np.linspace(0.12, 1.0, STILLS) * way[-1], way, path[:, 0])
+    progress = np.concatenate([[0.0], np.cumsum(moves + arcs)])
+    progress += 1e-12 * np.arange(len(progress))  # a part at rest has one place for many times
+    times = np.interp(np.linspace(0.12, 1.0, STILLS) * progress[-1], progress, path[:, 0])
     middle = np.nan if ride.blows in (None, ALWAYS) else min(0.5 * sum(ride.blows), path[-1, 0])
     for moment in (ride.looked, middle):
         if path[0, 0] < moment <= path[-1, 0]:

@@ -35,16 +35,16 @@ def scene(part, *tried) -> tuple[Any, ...]:
     captions : list of (str, str)
         What each pose is, and what becomes of it.
     """
-    rides, run, found = rides_to_show(part, *tried), tried[0], tried[0].course
-    seen = shading.viewed(part, tooling_views.TO_VIEWER)
-    cut = section(found.stations[rides[0].place], run.bowl.track, ABOVE * seen["radius"] * MM)
-    paths = [_path(ride.path, found.principal) for ride in rides]
-    return seen | {
+    rides, run, sent = rides_to_show(part, *tried), tried[0], tried[0].course
+    view = shading.viewed(part, tooling_views.TO_VIEWER)
+    cut = section(sent.stations[rides[0].place], run.bowl.track, ABOVE * view["radius"] * MM)
+    paths = [_path(ride.path, sent.principal) for ride in rides]
+    return view | {
         "reach": REACH,
         "tracks": [shading.track(*cut)],
         "paths": [encoded(path, "<f4") for path in paths],
         "poses": [_pose(ride, path, k) for k, (ride, path) in enumerate(zip(rides, paths))],
-    }, [(ride.orientation, ride.title(found).partition(" ")[2]) for ride in rides]
+    }, [(ride.orientation, ride.title(sent).partition(" ")[2]) for ride in rides]
 
 
 def _pose(ride, path, place) -> dict[Any, Any]:

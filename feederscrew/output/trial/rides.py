@@ -27,9 +27,9 @@ class DeviceRide:
     looked: float = np.nan  # [s] when the sensor looks at it; NaN without one
     blows: tuple[float, float] | None = None  # [s] from when to when jets blow at it; None where none does
 
-    def title(self, found: course.Course) -> str:
+    def title(self, sent: course.Course) -> str:
         """'A@0 at gap 9 mm: returned'; of a device of several values its kind alone."""
-        device = found.stations[self.place].device
+        device = sent.stations[self.place].device
         value = "" if device.short.startswith(("{", "[")) else device.short
         where = f"{device.name} {value}".strip()
         return f"{self.orientation} at {where}: {self.fate.replace('_', ' ')}"
@@ -112,15 +112,15 @@ def air_at(
     """
     if not stage.air.watches:
         return np.nan, ALWAYS if len(stage.air.jets) else None
-    watch, ways = stage.air.watches[0], unrolled(path, run.bowl.track.radius)[0]
-    if not (ways >= watch.place).any():
+    watch, along = stage.air.watches[0], unrolled(path, run.bowl.track.radius)[0]
+    if not (along >= watch.place).any():
         return np.nan, None
-    first = int(np.argmax(ways >= watch.place))
+    first = int(np.argmax(along >= watch.place))
     looked, (solid, length, _) = float(path[first, 0]), solid_of(part)
     state = np.zeros((1, body.STATE))
     state[0, :3], state[0, body.Q : body.Q + 4] = path[first, 1:4] / length, path[first, 4:]
     if not sensed_rides.blows_off(watch.sensor, runs.setting(solid, length, run.bowl), state):
         return looked, None
-    speed = max((ways[first] - ways[0]) / max(looked - path[0, 0], 1e-9), sensed_rides.STANDING_SPEED_M_S)
-    begin = looked + max(watch.nozzles - ways[first], 0.0) / speed
+    speed = max((along[first] - along[0]) / max(looked - path[0, 0], 1e-9), sensed_rides.STANDING_SPEED_M_S)
+    begin = looked + max(watch.nozzles - along[first], 0.0) / speed
     return looked, (begin, begin + watch.seconds)

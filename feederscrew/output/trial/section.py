@@ -106,15 +106,15 @@ def _vector(row: np.record, name: str) -> NDArray[np.float64]:
 
 
 def _cone(
-    start: NDArray[np.float64], way: NDArray[np.float64], long: float, wide: float, wider: float
+    start: NDArray[np.float64], direction: NDArray[np.float64], long: float, wide: float, wider: float
 ) -> Mesh:
     """A truncated cone from a place [m] along a direction, of two radii [m]."""
-    aside = np.cross(way, np.eye(3)[np.argmin(np.abs(way))])
+    aside = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
     aside /= np.linalg.norm(aside)
     turns = 2.0 * np.pi * np.arange(SIDES) / SIDES
-    ring = np.outer(np.cos(turns), aside) + np.outer(np.sin(turns), np.cross(way, aside))
+    ring = np.outer(np.cos(turns), aside) + np.outer(np.sin(turns), np.cross(direction, aside))
     corners = np.concatenate(
-        [start + wide * ring, start + long * way + wider * ring, [start, start + long * way]]
+        [start + wide * ring, start + long * direction + wider * ring, [start, start + long * direction]]
     )
     here, after = np.arange(SIDES), (np.arange(SIDES) + 1) % SIDES
     sides = [(here, after, SIDES + here), (after, SIDES + after, SIDES + here)]
@@ -141,8 +141,8 @@ def _plate(station, k, track) -> tuple[Any, ...]:
 def _wall(station, track, height) -> list[Any]:
     """The wall behind the track, over its length, stretch by stretch."""
     corners = np.concatenate(solids(station))
-    way, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), track.radius)
-    low, high = way.min(), way.max()
+    along, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), track.radius)
+    low, high = along.min(), along.max()
     turns = [(place, wall and wall - bank) for place, _, bank, wall in station.air.slopes if wall is not None]
     ends = [(low, 0.0), *((max(place, low), lean) for place, lean in turns), (high, 0.0)]
     return [

@@ -1,4 +1,4 @@
-"""Trials as tables and documents, in the units of the shop."""
+"""Files of ``feeder trial``: tables and documents in the units of the shop, pictures."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -6,15 +6,48 @@ from typing import Any
 import numpy as np
 
 from feederscrew.dropping.ensemble import wilson
+from feederscrew.heavy import heavy
 from feederscrew.output import columns, tables
+from feederscrew.output import offers as offer
 from feederscrew.output.convey import rebound
 from feederscrew.studies.trial import ENGINE
 from feederscrew.trial import course
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
+figures = heavy("feederscrew.output.trial.figures")
+film = heavy("feederscrew.output.trial.film")
+
 UM = 1e-3 * MM
 ENGINE_FIGURES = ("penetration_mm", "energy_won_um")  # how closely the engine keeps to the laws: for -v
 HIDDEN = ("fell_mm", "seconds", *ENGINE_FIGURES)
+
+
+def offers(study) -> list[Any]:
+    """Offer the files of a TrialStudy, as a list of Offer."""
+    run = study.runs[0]
+    return [
+        offer.table("trial.csv", frame, study),
+        offer.table("trial_stations.csv", stations, run),
+        *([] if run.landing is None else [offer.table("trial_landing.csv", landed, study, run)]),
+        *([] if run.queue is None else [offer.table("trial_outlet.csv", outlet, study, run)]),
+        offer.document("trial.json", document, study),
+        *pictures(study),
+    ]
+
+
+def pictures(study) -> list[Any]:
+    """Offer the pictures of its first run: orientations in and out, paths, stills."""
+    return [
+        offer.picture("trial.png", "Orientations in and out", lambda: figures.matrix(study.runs[0])),
+        offer.picture(
+            "trial_paths.png", "Paths over each device, from above", lambda: figures.paths(study.runs[0])
+        ),
+        offer.picture(
+            "trial_stills.png",
+            "A part that passes and one that does not",
+            lambda: film.stills(study.part, study.runs[0]),
+        ),
+    ]
 
 
 def document(study):
@@ -68,9 +101,9 @@ def orientations(run, *, people=False) -> list[Any]:
     first = sorted(np.flatnonzero(run.tried), key=lambda k: (not run.odd[k], not run.differs[k], k))
     return [
         {
-            "aspect": one.aspect,
-            "heading_deg": one.heading / DEG,
-            "length_mm": one.length / MM,
+            "aspect": orientation.aspect,
+            "heading_deg": orientation.heading / DEG,
+            "length_mm": orientation.length / MM,
             "share": float(run.shares[k]),
             "tried": int(run.tried[k]),
             **{name: int(count) for name, count in zip(course.FATES, counts[k])},
@@ -90,7 +123,7 @@ def orientations(run, *, people=False) -> list[Any]:
             )
             / MM,
         }
-        for k, one in ((k, run.orientations.lying[k]) for k in first)
+        for k, orientation in ((k, run.orientations.lying[k]) for k in first)
     ]
 
 
@@ -104,26 +137,26 @@ def spare(study) -> tuple[Any, ...]:
 
 def queue(study, run) -> dict[Any, Any]:
     """Return what the queue did, as a document."""
-    found, seen = run.queue, outlet(study, run)
-    whole = int(found.leaving.sum())
+    queued, left_by_aspect = run.queue, outlet(study, run)
+    whole = int(queued.leaving.sum())
     return {
-        "parts": found.parts,
-        "on_track": found.on_track,
-        "poured": found.poured,
-        "seconds": found.seconds,
-        "counted_seconds": found.counted,
-        "delivered": found.delivered,
-        "returned": found.returned,
-        "backed_up": found.relieved,
-        "jams": found.jams,
-        "climbs": found.climbs,
-        "velocity_mm_s": found.velocity / MM_S,
-        "mean_gap_mm": found.gap / MM,
-        "touching": found.touching,
-        "pressure_mn": found.pressure * 1e3,
-        "largest_penetration_mm": found.depth / MM,
-        "profile": {name: n / whole for name, n in _left(run, found.leaving)},
-        "outlet": [dict(zip(seen, row)) for row in zip(*seen.values())],
+        "parts": queued.parts,
+        "on_track": queued.on_track,
+        "poured": queued.poured,
+        "seconds": queued.seconds,
+        "counted_seconds": queued.counted,
+        "delivered": queued.delivered,
+        "returned": queued.returned,
+        "backed_up": queued.relieved,
+        "jams": queued.jams,
+        "climbs": queued.climbs,
+        "velocity_mm_s": queued.velocity / MM_S,
+        "mean_gap_mm": queued.gap / MM,
+        "touching": queued.touching,
+        "pressure_mn": queued.pressure * 1e3,
+        "largest_penetration_mm": queued.depth / MM,
+        "profile": {name: n / whole for name, n in _left(run, queued.leaving)},
+        "outlet": [dict(zip(left_by_aspect, row)) for row in zip(*left_by_aspect.values())],
         "apart": {
             name: {"deviation": deviation, "total_variation": total}
             for name, (deviation, total) in study.outlet(run).distances.items()
@@ -138,38 +171,38 @@ def _left(run, leaving) -> list[Any]:
 
 def landing(study, run) -> dict[Any, Any]:
     """Return what became of the parts that fell onto the track, as a document."""
-    found, seen = run.landing, landed(study, run)
+    fallen, landed_by_aspect = run.landing, landed(study, run)
     return {
-        "launch": found.launch,
-        "parts": found.parts,
-        "lost": found.lost,
-        "left": found.left,
-        "efficiency": found.efficiency,
-        "purity": found.purity,
-        "velocity_mm_s": found.velocity / MM_S,
-        "largest_penetration_mm": found.depth / MM,
-        "aspects": [dict(zip(seen, row)) for row in zip(*seen.values())],
-        "leaves": dict(_left(run, found.leaving)),
+        "launch": fallen.launch,
+        "parts": fallen.parts,
+        "lost": fallen.lost,
+        "left": fallen.left,
+        "efficiency": fallen.efficiency,
+        "purity": fallen.purity,
+        "velocity_mm_s": fallen.velocity / MM_S,
+        "largest_penetration_mm": fallen.depth / MM,
+        "aspects": [dict(zip(landed_by_aspect, row)) for row in zip(*landed_by_aspect.values())],
+        "leaves": dict(_left(run, fallen.leaving)),
     }
 
 
 def landed(study, run):
     """Return what became of the parts that fell onto a run's track, by aspect, as columns by name."""
-    found = run.landing
-    low, high = wilson(found.landed, found.landed.sum())
-    known = {"aspect": study.aspects.names, "landed": found.landed, "low": low, "high": high}
-    return known | dict(zip(course.FATES, found.fates.T))
+    fallen = run.landing
+    low, high = wilson(fallen.landed, fallen.landed.sum())
+    columns_by_name = {"aspect": study.aspects.names, "landed": fallen.landed, "low": low, "high": high}
+    return columns_by_name | dict(zip(course.FATES, fallen.fates.T))
 
 
 def outlet(study, run):
     """Return what left a run's queue by aspect, beside what was measured, as columns by name."""
-    found = study.outlet(run)
-    low, high = found.ends
-    known = {
-        "aspect": found.aspects, "offered": found.offered, "parts": found.counts, "share": found.shares,
-        "low": low, "high": high,
+    leaving = study.outlet(run)
+    low, high = leaving.ends
+    columns_by_name = {
+        "aspect": leaving.aspects, "offered": leaving.offered, "parts": leaving.counts,
+        "share": leaving.shares, "low": low, "high": high,
     }  # fmt: skip
-    return known | {f"measured {one.name}": one.fractions for one in found.columns}
+    return columns_by_name | {f"measured {measured.name}": measured.fractions for measured in leaving.columns}
 
 
 def frame(study, *, people=False):
@@ -177,27 +210,27 @@ def frame(study, *, people=False):
     rows = []
     for run in study.runs:
         lead = {"amplitude_mm": run.bowl.drive.amplitude / MM} if len(study.runs) > 1 else {}
-        rows += [lead | one for one in orientations(run, people=people)]
-    return tables.frame({name: [one[name] for one in rows] for name in rows[0]})
+        rows += [lead | row for row in orientations(run, people=people)]
+    return tables.frame({name: [row[name] for row in rows] for name in rows[0]})
 
 
 def stations(run):
     """Return what each station did with each orientation that came to it, as a frame."""
-    found = run.course
+    sent = run.course
     rows = []
-    for place, station in enumerate(found.stations):
-        before, after = found.orientations[place], found.orientations[place + 1]
+    for place, station in enumerate(sent.stations):
+        before, after = sent.orientations[place], sent.orientations[place + 1]
         for k in np.unique(before[before > -2]):
             came = before == k
             for m in np.unique(after[came & (after > -2)]):
                 rows.append((place, station.device.kind, _name(run, k), _name(run, m), came & (after == m)))
             for fate in range(course.RETURNED, len(course.FATES)):
-                here = came & (found.ended == place) & (found.fates == fate)
+                here = came & (sent.ended == place) & (sent.fates == fate)
                 if here.any():
                     rows.append((place, station.device.kind, _name(run, k), course.FATES[fate], here))
     names = ("station", "device", "comes_as", "becomes", "parts")
-    made = [(*one[:4], int(one[4].sum())) for one in rows]
-    return tables.frame({name: [one[k] for one in made] for k, name in enumerate(names)})
+    cells = [(*cell[:4], int(cell[4].sum())) for cell in rows]
+    return tables.frame({name: [cell[k] for cell in cells] for k, name in enumerate(names)})
 
 
 def summary(study) -> Iterator[Any]:
@@ -205,10 +238,10 @@ def summary(study) -> Iterator[Any]:
     yield f"orientations in the shares of {study.answer}"
     for run in study.runs:
         at = f"amplitude {run.bowl.drive.amplitude / MM:.4g} mm, throw number {run.throw_number:.3g}: "
-        back = run.rolling_back / MM_S
-        beside = f" (those that roll back {back:.4g} mm/s)" if np.isfinite(back) else ""
+        rolling = run.rolling_back / MM_S
+        rolling_words = f" (those that roll back {rolling:.4g} mm/s)" if np.isfinite(rolling) else ""
         moves = np.isfinite(run.velocity)
-        speed = f"{run.velocity / MM_S:.4g} mm/s{beside}" if moves else "no part moves on"
+        speed = f"{run.velocity / MM_S:.4g} mm/s{rolling_words}" if moves else "no part moves on"
         yield at + (
             f"{speed}, {run.parts / PER_MINUTE:.4g} parts per minute, "
             f"efficiency {100.0 * run.efficiency:.4g} %, purity {100.0 * np.nan_to_num(run.purity):.4g} %"
@@ -220,7 +253,7 @@ def summary(study) -> Iterator[Any]:
             yield _fallen(run)
         if run.queue is not None:
             yield _queued(run.queue)
-            yield from _beside(study.outlet(run))
+            yield from _compare_with_measured(study.outlet(run))
     if len(study.runs) > 1 and np.isfinite(study.highest):
         yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
 
@@ -244,40 +277,40 @@ def _staying(run) -> Iterator[Any]:
 
 def _fallen(run) -> str:
     """What became of parts that fell onto the track, in a sentence."""
-    found = run.landing
-    most = _name(run, int(np.argmax(found.leaving[:-1]))) if found.leaving[:-1].any() else None
+    fallen = run.landing
+    most = _name(run, int(np.argmax(fallen.leaving[:-1]))) if fallen.leaving[:-1].any() else None
     return (
-        f"of {found.parts} parts that fell onto the track (launch {found.launch}) {found.lost} went over its "
-        f"edge, {found.left} left, {found.leaving[:-1].sum()} of them along the wall"
-        + (f", {found.leaving[:-1].max()} as {most}" if most else "")
+        f"of {fallen.parts} parts that fell onto the track (launch {fallen.launch}) {fallen.lost} went "
+        f"over its edge, {fallen.left} left, {fallen.leaving[:-1].sum()} of them along the wall"
+        + (f", {fallen.leaving[:-1].max()} as {most}" if most else "")
     )
 
 
-def _queued(found) -> str:
+def _queued(queued) -> str:
     """What a queue did, in a sentence."""
-    way = "poured" if found.poured else "in a row"
-    force = 1e3 * found.pressure.max(initial=0.0)
-    relieved = f" ({found.relieved} backed up at a pressure break)" if found.relieved else ""
+    how = "poured" if queued.poured else "in a row"
+    force = 1e3 * queued.pressure.max(initial=0.0)
+    relieved = f" ({queued.relieved} backed up at a pressure break)" if queued.relieved else ""
     return (
-        f"queue of {found.parts} {way}, {found.on_track} on the track at a time: {found.delivered:.4g} "
-        f"delivered in the last {found.counted:.4g} of {found.seconds:.4g} s, {found.returned} returned"
-        f"{relieved}, {found.jams} jams, {found.climbs} climbed on others; gap {found.gap / MM:.3g} mm, "
-        f"{100.0 * found.touching:.3g} % pushed, up to {force:.3g} mN on a part that stands at a device"
+        f"queue of {queued.parts} {how}, {queued.on_track} on the track at a time: {queued.delivered:.4g} "
+        f"delivered in the last {queued.counted:.4g} of {queued.seconds:.4g} s, {queued.returned} returned"
+        f"{relieved}, {queued.jams} jams, {queued.climbs} climbed on others; gap {queued.gap / MM:.3g} mm, "
+        f"{100.0 * queued.touching:.3g} % pushed, up to {force:.3g} mN on a part that stands at a device"
     )
 
 
-def _beside(found) -> Iterator[Any]:
+def _compare_with_measured(compared) -> Iterator[Any]:
     """What left by aspect beside each column that was measured, a sentence each."""
-    if found.columns and not found.counts.any():
+    if compared.columns and not compared.counts.any():
         yield "no part has left the queue yet: there is nothing to set beside what was measured"
         return
-    own = ", ".join(f"{name} {100.0 * share:.3g}" for name, share in zip(found.aspects, found.shares))
-    for one in found.columns:
-        deviation, total = found.distances[one.name]
-        said = ", ".join(f"{100.0 * share:.3g}" for share in one.fractions)
+    own = ", ".join(f"{name} {100.0 * share:.3g}" for name, share in zip(compared.aspects, compared.shares))
+    for measured in compared.columns:
+        deviation, total = compared.distances[measured.name]
+        shares = ", ".join(f"{100.0 * share:.3g}" for share in measured.fractions)
         yield (
-            f"at the outlet [%] {own} ({found.counts.sum()} parts, {found.other} on none); measured "
-            f"{one.name} {said}; deviation {deviation:.3g}, total variation {total:.3g}"
+            f"at the outlet [%] {own} ({compared.counts.sum()} parts, {compared.other} on none); measured "
+            f"{measured.name} {shares}; deviation {deviation:.3g}, total variation {total:.3g}"
         )
 
 
@@ -295,11 +328,11 @@ def _leaves(run, k) -> str:
 
 def _ended(run, k, *, people=True) -> str:
     """Where those ended that did not pass, with how many: 'gap 9'; for people as the trade names a device."""
-    found = run.course
-    own = (found.entered == k) & ~np.isin(found.fates, (course.PASSED, course.TURNED))
-    places, counts = np.unique(found.ended[own], return_counts=True)
-    devices = [found.stations[p].device for p in places]
-    return ", ".join(f"{one.name if people else one.kind} {n}" for one, n in zip(devices, counts))
+    sent = run.course
+    own = (sent.entered == k) & ~np.isin(sent.fates, (course.PASSED, course.TURNED))
+    places, counts = np.unique(sent.ended[own], return_counts=True)
+    devices = [sent.stations[p].device for p in places]
+    return ", ".join(f"{device.name if people else device.kind} {n}" for device, n in zip(devices, counts))
 
 
 def _most(values) -> float:
@@ -307,5 +340,5 @@ def _most(values) -> float:
 
 
 def _mean(values):
-    known = values[np.isfinite(values)]
-    return float(known.mean()) if len(known) else np.nan
+    finite = values[np.isfinite(values)]
+    return float(finite.mean()) if len(finite) else np.nan

@@ -28,7 +28,7 @@ class Format:
     extra: str = ""
 
 
-FORMATS = {
+MESH_FORMATS = {
     BINARY_STL: Format("binary STL", ("stl",)),
     ASCII_STL: Format("ASCII STL", ("stl",)),
     "obj": Format("OBJ", ("obj",)),
@@ -81,7 +81,7 @@ def detect_format(data, suffix="") -> Any:
     Returns
     -------
     kind : str or None
-        A key of ``FORMATS``; None where there is no mesh.
+        A key of ``MESH_FORMATS``; None where there is no mesh.
     alien : str or None
         What the file is instead.
     """

@@ -13,13 +13,15 @@ import warnings
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import units
 from feederscrew.errors import DAMAGE, MeshError
+from feederscrew.heavy import heavy
 from feederscrew.part.reading import formats
-from feederscrew.part.reading.formats import FORMATS
+from feederscrew.part.reading.formats import MESH_FORMATS
 from feederscrew.part.reading.soup import DamageError, Soup, refuse_size
+
+trimesh = heavy("trimesh")
 
 TESSELLATION_MM, TESSELLATION_RAD = (
     0.01,
@@ -131,7 +133,7 @@ def read_scene(data, kind, where) -> Soup:
     MeshError
         If the file is damaged, claims more than it holds, or an extra is not installed.
     """
-    format = FORMATS[kind]
+    format = MESH_FORMATS[kind]
     if not all(importlib.util.find_spec(module) for module in format.needs):
         what = f"{format.title} needs {' and '.join(format.needs)}, not installed"
         raise MeshError(where, what, f'pip install "feederscrew[{format.extra}]"')
@@ -144,30 +146,22 @@ def read_scene(data, kind, where) -> Soup:
         warnings.simplefilter("ignore")
         warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
         try:
-            pieces = _scene_meshes(data)
+            scene = trimesh.load_scene(io.BytesIO(data), file_type="glb", process=False, skip_materials=True)
+            pieces = []
+            for node in scene.graph.nodes_geometry:
+                transform, name = scene.graph[node]
+                mesh = scene.geometry[name]
+                if not isinstance(mesh, trimesh.Trimesh) or not len(mesh.faces):
+                    continue
+                mesh = mesh.copy()
+                mesh.apply_transform(transform)
+                pieces.append((str(node), np.asarray(mesh.vertices), np.asarray(mesh.faces)))
         except MemoryError:
             raise
         except DAMAGE:  # trimesh's, of any class
             raise DamageError("its scene does not fit what it holds") from None
         joined = _join_meshes(pieces, kind, unit)
     return joined
-
-
-def _scene_meshes(data) -> list[tuple[str, NDArray[np.float64], NDArray[np.int64]]]:
-    """Name, corners and facets of every mesh of the scene where its instances stand, all by trimesh."""
-    import trimesh
-
-    scene = trimesh.load_scene(io.BytesIO(data), file_type="glb", process=False, skip_materials=True)
-    pieces = []
-    for node in scene.graph.nodes_geometry:
-        transform, name = scene.graph[node]
-        mesh = scene.geometry[name]
-        if not isinstance(mesh, trimesh.Trimesh) or not len(mesh.faces):
-            continue
-        mesh = mesh.copy()
-        mesh.apply_transform(transform)
-        pieces.append((str(node), np.asarray(mesh.vertices), np.asarray(mesh.faces)))
-    return pieces
 
 
 def _join_meshes(pieces, kind, unit) -> Soup:

@@ -7,7 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew.geometry import vectors
+from feederscrew.heavy import heavy
 from feederscrew.units import counted
+
+manifold3d = heavy("manifold3d")
 
 MAX_MESH_BYTES = 1 << 29  # [bytes] of a file, or of what an archive unpacks to
 MAX_TEXT_BYTES = 1 << 27  # [bytes] of a mesh in text: six hundred thousand facets of an ASCII STL
@@ -21,7 +24,7 @@ class Soup:
 
     vertices: np.ndarray  # (V, 3) [unit of the file] maybe not finite
     faces: np.ndarray  # (F, 3) int
-    format: str  # a key of read_format.FORMATS
+    format: str  # a key of formats.MESH_FORMATS
     unit: str | None = None  # that the file or its format states
     warnings: tuple[str, ...] = ()
     names: tuple[str, ...] = ()  # of the objects, groups or solids that the file distinguishes; '' for none
@@ -178,15 +181,13 @@ def _split(vertices, rings) -> NDArray[np.int64]:
 
 def _ears(points, normal) -> NDArray[np.int64]:
     """(S - 2, 3) corners of the triangles of one concave facet (S, 3)."""
-    from manifold3d import triangulate
-
     across = np.eye(3)[np.argmin(np.abs(normal))]
     first = vectors.cross(normal, across)
     first = first / vectors.norm(first)
     second = vectors.cross(normal, first)
     flat = np.stack([np.einsum("si,i->s", points, axis) for axis in (first, second)], axis=1)
     flat = flat / np.abs(flat).max()  # of a facet with an area
-    ears = np.asarray(triangulate([flat]), dtype=np.int64).reshape(-1, 3)
+    ears = np.asarray(manifold3d.triangulate([flat]), dtype=np.int64).reshape(-1, 3)
     if len(ears) != len(points) - 2:
         raise DamageError(f"the outline of a facet of {len(points)} corners crosses itself")
     return ears

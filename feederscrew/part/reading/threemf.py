@@ -17,10 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew.errors import MeshError
+from feederscrew.heavy import heavy
 from feederscrew.part.reading import formats
 from feederscrew.part.reading.soup import MAX_MESH_BYTES, MAX_READ_FACETS, DamageError, Soup, refuse_size
 from feederscrew.part.repair import topology
 from feederscrew.units import counted, listed, quantity_text
+
+manifold3d = heavy("manifold3d")
 
 MAX_INSTANCES, MAX_COMPONENT_DEPTH = 5_000, 50  # instances; components within components
 MAX_PLACED_OBJECTS = 100_000  # objects, or items and components
@@ -429,12 +432,10 @@ def _cut(part, tools, where) -> Any:
 
 
 def _manifold(piece, where):
-    from manifold3d import Error, Manifold, Mesh64
-
     vertices, faces = topology.weld_corners(*topology.drop_unused_corners(piece.vertices, piece.faces))
-    mesh = Mesh64(np.ascontiguousarray(vertices), np.ascontiguousarray(faces).astype(np.uint64))
-    body = Manifold(mesh)
-    if body.status() != Error.NoError or not body.volume() > 0.0:
+    mesh = manifold3d.Mesh64(np.ascontiguousarray(vertices), np.ascontiguousarray(faces).astype(np.uint64))
+    body = manifold3d.Manifold(mesh)
+    if body.status() != manifold3d.Error.NoError or not body.volume() > 0.0:
         name = f" {quantity_text(piece.name)}" if piece.name else ""
         kind = "negative part" if piece.role == NEGATIVE_ROLE else "part with a negative part"
         raise MeshError(

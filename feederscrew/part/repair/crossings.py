@@ -8,7 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew.geometry import vectors
+from feederscrew.heavy import heavy
 from feederscrew.part.repair import topology
+
+shapely = heavy("shapely")
 
 AXIS_END_SHARE = 0.25  # [1] of the part's reach across its axis: how far the axis ends before the part does
 FACING_AWAY_SINE = (
@@ -151,8 +154,6 @@ def find_crossings(vertices, faces, tolerance) -> Crossings:
 
 def _candidates(corners, normals) -> Iterator[Any]:
     """(N, 2) pairs of facets whose boxes overlap, but for many of one plane, some at a time."""
-    import shapely
-
     if len(corners) > MAX_CROSSING_FACETS:
         return
     a, b, c = corners.transpose(1, 0, 2)

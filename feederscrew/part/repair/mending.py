@@ -9,8 +9,11 @@ from numpy.typing import NDArray
 
 from feederscrew.errors import MeshError
 from feederscrew.geometry import graphs, vectors
+from feederscrew.heavy import heavy
 from feederscrew.part.repair import topology
 from feederscrew.part.repair.topology import MeshEdges, edge_table
+
+spatial = heavy("scipy.spatial")
 
 EXPORT_SOLID = "export it as a closed solid"
 MAX_SEAM_EDGES = 5000  # open edges: with more than that the surface has worse than T-junctions
@@ -146,7 +149,17 @@ def turn_one_way_round(vertices, faces, edges, tolerance, where) -> tuple[Any, .
     askew = edges.net[two] != 0
     if not askew.any():
         return vertices, faces, ()
-    odd, shell = _parity(edges.mates(two), askew, len(faces), where)
+    # Every facet stands for two nodes, itself and its reverse; agreeing neighbours link like with like.
+    count = len(faces)
+    f, g = edges.mates(two).T
+    g = g + count * askew
+    i, j = np.concatenate([f, f + count]), np.concatenate([g, (g + count) % (2 * count)])
+    _, node = graphs.components(i, j, 2 * count)
+    as_is, reverse = node[:count], node[count:]
+    if (as_is == reverse).any():
+        raise MeshError(where, "has one side only, like a Moebius strip", EXPORT_SOLID)
+    _, shell = np.unique(np.minimum(as_is, reverse), return_inverse=True)
+    odd = as_is > reverse  # differs from the first facet of its shell
     turned = np.bincount(shell, odd) > 0.5 * np.bincount(shell)
     odd = odd != turned[shell]
     faces = np.where(odd[:, None], faces[:, ::-1], faces)
@@ -155,22 +168,6 @@ def turn_one_way_round(vertices, faces, edges, tolerance, where) -> tuple[Any, .
         faces,
         (f"{odd.sum()} of {len(faces)} facets pointed the other way than the rest; reversed",),
     )
-
-
-def _parity(mates, askew, count, where) -> Any:
-    """Which facets differ from their shell's first one, and the shell of each.
-
-    Every facet stands for two nodes, itself and its reverse; agreeing neighbours link like with like.
-    """
-    f, g = mates.T
-    g = g + count * askew
-    i, j = np.concatenate([f, f + count]), np.concatenate([g, (g + count) % (2 * count)])
-    _, node = graphs.components(i, j, 2 * count)
-    as_is, reverse = node[:count], node[count:]
-    if (as_is == reverse).any():
-        raise MeshError(where, "has one side only, like a Moebius strip", EXPORT_SOLID)
-    _, shell = np.unique(np.minimum(as_is, reverse), return_inverse=True)
-    return as_is > reverse, shell
 
 
 def _seams_closed(vertices, faces, edges, tolerance, where) -> tuple[Any, ...]:
@@ -213,12 +210,12 @@ def close_seams(vertices, faces, edges, tolerance) -> tuple[Any, ...]:
 
 def _fans(vertices, rim, tails, heads, tolerance) -> tuple[Any, ...]:
     """Facets (N, 3) between each edge and the rim corners on it, where there are any; the furthest off it."""
-    from scipy.spatial import cKDTree
-
     along = vertices[heads] - vertices[tails]
     length = vectors.norm(along)
     middles = vertices[tails] + 0.5 * along
-    near = cKDTree(vertices[rim]).query_ball_point(middles, 0.5 * length + tolerance, return_sorted=True)
+    near = spatial.cKDTree(vertices[rim]).query_ball_point(
+        middles, 0.5 * length + tolerance, return_sorted=True
+    )
     edge = np.repeat(np.arange(len(tails)), [len(corners) for corners in near])
     corner = rim[np.concatenate([np.asarray(corners, dtype=int) for corners in near])]
     offset = vertices[corner] - vertices[tails[edge]]

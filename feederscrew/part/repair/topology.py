@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 
 from feederscrew.geometry import graphs, vectors
 from feederscrew.geometry.graphs import components
+from feederscrew.heavy import heavy
+
+spatial = heavy("scipy.spatial")
 
 HASH_MIX = tuple(
     np.uint64(odd) for odd in (0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB, 0xD6E8FEB86659FD93)
@@ -65,7 +68,14 @@ def distinct_points(rows) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         The kind of each row, an index into ``first``.
     """
     rows = np.ascontiguousarray(rows, dtype=float) + 0.0
-    first, group = _grouped(_hashed(rows))
+    keys = _hashed(rows)
+    order = np.argsort(keys)
+    ordered = keys[order]
+    new = np.ones(len(keys), dtype=bool)
+    np.not_equal(ordered[1:], ordered[:-1], out=new[1:])
+    group = np.empty(len(keys), dtype=np.int64)
+    group[order] = np.cumsum(new) - 1
+    first = order[new]
     if not np.array_equal(rows[first[group]], rows):  # two kinds share a hash: one in 1e6 files of 1e6 facets
         _, first, group = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     return first, group.reshape(-1)
@@ -84,10 +94,8 @@ def near_pairs(vertices, candidates, tolerance) -> NDArray[np.int64]:
     -------
     (V,) int
     """
-    from scipy.spatial import cKDTree
-
     target = np.arange(len(vertices))
-    tree = cKDTree(vertices[candidates])
+    tree = spatial.cKDTree(vertices[candidates])
     if tree.count_neighbors(tree, tolerance) > MAX_NEAR_PAIRS:
         return target
     i, j = tree.query_pairs(tolerance, output_type="ndarray").T
@@ -106,16 +114,6 @@ def _hashed(rows) -> Any:
         mixed *= odd
         mixed ^= mixed >> np.uint64(31)
     return mixed
-
-
-def _grouped(keys) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    order = np.argsort(keys)
-    ordered = keys[order]
-    new = np.ones(len(keys), dtype=bool)
-    np.not_equal(ordered[1:], ordered[:-1], out=new[1:])
-    group = np.empty(len(keys), dtype=np.int64)
-    group[order] = np.cumsum(new) - 1
-    return order[new], group
 
 
 @dataclass(frozen=True, eq=False)

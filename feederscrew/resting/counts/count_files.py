@@ -79,13 +79,10 @@ def parse_head(lines, where) -> tuple[Any, ...]:
         if fault:
             faults.append(fault)
         else:
-            values[key] = _cleaned(key, match[2])
+            value = match[2]
+            digest = DIGEST.fullmatch(value) if key == "mesh" else None
+            values[key] = value if digest is None else digest[1].lower()
     return Head(**values), faults
-
-
-def _cleaned(key, value) -> str:
-    digest = DIGEST.fullmatch(value) if key == "mesh" else None
-    return value if digest is None else digest[1].lower()
 
 
 def _fault(where, key, value, choices) -> FeederError | None:

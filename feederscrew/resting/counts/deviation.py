@@ -7,7 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.heavy import heavy
 from feederscrew.resting.counts.profiles import AspectProfile
+
+special = heavy("scipy.special")
 
 MIN_EXPECTED_COUNT = 5.0  # expected count below which the chi-square distribution is no longer trusted
 
@@ -211,9 +214,7 @@ def _test(observed, expected, estimated=0) -> ChiSquare:
 
 
 def _tested(statistic, freedom, joined) -> ChiSquare:
-    from scipy.special import gammaincc
-
-    return ChiSquare(statistic, freedom, float(gammaincc(0.5 * freedom, 0.5 * statistic)), joined)
+    return ChiSquare(statistic, freedom, float(special.gammaincc(0.5 * freedom, 0.5 * statistic)), joined)
 
 
 def _joined(observed, expected) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:

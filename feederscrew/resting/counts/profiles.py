@@ -24,7 +24,7 @@ BY_ASPECT, BY_ORIENTATION, BY_DEVICE = (
 INTEGER = re.compile(r"\+?\d+", re.ASCII)
 FULL_TURN = 360.0  # [deg]
 MAX_PARTS_COUNTED = 1e12  # of a count
-MAX_NAME_LETTERS = 40  # of a column's name in a message
+MAX_COUNT_NAME_LETTERS = 40  # of a column's name in a message
 DECIMAL_PATTERN = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
@@ -257,7 +257,7 @@ def _oriented(where, name, faults) -> tuple[str, float] | None:
 
 
 def _judge_aspect_row(where, column, value, faults) -> None:
-    what = f"{column[:MAX_NAME_LETTERS]}: {quantity_text(value)}"
+    what = f"{column[:MAX_COUNT_NAME_LETTERS]}: {quantity_text(value)}"
     if not DECIMAL_PATTERN.fullmatch(value):
         faults.add(where, f"{what} is not a number", "write digits with a decimal point")
     elif float(value) < 0.0:

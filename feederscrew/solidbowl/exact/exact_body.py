@@ -15,8 +15,25 @@ from scipy.interpolate import make_interp_spline
 
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.geometry.vectors import product
+from feederscrew.heavy import heavy
 from feederscrew.solidbowl.facets import in_space
 from feederscrew.units import MM
+
+BRepAdaptor = heavy("OCP.BRepAdaptor")
+BRepAlgoAPI = heavy("OCP.BRepAlgoAPI")
+BRepBuilderAPI = heavy("OCP.BRepBuilderAPI")
+BRepCheck = heavy("OCP.BRepCheck")
+BRepGProp = heavy("OCP.BRepGProp")
+BRepPrimAPI = heavy("OCP.BRepPrimAPI")
+GC = heavy("OCP.GC")
+GProp = heavy("OCP.GProp")
+Geom = heavy("OCP.Geom")
+IntCurvesFace = heavy("OCP.IntCurvesFace")
+arrays = heavy("OCP.OCP.collections")
+TopAbs = heavy("OCP.TopAbs")
+TopExp = heavy("OCP.TopExp")
+TopoDS = heavy("OCP.TopoDS")
+gp = heavy("OCP.gp")
 
 SEWN = 1e-5  # [mm] edges nearer than this are one
 CURVE_STEP_RAD = 0.05  # [rad] of a curve between two places that it is led through
@@ -25,9 +42,8 @@ EPS = 1e-6  # of a volume
 
 def axis():
     """Return the Z axis."""
-    from OCP.gp import gp_Ax1, gp_Dir
 
-    return gp_Ax1(point([0, 0, 0]), gp_Dir(0, 0, 1))
+    return gp.gp_Ax1(point([0, 0, 0]), gp.gp_Dir(0, 0, 1))
 
 
 def towards(angle) -> tuple[Any, ...]:
@@ -37,23 +53,20 @@ def towards(angle) -> tuple[Any, ...]:
 
 def point(place):
     """Return a place (3,) [mm]."""
-    from OCP.gp import gp_Pnt
 
-    return gp_Pnt(*(float(x) for x in place))
+    return gp.gp_Pnt(*(float(x) for x in place))
 
 
 def cast(kind, shape):
     """Return a shape as what it is: 'Face', 'Wire', 'Shell'."""
-    from OCP.TopoDS import TopoDS
 
-    return (getattr(TopoDS, f"{kind}_s", None) or getattr(TopoDS, kind))(shape)
+    return (getattr(TopoDS.TopoDS, f"{kind}_s", None) or getattr(TopoDS.TopoDS, kind))(shape)
 
 
 def parts(body, kind):
     """Return the parts of a kind that a body has, a list."""
-    from OCP.TopExp import TopExp_Explorer
 
-    parts, walk = [], TopExp_Explorer(body, kind)
+    parts, walk = [], TopExp.TopExp_Explorer(body, kind)
     while walk.More():
         parts.append(walk.Current())
         walk.Next()
@@ -62,9 +75,8 @@ def parts(body, kind):
 
 def polygon(corners):
     """Return the closed outline through corners (K, 3) [mm]."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakePolygon
 
-    wire = BRepBuilderAPI_MakePolygon()
+    wire = BRepBuilderAPI.BRepBuilderAPI_MakePolygon()
     for corner in corners:
         wire.Add(point(corner))
     wire.Close()
@@ -73,21 +85,19 @@ def polygon(corners):
 
 def flat_face(corners):
     """Return the flat face within corners (K, 3) [mm]."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 
-    return BRepBuilderAPI_MakeFace(polygon(corners), True).Face()
+    return BRepBuilderAPI.BRepBuilderAPI_MakeFace(polygon(corners), True).Face()
 
 
 def drawn(wires, along):
     """Return the body that a flat outline, holes after it, leaves along a vector (3,) [mm]."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
-    from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
-    from OCP.gp import gp_Vec
 
-    face = BRepBuilderAPI_MakeFace(wires[0], True)
+    face = BRepBuilderAPI.BRepBuilderAPI_MakeFace(wires[0], True)
     for hole in wires[1:]:
         face.Add(hole)
-    return outwards(BRepPrimAPI_MakePrism(face.Face(), gp_Vec(*(float(x) for x in along))).Shape())
+    return outwards(
+        BRepPrimAPI.BRepPrimAPI_MakePrism(face.Face(), gp.gp_Vec(*(float(x) for x in along))).Shape()
+    )
 
 
 def outwards(body):
@@ -105,28 +115,27 @@ def broken(start, stop, end) -> list[Any]:
 
 def side(path, start, stop, z):
     """Return a side of a ring as an edge: a straight line, an arc of a circle, or else a spline."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
-    from OCP.GC import GC_MakeArcOfCircle
 
     straight = min(start[0], stop[0]) >= path.end - 1e-12 or abs(start[0] - stop[0]) < 1e-9
     if straight:
         ends = path.plan(*np.array([start, stop]).T) / MM
-        return BRepBuilderAPI_MakeEdge(*(point([*place, z]) for place in ends)).Edge()
+        return BRepBuilderAPI.BRepBuilderAPI_MakeEdge(*(point([*place, z]) for place in ends)).Edge()
     count = max(int(abs(stop[0] - start[0]) / path.radius / CURVE_STEP_RAD), 3) + 1
     ends = np.cos(path.bank_at(np.linspace(start[0], stop[0], count)))
     arc = abs(start[1] - stop[1]) < 1e-9 and path.flare == 0.0 and np.ptp(ends) * abs(start[1]) < 1e-12
     s, y = np.linspace(start, stop, 3 if arc else count).T
     places = [[*place, z] for place in path.plan(s, y) / MM]
     if arc:
-        return BRepBuilderAPI_MakeEdge(GC_MakeArcOfCircle(*map(point, places)).Value()).Edge()
+        return BRepBuilderAPI.BRepBuilderAPI_MakeEdge(
+            GC.GC_MakeArcOfCircle(*map(point, places)).Value()
+        ).Edge()
     return edge(np.array(places))
 
 
 def edge(places):
     """Return a spline through places (M, 3) [mm] as an edge."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 
-    return BRepBuilderAPI_MakeEdge(curve(*spline(places))).Edge()
+    return BRepBuilderAPI.BRepBuilderAPI_MakeEdge(curve(*spline(places))).Edge()
 
 
 def spline(places) -> tuple[Any, ...]:
@@ -139,35 +148,30 @@ def spline(places) -> tuple[Any, ...]:
 
 def curve(poles, knots, often, degree):
     """Return the curve of a spline."""
-    from OCP.Geom import Geom_BSplineCurve
 
-    return Geom_BSplineCurve(row("gp_Pnt", map(point, poles)), row("double", knots.tolist()),
+    return Geom.Geom_BSplineCurve(row("gp_Pnt", map(point, poles)), row("double", knots.tolist()),
                              row("int", often.tolist()), degree)  # fmt: skip
 
 
 def ruled(lower, upper):
     """Return the face between two splines of the same knots."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
-    from OCP.Geom import Geom_BSplineSurface
-    from OCP.OCP.collections import Array2_gp_Pnt
 
     (poles, knots, often, degree), rest = lower, upper[0]
-    grid = Array2_gp_Pnt(1, len(poles), 1, 2)
+    grid = arrays.Array2_gp_Pnt(1, len(poles), 1, 2)
     for k, pair in enumerate(zip(poles, rest), start=1):
         for column, place in enumerate(pair, start=1):
             grid.SetValue(k, column, point(place))
     ends = row("double", [0.0, 1.0]), row("int", [2, 2])
-    surface = Geom_BSplineSurface(grid, row("double", knots.tolist()), ends[0],
+    surface = Geom.Geom_BSplineSurface(grid, row("double", knots.tolist()), ends[0],
                                   row("int", often.tolist()), ends[1], degree, 1)  # fmt: skip
-    return BRepBuilderAPI_MakeFace(surface, SEWN).Face()
+    return BRepBuilderAPI.BRepBuilderAPI_MakeFace(surface, SEWN).Face()
 
 
 def row(kind, values):
     """Return values as the kernel's array of 'double', 'int' or 'gp_Pnt'."""
-    from OCP.OCP import collections
 
     values = list(values)
-    row_kind = getattr(collections, f"Array1_{kind}")(1, len(values))
+    row_kind = getattr(arrays, f"Array1_{kind}")(1, len(values))
     for k, value in enumerate(values, start=1):
         row_kind.SetValue(k, value)
     return row_kind
@@ -175,24 +179,20 @@ def row(kind, values):
 
 def closed(faces):
     """Return the solid within faces."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid, BRepBuilderAPI_Sewing
-    from OCP.TopAbs import TopAbs_SHELL
 
-    sewing = BRepBuilderAPI_Sewing(SEWN)
+    sewing = BRepBuilderAPI.BRepBuilderAPI_Sewing(SEWN)
     for face in faces:
         sewing.Add(face)
     sewing.Perform()
-    shell = parts(sewing.SewedShape(), TopAbs_SHELL)[0]
-    return outwards(BRepBuilderAPI_MakeSolid(cast("Shell", shell)).Solid())
+    shell = parts(sewing.SewedShape(), TopAbs.TopAbs_SHELL)[0]
+    return outwards(BRepBuilderAPI.BRepBuilderAPI_MakeSolid(cast("Shell", shell)).Solid())
 
 
 def volume(body) -> float:
     """Return the volume [mm3] of a body."""
-    from OCP.BRepGProp import BRepGProp
-    from OCP.GProp import GProp_GProps
 
-    properties = GProp_GProps()
-    (getattr(BRepGProp, "VolumeProperties_s", None) or BRepGProp.VolumeProperties)(
+    properties = GProp.GProp_GProps()
+    (getattr(BRepGProp.BRepGProp, "VolumeProperties_s", None) or BRepGProp.BRepGProp.VolumeProperties)(
         body, properties, EPS, False, False
     )
     return float(properties.Mass())
@@ -200,13 +200,11 @@ def volume(body) -> float:
 
 def kinds(body):
     """Return how many faces of a body are planes, cylinders, cones and ruled splines, a dict."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.TopAbs import TopAbs_FACE
 
     names = {"Plane": "planes", "Cylinder": "cylinders", "Cone": "cones", "BSplineSurface": "ruled"}
     surface_kinds = dict.fromkeys(names.values(), 0)
-    for part in parts(body, TopAbs_FACE):
-        kind = str(BRepAdaptor_Surface(cast("Face", part)).GetType()).rpartition("GeomAbs_")[2]
+    for part in parts(body, TopAbs.TopAbs_FACE):
+        kind = str(BRepAdaptor.BRepAdaptor_Surface(cast("Face", part)).GetType()).rpartition("GeomAbs_")[2]
         name = names.get(kind, "others")
         surface_kinds[name] = surface_kinds.get(name, 0) + 1
     return surface_kinds
@@ -214,19 +212,16 @@ def kinds(body):
 
 def valid(body) -> bool:
     """Say whether OpenCASCADE finds nothing wrong with a body."""
-    from OCP.BRepCheck import BRepCheck_Analyzer
 
-    return bool(BRepCheck_Analyzer(body).IsValid())
+    return bool(BRepCheck.BRepCheck_Analyzer(body).IsValid())
 
 
 def below(body, place):
     """Return the height [mm] of the first surface straight below a place (3,) [mm]; None without one."""
-    from OCP.gp import gp_Dir, gp_Lin
-    from OCP.IntCurvesFace import IntCurvesFace_ShapeIntersector
 
-    intersector = IntCurvesFace_ShapeIntersector()
+    intersector = IntCurvesFace.IntCurvesFace_ShapeIntersector()
     intersector.Load(body, 1e-6)
-    intersector.Perform(gp_Lin(point(place), gp_Dir(0, 0, -1)), 0.0, 1e5)
+    intersector.Perform(gp.gp_Lin(point(place), gp.gp_Dir(0, 0, -1)), 0.0, 1e5)
     heights = [intersector.Pnt(k + 1).Z() for k in range(intersector.NbPnt())]
     return max(heights, default=None)
 
@@ -279,20 +274,18 @@ def swept(legs):
 
 def turned_part(profile, start, angle):
     """Return a body of revolution about Z of a profile (K, 2) [m], from an angle on, over an angle [rad]."""
-    from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol
 
     r, z = np.asarray(profile, float).T / MM
     face = flat_face(np.column_stack([r * np.cos(start), r * np.sin(start), z]))
-    return outwards(BRepPrimAPI_MakeRevol(face, axis(), float(angle)).Shape())
+    return outwards(BRepPrimAPI.BRepPrimAPI_MakeRevol(face, axis(), float(angle)).Shape())
 
 
 def turned(profile, segments):
     """Return a body of revolution about Z, of a profile (K, 2) [m]: radius and height."""
-    from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol
 
     r, z = np.asarray(profile, float).T / MM
     face = flat_face(np.column_stack([r * np.cos(SEAM_ANGLE_RAD), r * np.sin(SEAM_ANGLE_RAD), z]))
-    return BRepPrimAPI_MakeRevol(face, axis()).Shape()
+    return BRepPrimAPI.BRepPrimAPI_MakeRevol(face, axis()).Shape()
 
 
 def drum(radius, low, high, segments):
@@ -302,24 +295,20 @@ def drum(radius, low, high, segments):
 
 def disc(at, size, low, high):
     """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
-    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
-    from OCP.gp import gp_Ax2, gp_Dir
 
-    foot = gp_Ax2(
+    foot = gp.gp_Ax2(
         point([at[0] / MM, at[1] / MM, low / MM]),
-        gp_Dir(0, 0, 1),
-        gp_Dir(*towards(SEAM_ANGLE_RAD)),
+        gp.gp_Dir(0, 0, 1),
+        gp.gp_Dir(*towards(SEAM_ANGLE_RAD)),
     )
-    return BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, (high - low) / MM).Shape()
+    return BRepPrimAPI.BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, (high - low) / MM).Shape()
 
 
 def bore(place, towards, size, deep):
     """Return a round rod along a unit vector (3,): its near end (3,), diameter and length [m]."""
-    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
-    from OCP.gp import gp_Ax2, gp_Dir
 
-    foot = gp_Ax2(point(np.asarray(place) / MM), gp_Dir(*(float(x) for x in towards)))
-    return BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, deep / MM).Shape()
+    foot = gp.gp_Ax2(point(np.asarray(place) / MM), gp.gp_Dir(*(float(x) for x in towards)))
+    return BRepPrimAPI.BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, deep / MM).Shape()
 
 
 def prism(area, low, high):
@@ -343,10 +332,9 @@ def plank(area, thickness, axes, foot):
 
 def patch(ring, low, high):
     """Return a body within a closed curve through places (K, 2) [m], between two heights [m]."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeWire
 
     half = len(ring) // 2
-    wire = BRepBuilderAPI_MakeWire()
+    wire = BRepBuilderAPI.BRepBuilderAPI_MakeWire()
     for places in (ring[: half + 1], np.vstack([ring[half:], ring[:1]])):
         level = np.column_stack([places, np.full(len(places), low)])
         wire.Add(edge(level / MM))
@@ -355,9 +343,8 @@ def patch(ring, low, high):
 
 def over(path, ring, low, high, chord):
     """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m]."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeWire
 
-    wire = BRepBuilderAPI_MakeWire()
+    wire = BRepBuilderAPI.BRepBuilderAPI_MakeWire()
     for a, b in zip(ring, np.roll(ring, -1, axis=0)):
         for item, other in itertools.pairwise(broken(a, b, path.end)):
             if np.abs(item - other).max() > 1e-9:
@@ -367,19 +354,17 @@ def over(path, ring, low, high, chord):
 
 def united(bodies):
     """Return the union of bodies, one after the other."""
-    from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
 
     whole, *rest = bodies
     for other in rest:
-        whole = _combined(BRepAlgoAPI_Fuse, whole, [other])
+        whole = _combined(BRepAlgoAPI.BRepAlgoAPI_Fuse, whole, [other])
     return whole
 
 
 def without(body, tools):
     """Return a body with others cut out of it."""
-    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
 
-    return _combined(BRepAlgoAPI_Cut, body, tools) if tools else body
+    return _combined(BRepAlgoAPI.BRepAlgoAPI_Cut, body, tools) if tools else body
 
 
 def above(body, height):
@@ -390,40 +375,34 @@ def above(body, height):
 
 def placed_as(body, *, mirrored, turned):
     """Return a body mirrored at the XZ plane or not, then turned about Z by an angle [rad]."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
-    from OCP.gp import gp_Ax2, gp_Dir, gp_Trsf
 
-    turn, flip = gp_Trsf(), gp_Trsf()
+    turn, flip = gp.gp_Trsf(), gp.gp_Trsf()
     turn.SetRotation(axis(), float(turned))
     if mirrored:
-        flip.SetMirror(gp_Ax2(point([0, 0, 0]), gp_Dir(0, 1, 0)))
-    return BRepBuilderAPI_Transform(body, turn.Multiplied(flip), True).Shape()
+        flip.SetMirror(gp.gp_Ax2(point([0, 0, 0]), gp.gp_Dir(0, 1, 0)))
+    return BRepBuilderAPI.BRepBuilderAPI_Transform(body, turn.Multiplied(flip), True).Shape()
 
 
 def moved(body, by):
     """Return a body moved by a vector (3,) [mm]."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
-    from OCP.gp import gp_Trsf, gp_Vec
 
-    shift = gp_Trsf()
-    shift.SetTranslation(gp_Vec(*(float(x) for x in by)))
-    return BRepBuilderAPI_Transform(body, shift, True).Shape()
+    shift = gp.gp_Trsf()
+    shift.SetTranslation(gp.gp_Vec(*(float(x) for x in by)))
+    return BRepBuilderAPI.BRepBuilderAPI_Transform(body, shift, True).Shape()
 
 
 def one_piece(body, where):
     """Return the one piece of a body; as ``facets.one_piece``."""
-    from OCP.TopAbs import TopAbs_SOLID
 
-    pieces = sorted(parts(body, TopAbs_SOLID), key=lambda item: -volume(item))
+    pieces = sorted(parts(body, TopAbs.TopAbs_SOLID), key=lambda item: -volume(item))
     if not pieces or any(volume(piece) > MIN_PIECE_VOLUME_MM3 for piece in pieces[1:]):
         raise FeederError(where, f"OpenCASCADE finds {len(pieces)} bodies", "take bowl.stl")
     return pieces[0]
 
 
 def _combined(kind, body, tools):
-    from OCP.OCP.collections import List_TopoDS_Shape
 
-    solid, lists = kind(), (List_TopoDS_Shape(), List_TopoDS_Shape())
+    solid, lists = kind(), (arrays.List_TopoDS_Shape(), arrays.List_TopoDS_Shape())
     lists[0].Append(body)
     for tool in tools:
         lists[1].Append(tool)

@@ -9,9 +9,16 @@ from pathlib import Path
 import numpy as np
 
 from feederscrew.errors import FeederError
+from feederscrew.heavy import heavy
 from feederscrew.solidbowl.closed_body import pieces
 from feederscrew.solidbowl.exact import exact_body
 from feederscrew.units import MM
+
+IFSelect = heavy("OCP.IFSelect")
+Interface = heavy("OCP.Interface")
+Message = heavy("OCP.Message")
+STEPControl = heavy("OCP.STEPControl")
+TopAbs = heavy("OCP.TopAbs")
 
 STEP_TIMESTAMP = re.compile(rb"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'")  # in the file's head: the same bytes twice
 STEP_NAME_SETTING = "write.step.product.name"
@@ -82,16 +89,16 @@ def step_bytes(bodies, name) -> bytes:
     FeederError
         If OpenCASCADE does not take one of them.
     """
-    from OCP.IFSelect import IFSelect_RetDone
-    from OCP.Interface import Interface_Static
-    from OCP.Message import Message
-    from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
 
-    messenger = (getattr(Message, "DefaultMessenger_s", None) or Message.DefaultMessenger)()
+    messenger = (getattr(Message.Message, "DefaultMessenger_s", None) or Message.Message.DefaultMessenger)()
     messenger.ChangePrinters().Clear()  # what it tells of each file stays off the terminal
-    writer = STEPControl_Writer()
-    (getattr(Interface_Static, "SetCVal_s", None) or Interface_Static.SetCVal)(STEP_NAME_SETTING, name)
-    if any(writer.Transfer(body, STEPControl_AsIs) != IFSelect_RetDone for body in bodies):
+    writer = STEPControl.STEPControl_Writer()
+    (getattr(Interface.Interface_Static, "SetCVal_s", None) or Interface.Interface_Static.SetCVal)(
+        STEP_NAME_SETTING, name
+    )
+    if any(
+        writer.Transfer(body, STEPControl.STEPControl_AsIs) != IFSelect.IFSelect_RetDone for body in bodies
+    ):
         raise _refused("cannot write it")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "body.step"
@@ -101,16 +108,14 @@ def step_bytes(bodies, name) -> bytes:
 
 
 def _opened(data):
-    from OCP.STEPControl import STEPControl_Reader
-    from OCP.TopAbs import TopAbs_SOLID
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "bowl.step"
         path.write_bytes(data)
-        reader = STEPControl_Reader()
+        reader = STEPControl.STEPControl_Reader()
         reader.ReadFile(str(path))
         reader.TransferRoots()
-        return exact_body.parts(reader.OneShape(), TopAbs_SOLID)
+        return exact_body.parts(reader.OneShape(), TopAbs.TopAbs_SOLID)
 
 
 def _off(plan, body) -> float:

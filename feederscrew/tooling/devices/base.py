@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
+import shapely
 
 from feederscrew import units
 from feederscrew import value_forms as forms
@@ -96,8 +97,6 @@ class Standing:
 
 def across(gate, width, orientations, place) -> Blade:
     """Return a Blade square across a track of some width [m], with an opening, at a place [m] along it."""
-    import shapely
-
     tall = 2.0 * max(max(orientation.height for orientation in orientations), gate.bounds[3]) + GATE_FRAME_M
     return Blade(shapely.box(0.0, 0.0, width, tall).difference(gate), foot=(place, 0.0))
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+import shapely
 
 from feederscrew import value_forms as forms
 from feederscrew.errors import ConfigError
@@ -52,8 +53,6 @@ class _Overhead(Device):
         return values.length(entry)
 
     def opening(self, orientations, width):
-        import shapely
-
         return shapely.box(0.0, 0.0, width, self.limit)
 
     @property
@@ -142,8 +141,6 @@ class Wiper(_Overhead):
     def opening(self, orientations, width):
         if not self.contour:
             return super().opening(orientations, width)
-        import shapely
-
         return shapely.Polygon([(0.0, 0.0), *self._edge(width), (width, 0.0)])
 
     def judged(self, encounter):
@@ -156,8 +153,6 @@ class Wiper(_Overhead):
 
     def standing(self, track, orientations) -> Standing:
         """Return its blade, which goes on over the free edge."""
-        import shapely
-
         room, lean = room_of(orientations), math.sin(self.sweep)
         edge = np.array(self._edge(track.extent))
         tall = (
@@ -242,14 +237,11 @@ class Profile(Device):
         return 0.0
 
     def opening(self, orientations, width):
-        import shapely
-
         free = self.free(orientations)
         return free.intersection(shapely.box(0.0, 0.0, width, MAX_OPENING_HEIGHT_M)) if self.like else free
 
     def free(self, orientations):
         """Return the opening however wide the track is, in distances from the wall and heights [m]."""
-        import shapely
 
         if not self.like:
             return shapely.Polygon(self.corners)

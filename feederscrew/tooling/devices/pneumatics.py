@@ -9,13 +9,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import shapely
-from scipy.optimize import brentq
 
 from feederscrew import units
 from feederscrew import value_forms as forms
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import turned
+from feederscrew.heavy import heavy
 from feederscrew.tooling.devices import orientation_names, values
 from feederscrew.tooling.devices.base import (
     GRIP,
@@ -32,6 +31,9 @@ from feederscrew.tooling.devices.base import (
     mapping_text,
     room_of,
 )
+
+optimize = heavy("scipy.optimize")
+shapely = heavy("shapely")
 
 AMBIENT_PRESSURE_PA = 101325.0  # [Pa]
 CHOKED = ((1.4 + 1.0) / 2.0) ** (1.4 / 0.4)  # [1] of absolute pressures: beyond it the nozzle is choked
@@ -597,4 +599,4 @@ class SteadyJet(Device):
 
 def _pressure(nozzle, force) -> float:
     """The pressure [Pa] at which a nozzle [m] has a thrust [N], which the supply makes."""
-    return float(brentq(lambda pressure: thrust(nozzle, pressure) - force, 0.0, MAX_JET_PRESSURE_PA))
+    return float(optimize.brentq(lambda pressure: thrust(nozzle, pressure) - force, 0.0, MAX_JET_PRESSURE_PA))

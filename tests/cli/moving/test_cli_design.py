@@ -29,8 +29,8 @@ def designed_block(folder, size, *more):
 
     shapes.box(*size).export(folder / "cube.stl")
     patch = pytest.MonkeyPatch()
-    patch.setattr(queues, "PARTS", 4)
-    patch.setattr(queues, "SECONDS", 2.0)
+    patch.setattr(queues, "TOUCHING_PARTS", 4)
+    patch.setattr(queues, "FILL_SECONDS", 2.0)
     patch.setattr(queues, "FILLS", queues.FILLS[1:])
     line = ["design", folder / "cube.stl", "--target", "40/min", "--draws", "2", "--jobs", "1", *more]
     try:

@@ -12,8 +12,8 @@ from feederscrew.designing import built_bowl, queues
 def cubes(tmp_path, monkeypatch):
     """Two cubes of other sizes, queues that are soon over, and no solid."""
     monkeypatch.setattr(built_bowl, "built", lambda study, settings: built_bowl.Built())
-    monkeypatch.setattr(queues, "PARTS", 4)
-    monkeypatch.setattr(queues, "SECONDS", 2.0)
+    monkeypatch.setattr(queues, "TOUCHING_PARTS", 4)
+    monkeypatch.setattr(queues, "FILL_SECONDS", 2.0)
     monkeypatch.setattr(queues, "FILLS", queues.FILLS[1:])
     found = [tmp_path / "small.stl", tmp_path / "large.stl"]
     for path, size in zip(found, (9, 11), strict=True):

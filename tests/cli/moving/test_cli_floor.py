@@ -31,6 +31,12 @@ def test_contract(run):
     assert set(found["cycle"]["state"]) <= {"stick", "slide", "hop", "tip"}
 
 
+def test_the_upper_reversal_is_in_the_cycle(run):
+    found = document(run, BRACKET, *GENTLE)
+    place = found["cycle"]["phase_deg"].index(90.0)
+    assert found["cycle"]["normal_force_N"][place] == pytest.approx(found["instant"]["normal_force_N"])
+
+
 def test_a_card_does_not_know_whether_it_tips(run):
     result = run("floor", CARD, "--aspect", "5", *GENTLE)
     assert result.exit_code == 0

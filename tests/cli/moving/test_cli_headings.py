@@ -8,7 +8,7 @@ import pytest
 import shapes
 
 PARTS = Path(__file__).parents[3] / "parts"
-BRACKET, CARD = PARTS / "lbracket_30x20x15.stl", PARTS / "arc_chute.yaml"
+BRACKET = PARTS / "lbracket_30x20x15.stl"
 CONTRACT = {"heading_deg", "share", "length_mm", "width_mm", "falls_off"}
 
 
@@ -31,6 +31,7 @@ def test_a_narrow_track_lets_the_part_fall(run):
     wide, narrow = (rows(run, BRACKET, "--aspect", "A", "--set", f"track.width={w} mm") for w in (40, 12))
     assert not any(row["falls_off"] for row in wide)
     assert [row["heading_deg"] for row in narrow if row["falls_off"]] == pytest.approx([270])
+    assert all(row["overhang_mm"] == pytest.approx(row["width_mm"] - 12.0, rel=1e-3) for row in narrow)
 
 
 def test_files(run, tmp_path):

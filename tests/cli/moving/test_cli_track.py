@@ -133,8 +133,11 @@ def test_vary_is_given_twice(run):
 
 
 def test_the_cycle_has_the_names_of_the_instant(run):
-    document = json.loads(run("track", BRACKET, "--format", "json").stdout)
-    assert set(document["instant"]) <= set(document["cycle"])
+    found = document(run, BRACKET, "--aspect", "A", *SETS)
+    assert set(found["instant"]) <= set(found["cycle"])
+    place = found["cycle"]["phase_deg"].index(90.0)  # the upper reversal, from rest and in the settled cycle
+    for name, near in (("normal_force_N", 1e-3), ("traction_N", 0.1), ("wall_1_N", 0.2), ("wall_2_N", 0.2)):
+        assert found["cycle"][name][place] == pytest.approx(found["instant"][name], rel=near), name
 
 
 def test_values_in_the_picture_do_not_cover_one_another(tmp_path):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from feederscrew_cli import health
+from feederscrew_cli import doctor
 
 SAID = ["click>=8", "numpy>=1", 'nowhere; extra == "dist"', 'click; extra == "step"', 'ruff; extra == "test"']
 
@@ -31,17 +31,17 @@ def test_it_lists_versions_extras_kernels_and_completion(run, installation):
 
 def test_every_extra_of_the_project_is_told_but_those_of_developers():
     project = tomllib.loads((Path(__file__).parents[3] / "pyproject.toml").read_text())["project"]
-    needed, extras = health.requirements()
-    assert set(extras) == set(project["optional-dependencies"]) - set(health.DEVELOPERS)
+    needed, extras = doctor.requirements()
+    assert set(extras) == set(project["optional-dependencies"]) - set(doctor.DEVELOPERS)
     assert len(needed) == len(project["dependencies"])
 
 
 def test_it_counts_the_kernels_of_the_folder_that_numba_is_told(monkeypatch, tmp_path):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    assert dict(health.kernels())["state"].startswith("none yet")
+    assert dict(doctor.kernels())["state"].startswith("none yet")
     (tmp_path / "deep").mkdir()
     (tmp_path / "deep/sweep.nbi").touch()
-    assert health.kernels() == [("state", "1 functions kept"), ("place", str(tmp_path))]
+    assert doctor.kernels() == [("state", "1 functions kept"), ("place", str(tmp_path))]
 
 
 @pytest.mark.parametrize(
@@ -54,4 +54,4 @@ def test_it_counts_the_kernels_of_the_folder_that_numba_is_told(monkeypatch, tmp
 )
 def test_it_knows_how_completion_is_turned_on(monkeypatch, shell, line):
     monkeypatch.setenv("SHELL", shell)
-    assert health.completion() == line
+    assert doctor.completion() == line

@@ -1,4 +1,4 @@
-"""Libraries and modules that take long to import: they are loaded by the picture that needs them first."""
+"""Libraries and modules that take long to import: each is loaded by the function that needs it first."""
 
 from importlib import import_module
 from types import ModuleType
