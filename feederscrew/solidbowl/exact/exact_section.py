@@ -85,7 +85,7 @@ def _clear(hole: NDArray[np.float64], width: float) -> NDArray[np.float64]:
     return np.array(beyond_borders(corners.tolist(), width, solid.WALL_OVERLAP_M))
 
 
-def _wall(path: TrackPath, section: TrackSection, begin: float, end: float, lean: float, level: float) -> Any:
+def _wall(path: TrackPath, section: TrackSection, level: float, begin: float, end: float, lean: float) -> Any:
     """A stretch of the wall: upright a cylinder, leaning back [rad] a cone."""
     start, stop = solid.wall_ends(section, begin, end)
     high = section.tallest + solid.WALL_MARGIN_M
