@@ -155,7 +155,7 @@ docs/report.png: parts/$(DEMO).stl docs/screenshot.py | $(READY)
 docs/conveying_map.png: docs/conveying_map.py | $(READY)
 	$(BIN)/python docs/conveying_map.py
 
-docs/glossary_%.png: docs/glossary.py | $(READY)
+docs/glossary_part.png docs/glossary_track.png docs/glossary_chain.png &: docs/glossary.py | $(READY)
 	$(BIN)/python docs/glossary.py
 
 # Its own environment: mkdocs and its theme are needed for nothing else. site/ needs no server and no network.
