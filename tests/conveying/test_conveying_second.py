@@ -7,6 +7,7 @@ import pytest
 from conveying_agreement import agreed
 from conveying_reference import Reference, random_settings
 
+import feederscrew as fs
 from feederscrew.conveying import answer, steady, sweep, waves
 from feederscrew.conveying.operating_point import OperatingPoint, plain
 from feederscrew.conveying.waves import PERIOD_RAD, above, harmonic, value
@@ -190,3 +191,14 @@ def test_throw_number_is_where_hops_begin():
     for share, hops in ((1.0 - 1e-9, False), (1.0 + 1e-6, True)):
         found = travel_of(setting._replace(ratio=setting.ratio * share / throw))
         assert (found[steady.FRACTIONS + 3] > 0.0) == hops
+
+
+def test_a_second_mode_along_the_first_is_a_second_harmonic_of_the_same_direction():
+    """An invariance: the key that names the direction of the first mode changes nothing; another one does."""
+    mode = {"vibration_angle": 0.4, "second_harmonic": 0.3, "second_harmonic_phase": 1.0}
+
+    def velocity(**more):
+        return fs.convey(fs.read_bowl(), **mode, **more).answer.velocity
+
+    assert velocity(second_harmonic_angle=0.4) == velocity()
+    assert velocity(second_harmonic_angle=0.7) != velocity()
