@@ -257,6 +257,9 @@ def _dimension_width(drawing: Drawing, hole: NDArray[np.float64], x: float, view
         drawing.length(ends[0], ends[1], (0.001, 0.0), view.scale)
 
 
+BORE_LINE_MM = 4.0  # [mm] from line to line of what is written of the bores
+
+
 def draw_wall_bores(drawing: Drawing, stations: Sequence[Station], view: View, low: float) -> float:
     """Draw the holes of nozzles in the wall, seen from the bowl's axis, on a track [mm]; return the top [mm].
 
@@ -268,22 +271,26 @@ def draw_wall_bores(drawing: Drawing, stations: Sequence[Station], view: View, l
         return low - 10.0
     along = View((view.at[0], low), view.scale)
     top = low + max(z + r for _, z, r in bores) / MM * view.scale + 5.0
-    for s in sorted({s for s, _, _ in bores}):
-        column = [(z, r) for place, z, r in bores if place == s]
-        middle = float(along.placed([s, 0.0])[0])
-        drawing.lines([[(middle, low - 2.0), (middle, top)]], "CENTRE")
-        drawing.lines([[(middle - 25.0, low), (middle + 9.0, low)]], "OUTLINE")
+    columns = {s: sorted({(z, r) for place, z, r in bores if place == s}) for s, _, _ in sorted(bores)}
+    middles = {s: float(along.placed([s, 0.0])[0]) for s in columns}
+    title = top + 1.0 + BORE_LINE_MM * len(columns)  # above a line of text for each column
+    drawing.lines([[(min(middles.values()) - 25.0, low), (max(middles.values()) + 9.0, low)]], "OUTLINE")
+    for row, (s, column) in enumerate(columns.items()):
+        drawing.lines([[(middles[s], low - 2.0), (middles[s], top)]], "CENTRE")
         for z, r in column:
             drawing.circle(along.placed([s, z]), r / MM * view.scale, "BORE")
-        ends = spread([low + z / MM * view.scale for z, _ in column], TEXT_GAP)
-        for (z, _), end in zip(column, ends):
-            drawing.ordinate(along.placed([s, z]), (middle + 14.0, end), (middle, low), True, view.scale)
-        size = 2.0 * column[0][1] / MM
-        drawing.text(middle - 5.0, low + 3.0, f"{len(column)} x Ø{size:.4g} through the wall", 2.5, "right")
-        at = f"at {s / MM:.5g} from D, heights over the track"
-        drawing.text(middle - 5.0, low - 4.5, at, 2.5, "right")
-    drawing.text(view.at[0], top + 1.0, "wall seen from the bowl's axis", 2.5, bold=True)
-    return top + 5.0
+        following = next((other for other in columns if other > s), s)
+        if following == s or column != columns[following]:  # the last of those alike has the heights
+            ends = spread([low + z / MM * view.scale for z, _ in column], TEXT_GAP)
+            for (z, _), end in zip(column, ends):
+                drawing.ordinate(
+                    along.placed([s, z]), (middles[s] + 14.0, end), (middles[s], low), True, view.scale
+                )
+        bore = f"{len(column)} x Ø{2.0 * column[0][1] / MM:.4g} through the wall"
+        text = f"{bore} at {s / MM:.5g} from D, heights over the track"
+        drawing.text(view.at[0], title - BORE_LINE_MM * (row + 1), text, 2.5)
+    drawing.text(view.at[0], title, "wall seen from the bowl's axis", 2.5, bold=True)
+    return title + 4.0
 
 
 def device_rows(stations: Sequence[Station], angle: Callable[[float], float]) -> list[list[str]]:
@@ -302,7 +309,7 @@ def device_rows(stations: Sequence[Station], angle: Callable[[float], float]) ->
         lines = [line for words in _device_words(station) for line in _wrapped(words)]
         far = ["outlet", "outlet"] if open_end else [f"{end / MM:.5g}", f"{angle(end):.4g}"]
         rows.append(
-            [str(number), station.device.full_name[:34], f"{start / MM:.5g}", far[0], f"{angle(start):.4g}",
+            [str(number), station.device.full_name[:36], f"{start / MM:.5g}", far[0], f"{angle(start):.4g}",
              far[1], lines[0]]
         )  # fmt: skip
         rows += [["", "", "", "", "", "", line] for line in lines[1:]]

@@ -327,3 +327,23 @@ def test_the_view_of_a_vision_reject_has_its_sensor_its_nozzles_and_their_air(ly
     assert len(rejected.patches) == 2 * len(jets)
     for axes in (passes, rejected):
         assert [text.get_text() for text in axes.texts] == ["sensor"]
+
+
+def test_what_is_written_of_two_columns_of_nozzles_stands_in_lines_of_its_own():
+    """Texts of a second sensor lay on those of the first, and heights alike were written twice."""
+    jets = [SimpleNamespace(at=(0.01, 0.0, z), radius=1e-3) for z in (2e-3, 6e-3)]
+    stations = [SimpleNamespace(start=start, standing=SimpleNamespace(jets=jets)) for start in (0.04, 0.055)]
+    texts, heights = [], []
+    drawing = SimpleNamespace(
+        lines=lambda *_: None, circle=lambda *_: None, ordinate=lambda *shown: heights.append(shown),
+        text=lambda x, y, *words, **_: texts.append((x, y, words[0])),
+    )  # fmt: skip
+    view = tooling_drawing.View((20.0, 0.0), 1.0)
+    top = tooling_drawing.draw_wall_bores(drawing, stations, view, 30.0)
+    assert [words.partition(" from D")[0][-3:] for *_, words in texts[:2]] == [" 50", " 65"] and len(
+        heights
+    ) == 2
+    rows = sorted(y for _, y, _ in texts)
+    assert (
+        {x for x, *_ in texts} == {20.0} and min(np.diff(rows)) >= 3.9 and top > rows[-1] and rows[0] > 36.0
+    )
