@@ -3,6 +3,7 @@
 With it the friction that keeps a part from slipping, points at other radii, and the best elliptical phase.
 """
 
+import functools
 import math
 from dataclasses import dataclass, replace
 from typing import Any
@@ -162,9 +163,14 @@ def answer(bowl) -> Any:
     """
     conveying(bowl)
     setting = OperatingPoint(*settings(bowl).tolist())
+    return _answer(bowl, setting, np.array(_surveyed(setting)))
+
+
+@functools.lru_cache(maxsize=64)  # a drive is asked for its velocity, its hop and its hardest landing
+def _surveyed(setting: OperatingPoint) -> tuple[float, ...]:
     out = np.empty(steady.COLUMNS)
     steady.survey(setting, out)
-    return _answer(bowl, setting, out)
+    return tuple(out.tolist())
 
 
 def throw_number(bowl) -> float:

@@ -84,6 +84,9 @@ def sweep(settings, workers=None) -> NDArray[np.float64]:
     starts = range(0, len(settings), SETTINGS_A_LOT)
     run = _compiled()
     run(settings[:0], out[:0])
+    if len(settings) <= SETTINGS_A_LOT:
+        run(settings, out)
+        return out
     with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
         list(
             pool.map(

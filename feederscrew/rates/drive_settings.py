@@ -30,8 +30,8 @@ DECIDED = 0.03  # of the rate: as near as the parts that decide are asked for, w
 ACCEPTED_RATE_ERROR = (
     0.04  # of the rate: a setting gives it; what arrives is sampled, so that it jumps by a few per cent
 )
-LED = 0.1  # of the rate: a setting that fewer parts lead no nearer to it is sought only if no other gives it
-LEADS = 2  # steps that fewer parts lead
+LED = 0.1  # of the rate: a setting led no nearer to it by the bowl's own shares waits for all others
+LEADS = 3  # steps that the shares of the bowl's own drive lead
 ROUNDS, REMEMBERED = 8, 3  # steps towards a setting, and those whose parts lead on
 SETTING_TOLERANCE = 0.01  # of a value: two settings are one
 SETTING_DIGITS = 5  # of a value as it is printed
@@ -73,6 +73,7 @@ def solutions(
     density: Density,
     *,
     rough: Density | None = None,
+    sampled: bool = False,
     worst: bool = False,
     progress: Callable[[int, int], Any] | None = None,
 ) -> list[Solution]:
@@ -89,7 +90,10 @@ def solutions(
         From a bowl to the well-oriented parts on a length of its track [1/m], with what arrives at its drive
         and without what that turns over; of None, at the bowl's own drive as if it turned over none.
     rough : callable, optional
-        The same of fewer parts, sooner: it leads to a setting that ``density`` then decides on.
+        The same with what arrives at the bowl's own drive, sooner: it leads to a setting that ``density``
+        then decides on.
+    sampled : bool
+        What arrives is sampled by ``density``: a setting is then no better known than to DECIDED.
     worst : bool
         Reach the target at the slowest of every start and surface, as ``well_oriented.velocity``.
     progress : function, optional
@@ -110,14 +114,12 @@ def solutions(
     if not any(np.isfinite(look.speeds).any() for look in looks):
         raise FeederError("track.climb", "is steeper than friction holds", "lower the climb")
     starts = [(look, value) for look in looks for value in look.starts(target / density(None))]
-    likely, unlikely = _led(starts, target, rough)
+    likely, unlikely = _led(starts, target, rough or density)
     settings_tried, near = [], list[Solution]()
     for count, (look, value) in enumerate(likely + unlikely):
         if near and count >= len(likely):
             break
-        settings_tried.append(
-            _settled(look, value, target, density, RATE_TOLERANCE if rough is None else DECIDED)
-        )
+        settings_tried.append(_settled(look, value, target, density, DECIDED if sampled else RATE_TOLERANCE))
         near = [
             solution
             for solution in _separate_solutions(settings_tried, target)
@@ -131,10 +133,8 @@ def solutions(
     return sorted(near or beyond, key=lambda solution: solution.order)
 
 
-def _led(starts: Starts, target: float, rough: Density | None) -> tuple[Starts, Starts]:
-    """Where fewer parts lead from each start, none beside another: those LED to the rate, and the others."""
-    if rough is None:
-        return starts, []
+def _led(starts: Starts, target: float, rough: Density) -> tuple[Starts, Starts]:
+    """Where the own shares lead from each start, none beside another: those LED to the rate, the others."""
     likely, unlikely = Starts(), Starts()
     for look, value in starts:
         value, rate = _lead(look, value, target, rough)
@@ -152,18 +152,17 @@ def _places(starts: Starts) -> list[tuple[Key, float]]:
 
 
 def _lead(look: "_Look", value: float, target: float, rough: Density) -> tuple[float, float]:
-    """The value that few parts lead to from a start, and the rate they give there.
-
-    They are too few for more than their mean at some drives near to each other.
-    """
-    densities = []
+    """The value that the shares of the bowl's own drive lead to from a start, and the rate there."""
+    rate = 0.0
     for _ in range(LEADS):
-        densities.append(rough(turned(look.bowl, look.key, look.readable(value))))
-        there = look.crossings(target / float(np.mean(densities))) if densities[-1] > 0.0 else np.zeros(0)
-        if not there.size:
+        at = look.readable(value)
+        density = rough(turned(look.bowl, look.key, at))
+        rate = look.speed(at) * density
+        there = look.crossings(target / density) if density > 0.0 else np.zeros(0)
+        if abs(rate - target) <= RATE_TOLERANCE * target or not there.size:
             break
         value = float(there[np.argmin(np.abs(there - value))])
-    return value, look.speed(value) * float(np.mean(densities))
+    return value, rate
 
 
 def _settled(

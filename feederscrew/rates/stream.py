@@ -11,6 +11,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.documents import hint
 from feederscrew.errors import FeederError
 from feederscrew.rates.tipping import TrackTipping, marked
+from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts.profiles import DeviceCounts
 from feederscrew.tooling import orientations as tooling
 from feederscrew.tooling.clearing import seconds
@@ -273,6 +274,23 @@ def along(lying, aspects, chain=(), sigma=0.0, bowl=None, rows=None) -> Orientat
         gap=0.0 if bowl is None else needed_spacing(chain, lying, bowl),
         tipping=tips,
     )
+
+
+def with_shares(queue: Orientations, aspects: Aspects) -> Orientations:
+    """Return the same orientations, devices and drive where the aspects arrive in other shares."""
+    rows = [aspects.names.index(orientation.aspect) for orientation in queue.lying]
+    lying = tuple(
+        replace(
+            orientation,
+            chances={rule: float(p[row]) * orientation.heading_share for rule, p in aspects.chances.items()},
+        )
+        for orientation, row in zip(queue.lying, rows)
+    )
+    rules = {
+        rule: check.frozen(np.array([orientation.chances[rule] for orientation in lying]))
+        for rule in aspects.chances
+    }
+    return replace(queue, lying=lying, rules=rules, interval=check.frozen(_interval(aspects, lying)))
 
 
 def _clearing(passes, lying, chain, bowl):
