@@ -6,6 +6,7 @@ arguments is not read, and numba does the work.
 """
 
 import ctypes
+import functools
 import hashlib
 import os
 import re
@@ -14,7 +15,7 @@ import sys
 import tempfile
 import threading
 from collections.abc import Callable, Sequence
-from importlib import metadata
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -86,7 +87,7 @@ class ObjectCode:
             return None
         import llvmlite.binding as llvm
 
-        made_by = (sys.version, metadata.version("numba"), metadata.version("llvmlite"))
+        made_by = (sys.version, *_releases())
         processor = (llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten())
         digest = hashlib.sha256(repr((key, made_by, processor)).encode()).hexdigest()[:16]
         return self.folder / f"{self._name()}-{digest}.o"
@@ -139,6 +140,14 @@ class ObjectCode:
         except (AttributeError, KeyError, NameError, RuntimeError):
             return  # a release of numba that holds its functions in another way
         _write(path, hashlib.sha256(code).digest() + code)
+
+
+@functools.cache
+def _releases() -> tuple[str, ...]:
+    """Return the releases of numba and llvmlite that are installed, by the names of their folders."""
+    numba = find_spec("numba")
+    installed = Path(str(numba.origin)).parents[1] if numba else Path()
+    return tuple(sorted(path.name for name in ("numba", "llvmlite") for path in installed.glob(f"{name}-*")))
 
 
 def _flatten(value: Any, words: list[int], types: list[Any]) -> None:
