@@ -72,12 +72,7 @@ def kept_entry(function: Callable[..., None]) -> ObjectCode:
     """As ``entry`` of a function that no compiled one calls: in a later run it needs no numba."""
     root = os.environ.get("NUMBA_CACHE_DIR")
     folder = Path(root) if root else Path(inspect.getfile(function)).parent / "__pycache__"
-    return ObjectCode(function, folder, _fingerprint(function.__module__))
-
-
-def dispatcher_of(function: Callable[..., Any]) -> Any:
-    """Return numba's dispatcher of an entry."""
-    return _once(function)
+    return ObjectCode(function, lambda: _once(function), folder, _fingerprint(function.__module__))
 
 
 def entry(function, arrays=False):

@@ -45,19 +45,13 @@ _engines: list[Any] = []  # they own the code that is called
 class ObjectCode:
     """A function that Python calls, by object code where that is on disk, else by a dispatcher of numba."""
 
-    def __init__(self, function: Callable[..., Any], folder: Path | None, digest: str) -> None:
-        self.py_func, self.folder, self.digest = function, folder, digest
+    def __init__(
+        self, function: Callable[..., Any], dispatcher: Callable[[], Any], folder: Path | None, digest: str
+    ) -> None:
+        self.py_func, self.dispatcher = function, functools.cache(dispatcher)  # numba's own way to it
+        self.folder, self.digest = folder, digest
         self._by_types: dict[tuple[Any, ...], Callable[[Any], int] | None] = {}  # None: numba does it
-        self._dispatcher: Any = None
         self._lock = threading.Lock()
-
-    def dispatcher(self) -> Any:
-        """Return numba's own way to the function."""
-        if self._dispatcher is None:
-            from feederscrew.geometry.compiled import dispatcher_of
-
-            self._dispatcher = dispatcher_of(self.py_func)
-        return self._dispatcher
 
     def on_disk(self) -> bool:
         """Return whether object code of the sources as they are is on disk, whatever the arguments."""

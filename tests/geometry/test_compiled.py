@@ -71,12 +71,11 @@ class Turns(NamedTuple):
 
 def test_object_code_gives_what_numba_gives_and_is_not_read_once_it_is_damaged(tmp_path, monkeypatch):
     monkeypatch.setattr(door, "_can_keep", lambda: False)  # of what numba kept it cannot say the text
-    door._once.cache_clear()
     numbers, plain = np.linspace(-2.0, 2.0, 9), np.empty(9)
     called = []
 
     def outcome(turns, numba_does):
-        fresh = ObjectCode(spun, tmp_path, "own")
+        fresh = ObjectCode(spun, lambda: door.entry(spun), tmp_path, "own")
         numba = fresh.dispatcher
         called.clear()
         fresh.dispatcher = lambda: called.append(1) or numba()
