@@ -16,10 +16,10 @@ from feederscrew.bowl.devices import check_written
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import calm_drive, proposals, short_trials
 from feederscrew.designing.record import DEVICE, DRIVE, PART, RATE_KEPT, Attempt, DesignRequest, RobustRun
-from feederscrew.designing.robust import LEAST_SHARE_LEAVING, denied, robust_run
+from feederscrew.designing.short_trials import LEAST_SHARE_LEAVING, denied, robust_run
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.part.record import Part
-from feederscrew.rates import arrivals, stream
+from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import FLAT_KIND
 from feederscrew.running import RunSettings
@@ -593,7 +593,7 @@ def at_its_drive(search, candidate) -> tuple[Any, ...]:
     if search.shares_given:
         return search.shares, candidate
     arrivals_there, bowl = arriving(search, candidate.bowl), candidate.bowl
-    orientations = arrivals.oriented(
+    orientations = stream.oriented(
         proposals.known_through(search.part, arrivals_there.aspects, bowl), arrivals_there.measured
     )
     if [orientation.name for orientation in orientations.lying] != [
@@ -607,7 +607,7 @@ def at_its_drive(search, candidate) -> tuple[Any, ...]:
 def offered(search, bowl) -> tuple[Any, ...]:
     """Return what comes along a track, Orientations, and in which shares (M,) [1]."""
     orientations = proposals.known_through(search.part, search.shares.aspects, bowl)
-    orientations = arrivals.oriented(orientations, search.shares.measured)
+    orientations = stream.oriented(orientations, search.shares.measured)
     weights = np.nan_to_num(orientations.rules[search.request.rule])
     total = weights.sum()
     return orientations, weights / total if total > 0.0 else np.full(len(weights), 1.0 / len(weights))
@@ -791,7 +791,7 @@ def attempted(search, plain_bowl, proposal, weights, driven=None) -> Candidate:
     plain_bowl = _drawable(search, plain_bowl, proposal)
     own = driven_for(search, plain_bowl, proposal, weights) if driven is None else driven
     bowl = replace(own, track=plain_bowl.bowl.track, devices=proposal.devices)
-    orientations = arrivals.oriented(
+    orientations = stream.oriented(
         proposals.known_through(part, search.shares.aspects, bowl), search.shares.measured
     )
     name = orientations.lying[proposal.row].name

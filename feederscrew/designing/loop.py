@@ -19,7 +19,6 @@ from feederscrew.designing import (
     short_trials,
 )
 from feederscrew.designing.exploring import Candidate, Progress, Search
-from feederscrew.designing.long_rides import LongRide, long_ride
 from feederscrew.designing.proposals import COST_CLASSES
 from feederscrew.designing.record import (
     DRAWS_HELD,
@@ -32,10 +31,12 @@ from feederscrew.designing.record import (
     DesignRequest,
     DesignStudy,
     FilledQueue,
+    LongRide,
     NearestDesign,
     RobustRun,
+    long_ride,
 )
-from feederscrew.designing.robust import robust_run
+from feederscrew.designing.short_trials import robust_run
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors

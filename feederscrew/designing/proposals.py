@@ -8,8 +8,7 @@ import numpy as np
 
 from feederscrew.designing import short_trials
 from feederscrew.designing.record import RobustRun
-from feederscrew.designing.robust import CARRIED
-from feederscrew.designing.short_trials import Tried
+from feederscrew.designing.short_trials import CARRIED, Tried
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import KINDS, cost_class, dearer, names

@@ -10,8 +10,8 @@ from feederscrew.bowl.devices import unknown_aspects
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.part.record import Part
-from feederscrew.rates import arrivals, well_oriented
 from feederscrew.rates import drive_settings as knobs
+from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.stream import along
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
@@ -160,7 +160,7 @@ class _DriveWays:
         """At a drive; None: at the bowl's own as if it turned nothing over."""
         aspect_shares = self.shares(driven or self.bowl)
         on_the_track = orientations(self.part, aspect_shares.aspects, self.bowl.track)
-        return arrivals.oriented(
+        return stream.oriented(
             along(on_the_track, aspect_shares.aspects, self.chain, bowl=driven), aspect_shares.measured
         )
 

@@ -154,7 +154,7 @@ def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_u
     made = calm_drive.PlainBowl(BOWL, frozenset(), None)
     search.shares = SimpleNamespace(aspects=find(PART), measured=None)
     proposal, strokes = proposals.Proposal(0, (), (), "no device"), []
-    monkeypatch.setattr(exploring.arrivals, "oriented", lambda known, _: known)
+    monkeypatch.setattr(exploring.stream, "oriented", lambda known, _: known)
 
     def short(_, bowl, ways, weights, proposal):
         strokes.append(bowl.drive.amplitude)

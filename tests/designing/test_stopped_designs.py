@@ -10,7 +10,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.designing import exploring, families, loop, proposals, queues, short_trials
 from feederscrew.designing.record import DesignRequest
-from feederscrew.designing.robust import robust_run
+from feederscrew.designing.short_trials import robust_run
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.studies.rate import Shares
