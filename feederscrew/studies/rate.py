@@ -1,7 +1,7 @@
 """The study of ``feeder rate``: well-oriented parts per minute of one part from one bowl."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from typing import Any, Unpack, cast
 
@@ -132,7 +132,7 @@ def shares(
     if np.count_nonzero(aspects.stable) < 2:
         return Shares(aspects)
     if stream.too_long(aspects, bowl):
-        return Shares(stream.not_fed(aspects))
+        return Shares(replace(aspects, warnings=(*aspects.warnings, stream.TOO_LONG)))
     arrived = stream.arrived(aspects, _on_the_floor(part, aspects, bowl, fed, seed, run), seed)
     return Shares(arrived, fed=arrived.recommended is not aspects.recommended)
 
