@@ -75,7 +75,7 @@ def test_a_family_is_not_proved_where_the_values_of_all_are_still_tried(monkeypa
     def stopped(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(families, "_member", lambda part, *_, **__: design(part))
+    monkeypatch.setattr(families.loop, "design", lambda part, *_, **__: design(part))
     monkeypatch.setattr(families, "_of_one_chain", stopped)
     found = families.family(held, bowls.default(), frozenset(), REQUEST)
     assert (found.partial, found.status, len(found.members)) == (True, "not proved", 2)
