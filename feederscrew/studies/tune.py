@@ -10,8 +10,8 @@ from feederscrew.bowl.devices import unknown_aspects
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.part.record import Part
-from feederscrew.rates import arrivals, well_oriented
 from feederscrew.rates import drive_settings as knobs
+from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.stream import along, with_shares
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
@@ -156,16 +156,14 @@ class _DriveWays:
     def _along_as_here(self, driven: Bowl | None) -> well_oriented.Orientations:
         """At a drive, with what arrives at the bowl's own; None: as if it turned nothing over."""
         here = self.shares(self.bowl)
-        return arrivals.oriented(
-            along(self.on_the_track, here.aspects, self.chain, bowl=driven), here.measured
-        )
+        return stream.oriented(along(self.on_the_track, here.aspects, self.chain, bowl=driven), here.measured)
 
     def along(self, driven: Bowl | None) -> well_oriented.Orientations:
         """At a drive, with what arrives there; None: at the bowl's own as if it turned nothing over."""
         here, aspect_shares = self.along_as_here(driven), self.shares(driven or self.bowl)
         if aspect_shares is self.shares(self.bowl):
             return here
-        return arrivals.oriented(with_shares(here, aspect_shares.aspects), aspect_shares.measured)
+        return stream.oriented(with_shares(here, aspect_shares.aspects), aspect_shares.measured)
 
 
 def _tuned(solution: knobs.Solution, bowl: Bowl, drive_ways: _DriveWays) -> Tuned:

@@ -10,7 +10,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.dropping import arrival, plate_test
 from feederscrew.errors import FeederError
-from feederscrew.rates import arrivals
+from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import shares
 
@@ -77,7 +77,7 @@ def test_a_part_too_small_to_be_followed_on_its_floor_ends_at_once():
     known = shares(part, bowl)
     assert not known.fed
     assert known.aspects.recommended.rule == known.aspects.closed.rule
-    assert known.aspects.warnings[-1] == arrivals.TOO_LONG
+    assert known.aspects.warnings[-1] == stream.TOO_LONG
     with pytest.raises(FeederError, match=r"a part so small takes .* steps at this drive for so long"):
         plate_test.test(part, known.aspects, [bowl], "feed", {})
 
