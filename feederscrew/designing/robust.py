@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from feederscrew import check
-from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
+from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.designing import short_trials
 from feederscrew.designing.record import RobustRun
 from feederscrew.dropping.pool import gather

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew import check
-from feederscrew.conveying.sensitivity import even_range
+from feederscrew.conveying.answer import even_range
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.falling import Launched
 from feederscrew.dropping.rounded_hull import lowest_on
@@ -41,7 +41,7 @@ class Launch:
         return replace(self, name="own", **changes) if changes else self
 
     def scattering(self) -> Any:
-        """Return the launch with one value of restitution as ``sensitivity.even_range`` round it."""
+        """Return the launch with one value of restitution as ``answer.even_range`` round it."""
         low, high = self.restitution
         return replace(self, restitution=even_range(low) if low == high else (low, high))
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from feederscrew import check, documents
-from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
+from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.dropping.kernel import body, one_drop
 from feederscrew.dropping.launch_conditions import lowest_points
 from feederscrew.dropping.pool import in_batches

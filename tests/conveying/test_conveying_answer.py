@@ -8,7 +8,7 @@ import pytest
 from mechanics_samples import box_posture
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying import answer, sensitivity
+from feederscrew.conveying import answer
 from feederscrew.conveying.operating_point import FLIGHT, PHASES, plain
 from feederscrew.conveying.steady import trace
 from feederscrew.errors import ConfigError
@@ -185,16 +185,16 @@ def test_one_screw_moves_the_whole_bowl():
 
 def test_sensitivity_is_a_difference_of_answers():
     here = driven(50, 1.0, 25, 0.4)
-    nearby = sensitivity.sensitivity(here)
+    nearby = answer.sensitivity(here)
     more = driven(50, 1.1, 25, 0.4)
     assert nearby["amplitude"].more == pytest.approx(answer.answer(more).velocity)
     assert nearby["friction"].less == pytest.approx(answer.answer(driven(50, 1.0, 25, 0.36)).velocity)
     assert nearby["angle"].more == pytest.approx(answer.answer(driven(50, 1.0, 27.5, 0.4)).velocity)
-    assert sensitivity.friction_doubt(here).more == pytest.approx(
+    assert answer.friction_doubt(here).more == pytest.approx(
         answer.answer(driven(50, 1.0, 25, 0.48)).velocity
     )
-    assert sensitivity.Neighbours(0.9, 1.1).elasticity(1.0) == pytest.approx(1.0)
-    assert np.isnan(sensitivity.Neighbours(0.0, 0.1).elasticity(0.0))
+    assert answer.Neighbours(0.9, 1.1).elasticity(1.0) == pytest.approx(1.0)
+    assert np.isnan(answer.Neighbours(0.0, 0.1).elasticity(0.0))
 
 
 def test_validity_names_its_source_where_parts_hop():

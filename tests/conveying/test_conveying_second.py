@@ -8,7 +8,7 @@ from conveying_agreement import agreed
 from conveying_reference import Reference, random_settings
 
 import feederscrew as fs
-from feederscrew.conveying import answer, steady, sweep, waves
+from feederscrew.conveying import answer, steady, waves
 from feederscrew.conveying.operating_point import OperatingPoint, plain
 from feederscrew.conveying.waves import PERIOD_RAD, above, harmonic, value
 from feederscrew.mechanics import limits
@@ -104,7 +104,7 @@ def test_compiled_equals_plain():
         for restitution in (0.0, 0.4)
         for lead, share, phase, turn in rng.uniform((-3, 0, -3, 0), (3, 1, 3, 1), (1, 4))
     ]
-    for row, setting in zip(sweep.sweep(np.array(rows)), rows, strict=True):
+    for row, setting in zip(answer.sweep(np.array(rows)), rows, strict=True):
         out = travel_of(setting)
         if out[steady.STATUS] == steady.PERIODIC and out[steady.HIGH] - out[steady.LOW] < 1e-9:
             np.testing.assert_allclose(row, out, rtol=1e-9, atol=1e-11)
