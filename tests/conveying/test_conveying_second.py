@@ -121,15 +121,6 @@ def test_a_second_harmonic_carries_a_part_along_a_level_track():
     assert other[steady.VELOCITY] == pytest.approx(-velocity, rel=1e-12)
 
 
-@pytest.mark.parametrize("phase", [0.0, 0.7, 2.0])
-def test_half_a_turn_of_the_second_harmonic_turns_the_ratchet_round(phase):
-    setting = plain(2.0, 0.0, 0.0, 0.3)._replace(second=0.4, second_phase=phase)
-    turned = setting._replace(second_phase=phase + math.pi)
-    assert travel_of(turned)[steady.VELOCITY] == pytest.approx(
-        -travel_of(setting)[steady.VELOCITY], abs=1e-12
-    )
-
-
 def test_two_modes_that_swing_apart_make_an_asymmetric_feeder():
     """A second mode along the track alone ratchets as far either way; one with a normal part does not."""
     level = plain(1.5, 0.0, 0.0, 0.4)._replace(second=0.3, second_turn=30 * DEG)
