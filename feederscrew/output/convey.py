@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying import answer, sensitivity, steady
+from feederscrew.conveying import answer, steady
 from feederscrew.conveying.answer import throw_of_flight
 from feederscrew.conveying.operating_point import PHASES
 from feederscrew.heavy import heavy
@@ -33,7 +33,7 @@ SLIP_DIRECTIONS = {"forward": "slip up the track", "backward": "slip down the tr
 
 def document(study) -> dict[Any, Any]:
     """Return a ConveyStudy as the JSON document."""
-    conveying, change = study.answer, sensitivity.SENSITIVITY_CHANGE
+    conveying, change = study.answer, answer.SENSITIVITY_CHANGE
     return {
         "status": conveying.status,
         "period": conveying.period,
@@ -54,7 +54,7 @@ def document(study) -> dict[Any, Any]:
         "hardest_impact_mm_s": conveying.hardest_impact / MM_S,
         "flights_per_period": conveying.flights,
         "sensitivity": {name: _changed(conveying, pair, change) for name, pair in study.nearby.items()},
-        "friction_doubt": _changed(conveying, study.doubt, sensitivity.FRICTION_DOUBT),
+        "friction_doubt": _changed(conveying, study.doubt, answer.FRICTION_DOUBT),
         "restitution_doubt": rebound(study.bowl, study.rebound),
         "validity": study.validity,
         "bowl": bowls.texts(study.bowl.settings),
@@ -167,11 +167,11 @@ def _changed(point, pair, change) -> dict[Any, Any]:
 def rebound(bowl, neighbours) -> dict[Any, Any] | None:
     """Return a document's entry on the spread of restitution; None where nothing is thrown up.
 
-    ``neighbours`` are those of ``sensitivity.restitution_doubt``.
+    ``neighbours`` are those of ``answer.restitution_doubt``.
     """
     if neighbours is None:
         return None
-    low, high = sensitivity.rebounds(bowl)
+    low, high = answer.rebounds(bowl)
     return {
         "restitution_low": low,
         "restitution_high": high,

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.dropping.traces import DropTrace, chosen
+from feederscrew.dropping.drop_test import DropTrace, chosen
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
+from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.dropping import toss_runs
 from feederscrew.dropping.toss_runs import FACE_NAMES
 from feederscrew.output import columns, style, tables

@@ -9,7 +9,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.schema import BY_NAME, Key
-from feederscrew.conveying import answer, sensitivity
+from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError, FeederError
 
 KNOBS = ("drive.amplitude", "drive.vibration_angle", "drive.frequency")  # turned one at a time
@@ -253,7 +253,7 @@ def _speeds(bowl: Bowl, key: Key, values: np.ndarray, worst: bool) -> np.ndarray
     here = answer.cells(there)
     if not worst:
         return here["velocity"]
-    surfaces = sensitivity.surfaces(there, (here["throw_number"] > 1.0).any())[1:]
+    surfaces = answer.surfaces(there, bool((here["throw_number"] > 1.0).any()))[1:]
     around = [here, *map(answer.cells, surfaces)]
     return np.min([cells["low"] for cells in around], axis=0)  # NaN where one friction has no steady state
 
