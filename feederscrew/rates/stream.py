@@ -13,8 +13,8 @@ from feederscrew.errors import FeederError
 from feederscrew.rates.tipping import TrackTipping, marked
 from feederscrew.resting.counts.profiles import DeviceCounts
 from feederscrew.tooling import orientations as tooling
-from feederscrew.tooling.clearing import seconds
 from feederscrew.tooling.devices.base import UNSURE, Device
+from feederscrew.tooling.falling import clearing_time
 from feederscrew.tooling.fates import at_entry, course
 from feederscrew.tooling.orientations import Orientation, travel_speed
 
@@ -280,7 +280,7 @@ def _clearing(passes, lying, chain, bowl):
     times = np.zeros(len(lying))
     for step, device in enumerate(chain if bowl is not None else ()):
         for row in np.flatnonzero(passes.ends[:, 0, 1 + step] > 0.0):
-            times[row] += passes.ends[row, 0, 1 + step] * seconds(device, lying[row], bowl)
+            times[row] += passes.ends[row, 0, 1 + step] * clearing_time(device, lying[row], bowl)
     return times
 
 

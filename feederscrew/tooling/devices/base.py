@@ -282,7 +282,7 @@ class Device:
         encounter : Meeting
         """
         cut, span = (
-            self.outline_on(encounter.orientation.track, ENDLESS_HOLE_LENGTHS * encounter.size),
+            self.outline_on(encounter.orientation.track, ENDLESS_HOLE_LENGTHS * encounter.orientation.size),
             self.span_on(encounter.orientation.track),
         )
         if span is not None and span[0] > 0.0 and encounter.held_by_shoulders(span) >= 0.0:
