@@ -222,7 +222,10 @@ def hangs_free(orientation, span) -> bool:
 
 
 def too_near(headed, span) -> float:
-    """Return how much farther [m] from the wall a slot must be for a head not to touch it, 0 if it is."""
+    """Return how much farther [m] from the wall a slot must be for a head not to touch it, 0 if it is.
+
+    Source: docs/tooling.md, "1. The method".
+    """
     return max(OFF_WALL - span[0] - 0.5 * (headed.shank - headed.widest), 0.0)
 
 

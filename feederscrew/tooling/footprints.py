@@ -173,12 +173,18 @@ def balcony(foot, radius) -> float:
 
 
 def canyon(foot, radius) -> float:
-    """Return the greatest width [m] of a strip removed along the wall that a foot passes; 0 for none."""
+    """Return the greatest width [m] of a strip removed along the wall that a foot passes; 0 for none.
+
+    Source: docs/tooling.md, "1. The method".
+    """
     return max(float(kernel.canyon(foot, radius, _extent(foot, radius), scratch(foot))), 0.0)
 
 
 def longest_gap(foot, radius) -> float:
-    """Return the greatest gap [m] across the track that a foot passes; 0 for none."""
+    """Return the greatest gap [m] across the track that a foot passes; 0 for none.
+
+    Source: docs/tooling.md, "1. The method".
+    """
     low, high, width = 0.0, 2.0 * foot.reach, _extent(foot, radius)
     work = _scratch_of(foot, gap(high, radius, width))
 
@@ -266,7 +272,8 @@ def area_below(plan, height, faces, depth, cut) -> shapely.Geometry:
 def mesh_edges(faces: np.ndarray) -> NDArray[np.int64]:
     """Return the edges (E, 2) of faces (F, 3), each once, ascending."""
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    return np.unique(np.sort(ends, axis=1), axis=0)
+    edges = np.unique(np.sort(ends, axis=1), axis=0)
+    return edges
 
 
 def _below(corners: np.ndarray, height: np.ndarray, depth: float) -> shapely.Polygon:

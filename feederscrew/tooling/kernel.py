@@ -173,7 +173,9 @@ def canyon(foot, radius, farthest, scratch):
 def farthest(places, sides):
     """Return how far [m] the farthest of some places (P, 2) [m] is from the nearest of some sides (S, 4) [m].
 
-    Of a side its start and the way to its end, which is not 0. Source: own; docs/tooling.md, "1. The method".
+    Of a side its start and the way to its end, which is not 0.
+
+    Source: own; docs/tooling.md, "1. The method".
     """
     largest = 0.0
     for i in range(len(places)):

@@ -249,6 +249,8 @@ def orientation_at(lying, headings_of, row, chances, track) -> Orientation:
 def travelling(orientations, bowl) -> tuple[Orientation, ...]:
     """Return orientations that know how a bowl carries them on: over an edge, by friction, and rolling back.
 
+    Source: own; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     orientations : sequence of Orientation
@@ -261,8 +263,8 @@ def travelling(orientations, bowl) -> tuple[Orientation, ...]:
 
     Notes
     -----
-    A part without support leaves its place as an inverted pendulum does, by cosh(t / T) - 1 with
-    T = sqrt((k^2 + h^2) / (g h)), h the height of the centre of mass and k the radius of gyration about the
+    A part without support leaves its place as an inverted pendulum does, by cosh(t / T) - 1 with T =
+    sqrt((k^2 + h^2) / (g h)) [s], h the height of the centre of mass and k the radius of gyration about the
     edge's direction, where that is not known the greatest about a level axis. After ``FALLEN`` times T it is
     taken to be lost; one that finds support again sooner comes back upright. A part on its round side across
     the track rolls down the climb, since friction of the floor turns it as much as it moves it: without the
@@ -600,6 +602,8 @@ def shoulder_margin(orientation, span) -> float:
     """Return by how much [m] shoulders hold a part in a slot between two distances from the wall.
 
     0 where it has to move across the track before its stem goes down; -inf where none hold it.
+
+    Source: own; docs/tooling.md, "1. The method".
     """
     stemmed = shoulders(orientation, span[1] - span[0])
     if stemmed is None:
@@ -622,7 +626,9 @@ def _underside(points, faces, middle, half) -> float:
 
 
 def hang(orientation, span, hanging=()) -> Hanging:
-    """Return a part hanging between rails that it came to lying: docs/tooling.md, "1. The method".
+    """Return a part hanging between rails that it came to lying.
+
+    Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
