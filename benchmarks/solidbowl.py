@@ -7,8 +7,8 @@ import time
 
 import numpy as np
 
+from feederscrew.bowl.reading import effective, record
 from feederscrew.bowl.record import Track
-from feederscrew.bowl.settings import effective, record
 from feederscrew.machine.sizing import Size
 from feederscrew.output import solid_files
 from feederscrew.solidbowl import segments

@@ -7,8 +7,8 @@ from typing import Any
 
 from feederscrew import units
 from feederscrew.bowl.devices import DEVICES_SECTION
+from feederscrew.bowl.reading import OF_THE_MACHINE, default
 from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, OPTIONAL, Key, rival
-from feederscrew.bowl.settings import OF_THE_MACHINE, default
 from feederscrew.errors import FeederError
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.value_forms import UNITLESS, quantity
@@ -100,11 +100,8 @@ SECTION_DESCRIPTIONS = {
 def json_schema() -> dict[str, Any]:
     """Return the JSON Schema of a bowl file.
 
-    Returns
-    -------
-    dict
-        Draft 7. A value with a unit is a string with a pattern; ``x-lowest``, ``x-highest``, ``x-units`` and
-        ``x-dimension`` say what the checks of `feeder` hold it to, as the draft has no bounds for strings.
+    Returns draft 7. A value with a unit is a string with a pattern; ``x-lowest``, ``x-highest``, ``x-units``
+    and ``x-dimension`` say what the checks of `feeder` hold it to, as the draft has no bounds for strings.
     """
     properties = {key.name: _value(key) for key in BOWL_KEYS if not key.section}
     for section in BOWL_SECTIONS:
@@ -138,19 +135,7 @@ def schema_text() -> str:
 def write_beside(path: str | PathLike[str]) -> Path:
     """Write the schema beside a bowl file, in place of an older one of ours.
 
-    Parameters
-    ----------
-    path : str or Path
-        Of the bowl file.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    FeederError
-        If another file has that name, or it cannot be written.
+    ``path``: of the bowl file. Raises FeederError if another file has that name, or it cannot be written.
     """
     place = Path(path).parent / SCHEMA_FILE
     ours = place.is_file() and f'"title": "{TITLE}"' in place.read_text(encoding="utf-8", errors="replace")

@@ -312,22 +312,9 @@ UNBALANCE_KEYS = (
 def with_unbalance(values: Mapping[str, Any], hand: str) -> dict[str, Any]:
     """Return the fields of a Machine, with its unbalance in place of the keys that say it.
 
-    Parameters
-    ----------
-    values : dict of str to float [SI]
-        By word of a key of the machine.
-    hand : str
-        Of the track: 'left' turns the other way as it rises.
-
-    Returns
-    -------
-    dict [SI]
-        Without unbalance where all those keys are zero: nothing is known.
-
-    Raises
-    ------
-    FeederError
-        If no body has them.
+    ``values`` [SI]: by word of a key of the machine; ``hand``: of the track: 'left' turns the other way as it
+    rises. Returns [SI]: without unbalance where all those keys are zero: nothing is known. Raises FeederError
+    if no body has them.
     """
     rest = {word: value for word, value in values.items() if word not in UNBALANCE_NAMES}
     if not any(np.any(values.get(word, 0.0)) for word in UNBALANCE_NAMES):
@@ -362,12 +349,7 @@ def _check_inertia(values: Mapping[str, Any]) -> None:
 
 
 def unbalance_values(machine: Any) -> dict[str, float]:
-    """Return the values of those keys of a Machine, by word; none where nothing is known.
-
-    Parameters
-    ----------
-    machine : Machine
-    """
+    """Return the values of those keys of a Machine, by word; None where nothing is known."""
     own = machine.unbalance
     moments = [value / machine.bowl_mass for value in own.moment]
     values = dict(zip(UNBALANCE_NAMES, (*moments, *own.upright, *own.products)))

@@ -74,15 +74,8 @@ class Verified:
     def void(self, part: Part | None, bowl: Bowl, version: str, wanted: str | None = None) -> Iterator[str]:
         """Say what is other than was tried, a sentence each; nothing where the block holds.
 
-        Parameters
-        ----------
-        part : Part or None
-            None where no part is given.
-        bowl : Bowl
-        version : str
-            Of this program.
-        wanted : str, optional
-            The aspect, 'A', or the orientation, 'A@2', that is counted now.
+        ``part``: None where no part is given; ``version``: of this program; ``wanted``: the aspect, 'A', or
+        the orientation, 'A@2', that is counted now.
         """
         if part is not None and part.sha256[: len(self.part)] != self.part:
             yield "the part is another one than was tried"
@@ -130,14 +123,7 @@ LATER_KEYS = ("second_harmonic_angle",)  # since version 0.2.0
 def fingerprint(bowl: Bowl) -> str:
     """Return a short text that another drive, friction, track or device changes.
 
-    Parameters
-    ----------
-    bowl : Bowl
-
-    Returns
-    -------
-    str
-        Sixteen digits; the last digits of numbers do not count.
+    Returns sixteen digits; the last digits of numbers do not count.
     """
     listed = [_number_text(getattr(bowl, name)) for name in ("drive", "friction", "track")]
     listed += [f"{bowl.restitution:.5g}", f"{bowl.gravity:.5g}"]
@@ -174,14 +160,7 @@ def _own(value: object) -> str:
 def body_fingerprint(part: Part) -> str:
     """Return a short text that other units, another density, centre of mass or other names of a part change.
 
-    Parameters
-    ----------
-    part : Part
-
-    Returns
-    -------
-    str
-        Sixteen digits; the last digits of numbers do not count.
+    Returns sixteen digits; the last digits of numbers do not count.
     """
     size = 1.0 if part.vertices is None else float(np.ptp(part.vertices, axis=0).max())
     centre = " ".join(f"{round(float(place) / size, 3) + 0.0:.3f}" for place in part.centre_of_mass)
@@ -193,14 +172,7 @@ def body_fingerprint(part: Part) -> str:
 def verified(path: str | PathLike[str] | None) -> Verified | VoidTrial | None:
     """Return the ``verified`` block of a bowl file.
 
-    Parameters
-    ----------
-    path : str or Path or None
-
-    Returns
-    -------
-    Verified, VoidTrial or None
-        None where the file has no such block; a VoidTrial where what it says cannot be of a trial.
+    Returns None where the file has no such block; a VoidTrial where what it says cannot be of a trial.
     """
     if path is None or str(path) == "-":
         return None

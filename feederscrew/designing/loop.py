@@ -39,8 +39,7 @@ from feederscrew.designing.robust import robust_run
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
-from feederscrew.part.record import Part
-from feederscrew.part.size_limits import refuse_many_facets
+from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.studies.rate import Shares

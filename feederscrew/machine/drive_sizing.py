@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.bowl import schema
+from feederscrew.bowl.reading import Setting, default
 from feederscrew.bowl.record import (
     UNBALANCE_UNKNOWN,
     Bowl,
@@ -23,7 +24,6 @@ from feederscrew.bowl.record import (
     vibration_angle,
 )
 from feederscrew.bowl.schema import BY_NAME
-from feederscrew.bowl.settings import Setting, default
 from feederscrew.conveying import answer
 from feederscrew.machine import sizing, springs
 from feederscrew.machine.sizing import Size

@@ -11,7 +11,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.counts.profiles import AspectProfile, Measured
+from feederscrew.resting.profiles import AspectProfile, Measured
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended, launched
 from feederscrew.tooling.devices.orientation_names import place
 

@@ -11,7 +11,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.documents import hint
 from feederscrew.errors import FeederError
 from feederscrew.rates.tipping import TrackTipping, marked
-from feederscrew.resting.counts.profiles import DeviceCounts
+from feederscrew.resting.profiles import DeviceCounts
 from feederscrew.tooling import orientations as tooling
 from feederscrew.tooling.clearing import seconds
 from feederscrew.tooling.devices.base import UNSURE, Device

@@ -7,6 +7,8 @@ with a deeper neighbour, change the published rules alone.
 
 import itertools
 from dataclasses import dataclass, field, replace
+from os import PathLike
+from pathlib import Path
 from string import ascii_uppercase
 from typing import Any
 
@@ -14,11 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew import check
-from feederscrew.errors import ConfigError
+from feederscrew.errors import ArgumentError, ConfigError, FeederError
 from feederscrew.geometry import compiled, vectors
 from feederscrew.geometry.graphs import component_of
 from feederscrew.part.hull import Hull, convex_hull
 from feederscrew.part.mass import Moments
+from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting import exact_tumbling, walks
 from feederscrew.resting.faces import EQUAL_HEIGHT_SHARE, ONE_PLANE, Face, stable_faces, unstable_faces
@@ -26,7 +29,7 @@ from feederscrew.resting.landscape import SMOOTH_ANGLE, Landscape, angle, landsc
 from feederscrew.resting.rules import formulas, recommended, registry
 from feederscrew.resting.rules.recommended import Recommended
 from feederscrew.resting.rules.registry import ClassQuantities
-from feederscrew.units import MM
+from feederscrew.units import MM, one_line
 
 FLAT, CYLINDER, CONE = "flat", "cylinder", "cone"
 BALL, OFF_CENTRE, WITH_A_FLAT = "ball", "off-centre ball", "ball with a flat"
@@ -47,18 +50,10 @@ ROCKING_REMARK = (
 def forms(groups, hull) -> list[str]:
     """Return what each class is by its form.
 
-    Parameters
-    ----------
-    groups : sequence of list of Face
-        The faces of each class.
-    hull : Hull
-
-    Returns
-    -------
-    list of str
-        'flat'; 'cylinder', which rolls straight; 'cone', which rolls in a circle, as parts on two unlike
-        circles do; 'ball', about the centre of mass; 'off-centre ball' and 'ball with a flat', which rest on
-        one point of a ball's side and rock: of a part that has no other class, or that has flats as well.
+    ``groups``: the faces of each class. Returns 'flat'; 'cylinder', which rolls straight; 'cone', which rolls
+    in a circle, as parts on two unlike circles do; 'ball', about the centre of mass; 'off-centre ball' and
+    'ball with a flat', which rest on one point of a ball's side and rock: of a part that has no other class,
+    or that has flats as well.
     """
     flats = any(group[0].kind == FLAT for group in groups)
     return [_form(group[0], hull, flats) for group in groups]
@@ -77,20 +72,10 @@ def _form(face, hull, flats) -> str:
 def postures(normals, contact_areas, kinds, hull) -> list[str]:
     """Return in words how a part lies on each class: its height there beside its least and greatest height.
 
-    Parameters
-    ----------
-    normals : (A, 3) float [1]
-        Outward normal of the side that is down.
-    contact_areas : (A,) float [m2]
-    kinds : sequence of str
-        'flat' or 'rolling'.
-    hull : Hull
-
-    Returns
-    -------
-    list of str
-        'flat', 'on end' or 'on side'. A flat class adds that the face that is down is the larger or smaller
-        of two back to back, or the largest of the part; a rolling class says that it rolls.
+    ``normals`` (A, 3) [1]: outward normal of the side that is down; ``contact_areas`` (A,) [m2]; ``kinds``:
+    'flat' or 'rolling'. Returns 'flat', 'on end' or 'on side'. A flat class adds that the face that is down
+    is the larger or smaller of two back to back, or the largest of the part; a rolling class says that it
+    rolls.
     """
     reach = (hull.vertices[:, None, :] * normals[None, :, :]).sum(axis=-1)  # (V, A)
     sizes = np.ptp(reach, axis=0)
@@ -446,27 +431,11 @@ def name_classes(groups, normals, hull, user_names) -> tuple[Any, ...]:
 
     Source: own; docs/resting.md, "Names that stay".
 
-    Parameters
-    ----------
-    groups : sequence of lists of Face
-        The faces of each class, classes in the order of the rows.
-    normals : (A, 3) float [1]
-        What is down when the part rests on each.
-    hull : Hull
-    user_names : AspectNames or None
-        Names with the direction that is down on each; what has none takes the first letter that is free.
-
-    Returns
-    -------
-    names : tuple of str
-        One a class.
-    warnings : tuple of str
-        Names that fit no aspect, and aspects that got none of the names; a sentence each.
-
-    Raises
-    ------
-    ConfigError
-        If a name fits two aspects and is of neither.
+    ``groups``: the faces of each class, classes in the order of the rows; ``normals`` (A, 3) [1]: what is
+    down when the part rests on each; ``user_names``: names with the direction that is down on each; what has
+    none takes the first letter that is free. Returns ``names``: one a class; ``warnings``: names that fit no
+    aspect, and aspects that got none of the names; a sentence each. Raises ConfigError if a name fits two
+    aspects and is of neither.
     """
     if user_names is None:
         return tuple(letters_of(k) for k in range(len(groups))), ()
@@ -548,18 +517,8 @@ def join_classes(faces, part, moments) -> NDArray[np.int64]:
 
     Source: own; docs/resting.md, "Exact tumbling".
 
-    Parameters
-    ----------
-    faces : list of Face
-    part : Part
-        With a mesh.
-    moments : Moments
-        Of the part.
-
-    Returns
-    -------
-    (N,) int [1]
-        Class of each face, numbered in order of first appearance.
+    ``part``: with a mesh; ``moments``: of the part. Returns (N,) int [1]: class of each face, numbered in
+    order of first appearance.
     """
     middles, equal = np.array([face.middle for face in faces]), _are_equal(faces)
     axes = np.array([face.axis for face in faces])
@@ -587,18 +546,8 @@ def symmetries(faces, part, moments) -> NDArray[np.float64]:
 
     Source: own; docs/resting.md, "Exact tumbling".
 
-    Parameters
-    ----------
-    faces : list of Face
-        Landmarks: a symmetry must carry them onto each other.
-    part : Part
-    moments : Moments
-        Of the part.
-
-    Returns
-    -------
-    (N, 3, 3) float [1]
-        Enough of them to carry every face onto all its equals.
+    ``faces``: landmarks: a symmetry must carry them onto each other; ``moments``: of the part. Returns (N, 3,
+    3) [1]: enough of them to carry every face onto all its equals.
     """
     tolerance = moments.error + 2.0 * max(face.roughness for face in faces) / moments.size
     rotations = _by_landmarks(faces)
@@ -614,17 +563,8 @@ def body_frame(part, moments) -> NDArray[np.float64]:
 
     Source: the eigenvectors of the inertia matrix; own: their signs.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    moments : Moments
-        Of the part.
-
-    Returns
-    -------
-    (3, 3) float [1]
-        Axes as columns. Where the part is symmetric its own axes are not told apart, and the file's decide.
+    ``part``: with a mesh; ``moments``: of the part. Returns (3, 3) [1]: axes as columns. Where the part is
+    symmetric its own axes are not told apart, and the file's decide.
     """
     _, axes = vectors.eigen(part.inertia)
     skew = moments.directional(axes.T)[:, 2]
@@ -713,17 +653,8 @@ class ShallowFacets:
 def shallow_facets(hull: Hull, basins: Landscape, faces: list[Face]) -> ShallowFacets:
     """Find the facets on which a body stands and that are no stable face.
 
-    Parameters
-    ----------
-    hull : Hull
-    basins : Landscape
-    faces : list of Face
-        The stable faces of that hull.
-
-    Returns
-    -------
-    ShallowFacets
-        None of a curved side that rolls: its facets are those of the tessellation.
+    ``faces``: the stable faces of that hull. Returns None of a curved side that rolls: its facets are those
+    of the tessellation.
     """
     bends = angle(*(hull.normals[basins.pairs[:, k]] for k in (0, 1)))
     side = component_of(basins.pairs[bends < SMOOTH_ANGLE], len(hull.triangles))
@@ -758,21 +689,9 @@ def published_changes(
 
     Source: the rules of the thesis, chapter 3, over more faces.
 
-    Parameters
-    ----------
-    shallow : ShallowFacets
-    weights : dict of str to (A,) float [any one unit]
-        By rule, of the aspects.
-    stable : (A,) bool
-    inertia : (3, 3) float [kg m2]
-        About the centre of mass.
-    as_published : bool
-        Equal facets count once in the PMI rule.
-
-    Returns
-    -------
-    dict of str to (A,) float [1]
-        Of the aspects; what is missing to 1 is that of the facets.
+    ``weights`` (A,) [any one unit]: by rule, of the aspects; ``stable`` (A,) bool; ``inertia`` (3, 3) [kg
+    m2]: about the centre of mass; ``as_published``: equal facets count once in the PMI rule. Returns (A,)
+    [1]: of the aspects; what is missing to 1 is that of the facets.
     """
     ones = np.ones(len(shallow.heights), dtype=int)
     moments = vectors.dot(vectors.product(shallow.normals, inertia), shallow.normals)
@@ -804,18 +723,8 @@ def shallow_remark(
 ) -> tuple[str, ...]:
     """Say what the published rules give with every facet, where it differs.
 
-    Parameters
-    ----------
-    shallow : ShallowFacets
-    names : tuple of str
-        Of the A aspects.
-    chances, complete : dict of str to (A,) float [1]
-        By rule, of the aspects alone and with every facet.
-
-    Returns
-    -------
-    tuple of str
-        One sentence, or none.
+    ``names``: of the A aspects; ``chances`` and ``complete`` (A,) [1]: by rule, of the aspects alone and with
+    every facet. Returns one sentence, or none.
     """
     changes = {rule: chances[rule] - complete[rule] for rule in PUBLISHED_RULES}
     if not len(shallow.inside) or max(np.abs(change).max() for change in changes.values()) < MIN_CHANGE:
@@ -844,3 +753,39 @@ def _described(hull, facet) -> tuple[NDArray[np.float64], float, float, float, f
     inwards = vectors.unit(vectors.cross(normal, q - p))
     inside = float(np.einsum("ex,ex->e", height * normal - p, inwards).min())
     return normal, height, float(areas.sum()), float(hull.solid_angles[facet].sum()), inside
+
+
+def names_text(part: Part, aspects: Aspects) -> str:
+    """Return the names of a part's stable aspects as the text of the file that ``aspect_names.read`` takes.
+
+    ``part``: from a mesh; ``aspects``: of that part.
+    """
+    rows = np.flatnonzero(aspects.stable)
+    return "\n".join(
+        [
+            f"# Aspects of {one_line(part.name)}: which direction of its file is down on each.",
+            "# Change a name and leave its direction, then give this file as the names of the part.",
+            "aspects:",
+            *(
+                f"  {aspects.names[row]}: [{', '.join(f'{x:.7g}' for x in aspects.normals[row])}]"
+                for row in rows
+            ),
+            "",
+        ]
+    )
+
+
+def write_names(part: Part, aspects: Aspects, path: str | PathLike[str]) -> None:
+    """Write the names of a part's aspects to a file that ``load`` takes as ``names``.
+
+    ``part``: from a mesh; ``aspects``: of that part; ``path``: of the file, written anew: change a name there
+    and leave its direction. Raises FeederError if the part is a card, which has its own names, or the file
+    cannot be written.
+    """
+    if part.vertices is None:
+        raise ArgumentError("part", "a part card has its own names", "give a mesh")
+    try:
+        Path(path).write_text(names_text(part, aspects), encoding="utf-8")
+    except OSError as error:
+        what = f"cannot be written ({error.strerror or error})"
+        raise FeederError(path, what, "give another path") from None

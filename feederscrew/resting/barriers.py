@@ -34,22 +34,9 @@ class Tipping:
 def tipping(tumbling, labels) -> Tipping:
     """Return basins and saddles of exact tumbling, gathered by face.
 
-    Parameters
-    ----------
-    tumbling : Tumbling
-    labels : (T,) int
-        Face of each hull triangle; UNNAMED for triangles of none. A sink of no face (a facet that noise
-        or tessellation left) joins the face behind the lowest saddle around it, or the faces behind
-        saddles as low as each other, in equal parts.
-
-    Returns
-    -------
-    Tipping
-
-    Raises
-    ------
-    ValueError
-        If no sink carries a label.
+    ``labels`` (T,) int: face of each hull triangle; UNNAMED for triangles of none. A sink of no face (a facet
+    that noise or tessellation left) joins the face behind the lowest saddle around it, or the faces behind
+    saddles as low as each other, in equal parts. Raises ValueError if no sink carries a label.
     """
     labels = np.asarray(labels)
     basins = adopted_shares(tumbling, labels[tumbling.sinks], labels.max() + 1)
@@ -103,17 +90,9 @@ def tip_angles(polygons, heights) -> NDArray[np.float64]:
 
     Source: docs/resting.md, "Barriers and the tipping graph".
 
-    Parameters
-    ----------
-    polygons : sequence of (K, 3) float [m]
-        Corners about the centre of mass, counter-clockwise seen from outside; F polygons.
-    heights : (F,) float [m]
-        Of the centre of mass over them.
-
-    Returns
-    -------
-    (F,) float [rad]
-        Negative where the part does not even stand on a level floor.
+    ``polygons`` (K, 3) [m]: corners about the centre of mass, counter-clockwise seen from outside; F
+    polygons; ``heights`` (F,) [m]: of the centre of mass over them. Returns (F,) [rad]: negative where the
+    part does not even stand on a level floor.
     """
     _, across, first, counts = _edge_levers(polygons)
     return np.minimum.reduceat(np.arctan2(across, np.repeat(heights, counts)), first)
@@ -124,20 +103,10 @@ def line_tip_angle(polygon, normal, axis, height) -> float:
 
     Source: docs/resting.md, "Barriers and the tipping graph".
 
-    Parameters
-    ----------
-    polygon : (K, 3) float [m]
-        Corners of the strip it lies on, about the centre of mass.
-    normal, axis : (3,) float [1]
-        Unit vectors: outward from the strip, and along the axis, not parallel to it.
-    height : float [m]
-        Of the centre of mass over the strip.
-
-    Returns
-    -------
-    float [rad]
-        Of a floor that falls along the line, over the nearer of its ends. A part that lies on two circles
-        has its line from one to the other.
+    ``polygon`` (K, 3) [m]: corners of the strip it lies on, about the centre of mass; ``normal`` and ``axis``
+    (3,) [1]: unit vectors: outward from the strip, and along the axis, not parallel to it; ``height`` [m]: of
+    the centre of mass over the strip. Returns [rad]: of a floor that falls along the line, over the nearer of
+    its ends. A part that lies on two circles has its line from one to the other.
     """
     along = vectors.unit(axis - vectors.dot(axis, normal) * normal)
     reach = vectors.product(polygon, along)
@@ -155,24 +124,13 @@ def tilt_over(height, top) -> float:
 def critical_solid_angles(polygons, heights) -> NDArray[np.float64]:
     """Return the share of each face's solid angle left when the mean critical one is taken off.
 
-    Parameters
-    ----------
-    polygons : sequence of (K, 3) float [m]
-        Contact corners about the centre of mass, counter-clockwise seen from outside; F polygons.
-    heights : (F,) float [m]
-        Of the centre of mass.
-
-    Returns
-    -------
-    (F,) float [1]
-        (Q - mean over the edges of Q_crit) / Q; 0 where Q is. Q_crit of an edge is the solid angle of the
-        polygon seen from the centre of mass lifted, upright, to its distance from that edge: where it
-        passes when the part tips. The rule's weight is this times Q / h.
-
-    References
-    ----------
-    B. K. A. Ngoi, S. W. Lye, J. Chen, "Analysing the natural resting aspect of a component for automated
-    assembly", Int. J. Adv. Manuf. Technol. 11, 406-412, 1996, doi 10.1007/BF01178966: read in a
+    ``polygons`` (K, 3) [m]: contact corners about the centre of mass, counter-clockwise seen from outside; F
+    polygons; ``heights`` (F,) [m]: of the centre of mass. Returns (F,) [1]: (Q - mean over the edges of
+    Q_crit) / Q; 0 where Q is. Q_crit of an edge is the solid angle of the polygon seen from the centre of
+    mass lifted, upright, to its distance from that edge: where it passes when the part tips. The rule's
+    weight is this times Q / h.
+    Source: B. K. A. Ngoi, S. W. Lye, J. Chen, "Analysing the natural resting aspect of a component for
+    automated assembly", Int. J. Adv. Manuf. Technol. 11, 406-412, 1996, doi 10.1007/BF01178966: read in a
     restatement only, the paper itself was not at hand.
     """
     normals, across, first, counts = _edge_levers(polygons)
@@ -199,25 +157,12 @@ def _lifted_angles(polygons, normals, lifts) -> NDArray[np.float64]:
 def balance(tips) -> NDArray[np.float64]:
     """Return the shares that stay the same when every face keeps tipping into its neighbours.
 
-    Parameters
-    ----------
-    tips : Tipping
-
-    Returns
-    -------
-    (F,) float [1]
-        Stationary shares of the chain in which a face tips into each neighbour at a rate inverse to the
-        lift that takes. Zero for faces without a sink.
-
-    Notes
-    -----
-    Boothroyd and Redford balance the transitions between two aspects of prisms and cylinders, N_a / N_b =
-    E_a / E_b with E the energy to leave each; their book was not at hand. This is that balance on any
-    number of faces, with the saddle between two basins as the height the part must be lifted to.
-
-    References
-    ----------
-    G. Boothroyd, A. H. Redford, "Mechanized Assembly", McGraw-Hill, 1968.
+    Returns (F,) [1]: stationary shares of the chain in which a face tips into each neighbour at a rate
+    inverse to the lift that takes. Zero for faces without a sink.
+    Boothroyd and Redford balance the transitions between two aspects of prisms and cylinders, N_a / N_b = E_a
+    / E_b with E the energy to leave each; their book was not at hand. This is that balance on any number of
+    faces, with the saddle between two basins as the height the part must be lifted to.
+    Source: G. Boothroyd, A. H. Redford, "Mechanized Assembly", McGraw-Hill, 1968.
     """
     count = len(tips.shares)
     rates = np.zeros((count, count))
@@ -271,24 +216,10 @@ def named(tumbling, labels) -> NDArray[np.int64]:
 def adopted_shares(tumbling, labels, count) -> Any:
     """Parts of every sink's basin that belong to each face.
 
-    Parameters
-    ----------
-    tumbling : Tumbling
-    labels : (S,) int
-        Face of each sink; UNNAMED for a facet that noise or tessellation left.
-    count : int
-        Faces, with or without a sink.
-
-    Returns
-    -------
-    (S, F) sparse float [1]
-        Rows sum to 1. An unnamed sink joins the face behind the lowest saddle around it; where several
-        saddles are as low, as around a sink on a mirror plane, it is shared out among the faces behind them.
-
-    Raises
-    ------
-    ValueError
-        If no sink carries a label.
+    ``labels`` (S,) int: face of each sink; UNNAMED for a facet that noise or tessellation left; ``count``:
+    faces, with or without a sink. Returns (S, F) sparse float [1]: rows sum to 1. An unnamed sink joins the
+    face behind the lowest saddle around it; where several saddles are as low, as around a sink on a mirror
+    plane, it is shared out among the faces behind them. Raises ValueError if no sink carries a label.
     """
     labels = np.asarray(labels)
     own = np.flatnonzero(labels != UNNAMED)

@@ -181,17 +181,7 @@ class Transition:
 def grounded(hull, faces, rows) -> Ground:
     """Compute the exact basins and barriers of the faces a part rests on.
 
-    Parameters
-    ----------
-    hull : Hull
-    faces : sequence of Face
-        Stable ones.
-    rows : (F,) int
-        Row of each face's class among the aspects.
-
-    Returns
-    -------
-    Ground
+    ``faces``: stable ones; ``rows`` (F,) int: row of each face's class among the aspects.
     """
     labels = np.full(len(hull.triangles), barriers.UNNAMED)
     for k, face in enumerate(faces):
@@ -203,21 +193,7 @@ def grounded(hull, faces, rows) -> Ground:
 def require_ground(part, aspects) -> Ground:
     """Return the faces of a part matched to the rows of its aspects, with exact basins and barriers.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    aspects : Aspects
-        Of that part.
-
-    Returns
-    -------
-    Ground
-
-    Raises
-    ------
-    MeshError
-        If the part is a card without a shape.
+    ``part``: with a mesh; ``aspects``: of that part. Raises MeshError if the part is a card without a shape.
     """
     if aspects.ground is None:
         raise MeshError(part.source, "is a part card, it has no shape to tumble", "give a mesh file")
@@ -229,17 +205,7 @@ def exact(ground, part, aspects, exponent=formulas.EXPONENTS["hard"]) -> Exact:
 
     Source: docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
 
-    Parameters
-    ----------
-    ground : Ground
-    part : Part
-    aspects : Aspects
-    exponent : float [1]
-        Of the surface-weighted closed form.
-
-    Returns
-    -------
-    Exact
+    ``exponent`` [1]: of the surface-weighted closed form.
     """
     tips, count = ground.tips, len(aspects.names)
     lifts = barriers.barriers(tips)
@@ -284,14 +250,7 @@ def _by_class(ground, weights, stable) -> NDArray[np.float64]:
 def transitions(ground) -> list[Transition]:
     """Return the graph of what tips into what.
 
-    Parameters
-    ----------
-    ground : Ground
-
-    Returns
-    -------
-    list of Transition
-        The lowest way of each ordered pair of classes, by row; into an equal face as well.
+    Returns the lowest way of each ordered pair of classes, by row; into an equal face as well.
     """
     lifts = barriers.rises(ground.tips)
     lowest: dict[tuple[int, int], Transition] = {}

@@ -59,7 +59,7 @@ class Posture(ReadableRecord):
 
     @cached_property
     def on_floor(self) -> NDArray[np.bool_]:
-        """Which corners (V,) of its mesh touch the floor; none where those that are low do not carry it.
+        """Which corners (V,) of its mesh touch the floor; None where those that are low do not carry it.
 
         So it is where the contact polygon is of facets not quite in one plane, or the file has noise: the
         part stands on the whole polygon then.
@@ -242,25 +242,10 @@ LIKELIEST, LISTED = "the likeliest ({})", "the first of the card"
 def standing(part, aspect, block, answered=find_aspects) -> tuple[Any, ...]:
     """Return the part on an aspect.
 
-    Parameters
-    ----------
-    part : Part
-    aspect : str or None
-        Its name; None for the one that a card's block is of, else for the likeliest, of a card the first.
-    block : str
-        Of a part card: 'floor' or 'track'.
-    answered : function
-        From a part to its Aspects with the answer that says which is the likeliest; asked only for that.
-
-    Returns
-    -------
-    tuple of Posture, str or None
-        And why this aspect; None where it was asked for.
-
-    Raises
-    ------
-    FeederError
-        If there is no such aspect.
+    ``aspect``: its name; None for the one that a card's block is of, else for the likeliest, of a card the
+    first; ``block``: of a part card: 'floor' or 'track'; ``answered``: from a part to its Aspects with the
+    answer that says which is the likeliest; asked only for that. Returns and why this aspect; None where it
+    was asked for. Raises FeederError if there is no such aspect.
     """
     if aspect is not None:
         return posture(part, find_aspects(part), aspect), None

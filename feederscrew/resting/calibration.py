@@ -9,7 +9,7 @@ from scipy import optimize, stats
 
 from feederscrew import check
 from feederscrew.errors import FeederError
-from feederscrew.resting.counts.deviation import ChiSquare, chi_square, chi_square_passes
+from feederscrew.resting.deviation import ChiSquare, chi_square, chi_square_passes
 from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.resting.rules.formulas import surface_shares
 
@@ -34,31 +34,12 @@ class Calibration:
 def calibrate(counts, shares, heights, radius) -> Calibration:
     """Fit the exponent of surface_shares to counts by maximum likelihood.
 
-    Parameters
-    ----------
-    counts : (A,) float [1]
-        Parts found on each aspect.
-    shares : (A,) float [1]
-        Quasi-static probabilities.
-    heights : (A,) float [m]
-        Of the centre of mass on each aspect.
-    radius : float [m]
-        Largest distance from the centre of mass to a corner.
-
-    Returns
-    -------
-    Calibration
-
-    Raises
-    ------
-    ValueError
-        If shapes differ, a count is negative, fewer than two aspects can be told apart or parts were
-        counted on an aspect of share zero.
-
-    References
-    ----------
-    S. S. Wilks, "The large-sample distribution of the likelihood ratio for testing composite hypotheses",
-    Ann. Math. Statist. 9(1), 60-62, 1938.
+    ``counts`` (A,) [1]: parts found on each aspect; ``shares`` (A,) [1]: quasi-static probabilities;
+    ``heights`` (A,) [m]: of the centre of mass on each aspect; ``radius`` [m]: largest distance from the
+    centre of mass to a corner. Raises ValueError if shapes differ, a count is negative, fewer than two
+    aspects can be told apart or parts were counted on an aspect of share zero.
+    Source: S. S. Wilks, "The large-sample distribution of the likelihood ratio for testing composite
+    hypotheses", Ann. Math. Statist. 9(1), 60-62, 1938.
     """
     counts, shares, heights = _aligned(counts, shares, heights)
     present = shares > 0.0
@@ -77,26 +58,9 @@ def calibrate_passes(passed, rejected, paths, shares, heights, radius) -> Calibr
 
     Source: maximum likelihood with a profile interval; docs/resting.md, "Surface-weighted tumbling".
 
-    Parameters
-    ----------
-    passed, rejected : (D,) float [1]
-        Parts, by device.
-    paths : (2, D, A) float [1]
-        Share of each aspect's parts that comes to each device, and that goes on from it.
-    shares, heights, radius
-        As for ``calibrate``.
-
-    Returns
-    -------
-    Calibration
-
-    Raises
-    ------
-    ValueError
-        If no device passes a share that hangs on the shares of the aspects.
-
-    Notes
-    -----
+    ``passed`` and ``rejected`` (D,) [1]: parts, by device; ``paths`` (2, D, A) [1]: share of each aspect's
+    parts that comes to each device, and that goes on from it; ``shares`` and ``heights`` and ``radius``: as
+    for ``calibrate``. Raises ValueError if no device passes a share that hangs on the shares of the aspects.
     A device that all aspects pass alike says nothing of the exponent and is left out.
     """
     telling = _telling(paths, shares)
@@ -176,23 +140,8 @@ class Fit:
 def fit_counts(part, aspects, measured) -> list[Any]:
     """Fit the surface exponent to every column of counts.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    aspects : Aspects
-        Of that part.
-    measured : Measured
-        As ``profiles.read`` gives it.
-
-    Returns
-    -------
-    list of Fit
-
-    Raises
-    ------
-    FeederError
-        If the part has no shape, no column holds counts, or they do not tell an exponent.
+    ``part``: with a mesh; ``aspects``: of that part; ``measured``: as ``profiles.read`` gives it. Raises
+    FeederError if the part has no shape, no column holds counts, or they do not tell an exponent.
     """
     tumbled = _tumbled_by_aspect(part, aspects)
     columns = [profile for profile in measured.profiles if profile.counted]
@@ -208,24 +157,9 @@ def fit_passes(part, aspects, counts, paths) -> Fit:
 
     Source: maximum likelihood; docs/resting.md, "Surface-weighted tumbling".
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    aspects : Aspects
-        Of that part.
-    counts : DeviceCounts
-    paths : (2, D, A) float [1]
-        Share of each aspect's parts that comes to each counted device, and that goes on from it.
-
-    Returns
-    -------
-    Fit
-
-    Raises
-    ------
-    FeederError
-        If the part has no shape, or the devices do not tell an exponent.
+    ``part``: with a mesh; ``aspects``: of that part; ``paths`` (2, D, A) [1]: share of each aspect's parts
+    that comes to each counted device, and that goes on from it. Raises FeederError if the part has no shape,
+    or the devices do not tell an exponent.
     """
     tumbled = _tumbled_by_aspect(part, aspects)
     try:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.heavy import heavy
-from feederscrew.resting.counts.profiles import AspectProfile
+from feederscrew.resting.profiles import AspectProfile
 
 special = heavy("scipy.special")
 
@@ -42,14 +42,7 @@ class Comparison:
 def deviation(first, second) -> float:
     """Return the root mean square difference: the 'standard deviation' of eq. [Table 3-12] and Table 3-13.
 
-    Parameters
-    ----------
-    first, second : (A,) float [1]
-        Probabilities or fractions by aspect.
-
-    Returns
-    -------
-    float [1]
+    ``first`` and ``second`` (A,) [1]: probabilities or fractions by aspect. Returns [1].
     """
     first, second = _pair(first, second)
     return float(np.sqrt(np.mean((first - second) ** 2)))
@@ -60,15 +53,7 @@ def total_variation(first, second) -> float:
 
     Source: half the L1 distance of two distributions.
 
-    Parameters
-    ----------
-    first, second : (A,) float [1]
-        Probabilities or fractions by aspect.
-
-    Returns
-    -------
-    float [1]
-        From 0 to 1.
+    ``first`` and ``second`` (A,) [1]: probabilities or fractions by aspect. Returns [1]: from 0 to 1.
     """
     first, second = _pair(first, second)
     return float(0.5 * np.abs(first - second).sum())
@@ -77,36 +62,16 @@ def total_variation(first, second) -> float:
 def chi_square(counts, fractions, estimated=0) -> ChiSquare:
     """Test whether counts may come from given probabilities (goodness of fit).
 
-    Parameters
-    ----------
-    counts : (A,) int
-        Observed, by aspect.
-    fractions : (A,) float [1]
-        Expected; scaled to the sum of the counts.
-    estimated : int
-        Parameters of the fractions that were fitted to these counts: each costs a degree of freedom.
-
-    Returns
-    -------
-    ChiSquare
-        An aspect that was seen though its probability is 0 gives infinity and p = 0; one neither
-        seen nor expected is left out.
-
-    Raises
-    ------
-    ValueError
-        If a shape is wrong, an entry negative or a sum zero.
-
-    Notes
-    -----
+    ``counts`` (A,) int: observed, by aspect; ``fractions`` (A,) [1]: expected; scaled to the sum of the
+    counts; ``estimated``: parameters of the fractions that were fitted to these counts: each costs a degree
+    of freedom. Returns an aspect that was seen though its probability is 0 gives infinity and p = 0; one
+    neither seen nor expected is left out. Raises ValueError if a shape is wrong, an entry negative or a sum
+    zero.
     Aspects of which fewer than ``MIN_EXPECTED_COUNT`` are expected are joined, the weakest first, until the
-    group expects enough; ``joined`` says how many. There is no test without a degree of freedom: groups
-    less one, less the parameters that were estimated.
-
-    References
-    ----------
-    K. Pearson, "On the criterion that a given system of deviations ...", Phil. Mag. 50, 157-175, 1900.
-    W. G. Cochran, "Some methods for strengthening the common chi-square tests", Biometrics 10(4),
+    group expects enough; ``joined`` says how many. There is no test without a degree of freedom: groups less
+    one, less the parameters that were estimated.
+    Source: K. Pearson, "On the criterion that a given system of deviations ...", Phil. Mag. 50, 157-175,
+    1900. W. G. Cochran, "Some methods for strengthening the common chi-square tests", Biometrics 10(4),
     417-451, 1954.
     """
     counts, fractions = (_weights(values) for values in _pair(counts, fractions))
@@ -120,20 +85,9 @@ def chi_square(counts, fractions, estimated=0) -> ChiSquare:
 def chi_square_between(first, second) -> ChiSquare:
     """Test whether two sets of counts may come from the same probabilities (homogeneity).
 
-    Parameters
-    ----------
-    first, second : (A,) int
-        Observed, by aspect.
-
-    Returns
-    -------
-    ChiSquare
-        Aspects are joined as in ``chi_square``, by the lower of the two expected counts.
-
-    Raises
-    ------
-    ValueError
-        If a shape is wrong, an entry negative or a sum zero.
+    ``first`` and ``second`` (A,) int: observed, by aspect. Returns aspects are joined as in ``chi_square``,
+    by the lower of the two expected counts. Raises ValueError if a shape is wrong, an entry negative or a sum
+    zero.
     """
     observed = np.array([_weights(values) for values in _pair(first, second)])
     observed = observed[:, observed.any(axis=0)]
@@ -146,20 +100,10 @@ def chi_square_passes(passed, rejected, expected, estimated=0) -> ChiSquare:
 
     Source: Pearson's chi-square; docs/resting.md, "Surface-weighted tumbling".
 
-    Parameters
-    ----------
-    passed, rejected : (D,) int
-        Observed, by device.
-    expected : (D,) float [1]
-        Shares that pass, above 0 and below 1.
-    estimated : int
-        Parameters of the shares that were fitted to these counts.
-
-    Returns
-    -------
-    ChiSquare
-        Devices at which fewer than ``MIN_EXPECTED_COUNT`` are expected to pass or to be rejected are left
-        out, and counted in ``joined``.
+    ``passed`` and ``rejected`` (D,) int: observed, by device; ``expected`` (D,) [1]: shares that pass, above
+    0 and below 1; ``estimated``: parameters of the shares that were fitted to these counts. Returns devices
+    at which fewer than ``MIN_EXPECTED_COUNT`` are expected to pass or to be rejected are left out, and
+    counted in ``joined``.
     """
     passed, rejected = (_weights(values) for values in _pair(passed, rejected))
     came, expected = passed + rejected, check.shaped("expected", expected, passed.shape)
