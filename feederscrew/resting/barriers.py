@@ -43,7 +43,14 @@ def tipping(tumbling, labels) -> Tipping:
     heights = np.full(basins.shape[1], np.inf)
     sinks = np.repeat(np.arange(basins.shape[0]), np.diff(basins.indptr))
     np.minimum.at(heights, basins.indices, tumbling.heights[sinks])
-    saddles, faces = _between(basins, tumbling.pairs)
+    # each way from a face to a face: its saddle and the faces on both sides, smaller first
+    many = np.diff(basins.indptr)[tumbling.pairs]
+    paths = many[:, 0] * many[:, 1]
+    saddles = np.repeat(np.arange(len(tumbling.pairs)), paths)
+    step = np.arange(len(saddles)) - np.repeat(np.cumsum(paths) - paths, paths)
+    turn = np.column_stack(np.divmod(step, many[saddles, 1]))
+    first, other = basins.indices[basins.indptr[tumbling.pairs[saddles]] + turn].T
+    faces = np.column_stack([np.minimum(first, other), np.maximum(first, other)])
     order = np.flatnonzero(faces[:, 0] != faces[:, 1])
     order = order[np.lexsort((tumbling.saddle_heights[saddles[order]], *faces[order, ::-1].T))]
     pairs = faces[order]
@@ -57,17 +64,6 @@ def tipping(tumbling, labels) -> Tipping:
         axes=check.frozen(tumbling.saddle_axes[lowest]),
         doubts=tumbling.doubts,
     )
-
-
-def _between(basins, pairs) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """(N,) saddles and (N, 2) faces on both sides, smaller first: each way from a face to a face."""
-    many = np.diff(basins.indptr)[pairs]
-    paths = many[:, 0] * many[:, 1]
-    saddles = np.repeat(np.arange(len(pairs)), paths)
-    step = np.arange(len(saddles)) - np.repeat(np.cumsum(paths) - paths, paths)
-    turn = np.column_stack(np.divmod(step, many[saddles, 1]))
-    first, other = basins.indices[basins.indptr[pairs[saddles]] + turn].T
-    return saddles, np.column_stack([np.minimum(first, other), np.maximum(first, other)])
 
 
 def rises(tips) -> NDArray[np.float64]:
@@ -139,19 +135,18 @@ def critical_solid_angles(polygons, heights) -> NDArray[np.float64]:
     for size in np.unique(counts):
         same_size = np.flatnonzero(counts == size)
         edges = first[same_size, None] + np.arange(size)
-        angles = _lifted_angles(corners[edges], normals[same_size], lifts[edges])
+        # solid angles of the polygons from the centre of mass as it is and from each lift of it
+        own = corners[edges]
+        apex, middle, end = own[:, :1], own[:, 1:-1], own[:, 2:]
+        fan = np.stack([np.broadcast_to(apex, middle.shape), middle, end], axis=2)
+        down = np.insert(lifts[edges], 0, 0.0, axis=1)[..., None] * normals[same_size][:, None]
+        triangles = fan[:, None] + down[:, :, None, None]
+        angles = (
+            solid_angles(np.zeros(3), triangles.reshape(-1, 3, 3)).reshape(triangles.shape[:3]).sum(axis=-1)
+        )
         critical, whole = angles[:, 1:].mean(axis=1), angles[:, 0]
         shares[same_size] = 1.0 - np.divide(critical, whole, out=np.ones(len(whole)), where=whole > 0.0)
     return shares
-
-
-def _lifted_angles(polygons, normals, lifts) -> NDArray[np.float64]:
-    """(F, K + 1) [sr] polygons (F, K, 3) seen from the centre of mass as it is and from each lift of it."""
-    apex, first, second = polygons[:, :1], polygons[:, 1:-1], polygons[:, 2:]
-    fan = np.stack([np.broadcast_to(apex, first.shape), first, second], axis=2)
-    down = np.insert(lifts, 0, 0.0, axis=1)[..., None] * normals[:, None]
-    triangles = fan[:, None] + down[:, :, None, None]
-    return solid_angles(np.zeros(3), triangles.reshape(-1, 3, 3)).reshape(triangles.shape[:3]).sum(axis=-1)
 
 
 def balance(tips) -> NDArray[np.float64]:
@@ -163,33 +158,27 @@ def balance(tips) -> NDArray[np.float64]:
     / E_b with E the energy to leave each; their book was not at hand. This is that balance on any number of
     faces, with the saddle between two basins as the height the part must be lifted to.
     Source: G. Boothroyd, A. H. Redford, "Mechanized Assembly", McGraw-Hill, 1968.
+
+    States are taken out one by one and their traffic led past them; no difference is taken, so that rates
+    many orders of magnitude apart do no harm: W. K. Grassmann, M. I. Taksar, D. P. Heyman, "Regenerative
+    analysis and steady state distributions for Markov chains", Oper. Res. 33(5), 1107-1116, 1985.
     """
     count = len(tips.shares)
     rates = np.zeros((count, count))
     lift = np.maximum(rises(tips), 1e-12 * np.nanmax(tips.heights))
     for k in (0, 1):
         rates[tips.pairs[:, k], tips.pairs[:, 1 - k]] = 1.0 / lift[:, k]
-    present = np.isfinite(tips.heights)
-    shares = np.zeros(count)
-    shares[present] = _stationary(rates[np.ix_(present, present)])
-    return shares
-
-
-def _stationary(rates) -> NDArray[np.float64]:
-    """Shares (N,), sum 1, that stay the same under rates (N, N) from the row's state to the column's.
-
-    States are taken out one by one and their traffic led past them; no difference is taken, so that rates
-    many orders of magnitude apart do no harm: W. K. Grassmann, M. I. Taksar, D. P. Heyman, "Regenerative
-    analysis and steady state distributions for Markov chains", Oper. Res. 33(5), 1107-1116, 1985.
-    """
-    rates, shares = rates.copy(), np.ones(len(rates))
+    present = np.flatnonzero(np.isfinite(tips.heights))
+    rates, shares = rates[np.ix_(present, present)], np.ones(len(present))
     for last in range(len(rates) - 1, 0, -1):
         rates[:last, last] /= rates[last, :last].sum() or np.inf
         rates[:last, :last] += rates[:last, last, None] * rates[last, :last]
     for k in range(1, len(rates)):
         if rates[:k, k].any():
             shares[k] = (shares[:k] * rates[:k, k]).sum()
-    return shares / shares.sum()
+    of_faces = np.zeros(count)
+    of_faces[present] = shares / shares.sum()
+    return of_faces
 
 
 def _edge_levers(polygons) -> tuple[NDArray[Any], ...]:
