@@ -180,7 +180,7 @@ def _forward(contact: Floats, shape: Floats, corners: Floats, size: float) -> Fl
     unit = longest / np.hypot(*longest.T)[:, None]
 
     def lopsidedness(along: Floats) -> tuple[float, ...]:
-        """Odd moments of the corners about one direction: tells equal sides apart however a file is turned."""
+        """Odd moments of the corners about one direction: tells equal sides however a file is turned."""
         across = np.column_stack([along, (-along[1], along[0])])
         x, y = vectors.product(corners[:, :2] / size, across).T
         z = corners[:, 2] / size
