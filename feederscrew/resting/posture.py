@@ -86,7 +86,7 @@ class Posture(ReadableRecord):
         return float(self.inertia[2, 2])
 
 
-def _borders(faces: NDArray[np.int64], low: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _borders(faces: Any, low: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Ends (E, 2) of the edges between low corners but for those within low facets; lone corners twice."""
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     lying = np.tile(low[faces].all(axis=1), 3)
@@ -99,7 +99,7 @@ def _borders(faces: NDArray[np.int64], low: NDArray[np.bool_]) -> NDArray[np.int
     return np.concatenate([edges, np.repeat(np.flatnonzero(alone)[:, None], 2, axis=1)])
 
 
-def posture(part: Part, aspects: Aspects, name: str) -> Posture:
+def posture(part: Part, aspects: Aspects, name: str) -> Any:
     """Return the part standing on one of its aspects.
 
     Parameters
