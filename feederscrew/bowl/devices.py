@@ -42,13 +42,9 @@ def misplaced(chain: Sequence[Device], width: float) -> list[ConfigError]:
 
 def unfit(chain: Sequence[Device]) -> list[ConfigError]:
     """Return the faults of devices where those before them leave them no meaning."""
-    return [*_beyond_rails(chain), *_in_grooves(chain)]
-
-
-def _beyond_rails(chain: Sequence[Device]) -> list[ConfigError]:
-    """Devices behind rails that mean nothing to parts that hang."""
+    # behind rails, to parts that hang
     first = next((place for place, device in enumerate(chain) if device.hangs), len(chain))
-    return [
+    faults = [
         ConfigError(
             device.where,
             f"{device.kind} has no meaning for parts that hang between rails",
@@ -57,11 +53,8 @@ def _beyond_rails(chain: Sequence[Device]) -> list[ConfigError]:
         for device in chain[first:]
         if not device.hanging
     ]
-
-
-def _in_grooves(chain: Sequence[Device]) -> list[ConfigError]:
-    """Devices in a groove, which holds parts on both its faces, where one is cut or stood over alone."""
-    faults, grooved = [], False
+    # in a groove, which holds parts on both its faces, where one is cut or stood over alone
+    grooved: bool | None = False
     for device in chain:
         grooved = grooved if device.grooved is None else device.grooved
         if grooved and device.placed and not device.leans:
