@@ -10,7 +10,7 @@ from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.floor import CONTACT, PART
-from feederscrew.part.size_limits import small_part_remarks
+from feederscrew.part.record import small_part_remarks
 from feederscrew.studies.headings import HeadingsStudy
 from feederscrew.units import MM
 

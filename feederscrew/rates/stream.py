@@ -14,7 +14,7 @@ from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
 from feederscrew.rates.tipping import TrackTipping, marked
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.counts.profiles import AspectProfile, DeviceCounts, Measured
+from feederscrew.resting.profiles import AspectProfile, DeviceCounts, Measured
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended, launched
 from feederscrew.tooling import orientations as tooling
 from feederscrew.tooling.devices.base import UNSURE, Device

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.mechanics import limits
-from feederscrew.resting.counts.deviation import deviation
+from feederscrew.resting.deviation import deviation
 from feederscrew.thesis import parts
 from feederscrew.thesis.recompute import THINNER_RATIO
 from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, table

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from feederscrew import bowl
 from feederscrew.mechanics import limits
-from feederscrew.resting.counts.deviation import deviation
+from feederscrew.resting.deviation import deviation
 from feederscrew.thesis import figures, parts
 from feederscrew.thesis.motion import TrackAsPublished, floor, track
 from feederscrew.thesis.recompute import cells, rounded_shares

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from feederscrew.resting.counts.deviation import deviation
+from feederscrew.resting.deviation import deviation
 from feederscrew.resting.rules import formulas
 from feederscrew.thesis import parts
 from feederscrew.thesis.tables import TOTAL, Cell, PrintedTable, is_number, last_digit, table

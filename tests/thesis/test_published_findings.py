@@ -8,7 +8,7 @@ import yaml
 
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
-from feederscrew.resting.counts.deviation import deviation
+from feederscrew.resting.deviation import deviation
 from feederscrew.thesis import parts
 from feederscrew.thesis.findings import FINDING_OF, FINDINGS
 from feederscrew.thesis.tables import chapter_4, table
