@@ -121,13 +121,8 @@ class Item:
         carried = [
             entry.finding
             for entry in self.entries
-            if entry.finding
-            and (
-                entry.verdict == EXPLAINED
-                or isinstance(entry, Claim)
-                or entry.cut
-                or entry.finding[:2] == "t-"
-            )
+            if entry.verdict == EXPLAINED
+            or (entry.finding and (isinstance(entry, Claim) or entry.cut or entry.finding[:2] == "t-"))
         ]
         return tuple(dict.fromkeys((*carried, *BEARS_ON.get(self.name, ()))))
 
@@ -182,7 +177,8 @@ def entries(item: Item) -> Frame:
     columns = CELL_COLUMNS if item.kind == "table" else CLAIM_COLUMNS
     rows: dict[str, list] = {name: [getattr(entry, name) for entry in item.entries] for name in columns}
     for name in ("recomputed", "explaining") if item.kind == "table" else ():
-        rows[name] = [_digits(entry, value) for entry, value in zip(item.entries, rows[name])]
+        cells_of = zip(item.entries, rows[name])
+        rows[name] = [_digits(entry, value) for entry, value in cells_of if isinstance(entry, Cell)]
     return frame(rows)
 
 
