@@ -161,7 +161,7 @@ class TrackBlade:
     start: float  # [m] s
     thickness: float  # [m] along the wall
     lean: float  # [1] ahead over inwards: a swept blade
-    area: object  # shapely geometry [m]: distance from the wall, height over the track
+    area: Any  # shapely geometry [m]: distance from the wall, height over the track
     alone: bool  # a gate that is a part of its own, and stands in a notch of the wall
 
 

@@ -8,8 +8,7 @@ import shapely
 
 from feederscrew.errors import FeederError
 from feederscrew.solidbowl import facets, track
-from feederscrew.solidbowl.plan import SEEN
-from feederscrew.solidbowl.stairs import STAIRS_TURN, SURE
+from feederscrew.solidbowl.plan import FULL_TURN_RAD, SEEN, SURE
 
 WALL_RAY_HEIGHT_M = 5e-4  # [m] over the track, where its wall is met
 RIM_SECTION_RAD = (
@@ -184,7 +183,7 @@ def _slid(plan, whole, place, meet) -> tuple[Any, ...]:
 def _on_the_turn_before(plan, place, meet):
     """Whether a place lies on the track a turn before, and that before the first device."""
     path = plan.path
-    s = float(path.at(np.arctan2(place[1], place[0]) % -STAIRS_TURN - STAIRS_TURN))
+    s = float(path.at(np.arctan2(place[1], place[0]) % -FULL_TURN_RAD - FULL_TURN_RAD))
     y = (float(path.wall_radius(s)) - np.hypot(*place[:2])) / float(np.cos(path.bank_at(s)))
     off = meet - float(path.height(s, y))
     return (

@@ -6,8 +6,7 @@ import numpy as np
 
 from feederscrew.geometry.vectors import product
 from feederscrew.solidbowl import track
-from feederscrew.solidbowl.plan import FULL_TURN_RAD
-from feederscrew.solidbowl.stairs import CONICAL
+from feederscrew.solidbowl.plan import CONICAL, FULL_TURN_RAD
 
 SPACED = 1.3  # of its length: from part to part
 FIRST_RIDER_POSITION = 0.12  # of the track: where the first of them is

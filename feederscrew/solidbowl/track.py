@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.solidbowl.plan import DIP, FULL_TURN_RAD
-from feederscrew.solidbowl.stairs import CONICAL
+from feederscrew.solidbowl.plan import CONICAL, DIP, FULL_TURN_RAD
 
 TRACK_PIECE_OVERLAP_M = 1e-3  # [m] by which one piece reaches into another
 ARC = 6  # facets of a fillet
