@@ -14,9 +14,7 @@ Array = NDArray[np.float64]
 Groove = tuple[float, float, float, float]
 TRACK_PIECE_OVERLAP_M = 1e-3  # [m] by which one piece reaches into another
 ARC = 6  # facets of a fillet
-YOKE_RADIUS_RATIO = (
-    1.05  # its radius over its distance from the wall: it crosses the wall
-)
+YOKE_RADIUS_RATIO = 1.05  # its radius over its distance from the wall: it crosses the wall
 YOKE = 6e-3  # [m] thickness of what carries the inner rail from below
 MAX_FACE_ANGLE_RAD = 0.5 * np.pi  # [rad] of a curved face: a longer one takes long to cut
 PLATE_OVERLAP_M = (
