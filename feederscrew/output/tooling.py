@@ -136,9 +136,9 @@ def _printed(study, mark):
 
 
 def _quoted(study, mark):
-    from feederscrew.solidbowl.exact import exact_section
+    from feederscrew.solidbowl.exact import exact_file
 
-    return marking.mark_step(exact_section.section_file(_strip(study)), mark)
+    return marking.mark_step(exact_file.section_file(_strip(study)), mark)
 
 
 def _strip(study):
