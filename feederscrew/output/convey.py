@@ -11,8 +11,7 @@ from feederscrew.conveying.operating_point import PHASES
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import heading
-from feederscrew.output.words import PHASE_WORDS, regime_words
+from feederscrew.output.tables import PHASE_WORDS, heading, regime_words
 from feederscrew.studies.convey import ConveyStudy
 from feederscrew.units import MM_S, factor
 

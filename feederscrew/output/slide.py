@@ -9,7 +9,7 @@ from feederscrew.bowl import texts
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.words import regime_words
+from feederscrew.output.tables import regime_words
 from feederscrew.studies.slide import SlideMap, SlideStudy
 
 matplotlib = heavy("matplotlib")
