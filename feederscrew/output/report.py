@@ -32,7 +32,6 @@ from feederscrew.output import (
     style,
     tables,
     tipping_graph,
-    tooling_tables,
     tooling_views,
 )
 from feederscrew.output import rate as rate_output
@@ -478,7 +477,7 @@ def tooling(case: Any) -> Chapter | None:
         blocks.append(Views(over, captions, "cuts", "Orientation"))
         blocks.append(_picture(tooling_output.solid_picture(*chain), printed=True))
     drawn = tooling_output.chain_picture(study.devices, study.orientations, study.shares)
-    blocks += [Table(tooling_tables.passages(study)), _picture(drawn)]
+    blocks += [Table(tooling_output.passages(study)), _picture(drawn)]
     return Chapter(tuple(blocks), warnings=tuple(tipping.remark(study.orientations)))
 
 
