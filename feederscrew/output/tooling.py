@@ -16,7 +16,6 @@ from feederscrew.tooling.isolating.proposal import LEAST_SHARE
 from feederscrew.tooling.track_sections import build_section
 from feederscrew.units import DEG, MM
 
-exact_section = heavy("feederscrew.solidbowl.exact.exact_section")
 solid_files = heavy("feederscrew.output.solid_files")
 tooling_drawing = heavy("feederscrew.output.tooling_drawing")
 tooling_figures = heavy("feederscrew.output.tooling_figures")
@@ -391,8 +390,7 @@ def offers(
         offer.text(marking.file_name("tooling.stl", mark), lambda: solid_files.section_stl(section(), mark)),
     ]
     if step:
-        name = marking.file_name("tooling.step", mark)
-        files.append(offer.text(name, lambda: marking.mark_step(exact_section.section_file(section()), mark)))
+        files.append(offer.text(marking.file_name("tooling.step", mark), _step, section, mark))
     if any(device.picture for device in devices if device.placed and not device.turns):  # a cut to see
         files.append(solid_picture(*chain))
     return marking.pictures(files, mark)
@@ -422,3 +420,9 @@ def _drawn(kind: str, study: Any, section: Any, mark: str, fields: Any) -> Any:
     titles = [("tooling for", study.part.name), ("leaves as", wanted.name)]
     look = {"thickness": study.bowl.sizing.sheet, "fields": fields, "titles": titles}
     return getattr(tooling_drawing, kind)(strip, ghosts, mark, **look)
+
+
+def _step(section: Any, mark: str) -> bytes:
+    from feederscrew.solidbowl.exact import exact_section
+
+    return marking.mark_step(exact_section.section_file(section()), mark)
