@@ -374,7 +374,8 @@ def offers(
     what = "Orientations and what isolates them"
     files = [offer.table("tooling.csv", frame, study), offer.document("tooling.json", document, study)]
     if study.design is None or not study.design.devices:
-        drawn = offer.picture("tooling.png", what, lambda: tooling_figures.limits(study))
+        words = isolation_words(study)
+        drawn = offer.picture("tooling.png", what, lambda: tooling_figures.limits(study, words))
         return marking.pictures([*files, drawn], mark)
     devices = study.design.devices
     chain = devices, study.orientations, study.shares, study.wanted

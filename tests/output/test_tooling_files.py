@@ -169,7 +169,7 @@ def test_files(isolated):
 def test_texts_of_the_pictures_do_not_meet(lying, isolated):
     bowl, every = lying
     shares = np.full(len(every), 1.0 / len(every))
-    pictures = [tooling_figures.chain(bowl.devices, every, shares), tooling_figures.limits(isolated[0])]
+    pictures = [tooling_figures.chain(bowl.devices, every, shares), tooling_figures.limits(isolated[0], "")]
     for figure in pictures:
         renderer = figure.canvas.get_renderer()
         boxes = [text.get_window_extent(renderer) for text in figure.texts if text.get_text()]
