@@ -5,7 +5,7 @@ from typing import Any
 from feederscrew.output import offers as offer
 from feederscrew.output import tables
 from feederscrew.output.tables import Frame
-from feederscrew.studies.calibrate import CalibrateStudy
+from feederscrew.studies.compare import CalibrateStudy
 
 UNLIKELY = 0.01  # p-value below which no exponent explains the counts
 

@@ -11,8 +11,7 @@ from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.tables import Frame
 from feederscrew.resting.rules import registry
-from feederscrew.studies.compare import CompareStudy, SetsStudy
-from feederscrew.studies.passages import FeedingStudy
+from feederscrew.studies.compare import CompareStudy, FeedingStudy, SetsStudy
 
 mpl_patches = heavy("matplotlib.patches")
 

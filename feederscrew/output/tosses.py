@@ -10,7 +10,7 @@ from feederscrew.dropping.toss_runs import FACE_NAMES
 from feederscrew.output import columns, style, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.tables import Frame
-from feederscrew.studies.tosses import TossStudy
+from feederscrew.studies.drop import TossStudy
 from feederscrew.units import MM
 
 NONE = "none"  # the side that points up where no run came to rest

@@ -27,14 +27,12 @@ from feederscrew.studies.arguments import (
     override_texts,
     with_settings,
 )
-from feederscrew.studies.aspects import AspectsStudy
+from feederscrew.studies.aspects import AspectsStudy, InertiaStudy, inertia
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.convey import ConveyMap, ConveyStudy
 from feederscrew.studies.floor import FloorStudy, floor
 from feederscrew.studies.headings import HeadingsStudy, headings
-from feederscrew.studies.inertia import InertiaStudy, inertia
-from feederscrew.studies.passages import PassagesStudy, passages
-from feederscrew.studies.rate import MIN_POSITIVE, RateStudy, Shares, rate, shares
+from feederscrew.studies.rate import MIN_POSITIVE, PassagesStudy, RateStudy, Shares, passages, rate, shares
 from feederscrew.studies.slide import SlideStudy, slide
 from feederscrew.studies.track import TrackStudy, track
 from feederscrew.studies.trial import TrialStudy, trial

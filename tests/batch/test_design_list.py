@@ -6,7 +6,7 @@ import shutil
 import pytest
 
 from feederscrew import errors
-from feederscrew.batch.design_list import read_orders
+from feederscrew.batch.inputs import read_orders
 from feederscrew.designing import loop
 
 HEAD = "part,target,aspect\n"

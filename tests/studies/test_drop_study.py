@@ -11,10 +11,8 @@ from feederscrew.output import drop as drop_output
 from feederscrew.output import offers
 from feederscrew.output import plate as plate_output
 from feederscrew.studies.aspects import aspects
-from feederscrew.studies.calibrate import calibrate
-from feederscrew.studies.compare import compare
-from feederscrew.studies.drop import drop
-from feederscrew.studies.plate import shake
+from feederscrew.studies.compare import calibrate, compare
+from feederscrew.studies.drop import drop, shake
 
 OWN = {"fall": "5 mm"}
 

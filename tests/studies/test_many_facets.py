@@ -9,8 +9,7 @@ import feederscrew as feeder
 from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
 from feederscrew.part.size_limits import MAX_FACETS
-from feederscrew.studies.passages import passages
-from feederscrew.studies.rate import rate
+from feederscrew.studies.rate import passages, rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.blades import Wiper
 

@@ -12,7 +12,7 @@ import pytest
 
 from feederscrew.part.density import MATERIALS
 from feederscrew.resting.rules import registry
-from feederscrew_cli import argument_names, grouped, talk
+from feederscrew_cli import grouped, talk
 from feederscrew_cli.main import feeder
 
 PARTS = Path(__file__).parents[3] / "parts"
@@ -105,4 +105,4 @@ def test_a_help_text_has_sentences_of_thirty_words_at_most(name):
     ],
 )
 def test_an_argument_goes_by_its_option_where_the_command_has_one(command, text, told):
-    assert argument_names.translated(text, argument_names.options(feeder.commands[command])) == told
+    assert talk.translated(text, talk.options_by_argument(feeder.commands[command])) == told

@@ -11,7 +11,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.output import plate as plate_output
 from feederscrew.output.tables import data_frame
-from feederscrew.studies.plate import shake as plate_study
+from feederscrew.studies.drop import shake as plate_study
 
 HEAD = ["bowl", "amplitude_mm", "throw_number"]
 COLUMNS = [
