@@ -94,10 +94,10 @@ results/%/inertia.csv: parts/%.stl | $(READY)
 results/%/slide.csv: configs/%.yaml | $(READY)
 	$(FEEDER) slide --config $< -o results --quiet > /dev/null
 
-TABLES := waits kernels
+TABLES := waits scale kernels
 BENCHES := conveying speed tooling
 
-bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minutes: the tables of docs/method/speed.md
+bench: $(READY_TO_TEST) ## what people wait for, how it grows, and the kernels, about an hour: the tables of docs/speed.md
 	for name in $(TABLES); do $(BIN)/python benchmarks/$$name.py --write || exit 1; done
 	for name in $(BENCHES); do $(BIN)/python benchmarks/$$name.py || exit 1; done
 	$(BIN)/python benchmarks/aspects.py --repeats 1

@@ -61,7 +61,6 @@ def tossed(sets, **known):
 
 
 def measured(series):
-    """Print the errors of every rule and launch on every measured series."""
     print("Measured sets: root of the mean square of the total variation")
     print(f"{'':28}" + "".join(f"{name:>16}" for name in series))
     print(f"{'launch, sets':28}" + "".join(f"{f'{s[0].launch}, {len(s)}':>16}" for s in series.values()))
@@ -79,7 +78,6 @@ def measured(series):
 
 
 def fed(feedings):
-    """Print what passed each device of every feeding test, and what the static rules say."""
     print("\nFeeding tests: share that passed, predicted, its interval, and whether it agrees")
     for one in feedings:
         ends = zip(one.measured.shares, one.answers["recommended"], one.low, one.high, one.agrees)
@@ -94,7 +92,6 @@ def fed(feedings):
 
 
 def against_drops(groups):
-    """Print how far each rule is from the drop tests of every launch, on the mean of each group of bodies."""
     for group, bodies in groups.items():
         print(f"\nMean total variation from drop tests: {group}, {len(bodies)} bodies")
         print(f"{'':28}" + "".join(f"{launch:>8}" for launch in LAUNCH_NAMES))
@@ -108,7 +105,6 @@ def against_drops(groups):
 
 
 def main(chosen):
-    """Everything, in the order of the module's text."""
     known = {"drops": chosen.drops, "keep": chosen.keep, "jobs": chosen.jobs}
     if chosen.keep:
         chosen.keep.mkdir(exist_ok=True)

@@ -73,7 +73,6 @@ JOBS = {"floor": floor, "ours": ours}
 
 
 def measured(job, path):
-    """Processor seconds and peak memory [MB] of one job in a process of its own."""
     done = subprocess.run(
         [sys.executable, __file__, "--job", job, str(path)], capture_output=True, text=True, check=True
     )
@@ -81,7 +80,6 @@ def measured(job, path):
 
 
 def run(job, path):
-    """One job here: imports and a first run, then the clock."""
     import pandas
     import scipy.sparse.csgraph
     import scipy.spatial
@@ -101,14 +99,12 @@ def run(job, path):
 
 
 def compare(first, second, path, repeats):
-    """Median ratios (time, memory) of two jobs, and the median seconds of each."""
     pairs = [(measured(first, path), measured(second, path)) for _ in range(repeats)]
     ratio = [statistics.median(a[k] / b[k] for a, b in pairs) for k in (0, 1)]
     return *ratio, *(statistics.median(pair[k][0] for pair in pairs) for k in (0, 1))
 
 
 def main(largest, repeats):
-    """Print the tables."""
     print(f"{'mesh':8} {'facets':>9} {'floor s':>8} {'ours s':>8} {'time':>6} {'memory':>7}  target")
     with tempfile.TemporaryDirectory() as folder:
         for name, make in (("box", box), ("screw", screw), ("sphere", sphere)):

@@ -56,12 +56,10 @@ class Body:
 
     @cached_property
     def rules(self):
-        """Every rule's shares by class."""
         found = {rule: p for rule, p in self.aspects.probabilities.items() if rule != "surface"}
         return found | self.surfaces()
 
     def tally(self, launch):
-        """Counts of a drop test."""
         if launch not in self.tallies:
             own, run = dict.fromkeys(launch_conditions.CONDITION_KEYS), RunSettings(jobs=self.jobs)
             tested = drop_test.test(self.part, self.aspects, launch, own, drops=self.drops, run=run)
@@ -70,22 +68,18 @@ class Body:
         return self.tallies[launch]
 
     def drop(self, launch):
-        """Shares by class in a drop test."""
         counts = self.tally(launch).counts
         return counts / max(counts.sum(), 1)
 
     def closed(self, launch):
-        """The closed form's answer for a launch."""
         if launch not in self.answers:
             self.answers[launch] = find(self.part, launch=launch).recommended
         return self.answers[launch]
 
     def answer(self, launch):
-        """The recommended answer for a launch: that of the drop test."""
         return self.dropped(launch)
 
     def dropped(self, launch):
-        """The answer of a drop test."""
         return recommended.dropped(self.tally(launch), launch)
 
     def _keep(self):

@@ -68,7 +68,6 @@ def coin(sections):
 
 
 def cases():
-    """What is looked at."""
     t_shape = shapes.part(shapes.prism(shapes.T_OUTLINE, 10.0))
     nut = load(str(ROOT / "parts/squarenut_m5.stl"))
     second = np.sort(1e3 * find(nut).heights[find(nut).stable])[1]
@@ -123,7 +122,6 @@ def _lowest(shape, turn):
 
 
 def order(shape):
-    """Print the error of a rolling coin against the step, and its order."""
     print("A leaning coin that rolls without resistance: error of its attitude after one unit of time")
     finest = rolled(shape, 1.25e-4)[1]
     before = None
@@ -135,7 +133,6 @@ def order(shape):
 
 
 def shares(case, drops):
-    """Print the share of a case against every setting."""
     usual = Steps()
     print(f"\n{case.name}: share, difference from the row above in standard errors, unsettled")
     for name, fields in SETTINGS.items():
@@ -151,7 +148,6 @@ def shares(case, drops):
 
 
 def sections(drops):
-    """Print the coin's share against the sections of its file."""
     print("\ncoin on its edge against the sections of its file")
     before = None
     for count in SECTIONS:
@@ -163,7 +159,6 @@ def sections(drops):
 
 
 def together(looked_at, drops):
-    """Print the shares with all settings finer at once, and the numerical error they show."""
     print("\nall settings at once: share, and how far the kernel's own are from it, for a share of a half")
     away = []
     for case in looked_at:
@@ -181,13 +176,11 @@ def together(looked_at, drops):
 
 
 def finer(factor):
-    """All of the kernel's steps and tolerances so many times as large."""
     usual, fields = Steps(), [field for names in SETTINGS.values() for field in names]
     return usual._replace(**{field: factor * getattr(usual, field) for field in fields})
 
 
 def main(chosen):
-    """Everything, in the order of the module's text."""
     looked_at = cases()
     order(looked_at[0].shape)
     sections(chosen.drops)

@@ -27,7 +27,6 @@ PERIODS = 100  # the general solver follows, where it cannot know that the motio
 
 
 def seconds(function):
-    """Processor time of one call, and its result."""
     start = time.process_time()
     found = function()
     return time.process_time() - start, found

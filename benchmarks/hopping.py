@@ -59,7 +59,6 @@ def velocity(row, count):
 
 
 def main(count):
-    """Print every setting, and what is to be said of all."""
     lines = [line for line in REFERENCE.read_text().splitlines() if not line.startswith("#")]
     print("| body | throw | friction | restitution | other [mm/s] | ours [mm/s] | point [mm/s] | | turned |")
     print("| --- " * 9 + "|")

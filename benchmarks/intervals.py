@@ -67,7 +67,6 @@ def entries(bodies, launch):
 
 
 def closed_forms(bodies):
-    """Print the width of the closed form for each launch, with and without a rolling class."""
     print("\nClosed forms against drop tests of the same launch: half the interval of a share of a half, as")
     print("calibrated here and as it is; the share of those left out that it holds; mean width, and formerly")
     heads = ("fit", "is", "held", "left out", "of", "wide", "was", "held")

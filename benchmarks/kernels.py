@@ -24,7 +24,6 @@ PAIRS = 3
 
 
 def drops():
-    """Drops a second and core."""
     for name, shape in speed.bodies():
         if name in speed.TARGETS:
             rate, _ = speed.rates(shape, 4000)
@@ -57,12 +56,11 @@ def facets(folder):
             yield waits.Row(f"aspects of a {name}, {len(mesh.faces):,} facets", target, ratio, "x", beside)
 
 
-def kernels(folder):
-    """Every kernel."""
+def kernels(_call, folder):
     yield from drops()
     yield from points()
     yield from facets(folder)
 
 
 if __name__ == "__main__":
-    waits.main("kernels", __doc__, kernels)
+    waits.main("kernels", __doc__, kernels, page=waits.PAGE.parent / "method/speed.md")

@@ -100,7 +100,6 @@ def drawn(seed, ridden=False):
 
 
 def _chain(rng, size, width, ridden):
-    """Lines of one to three devices."""
     lines = devices(rng, size, width)
     kinds = list(RIDDEN if ridden else lines)
     some = [str(one) for one in rng.choice(kinds, size=int(rng.integers(1, 4)), replace=False)]
@@ -238,7 +237,6 @@ def rides(one):
 
 
 def main():
-    """Print one line a bowl, and a sum."""
     first, _, last = sys.argv[1].partition("-")
     what, good, refused, bad, alike, most = sys.argv[2:], 0, 0, 0, [], {}
     for seed in range(int(first), int(last or first) + 1):

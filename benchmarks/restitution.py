@@ -34,7 +34,6 @@ def answers(line):
 
 
 def velocity(found):
-    """Return velocities and periods of motions."""
     speeds = ", ".join(f"{one['velocity_mm_s']:.3g}" for one in found)
     periods = ", ".join(str(one["period"]) for one in found)
     return f"{speeds} mm/s; the motion repeats after {periods} strokes"
@@ -52,14 +51,12 @@ def plate(found):
 
 
 def rate(found):
-    """Return rates with the middle one's interval."""
     rates = ", ".join(f"{one['parts_per_minute']:.3g}" for one in found)
     ends = " to ".join(f"{found[1][f'parts_per_minute_{end}']:.3g}" for end in ("low", "high"))
     return f"{rates} a minute; the interval is {ends}"
 
 
 def trial(found):
-    """Return velocities, and how many orientations end otherwise."""
     speeds = ", ".join(f"{one['velocity_mm_s']:.4g}" for one in found)
     fates = ("passed", "turned", "returned", "hanging", "stopped", "rolled_back", "stuck")
     ended = [
@@ -107,7 +104,6 @@ def table():
 
 
 def main():
-    """Print the table, or put it into the page."""
     made = table()
     if "--write" not in sys.argv:
         print(made)

@@ -159,7 +159,6 @@ def travelled(e, tiltvec, phase):
 
 
 def main():
-    """Print the share of blocks that rock, by restitution and by how far they begin out of level."""
     for restitution in (0.0, 0.3, 0.6):
         for about in ("the axis across", "any axis"):
             for degrees in (0.2, 1.0):

@@ -32,7 +32,6 @@ JOBS = 1.8  # times as fast, with two
 
 
 def seconds(job, *arguments, repeats=5):
-    """Shortest processor time of a few runs."""
     times = []
     for _ in range(repeats):
         start = time.process_time()
@@ -48,7 +47,6 @@ def ellipsoid(count):
 
 
 def tumbling():
-    """Print the cost of exact tumbling beside its hull and its peer."""
     points, centre = ellipsoid(50000), np.zeros(3)
     tumble(convex_hull(points[:100], centre))
     hull = seconds(ConvexHull, points)
@@ -62,13 +60,11 @@ def tumbling():
 
 
 def hull_mesh(points):
-    """Corners and triangles of a hull."""
     hull = convex_hull(points, np.zeros(3))
     return hull.vertices, hull.triangles
 
 
 def bodies():
-    """Shapes by name."""
     turn = 2 * np.pi * np.arange(250) / 250
     rings = [np.column_stack([r * np.cos(turn), r * np.sin(turn), np.full(250, z)]) for r, z in RINGS]
     meshes = {
@@ -81,7 +77,6 @@ def bodies():
 
 
 def rates(shape, count):
-    """Drops a second and core, and the faces."""
     starts = sample(THROW, shape, count, np.random.default_rng(1))
     faces, times, work = np.empty(count, int), np.empty(count), one_drop.scratch(shape)
     given = shape, work, starts.launched(), one_drop.Steps(), faces, times
@@ -89,7 +84,6 @@ def rates(shape, count):
 
 
 def jobs(shape):
-    """Print what a second core gives, by the clock."""
     took = []
     for cores in (1, 2):
         start = time.perf_counter()
@@ -100,7 +94,6 @@ def jobs(shape):
 
 
 def main():
-    """Print everything."""
     tumbling()
     for name, shape in bodies():
         rate, _ = rates(shape, 4000)

@@ -54,7 +54,6 @@ def scanned(ring, corners, positions, pieces=12):
 
 
 def judged(what, rate):
-    """A rate beside its target."""
     wanted = TARGETS[what]
     return f"{rate:,.0f} a second, target {wanted:,}: {waits.verdict(rate >= wanted)}"
 

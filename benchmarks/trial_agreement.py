@@ -108,7 +108,6 @@ def _between(kind, every, rng):
 
 
 def _hole(every, rng):
-    """A hole of four corners, two of them along the wall."""
     length, width = 1e3 * max(one.length for one in every), 1e3 * max(one.width for one in every)
     high = width * rng.uniform(0.4, 1.1)
     low = max(0.0, high - width * rng.uniform(0.3, 1.1))
@@ -141,7 +140,6 @@ def rows(run):
 
 
 def part_of(name):
-    """A part of ``parts/``, one that is made here, or one of a file."""
     if name in trial_parts.NAMES:
         return trial_parts.made(name)
     if name.startswith("drawn_"):
@@ -160,7 +158,6 @@ def kept(run):
 
 
 def names_of(words):
-    """The parts that are meant."""
     for word in words or NAMES:
         if word == "made":
             yield from trial_parts.NAMES
@@ -172,7 +169,6 @@ def names_of(words):
 
 
 def tried(part, bowl, count):
-    """So many trials of every orientation of a part in a bowl."""
     known = trial.arriving(part, bowl, rule=RULE)
     every = len(trial.stream.follow_orientations(part, known.aspects, bowl.track).lying)
     return trial.trial(part, [bowl], rule=RULE, parts=count * every, jobs=1, aspect_shares=known).runs[0]

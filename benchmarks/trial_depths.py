@@ -61,7 +61,6 @@ def ridden(part, lines):
 
 
 def row(path):
-    """Return the row of one part; empty of a file that is refused."""
     try:
         part = load(path)
         found = {name: ridden(part, lines) for name, lines in CHAINS.items()}
@@ -76,7 +75,6 @@ def row(path):
 
 
 def main():
-    """Print the table, or write it into its page."""
     asked = argparse.ArgumentParser(description=__doc__)
     asked.add_argument("folder", type=Path)
     asked.add_argument("--parts", nargs="*")

@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent
 STEPS = (
     "make test                    format, lint and every test are green on a clean tree",
     "make docs, make site         every output, table and picture of the pages is as the program is",
-    "make bench                   docs/method/speed.md is measured; no wait is slower without a reason",
+    "make bench                   docs/speed.md is measured; no wait is slower without a reason",
     "python docs/validation.py    the measured sets; a changed error has a reason in CHANGELOG.md",
     "CHANGELOG.md                 Added, Changed, Fixed, Removed since the last release, and the date",
     "make release                 sdist and wheel, tried on each Python at hand, and git tag v{version}",
