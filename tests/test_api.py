@@ -64,13 +64,6 @@ def test_aspects_are_what_the_command_prints(run, bracket):
     assert tables.text(tables.frame(dict(fs.aspects(bracket).to_frame())), "csv") == printed
 
 
-def test_unstable_facets_and_published_counts_pass_through(bracket):
-    assert len(fs.find_aspects(bracket, unstable=True).names) > len(fs.find_aspects(bracket).names)
-    bolt = fs.load(ROOT / "parts/hexbolt_m8x25.stl")
-    plain, published = (fs.find_aspects(bolt, as_published=way).probabilities["pmi"] for way in (False, True))
-    assert not (plain == published).all()
-
-
 def test_a_rate_is_what_the_command_says(run, bracket):
     import json
 
@@ -90,10 +83,6 @@ def test_a_drop_test_and_a_plate_are_what_the_command_says(run, bracket):
     plate = json.loads(run(*call, "--plate", "--seconds", 0.5).stdout)["plates"][0]
     (shaken,) = fs.shake(bracket, fs.read_bowl(), drops=60, seed=3, seconds=0.5).plates
     assert plate["velocity_mm_s"] == pytest.approx(1e3 * shaken.occupancy.velocity[0])
-
-
-def test_overrides_reach_the_bowl():
-    assert fs.read_bowl(overrides=["drive.frequency=50 Hz"]).drive.frequency == 50.0
 
 
 def test_types_are_there_for_a_checker():

@@ -1,7 +1,6 @@
 """Many parts: how they are named, shared out, kept and taken up again."""
 
 import csv
-import errno
 import io
 import json
 import os
@@ -352,23 +351,6 @@ def test_tables_of_the_last_run_stay_until_the_new_ones_are_there(tmp_path, thre
     assert not (out / "contact_sheet_7.png").exists()
 
 
-def test_a_full_disk_at_the_end_leaves_the_tables_of_the_last_run(tmp_path, three, monkeypatch):
-    out = tmp_path / "out"
-    ran(three[:1], out, workers=Here())
-    before, write = (out / "summary.csv").read_bytes(), Path.write_bytes
-
-    def full(path, data):
-        if path.name == "summary.csv":
-            raise OSError(errno.ENOSPC, "No space left on device")
-        return write(path, data)
-
-    monkeypatch.setattr(Path, "write_bytes", full)
-    with pytest.raises(FeederError, match="No space left"):
-        ran(three[:2], out, workers=Here())
-    assert (out / "summary.csv").read_bytes() == before
-    assert not [path for path in out.iterdir() if path.name.startswith(".")]
-
-
 def test_what_a_killed_run_left_is_put_back_or_cleared_away(tmp_path, three):
     out = tmp_path / "out"
     ran(three[:2], out, workers=Here())
@@ -420,24 +402,9 @@ def test_tasks_are_read_only_when_a_process_is_free(three):
     outcomes.close()
 
 
-def test_sheets_are_drawn_here_where_the_process_for_them_dies():
-    crew = batch.Processes(1, job=says_where)
-    assert list(crew.each(dies_elsewhere, [os.getpid()] * 2)) == [os.getpid()] * 2
-    here, *_ = places = list(crew.each(where, "ab"))
-    assert here != os.getpid()
-    assert places == [here, here]
-
-
 def where(_item):
     """The process that is asked."""
     return os.getpid()
-
-
-def dies_elsewhere(home):
-    """A process that is killed unless it is the first one."""
-    if os.getpid() != home:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return home
 
 
 def test_a_folder_of_others_is_refused(tmp_path, three):

@@ -64,27 +64,10 @@ def test_a_test_that_was_stopped_is_not_kept():
     assert aspects(part, drops=500, jobs=1).tally.counts.sum() == 500
 
 
-def test_a_surface_given_is_the_answer_whatever_the_launch():
-    part = shapes.part(shapes.box(10.0, 20.0, 30.0))
-    soft = aspects(part, launch="feed", surface="soft")
-    assert soft.recommended.rule == "surface, soft, launch feed" and soft.tally is None
-
-
 def test_a_surface_may_be_named_or_a_number():
     part = shapes.part(shapes.box(10.0, 20.0, 30.0))
     named, number = (aspects(part, surface=surface).aspects for surface in ("medium", 1.2))
     assert named.chances["surface"].tolist() == number.chances["surface"].tolist()
-
-
-def test_the_files_are_offered_and_made_only_when_asked_for(monkeypatch):
-    study = aspects(shapes.part(shapes.box(10.0, 20.0, 30.0)))
-    offered = offers.by_name(aspects_output.offers(study, tipping=True))
-    assert sorted(offered) == [
-        "aspects.csv", "aspects.json", "aspects.png", "graph.csv", "graph.png", "names.yaml",
-        "probabilities.png",
-    ]  # fmt: skip
-    assert all(offer.alt for offer in offered.values() if offer.is_picture)
-    assert offered["aspects.csv"].make().startswith("aspect,kind,faces,stable,")
 
 
 def test_a_card_offers_no_view_and_has_no_graph():

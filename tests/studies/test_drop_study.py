@@ -7,14 +7,9 @@ import shapes
 import feederscrew as fs
 from feederscrew.output import calibrate as calibrate_output
 from feederscrew.output import compare as compare_output
-from feederscrew.output import drop as drop_output
-from feederscrew.output import offers
 from feederscrew.output import plate as plate_output
-from feederscrew.studies.aspects import aspects
 from feederscrew.studies.compare import calibrate, compare
-from feederscrew.studies.drop import drop, shake
-
-OWN = {"fall": "5 mm"}
+from feederscrew.studies.drop import shake
 
 
 @pytest.fixture(scope="module")
@@ -27,27 +22,6 @@ def counts(tmp_path_factory):
     path = tmp_path_factory.mktemp("counts") / "counts.csv"
     path.write_text("aspect,tray\nA,70\nB,20\nC,10\n")
     return path
-
-
-def test_the_library_returns_what_the_study_counts(box):
-    study = drop(box, "drop", **OWN, drops=40, seed=4)
-    again = fs.drop(box, launch="drop", drops=40, seed=4, **OWN)
-    assert again.tally.counts.tolist() == study.result.tally.counts.tolist()
-    assert study.drops == 40
-    assert list(study.rules) == ["csa", "surface"]
-
-
-def test_traces_are_offered_where_there_are_some(box):
-    plain, followed = (drop(box, "drop", drops=20, traced=k) for k in (0, 2))
-    assert sorted(offers.by_name(drop_output.offers(plain))) == ["drop.csv", "drop.json", "drop.png"]
-    assert "drop_traces.csv" in offers.by_name(drop_output.offers(followed))
-    assert followed.telling in followed.result.traces
-
-
-def test_a_drop_test_becomes_the_recommended_answer(box):
-    study = aspects(box, drops=60)
-    assert study.recommended.rule == "drop test, launch feed"
-    np.testing.assert_array_equal(study.recommended.p, study.tally.p)
 
 
 def test_a_plate_offers_its_tables_and_counts_what_it_saw(box):

@@ -43,16 +43,6 @@ def test_a_record_is_short_has_a_table_and_its_pictures(part, name):
         record.to_frame("pie")
 
 
-def test_records_within_are_short_and_have_a_table(part):
-    found = fs.find_aspects(part)
-    for record in (part, BOWL, found, fs.posture(part, found, "A"), fs.convey(BOWL).answer):
-        assert len(repr(record)) <= 400
-        assert len(record.to_frame()) >= 1
-    assert found.to_frame()["names"].tolist() == list(found.names)
-    assert BOWL.to_frame()["drive.amplitude"].item() == pytest.approx(5e-5)  # SI
-    assert repr(fs.posture(part, found, "A")).startswith("Posture(name='A'")
-
-
 def test_a_table_is_the_file_of_its_command(run, tmp_path):
     shapes_file = tmp_path / "box.stl"
     shapes.box(8.0, 12.0, 20.0).export(shapes_file)
@@ -62,26 +52,6 @@ def test_a_table_is_the_file_of_its_command(run, tmp_path):
     assert tables.text(tables.frame(dict(table)), "csv") == said
     told = json.loads(run("inertia", shapes_file, "--format", "json", "-q").stdout)
     assert told["mass_g"] == pytest.approx(1e3 * fs.load(shapes_file).mass)
-
-
-def test_the_thesis_is_a_record_too(monkeypatch):
-    from feederscrew.thesis import reproduction
-
-    monkeypatch.setattr(reproduction, "TABLES", ())
-    record = fs.reproduce()
-    assert record.plot("5-1").get_axes()
-    with pytest.raises(fs.FeederError, match=r"^name: there is no figure '9-9' - give one of 3-6"):
-        record.plot("9-9")
-
-
-def test_quantities_are_texts_or_numbers_in_si_units(part):
-    one, other = (fs.floor(part, BOWL, heading=lies) for lies in ("90 deg", 1.5707963267948966))
-    assert one.heading == other.heading
-    texts, numbers = (
-        fs.drop(part, drops=12, fall=fall, friction=friction).tally.counts.tolist()
-        for fall, friction in (("20 mm:50 mm", "0.3"), ((0.02, 0.05), 0.3))
-    )
-    assert texts == numbers
 
 
 @pytest.mark.parametrize(
@@ -122,10 +92,3 @@ def test_a_fault_names_the_argument(part, call, line):
     with pytest.raises(fs.FeederError) as caught:
         call(part)
     assert str(caught.value) == line
-
-
-def test_a_word_that_is_no_argument_is_a_wrong_call(part):
-    with pytest.raises(TypeError, match="unexpected keyword argument 'lunch'"):
-        fs.rate(part, BOWL, "A", lunch="feed")
-    with pytest.raises(TypeError, match="unexpected keyword argument 'gravity'"):
-        fs.drop(part, gravity=-1)

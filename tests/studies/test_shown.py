@@ -54,13 +54,6 @@ def test_a_record_says_its_answer_and_shows_its_table(part, name):
         assert "<table" in shown and "<td>" in shown
 
 
-def test_shares_in_a_text_are_those_of_the_record_the_largest_first(part):
-    resting = fs.aspects(part, drops=0)
-    shares = [float(one) for one in re.findall(r"[ABC] ([\d.]+) %", repr(resting))]
-    assert shares == sorted(shares, reverse=True) and sum(shares) == pytest.approx(100.0, abs=0.2)
-    assert shares[0] == pytest.approx(100.0 * resting.recommended.p.max(), abs=0.06)
-
-
 def test_what_a_file_is_called_is_escaped(part):
     named = replace(part, name="<b>x\x1b[31m</b>", material="<script>alert(1)</script>")
     for shown in (
@@ -70,12 +63,6 @@ def test_what_a_file_is_called_is_escaped(part):
     ):
         assert "<b>" not in shown and "<script" not in shown and "\x1b" not in shown
     assert "\x1b" not in repr(named)
-
-
-def test_a_figure_shows_as_the_last_line_of_a_cell(part):
-    """As IPython asks for it: without pyplot nothing is registered for a Figure."""
-    for figure in (fs.convey(BOWL).plot(), fs.headings(part, BOWL, "A").plot()):
-        assert figure._repr_png_().startswith(b"\x89PNG")
 
 
 def test_a_bowl_shows_what_was_given(tmp_path):

@@ -31,19 +31,6 @@ def test_contract(run):
     assert set(found["cycle"]["state"]) <= {"stick", "slide", "hop", "tip"}
 
 
-def test_the_upper_reversal_is_in_the_cycle(run):
-    found = document(run, BRACKET, *GENTLE)
-    place = found["cycle"]["phase_deg"].index(90.0)
-    assert found["cycle"]["normal_force_N"][place] == pytest.approx(found["instant"]["normal_force_N"])
-
-
-def test_a_card_does_not_know_whether_it_tips(run):
-    result = run("floor", CARD, "--aspect", "5", *GENTLE)
-    assert result.exit_code == 0
-    assert "a part card has no contact polygon: whether it tips is not known" in result.stderr
-    assert document(run, CARD, "--aspect", "5", *GENTLE)["instant"]["tips"] is None
-
-
 def test_as_published_names_the_omitted_terms(run):
     found = document(run, CARD, "--aspect", "5", *GENTLE, "--set", "drive.direction=10 deg", "--as-published")
     rows = {row["quantity"]: row for row in found["difference"]}
@@ -65,23 +52,3 @@ def test_files(run, tmp_path):
     table = (tmp_path / "out/lbracket_30x20x15/floor_beta_friction.csv").read_text()
     rows = list(csv.DictReader(table.splitlines()))
     assert {"beta_deg", "friction", "acceleration_z_m_s2", "regime"} <= set(rows[0])
-
-
-def test_maps_as_published_have_the_printed_formula_beside(run, tmp_path):
-    """Figure 5-6's own values hop above asin(g / A w^2) = 7.9 deg, where the print goes on."""
-    assert run("floor", BRACKET, *GENTLE, "--as-published", "-o", "out", "--no-pictures").exit_code == 0
-    table = (tmp_path / "out/lbracket_30x20x15/floor_frequency_amplitude.csv").read_text()
-    rows = list(csv.DictReader(table.splitlines()))
-    hopping = [row for row in rows if row["regime"] == "hop"]
-    assert hopping and not any(row["acceleration_z_m_s2"] for row in hopping)
-    assert all(row["published_z_m_s2"] for row in rows)
-
-
-def test_a_map_on_which_nothing_slides_is_drawn_and_said(run, tmp_path):
-    result = run("floor", BRACKET, "--set", "drive.amplitude=0 mm", "-o", "out")
-    assert result.exit_code == 0
-    said = (
-        "beta and friction: at the upper reversal the part slides in no cell of the map, it is held in 100 %"
-    )
-    assert said in result.stderr
-    assert (tmp_path / "out/lbracket_30x20x15/floor_beta_friction.png").stat().st_size > 5000

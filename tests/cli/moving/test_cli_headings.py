@@ -27,21 +27,8 @@ def test_a_bar_at_a_straight_wall(run, tmp_path):
     assert [row["heading_deg"] for row in long_side] == [0.0]  # half a turn maps the bar to itself
 
 
-def test_a_narrow_track_lets_the_part_fall(run):
-    wide, narrow = (rows(run, BRACKET, "--aspect", "A", "--set", f"track.width={w} mm") for w in (40, 12))
-    assert not any(row["falls_off"] for row in wide)
-    assert [row["heading_deg"] for row in narrow if row["falls_off"]] == pytest.approx([270])
-    assert all(row["overhang_mm"] == pytest.approx(row["width_mm"] - 12.0, rel=1e-3) for row in narrow)
-
-
 def test_files(run, tmp_path):
     result = run("headings", BRACKET, "--aspect", "A", "-o", "out")
     assert result.exit_code == 0, result.output
     names = {p.name for p in (tmp_path / "out/lbracket_30x20x15").iterdir()}
     assert names == {"headings.csv", "headings.json", "headings_A.png", "run.json"}
-
-
-def test_a_round_part_takes_any_heading(run):
-    result = run("headings", PARTS / "washer_m6.stl", "--aspect", "A")
-    assert result.exit_code == 0
-    assert "aspect A is round in plan: it takes any heading" in result.stderr

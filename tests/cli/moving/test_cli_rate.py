@@ -83,13 +83,3 @@ def test_an_orientation_that_a_device_returns(run, config):
 def test_faults_are_one_line(run, arguments, status, line):
     result = run("rate", PART, *arguments)
     assert (result.exit_code, result.stderr) == (status, line + "\n")
-
-
-def test_a_yield_of_an_aspect_that_the_part_has_not(run, tmp_path):
-    path = tmp_path / "odd.yaml"
-    path.write_text("devices:\n  - yield:\n      Q: 0.5\n")
-    result = run("rate", PART, "--aspect", "A", "--config", path)
-    assert (
-        f"Warning: {path}:2:5: yield names aspect 'Q', which this part does not have"
-        in result.stderr.splitlines()
-    )

@@ -19,11 +19,6 @@ SETS = (
     "--set", "track.bank=10 deg", "--set", "friction.static=0.4",
 )  # fmt: skip
 
-BANKED = (
-    "drive.amplitude=0.15 mm", "drive.frequency=50 Hz", "drive.vibration_angle=25 deg", "friction.static=0.4",
-    "track.radius=2 m", "track.width=60 mm", "track.climb=2 deg", "track.bank=12 deg",
-)  # fmt: skip
-
 
 def document(run, *arguments):
     result = run("track", *arguments, "--format", "json")
@@ -40,14 +35,6 @@ def test_contract(run):
     assert found["stays_on_wall"] is True
     assert {len(column) for column in found["cycle"].values()} == {72}
     assert min(found["cycle"]["wall_1_N"]) >= 0.0
-
-
-def test_as_published_lists_what_the_print_leaves_out(run):
-    found = document(run, CARD, "--aspect", "5", *SETS, "--as-published")
-    rows = {row["quantity"]: row for row in found["difference"]}
-    assert "radial gravity" in rows["wall_1_N"]["omitted_term"]
-    assert found["instant"]["wall_1_N"] == rows["wall_1_N"]["as_published"]
-    assert "4.33" in {term["equation"] for term in found["omitted_terms"]}
 
 
 def test_laid_at_a_heading_it_settles_in_that_range(run):
@@ -76,14 +63,6 @@ def test_files(run, tmp_path):
         "track.json", "track_cycle.csv", "track_cycle.png", "track_map.csv", "track_map.png",
         "track_part.png", "run.json",
     }  # fmt: skip
-
-
-def test_a_card_is_drawn_without_an_outline(run, tmp_path):
-    result = run("track", CARD, "--aspect", "5", *SETS, "-o", "out", "--as-published")
-    assert result.exit_code == 0, result.output
-    folder = tmp_path / "out/arc_chute"
-    assert (folder / "track_part.png").stat().st_size > 5000
-    assert (folder / "track_omitted_terms.csv").exists()
 
 
 def test_one_verdict_stands_beside_the_velocity(run):
@@ -126,33 +105,6 @@ def test_faults_are_one_line_and_leave_nothing(run, tmp_path, sets, line):
     assert not (tmp_path / "out").exists()
 
 
-def test_vary_is_given_twice(run):
-    result = run("track", BRACKET, "--vary", "track.bank=0:5:3")
-    assert result.exit_code == 2
-    assert "--vary is given 1 times - give it twice, for a map" in result.stderr
-
-
-def test_the_cycle_has_the_names_of_the_instant(run):
-    found = document(run, BRACKET, "--aspect", "A", *SETS)
-    assert set(found["instant"]) <= set(found["cycle"])
-    place = found["cycle"]["phase_deg"].index(90.0)  # the upper reversal, from rest and in the settled cycle
-    for name, near in (("normal_force_N", 1e-3), ("traction_N", 0.1), ("wall_1_N", 0.2), ("wall_2_N", 0.2)):
-        assert found["cycle"][name][place] == pytest.approx(found["instant"][name], rel=near), name
-
-
-def test_values_in_the_picture_do_not_cover_one_another(tmp_path):
-    from feederscrew import bowl, part
-    from feederscrew.output import track as track_output
-    from feederscrew.studies.track import track
-
-    figure = track_output.part(track(part.load(BRACKET), bowl.default()), "bracket")
-    figure.canvas.draw()
-    for axes in figure.axes:
-        boxes = [text.get_window_extent() for text in axes.texts if text.get_text()]
-        clashes = [a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i]]
-        assert len(boxes) > 2 and not any(clashes)
-
-
 @pytest.mark.parametrize(("card", "aspect"), [(CARD, "5"), (MAGNET, "3")])
 def test_a_card_gives_the_same_under_another_name(run, tmp_path, card, aspect):
     copy = tmp_path / "another.yaml"
@@ -165,28 +117,3 @@ def test_a_card_gives_the_same_under_another_name(run, tmp_path, card, aspect):
     (axes,) = (word for word in other if f"axes: {word}" in text)
     copy.write_text(text.replace(f"axes: {axes}", f"axes: {other[axes]}"))
     assert document(run, copy, *printed)["instant"] != first["instant"]
-
-
-@pytest.mark.parametrize("amplitude", ["0.5 mm"])
-def test_while_it_hops_nothing_is_said_of_the_wall(run, amplitude):
-    """Neither "stays against the wall: yes" nor "a contact is open 100 % of the cycle": it is in flight."""
-    hopping = (BRACKET, "--aspect", "C", "--set", f"drive.amplitude={amplitude}")
-    found = document(run, *hopping)
-    assert found["regime"] == "hop" and found["stays_on_wall"] is None
-    cycle = found["cycle"]
-    assert all(
-        (state == "hop") == (opened == "in flight") for state, opened in zip(cycle["state"], cycle["opened"])
-    )
-    told = run("track", *hopping)
-    assert "stays against the wall" in told.stdout and "not known: it hops" in told.stdout
-    assert "whether it stays against the wall is not known" in told.stderr
-    assert "% of the cycle" not in told.stderr
-
-
-@pytest.mark.parametrize(("wall", "turns"), [("0.5", False), ("0.7", True)])
-def test_what_friction_turns_about_one_wall_contact_is_said_to_be_slower(run, tmp_path, wall, turns):
-    block = tmp_path / "block.stl"
-    shapes.box(20, 12, 5).export(block)
-    sets = [f"--set={one}" for one in BANKED] + [f"--set=friction.wall={wall}"]
-    told = run("track", block, "--aspect", "A", "--heading", "90deg", *sets).output
-    assert ("friction turns the part about the wall contact that is left" in " ".join(told.split())) == turns

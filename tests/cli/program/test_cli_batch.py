@@ -77,18 +77,6 @@ def test_a_wrong_value_of_an_option_ends_a_batch_before_any_part(run, tmp_path, 
     assert option in done.stderr and not list((tmp_path).glob("out/parts/*"))
 
 
-def test_a_batch_says_what_a_key_of_the_machine_makes_of_the_drive(run, tmp_path):
-    """One key turned 50 into 100 Hz, and 25 into 102 mm/s, without a word."""
-    (tmp_path / "m.yaml").write_text("machine:\n  leaves: 10\n")
-    call = ("batch", NUT, WASHER, "--rule", "csa", "--jobs", "1", "--no-pictures", "-o", "out")
-    done = run(*call, "--config", "m.yaml", "--format", "csv")
-    line = "machine.leaves: is given, so drive.frequency is 100 Hz by the machine, not 50 Hz"
-    assert done.stderr.count(f"Warning: {line}") == 1
-    rows = (tmp_path / "out/summary.csv").read_text().splitlines()[1:]
-    assert [line in row for row in rows] == [True, True]
-    assert "by the machine" not in run(*call).stderr
-
-
 def test_drops_add_a_drop_test_with_a_seed_from_the_part(run, tmp_path):
     done = run("batch", NUT, "-o", "out", "--jobs", "1", "--no-pictures", "--drops", "50", "--format", "json")
     [row] = json.loads(done.stdout)["parts"]
@@ -116,22 +104,6 @@ def test_a_wrong_call_is_one_line(run, call, status, line):
     assert done.exit_code == status
     assert line in done.stderr
     assert done.stderr.count("\n") == 1
-
-
-def test_progress_tells_what_is_left(capsys, monkeypatch):
-    now = [0.0]
-    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
-    monkeypatch.setattr("time.time", lambda: now[0])
-    with progress.Progress(6) as shown:
-        shown.tell(is_reused=True)  # one part less to do
-        now[0] = 30.0
-        shown.tell(is_reused=False)
-    lines = capsys.readouterr().err.split("\r")
-    assert [line.strip("\n ").partition("]  ")[2] for line in lines if "]" in line] == [
-        "0/6",
-        "0/5",
-        "1/5  00:02:00\x1b[?25h",
-    ]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")

@@ -77,7 +77,7 @@ def put(part, bowl, out):
         out.warn("careful")
         if folder:
             folder.write("a.csv", "x\n")
-    out.json({"part": part, "bowl": bowl})
+    click.echo(json.dumps({"part": part, "bowl": bowl}))
 
 
 EMPTY_PATHS = (  # and the option or argument that is to blame

@@ -1,17 +1,11 @@
 """What the program says, in the words of the trade."""
 
-import json
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import click
 import pytest
 
-from feederscrew.part.density import MATERIALS
-from feederscrew.resting.rules import registry
 from feederscrew_cli import grouped, talk
 from feederscrew_cli.main import feeder
 
@@ -23,17 +17,6 @@ def words(text):
     return " ".join(text.split())
 
 
-def test_help_names_the_rules_and_leads_to_the_materials(run):
-    told = words(run("rate", "--help-all").stdout)
-    assert f"Whose probabilities are taken: {', '.join(registry.CHOICES)}." in told
-    assert "feeder config materials" in told and "[default: steel]" in told
-    assert "-q, --quiet Suppress warnings and messages." in told
-    listed = json.loads(run("config", "materials", "--format", "json").stdout)["materials"]
-    assert [(row["material"], 1000 * row["density_g_cm3"]) for row in listed] == [
-        (material.name, pytest.approx(material.density)) for material in MATERIALS
-    ]
-
-
 def test_a_remark_is_folded_for_a_terminal_and_one_line_for_a_program():
     text = (
         "Warning: tried as well, canyon: 18.85 mm: the static rule lets 4.52 % leave, of 26 parts 4.86 % do"
@@ -42,15 +25,6 @@ def test_a_remark_is_folded_for_a_terminal_and_one_line_for_a_program():
     assert max(map(len, lines)) <= 40 and words(" ".join(lines)) == text
     assert all(line.startswith("  ") for line in lines[1:]) and len(lines) == 3
     assert talk.folded(text, None) == text and talk.folded(text, 200) == text
-
-
-def test_drops_without_a_compiler():
-    code = "import sys; from feederscrew_cli.main import feeder; feeder(sys.argv[1:])"
-    call = [sys.executable, "-c", code, "drop", str(NUT), "--drops", "2", "--jobs", "1", "--format", "csv"]
-    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
-    done = subprocess.run(call, env=environment, capture_output=True, text=True, timeout=120, check=False)
-    assert (done.returncode, "Traceback" in done.stderr) == (0, False), done.stderr
-    assert done.stdout.startswith("aspect,")
 
 
 @pytest.mark.parametrize("name", list(feeder.commands))

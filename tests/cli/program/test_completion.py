@@ -1,17 +1,9 @@
 """What the shell completes: asked as bash asks it."""
 
-from pathlib import Path
-
 import pytest
 from click.testing import CliRunner
 
-from feederscrew.part import load
-from feederscrew.part.density import find_density
-from feederscrew.resting.aspects import find
-from feederscrew.resting.rules.registry import CHOICES
 from feederscrew_cli.main import feeder
-
-BRACKET = Path(__file__).parents[3] / "parts/lbracket_30x20x15.stl"
 
 
 def completed(*words):
@@ -37,13 +29,3 @@ def completed(*words):
 )
 def test_values_are_completed(words, found):
     assert completed("feeder", *words) == found
-
-
-def test_a_completed_material_is_one_that_is_known():
-    names = completed("feeder", "aspects", "--density", "s")
-    assert names
-    assert all(find_density(name)[0] > 0.0 for name in names)
-
-
-def test_the_rules_completed_are_those_a_part_has_probabilities_of():
-    assert tuple(find(load(BRACKET)).chances) == CHOICES

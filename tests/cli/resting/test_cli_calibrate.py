@@ -53,11 +53,6 @@ def test_counts_give_their_exponent_back(run, stl, tmp_path):
     }
 
 
-def test_counts_no_exponent_explains(run, stl, tmp_path):
-    done = run("calibrate", stl, "--with", counts(tmp_path, "aspect,tray\nA,10\nB,980\nC,10\n"))
-    assert done.exit_code == 0 and "Warning: tray: no exponent explains these counts" in done.stderr
-
-
 @pytest.mark.parametrize(
     ("text", "words"),
     [

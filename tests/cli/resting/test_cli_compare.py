@@ -4,14 +4,9 @@ import csv
 import io
 import json
 
-import numpy as np
 import pytest
 
-from feederscrew.output import compare, style
-from feederscrew.resting.rules import registry
 from feederscrew.thesis.tables import table
-
-CSV = ["first", "second", "deviation", "total_variation", "chi_square", "degrees_of_freedom", "p_value"]
 
 
 @pytest.fixture
@@ -53,13 +48,6 @@ def test_table_3_12_comes_out(run, card, measured):
     assert result.stderr == (f"{measured}: fractions: MDBT_78, MDBT_80, MDBT_82, MDFT_78, MDFT_80, MDFT_82\n")
 
 
-def test_columns_and_empty_tests(run, card, measured):
-    result = run("compare", card, "--with", measured, "--format", "csv", "-q")
-    assert result.stdout.splitlines()[0].split(",") == CSV
-    assert all(row["p_value"] == "" and row["chi_square"] == "" for row in rows(result).values())
-    assert result.stderr == ""
-
-
 def test_counts_are_tested(run, card, counts):
     document = json.loads(run("compare", card, "--with", counts, "--format", "json").stdout)
     found = {(c["first"], c["second"]): c for c in document["comparisons"]}
@@ -69,11 +57,6 @@ def test_counts_are_tested(run, card, counts):
     kinds = {p["name"]: p["kind"] for p in document["profiles"]}
     assert kinds == {"drops": "counts", "PMI": "rule", "CSA": "rule", "STABILITY": "rule"}
     assert document["aspects"] == ["1", "2", "3", "4", "5"]
-
-
-def test_the_table_leaves_out_empty_columns(run, card, measured, counts):
-    assert "p value" not in run("compare", card, "--with", measured).stdout
-    assert "p value" in run("compare", card, "--with", counts).stdout
 
 
 def test_the_table_is_about_what_was_measured_the_nearest_rule_first(run, card, measured):
@@ -110,27 +93,3 @@ def test_faults_are_one_line_each_and_nothing_is_written(run, card, tmp_path):
         "Error: bad.csv: has no row for aspect 3, 4, 5 - add it, 0 if never seen",
     ]
     assert not (tmp_path / "out").exists()
-
-
-def test_the_chart_draws_the_profiles():
-    measured = {"mine": np.array([0.5, 0.3, 0.2])}
-    rules = {"PMI": np.array([0.4, 0.4, 0.2]), "CSA": np.array([0.6, 0.2, 0.2])}
-    pairs = {("mine", "PMI"): 0.0816, ("mine", "CSA"): 0.0816, ("PMI", "CSA"): 0.163}
-    figure = compare.comparison("bracket", "ABC", measured, rules, pairs)
-    pmi, csa, matrix = figure.axes
-    assert [axes.get_title(loc="left") for axes in (pmi, csa)] == ["bracket: PMI", "CSA"]
-    assert [bar.get_height() for bar in pmi.containers[1]] == pytest.approx([40.0, 40.0, 20.0])
-    assert [bar.get_height() for bar in csa.containers[0]] == pytest.approx([50.0, 30.0, 20.0])
-    assert (pmi.get_ylabel(), csa.get_ylabel()) == ("share [%]", "")
-    assert [text.get_text() for text in matrix.texts] == ["0.082", "0.082"]  # not how far the rules are apart
-    assert [label.get_text() for label in matrix.get_xticklabels()] == ["mine"]
-
-
-def test_a_profile_has_one_colour_everywhere():
-    assert compare.look("PMI") == compare.look("PMI", 5) == style.method("pmi")
-    assert compare.look("MDBT_80", 0) == compare.look("MDBT_80", 3)
-    colours = [compare.look(f"MDBT_{amplitude}")[1] for amplitude in (78, 80, 82)]
-    assert len(set(colours)) == 3
-    assert compare.look("my_test", 1)[0] == "my test"
-    rules = {compare.look(name)[1] for name in registry.RULE_OF}
-    assert compare.look("recommended", 9) == ("recommended", style.ANSWER) and style.ANSWER not in rules

@@ -55,20 +55,6 @@ def test_each_set_is_compared_with_every_answer(run, files, tmp_path):
     assert len(record["inputs"]) == 2 * len(files)
 
 
-def test_for_people_and_for_programs(run, files):
-    some = [path for path in files if path.stem in ("short_cube", "t_shape")]
-    done = run("compare", *some)
-    table = done.stdout.splitlines()
-    assert max(map(len, table)) <= 100 and "Left out of the table: QUASISTATIC" in done.stderr  # 146 once
-    assert "recommended" in table[0] and "PMI" in table[0]
-    assert table[0].split()[:4] == ["set", "launch", "parts", "inside"] and len(table) == 3
-    told = json.loads(run("compare", *some, "--format", "json").stdout)
-    cube = told["sets"][0]
-    assert cube["launch"] == "drop" and cube["fractions"] == [0.62, 0.38]
-    assert sum(cube["answers"]["recommended"]) == pytest.approx(1.0, abs=1e-9)
-    assert cube["recommended"]["low"][1] <= cube["answers"]["recommended"][1]
-
-
 def test_another_mesh_than_the_one_counted_is_a_warning(run, files, tmp_path):
     (cube,) = [path for path in files if path.stem == "short_cube"]
     text = cube.read_text().replace("# part: ", f"# part: {cube.parent}/").replace("# mesh: c0", "# mesh: ff")
@@ -94,22 +80,6 @@ def test_a_file_without_a_part_and_one_with_a_fault(run, tmp_path):
         "Error: a.csv: does not say which part was counted - add a line '# part: FILE' at its top",
         "Error: none.stl: no such file - check the path",
     ]
-
-
-@pytest.mark.parametrize("counts", ["/dev/zero", "faulty.csv"])
-def test_floods_are_refused_early(run, request, tmp_path, counts):
-    """Both took gigabytes once."""
-    part = request.config.rootpath / "parts/arc_chute.yaml"
-    (tmp_path / "faulty.csv").write_text("aspect,x\n" + "nobody,1\n" * 1_300_000)
-    done = run("compare", part, "--with", counts)
-    line = f"{counts}: has more than 1 MB - name a CSV file with one row an aspect"
-    assert (done.exit_code, done.stderr) == (1, f"Error: {line}\n")
-    tracemalloc.start()
-    with pytest.raises(FeederError, match=line):
-        profiles.read_profile(counts, ["1"])
-    most = tracemalloc.get_traced_memory()[1]
-    tracemalloc.stop()
-    assert most < 10e6
 
 
 def test_a_feeding_test_stands_beside_the_static_rules(run, tmp_path):
@@ -142,16 +112,6 @@ def test_a_feeding_test_stands_beside_the_static_rules(run, tmp_path):
     assert found["degrees_of_freedom"] in (None, 1)
 
 
-def test_the_example_of_a_feeding_test_is_one(request):
-    known = profiles.read_device_counts(request.config.rootpath / "docs/measured/example/feeding.csv")
-    assert known.names == ("wiper", "gap") and known.head.config == "bowl.yaml"
-    page = (request.config.rootpath / "docs/counts.md").read_text()
-    assert all(
-        f"{name},{on:.0f},{off:.0f}" in page
-        for name, on, off in zip(known.names, known.passed, known.rejected)
-    )
-
-
 def test_counts_by_device_name_their_bowl_and_are_no_shares(run, request, tmp_path):
     part = request.config.rootpath / "parts/lbracket_30x20x15.stl"
     (tmp_path / "c.csv").write_text("device,passed,rejected\nwiper,3,4\n")
@@ -162,3 +122,19 @@ def test_counts_by_device_name_their_bowl_and_are_no_shares(run, request, tmp_pa
     done = run("rate", part, "--aspect", "A", "--probabilities", "c.csv")
     what = "c.csv:1: counts by device, which does not say how often the part lies on each aspect"
     assert (done.exit_code, done.stderr) == (1, f"Error: {what} - give counts by aspect or by orientation\n")
+
+
+@pytest.mark.parametrize("counts", ["/dev/zero", "faulty.csv"])
+def test_floods_are_refused_early(run, request, tmp_path, counts):
+    """Both took gigabytes once."""
+    part = request.config.rootpath / "parts/arc_chute.yaml"
+    (tmp_path / "faulty.csv").write_text("aspect,x\n" + "nobody,1\n" * 1_300_000)
+    done = run("compare", part, "--with", counts)
+    line = f"{counts}: has more than 1 MB - name a CSV file with one row an aspect"
+    assert (done.exit_code, done.stderr) == (1, f"Error: {line}\n")
+    tracemalloc.start()
+    with pytest.raises(FeederError, match=line):
+        profiles.read_profile(counts, ["1"])
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 10e6

@@ -16,7 +16,6 @@ import shapes
 from feederscrew.dropping import ensemble
 from feederscrew_cli import interrupt, progress
 
-UNDRAWN = True  # others look at pictures
 PARTS = Path(__file__).parents[3] / "parts"
 COLUMNS = [
     *("aspect", "height_mm", "count", "p_drop", "p_drop_low", "p_drop_high", "p_gentle", "p_violent"),
@@ -61,15 +60,6 @@ def test_the_files(run, stl, tmp_path):
     before = (folder / "drop.png").read_bytes()
     run("drop", stl, "--drops", "300", "-o", "results")
     assert (folder / "drop.png").read_bytes() == before
-
-
-def test_own_conditions_are_told(run, stl):
-    told = document(
-        run("drop", stl, "--drops", 50, "--height", "20 mm", "--friction", "0.3", "--format", "json")
-    )
-    assert told["launch"]["name"] == "own"
-    assert told["launch"]["height_mm"] == pytest.approx([20.0, 20.0])
-    assert told["launch"]["friction"] == [0.3, 0.3]
 
 
 def test_one_value_of_restitution_scatters_and_says_what_that_does(run, stl):
@@ -117,20 +107,6 @@ def test_traces_are_written(run, stl, tmp_path):
     assert sorted(path.name for path in folder.iterdir()) == [
         name for name in names if not name.endswith(".png")
     ]
-
-
-def test_a_width_that_is_not_reached_is_said(run, stl):
-    done = run("drop", stl, "--drops", "500", "--until", "1%", "--format", "json")
-    told = document(done)
-    assert told["drops"] == 500 and told["until"] == 0.01 and not told["partial"]
-    line = f"Warning: after 500 drops the widest interval is {100 * told['widest']:.3g} % to either side, "
-    assert f"{line}not 1 % - give more --drops, or a wider --until\n" in done.stderr
-
-
-def test_drops_that_never_settle_are_told(run, stl):
-    done = run("drop", stl, "--drops", "3", "--restitution", "1", "--friction", "0", "--format", "json")
-    assert document(done)["unsettled"] == 3
-    assert "Warning: 3 of 3 drops came to rest on no aspect\n" in done.stderr
 
 
 def start(stl, folder, *more, **streams):

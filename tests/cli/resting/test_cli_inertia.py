@@ -1,7 +1,5 @@
 """``feeder inertia``: its names, formats, files and errors."""
 
-import csv
-import io
 import json
 from pathlib import Path
 
@@ -52,25 +50,6 @@ def test_json_carries_the_units_in_its_names(run, stl):
     assert told["open_surface"] is False
 
 
-def test_csv_has_a_quantity_a_row(run, stl):
-    done = run("inertia", stl, "--format", "csv")
-    rows = {row["quantity"]: row["value"] for row in csv.DictReader(io.StringIO(done.stdout))}
-    assert float(rows["volume_mm3"]) == pytest.approx(6000.0)
-    assert float(rows["mass_g"]) == pytest.approx(47.1)
-    assert float(rows["inertia_at_origin_xy_g_mm2"]) == pytest.approx(-47.1 * 200 / 4)
-    assert rows["inertia_xy_g_mm2"] == "0"  # not rounding noise
-    assert rows["principal_axis_1_z"] == "1"
-    assert len(rows) == 37
-
-
-def test_table_is_the_default_and_the_material_is_said(run, stl):
-    done = run("inertia", stl)
-    assert done.exit_code == 0
-    assert done.stdout.splitlines()[0].split() == ["quantity", "value"]
-    assert done.stderr == "Material: steel (default)\n"
-    assert run("inertia", stl, "-q").stderr == ""
-
-
 def test_card_leaves_empty_what_it_does_not_tell(run):
     told = document(run("inertia", PARTS / "arc_chute.yaml", "--format", "json"))
     silent = ("density_g_cm3", "volume_mm3", "hull_volume_mm3", "bounding_box_mm", "bounding_box_corner_mm")
@@ -104,17 +83,6 @@ def test_file_without_an_honest_number_is_one_line(run, name):
     assert done.stdout == ""
     told = files.refused(path).replace("`allow_open`", "--allow-open")
     assert done.stderr == f"Error: {path}: {told}\n"
-
-
-@pytest.mark.parametrize("metres", [7.0, 0.007])
-def test_no_number_of_a_table_is_zero_beside_a_larger_one(run, tmp_path, metres):
-    """Of a part of 7 m the density, the box and the axes were printed as 0: mm3 and g/cm3 share a column."""
-    path = files.written(tmp_path, files.box((1e3 * metres, 0.9e3 * metres, 0.8e3 * metres)))
-    printed = dict(line.split()[:2] for line in run("inertia", path).stdout.splitlines()[1:])
-    assert float(printed["density_g_cm3"]) == pytest.approx(7.85)
-    box = [float(printed[f"bounding_box_{axis}_mm"]) for axis in "xyz"]
-    assert box == pytest.approx([1e3 * metres, 0.9e3 * metres, 0.8e3 * metres], rel=1e-3)
-    assert abs(float(printed["principal_axis_1_x"])) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("unit", ["um", "\u00b5m", "\u03bcm"])

@@ -59,16 +59,6 @@ def test_json_of_one_plate(run, stl):
     assert plate["transitions_seen"] == seen
 
 
-def test_a_table_of_two_plates_fits_a_page(run, stl):
-    """It was 119 letters wide; what goes is said, and stands in the CSV."""
-    plates = ("--plate", "--drops", 12, "--seconds", "0.3", "--amplitude", "0.2 mm,0.5 mm", "--config", BOWL)
-    done = run("drop", stl, *plates)
-    assert max(map(len, done.stdout.splitlines())) <= 100
-    heads = done.stdout.splitlines()[0].split()
-    assert {"plate", "velocity", "amplitude"} <= set(heads)
-    assert "Left out of the table: " in done.stderr
-
-
 def test_the_files_and_the_trend(run, stl, tmp_path):
     own = ("--set", "drive.amplitude=0.5 mm", "--amplitude", "78%,80%,0.41 mm")
     done = run("drop", stl, *SHORT, *own, "-o", "results")
@@ -99,12 +89,6 @@ def test_several_bowl_files_are_several_plates(run, stl, tmp_path):
     assert [plate["bowl"] for plate in told["plates"]] == ["wet", "dry"]
     wet, dry = (plate["velocity_mm_s"] for plate in told["plates"])
     assert wet < 0.5 * dry
-
-
-def test_what_is_simplified_is_said(run, stl):
-    done = run("drop", stl, *SHORT, "--set", "friction.kinetic=0.3")
-    assert done.exit_code == 0
-    assert "the plate has one coefficient of friction: the kinetic one, for sticking too" in done.stderr
 
 
 @pytest.mark.parametrize(
