@@ -36,11 +36,9 @@ class Jobs(click.ParamType):
 @options.whole("--drops", 0, 10**7, "Simulated drops of each part; none without it.", default=0)
 @options.option("--jobs", "N|auto", "Processes of this machine.  [default: auto]", type=Jobs())
 @options.option(
-    "--scheduler",
-    "ADDRESS",
-    envvar="DASK_SCHEDULER_ADDRESS",
+    "--scheduler", "ADDRESS", envvar="DASK_SCHEDULER_ADDRESS",
     text="Work on this Dask cluster: tcp://host:8786.  [default: $DASK_SCHEDULER_ADDRESS, if set]",
-)
+)  # fmt: skip
 @options.flag("--resume", "Go on where a batch stopped: only what is missing or changed.")
 @options.pictures
 @options.output

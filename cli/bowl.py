@@ -41,11 +41,10 @@ SOLID_OPTIONS = (
 )
 @options.group("solid_request", *SOLID_OPTIONS)
 @options.option(
-    "--measured",
-    "VALUES",
+    "--measured", "VALUES",
     "What was measured at the machine, any of 'acceleration=64 m/s2, stroke=0.3 mm, frequency=50 Hz, "
     "fill=50 %': what it does now beside what it should, and the likely cause.",
-)
+)  # fmt: skip
 @options.bowl
 @options.title_block
 @options.pictures

@@ -15,11 +15,9 @@ from feederscrew_cli import grouped, options, orientation, progress
 )
 @options.as_published("Count each class once in PMI, as Tables 3-8 and 3-9 do.")
 @options.option(
-    "--bowl bowl",
-    "FILE",
-    type=options.FILE,
+    "--bowl bowl", "FILE", type=options.FILE,
     text="Bowl file of the bowl in which FILE was filmed: fit friction, restitution and stroke to it.",
-)
+)  # fmt: skip
 @options.pictures
 @options.output
 def compare(sources, reading, counts, launch, as_published, bowl, pictures, out):

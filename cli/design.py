@@ -13,48 +13,42 @@ from feederscrew_cli.options import Angle, Span
 REQUEST = (  # what shall leave, and what may be used
     options.target("Parts that must leave the bowl: 60/min."),
     options.option(
-        "--aspect", "NAME", "Aspect on which they must leave.  [default: the one that delivers most]"
+        "--aspect", "NAME", "Aspect on which they must leave.  [default: the one that delivers most]",
     ),
     options.option(
-        "--heading", "DEG", "Heading of that aspect.  [default: the one that delivers most]", type=Angle()
+        "--heading", "DEG", "Heading of that aspect.  [default: the one that delivers most]", type=Angle(),
     ),
     options.option("--up", "NAME,...", "Aspects that count as one, whatever their heading: A,B.", default=""),
     options.choice(
-        "--outcome",
-        ["any", "lying", "hanging"],
-        default="any",
+        "--outcome", ["any", "lying", "hanging"], default="any",
         text="Lying on the track, or hanging by the head between rails.",
     ),
     options.option("--without", "KINDS", "Kinds of devices that are not used: 'profile,wiper'.", default=""),
     options.choice(
-        "--drive",
-        ["leaf-spring", "two-axis", "any"],
-        default="leaf-spring",
+        "--drive", ["leaf-spring", "two-axis", "any"], default="leaf-spring",
         text="Kind of drive: one magnet on leaf springs, or two magnets with a two-channel controller.",
     ),
     options.option(
-        "--diameter", "LOW:HIGH", "Least and greatest diameter of the bowl: 200mm:400mm.", type=Span()
+        "--diameter", "LOW:HIGH", "Least and greatest diameter of the bowl: 200mm:400mm.", type=Span(),
     ),
     options.quantity(
-        "--tolerance", "length", "0.1 mm", "How much larger or smaller than its file a part may be."
+        "--tolerance", "length", "0.1 mm", "How much larger or smaller than its file a part may be.",
     ),
     options.whole(
-        "--trials budget", 1, 1000, "Short trials of the search, at most.", default=16, former=("--budget",)
+        "--trials budget", 1, 1000, "Short trials of the search, at most.", default=16,
+        former=("--budget",),
     ),
     options.flag(
         "--alternatives",
         "Prove the best design of each cost class: of steel, of steady air, of a sensor with a valve.",
     ),
     options.whole(
-        "--draws",
-        1,
-        1000,
-        default=20,
+        "--draws", 1, 1000, default=20,
         text="Trials of the answer with part, friction, drive and cuts drawn from their spread.",
     ),
     options.seed("Seed of everything that is drawn."),
     options.jobs,
-)
+)  # fmt: skip
 OF_ONE_PART = ("aspect", "heading", "up", "probabilities", "names", "centre_of_mass")  # options
 
 

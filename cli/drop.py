@@ -17,38 +17,32 @@ CONDITIONS = (
     options.option("--speed", "SPEED", 'Velocity along the plane: "0.3 m/s".'),
     options.option("--restitution", "E", "Coefficient of restitution where a corner hits: 0.3 or 0.1:0.5."),
     options.option("--friction", "MU", "Coefficient of friction on the plane: 0.4 or 0.3:0.6."),
-)
+)  # fmt: skip
 TEST = (  # how often and how it is dropped
     options.whole(
-        "--drops", 1, 10**7, "How many drops.  [default: 10000; on a plate 400; 64 of each of --launches]"
+        "--drops", 1, 10**7, "How many drops.  [default: 10000; on a plate 400; 64 of each of --launches]",
     ),
     options.option("--until", "SHARE", 'Go on until no 95 % interval is wider: "1%" to either side.'),
     options.seed("Seed of the random launches."),
     options.jobs,
     options.option("--trace", "K", "With -o: the motion of the first K drops.", type=options.Whole(1, 1000)),
-)
+)  # fmt: skip
 PLATE = (
     options.flag("--plate is_plate", "The plane vibrates with a bowl's drive."),
     options.option(
-        "--config paths",
-        "FILE",
-        type=options.FILE,
-        multiple=True,
+        "--config paths", "FILE", type=options.FILE, multiple=True,
         text="With --plate: the bowl file (YAML); give it again for a further plate.",
     ),
     options.overrides,
     options.option(
-        "--amplitude amplitudes",
-        "LIST",
+        "--amplitude amplitudes", "LIST",
         "With --plate: a plate for each, '78%,80%,82%' of the bowl's or '0.3 mm,0.4 mm'.",
     ),
     options.option(
-        "--seconds",
-        None,
-        "With --plate: how long each part is on it.  [default: 5]",
+        "--seconds", None, "With --plate: how long each part is on it.  [default: 5]",
         type=Number(0.05, 3600.0),
     ),
-)
+)  # fmt: skip
 
 
 @grouped.command(
@@ -104,7 +98,21 @@ def drop(part, launch, test, launches, plate, pictures, own, out):
     elif plate.pop("is_plate"):
         _on_plates(part, plate, launch, own, test, pictures, out)
     else:
-        _on_floor(part, launch, own, test, pictures, out)
+        # Drop the part on a plane at rest, write and tell what becomes of it.
+        with held_back():
+            from feederscrew.output import columns, offers
+            from feederscrew.output import drop as drop_output
+            from feederscrew.studies.drop import drop as drop_study
+
+        traced = test.pop("trace") or 0
+        solid = out.part(part)
+        with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:
+            with progress.bar(out, "drops") as bar:
+                telling = {"progress": bar.reach, "before": lambda: progress.compiling(out, "drops")}
+                study = drop_study(solid, launch, traced=traced, **own, **telling, **test)
+            out.warn(*drop_output.remarks(study))
+            offers.write(folder, drop_output.offers(study), pictures=pictures)
+        out.show(drop_output.counts(study), drop_output.document(study))
 
 
 def _check_call(test, launches, plate, own, out):
@@ -122,24 +130,6 @@ def _check_call(test, launches, plate, own, out):
     if launches:
         for option in options.typed("launch", "fall", "spin", "speed", "until", "trace"):
             raise click.UsageError(f"{option} cannot be combined with --launches - leave one of them out")
-
-
-def _on_floor(part, launch, own, test, pictures, out):
-    """Drop the part on a plane at rest, write and tell what becomes of it."""
-    with held_back():
-        from feederscrew.output import columns, offers
-        from feederscrew.output import drop as drop_output
-        from feederscrew.studies.drop import drop as drop_study
-
-    traced = test.pop("trace") or 0
-    solid = out.part(part)
-    with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:
-        with progress.bar(out, "drops") as bar:
-            telling = {"progress": bar.reach, "before": lambda: progress.compiling(out, "drops")}
-            study = drop_study(solid, launch, traced=traced, **own, **telling, **test)
-        out.warn(*drop_output.remarks(study))
-        offers.write(folder, drop_output.offers(study), pictures=pictures)
-    out.show(drop_output.counts(study), drop_output.document(study))
 
 
 def _on_plates(part, plate, launch, own, test, pictures, out):

@@ -139,12 +139,9 @@ def headings(part, aspect, bowl, pictures, out):
 
 @grouped.command(short_help="Map of when a part slips, and which way.")
 @options.option(
-    "--beta betas",
-    "DEG",
-    "Vibration angle; repeatable.  [default: the bowl's]",
-    type=VibrationAngle(),
+    "--beta betas", "DEG", "Vibration angle; repeatable.  [default: the bowl's]", type=VibrationAngle(),
     multiple=True,
-)
+)  # fmt: skip
 @options.as_published("Keep mu_limit where [4.27] is negative, as past the hop.")
 @options.bowl
 @options.pictures

@@ -18,19 +18,13 @@ from feederscrew_cli import grouped, options, orientation, progress
 )
 @orientation.taken_of_a_seed
 @options.quantity(
-    "--position-deviation play",
-    "length",
-    "0 mm",
-    "Standard deviation of where a part is over a cut.",
+    "--position-deviation play", "length", "0 mm", "Standard deviation of where a part is over a cut.",
     former=("--play",),
-)
+)  # fmt: skip
 @options.quantity(
-    "--edge-deviation tolerance",
-    "length",
-    "0 mm",
-    "Standard deviation of where a cut's edge is.",
+    "--edge-deviation tolerance", "length", "0 mm", "Standard deviation of where a cut's edge is.",
     former=("--tolerance",),
-)
+)  # fmt: skip
 @options.bowl
 @options.output
 def rate(part, wanted, taken, play, tolerance, bowl, out):

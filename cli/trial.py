@@ -37,13 +37,9 @@ class FilmFile(Place):
 @options.whole("--queue", 1, 1000, "Send a queue of N parts as well, which push each other.")
 @options.flag("--poured", "The parts of the queue fall onto the track; without it they lie in a row.")
 @options.option(
-    "--seconds",
-    None,
-    "Simulated time of the queue, in seconds.",
-    type=Number(0.05, 3600.0),
-    default=10.0,
+    "--seconds", None, "Simulated time of the queue, in seconds.", type=Number(0.05, 3600.0), default=10.0,
     show_default=True,
-)
+)  # fmt: skip
 @options.path("--with measured", "CSV", "Counts of a feeding test, set beside the profile of the queue.")
 @options.option(
     "--amplitude amplitudes", "LIST", "A trial at each, '60%,80%,100%' of the bowl's or '0.3 mm,0.4 mm'."
@@ -51,11 +47,9 @@ class FilmFile(Place):
 @options.seed("Seed of the play and the phases that are drawn.")
 @options.jobs
 @options.option(
-    "--film",
-    "FILE",
-    type=FilmFile(),
+    "--film", "FILE", type=FilmFile(),
     text="Write a film of ten seconds, FILE.gif, or FILE.mp4 or FILE.webm where ffmpeg is installed.",
-)
+)  # fmt: skip
 @options.bowl
 @options.pictures
 @options.output
