@@ -11,7 +11,7 @@ from typing import IO, Any, TypeAlias, TypedDict, TypeVar, Unpack, cast
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew import check
+from feederscrew import check, documents
 from feederscrew import part as parts
 from feederscrew import units as si
 from feederscrew.bowl import Bowl
@@ -272,6 +272,14 @@ def conditions(**ranges: Condition) -> dict[str, str | None]:
                 for end in ends
             )
     return texts
+
+
+def a_rule(rule: str, aspects: Aspects) -> str:
+    """Return the name of a rule; raises ArgumentError where it gives this part no probabilities."""
+    if rule not in aspects.chances:
+        mend = documents.hint(rule, list(aspects.chances))
+        raise ArgumentError(f"rule {rule}", "has no probabilities of this part", mend)
+    return rule
 
 
 def surface(value: str | float | None) -> float | None:

@@ -12,7 +12,7 @@ from feederscrew import check, units
 from feederscrew.bowl.record import Bowl, Track, vibration_angle
 from feederscrew.bowl.settings import Setting, has_machine
 from feederscrew.conveying import answer
-from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.errors import FeederError
 from feederscrew.machine import checks, drive_sizing, sizing
 from feederscrew.machine.springs import (
     LeafSet,
@@ -222,10 +222,7 @@ def bowl(
     straight = replace(sizing.STRAIGHT_TRACK, climb=plain.track.climb)
     wanted = None if aspect is None else well_oriented.wanted(part, aspects, straight, aspect, heading)
     lying = sizing.find_lying(part, aspects, wanted)
-    if rule not in aspects.chances:
-        rules = ", ".join(aspects.chances)
-        raise ArgumentError(f"rule {rule}", "has no probabilities of this part", f"choose one of {rules}")
-    counted: dict[str, Any] = {"rule": rule, "gap": gap, "fill": fill}
+    counted: dict[str, Any] = {"rule": arguments.a_rule(rule, aspects), "gap": gap, "fill": fill}
     # the size: what the file says of the track is kept; a device that leads down may need a steeper one
     user_keys, own = drive_sizing.user_keys(settings, "track"), plain.track
     least = None

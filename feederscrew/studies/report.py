@@ -11,7 +11,6 @@ from feederscrew import bowl as bowls
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting, has_machine
-from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.posture import posture
@@ -235,9 +234,6 @@ def report(
     )  # fmt: skip
     aspects = aspect_shares.aspects
     rule = aspects.ranking if rule == RECOMMENDED else rule  # a card has no such answer
-    if rule not in aspects.chances:
-        names = ", ".join(aspects.chances)
-        raise ArgumentError(f"rule {rule}", "has no probabilities of this part", f"choose one of {names}")
     return ReportStudy(
         resting=AspectsStudy(part, aspects),
         settings=bowl_settings,
@@ -245,7 +241,7 @@ def report(
         path=path,
         aspect=posture(part, aspects, aspects.likeliest if aspect is None else aspect).name,
         heading=angle,
-        rule=rule,
+        rule=arguments.a_rule(rule, aspects),
         gap=space,
         fill=fill,
         target=wanted,

@@ -16,7 +16,6 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.dropping import arrival
 from feederscrew.studies import simulation_cache
-from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.rate import shares
 
 PART = shapes.part(shapes.box(20, 12, 5))
@@ -275,34 +274,3 @@ def test_an_entry_of_numbers_that_cannot_be_is_as_none(runs, name, wrong):
     found, after = runs()
     assert after == before + 1
     np.testing.assert_array_equal(first.recommended.p, found.recommended.p)
-
-
-def test_a_drop_test_is_checked_as_well(tmp_path, monkeypatch):
-    monkeypatch.setenv(simulation_cache.VARIABLE, str(tmp_path / "kept"))
-    made = []
-
-    def run():
-        monkeypatch.setattr(simulation_cache, "_RECORDS", OrderedDict())
-        return resting(PART, drops=30, before=made.append).tally
-
-    first, again = run(), run()
-    assert len(made) == 1 and (first.counts == again.counts).all() and (first.high == again.high).all()
-    (entry,) = (tmp_path / "kept").iterdir()
-    for wrong in (of_whole(*[77] * 30), of_whole(*[-5] * 30), of_whole(0), of_floats(*[0.0] * 30)):
-        rewritten(entry, lambda held, wrong=wrong: held["arrays"].update(faces=wrong))
-        assert (run().counts == first.counts).all()
-    assert len(made) == 5
-
-
-def test_the_digest_reads_the_library_alone(monkeypatch, tmp_path):
-    """A file of another package beside the library takes no time and changes no entry."""
-    library, read_bytes, paths = Path(simulation_cache.__file__).parents[1], Path.read_bytes, []
-    monkeypatch.setattr(Path, "read_bytes", lambda path: paths.append(path) or read_bytes(path))
-    simulation_cache.library_digest.cache_clear()
-    monkeypatch.setenv(simulation_cache.VARIABLE, "")
-    simulation_cache.write({"kind": "none"}, {"shares": np.ones(1)})
-    assert not paths  # nothing is digested where nothing is kept
-    monkeypatch.setenv(simulation_cache.VARIABLE, str(tmp_path / "kept"))
-    simulation_cache.write({"kind": "none"}, {"shares": np.ones(1)})
-    assert library.name == "feederscrew" and library / "units.py" in paths
-    assert all(path.is_relative_to(library) for path in paths)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import click
 import pytest
+from click.testing import CliRunner
 
 from feederscrew_cli import grouped, talk
 from feederscrew_cli.main import feeder
@@ -80,3 +81,28 @@ def test_a_help_text_has_sentences_of_thirty_words_at_most(name):
 )
 def test_an_argument_goes_by_its_option_where_the_command_has_one(command, text, told):
     assert talk.translated(text, talk.options_by_argument(feeder.commands[command])) == told
+
+
+def completed(*words):
+    """What the last of these words is completed to."""
+    asked = {"_FEEDER_COMPLETE": "bash_complete", "COMP_WORDS": " ".join(words), "COMP_CWORD": len(words) - 1}
+    done = CliRunner().invoke(feeder, [], prog_name="feeder", env={k: str(v) for k, v in asked.items()})
+    return [line.partition(",")[2] for line in done.stdout.splitlines() if line]
+
+
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [
+        (["slide", "--set", "drive.am"], ["drive.amplitude="]),
+        (["batch", "--set", "grav"], ["gravity="]),
+        (["convey", "--vary", "track.b"], ["track.bank="]),
+        (["track", "--vary", "friction.wa"], ["friction.wall="]),
+        (["rate", "--rule", "c"], ["csa", "crsa", "closed"]),
+        (["batch", "--rule", "q"], ["quasistatic"]),
+        (["aspects", "--density", "stainl"], ["stainless_steel", "stainless_steel_1.4401"]),
+        (["slide", "--set", "nothing"], []),
+    ],
+    ids=str,
+)
+def test_values_are_completed(words, found):
+    assert completed("feeder", *words) == found
