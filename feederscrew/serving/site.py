@@ -16,7 +16,7 @@ import subprocess
 import threading
 import zipfile
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -82,14 +82,9 @@ class Refusal(Exception):
 class Site:
     """The WSGI application of one run.
 
-    Parameters
-    ----------
-    folder : Path
-        Empty; all that is uploaded and computed is below it. Whoever made it removes it.
-    program : sequence of str
-        That runs ``feeder``; ``design`` and its arguments follow.
-    start_job : callable
-        Of a command and a folder of results; gives a ``DesignJob``.
+    All that is uploaded and computed is below ``folder``; whoever made it removes it. ``program`` runs
+    ``feeder``: ``design`` and its arguments follow. ``start_job`` makes a ``DesignJob`` of a command and a
+    folder of results.
     """
 
     def __init__(
@@ -134,12 +129,7 @@ class Site:
         return response(environ, start_response)
 
     def answer(self, request: Request) -> Response:
-        """Return the answer to a request that may ask.
-
-        Raises
-        ------
-        Refusal, FeederError
-        """
+        """Return the answer to a request that may ask; raises Refusal or FeederError."""
         self.check_host(request)
         if request.method == "GET" and request.path == "/" and "token" in request.args:
             return self.let_in(request)
@@ -287,22 +277,15 @@ class Site:
         self.part, self.view, self.name, self.job = None, "", "", None
         shutil.rmtree(self.folder / "results", ignore_errors=True)
 
-    def _alone(self) -> "OneAtATime":
-        return OneAtATime(self._one_at_a_time)
-
-
-class OneAtATime:
-    """A context that refuses a request while another is at work."""
-
-    def __init__(self, lock: threading.Lock) -> None:
-        self.lock = lock
-
-    def __enter__(self) -> None:
-        if not self.lock.acquire(blocking=False):
+    @contextlib.contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Refuse a request while another is at work."""
+        if not self._one_at_a_time.acquire(blocking=False):
             raise Refusal(409, "another request is at work - wait for its end")
-
-    def __exit__(self, *fault: object) -> None:
-        self.lock.release()
+        try:
+            yield
+        finally:
+            self._one_at_a_time.release()
 
 
 def _json(document: Any, status: int = 200) -> Response:
@@ -358,15 +341,7 @@ def _aspects_page(name: str, study: AspectsStudy) -> str:
 
 
 class DesignJob:
-    """A command that designs, with what it says and the files it leaves.
-
-    Parameters
-    ----------
-    command : sequence of str
-        Program and arguments.
-    results : Path
-        Folder that it writes to.
-    """
+    """A command that designs, with what it says and the files it leaves in a folder of results."""
 
     def __init__(self, command: Sequence[str], results: Path) -> None:
         self.results = results
