@@ -57,7 +57,6 @@ def compare(sources, reading, counts, launch, as_published, bowl, pictures, out)
     from feederscrew.studies import compare as study_of
 
     if bowl is not None:  # what explains the velocities of one bowl
-        from feederscrew.output import bowl_fit as fit_output
         from feederscrew.studies import bowl_fit
 
         if len(sources) > 1:
@@ -65,11 +64,11 @@ def compare(sources, reading, counts, launch, as_published, bowl, pictures, out)
             raise click.UsageError(what)
         fit = bowl_fit.fit_bowl(sources[0], bowl)
         with out.folder("bowl_fit", bowls.identity(sources[0]) | bowls.identity(bowl)) as folder:
-            offers.write(folder, fit_output.offers(fit))
-        out.say(fit_output.remark(fit))
-        out.show(fit_output.quantities(fit), fit_output.document(fit))
+            offers.write(folder, compare_output.fit_offers(fit))
+        out.say(compare_output.fit_remark(fit))
+        out.show(compare_output.fit_quantities(fit), compare_output.fit_document(fit))
         if out.format == "table":
-            out.show(fit_output.velocities(fit), fit_output.document(fit))
+            out.show(compare_output.fit_velocities(fit), compare_output.fit_document(fit))
     elif counts is not None:  # one part against one file
         if len(sources) > 1:
             raise click.UsageError("--with goes with one PART - leave it out to compare many files")
@@ -114,14 +113,14 @@ def calibrate(part, counts, out):
     The CSV is that of `feeder compare`: the line 'aspect,NAME,...', then one line an aspect. Columns
     that hold whole numbers are counts. With -o: calibrate.csv, calibrate.json and run.json.
     """
-    from feederscrew.output import calibrate as calibrate_output
     from feederscrew.output import columns, offers
+    from feederscrew.output import compare as compare_output
     from feederscrew.studies.compare import calibrate as calibrate_study
 
     solid = out.part(part)
     study = calibrate_study(solid, counts)
-    out.warn(*study.measured.warnings(solid), *calibrate_output.remarks(study))
+    out.warn(*study.measured.warnings(solid), *compare_output.calibration_remarks(study))
     inputs = solid.inputs | {study.measured.source: study.measured.sha256}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
-        offers.write(folder, calibrate_output.offers(study))
-    out.show(calibrate_output.exponents(study), calibrate_output.document(study))
+        offers.write(folder, compare_output.calibration_offers(study))
+    out.show(compare_output.exponents(study), compare_output.calibration_document(study))

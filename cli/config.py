@@ -38,12 +38,12 @@ def init(file, replace, machine, quiet):
     line for each drive unit and writes no file.
     """
     from feederscrew.bowl import documentation
-    from feederscrew.machine import drive_units
+    from feederscrew.machine import drive_sizing
 
     if machine is not None and machine.strip().casefold() == "list":
-        click.echo("\n".join(drive_units.lines()))
+        click.echo("\n".join(drive_sizing.lines()))
         return
-    text = documentation.template() if machine is None else drive_units.bowl_file(drive_units.unit(machine))
+    text = documentation.template() if machine is None else drive_sizing.bowl_file(drive_sizing.unit(machine))
     if file == "-":
         click.echo(text, nl=False)
     else:

@@ -173,7 +173,7 @@ def _of_file(part, path, own, test, pictures, out):
     """Follow the launches of a file, write and tell where they lead."""
     with held_back():
         from feederscrew.output import columns, offers
-        from feederscrew.output import tosses as tosses_output
+        from feederscrew.output import drop as drop_output
         from feederscrew.studies.drop import follow
 
     out = replace(out, command="drop launches")
@@ -184,8 +184,8 @@ def _of_file(part, path, own, test, pictures, out):
         study = follow(solid, path, own, **telling, **run)
     inputs = solid.inputs | {study.launches.source: study.launches.sha256}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
-        out.warn(*tosses_output.remarks(study))
-        out.say(*tosses_output.summary(study))
-        offers.write(folder, tosses_output.offers(study), pictures=pictures)
-    frame, hidden = tosses_output.tosses(study), tosses_output.HIDDEN_TOSS_COLUMNS
-    out.show(frame, tosses_output.document(study), hidden=hidden)
+        out.warn(*drop_output.toss_remarks(study))
+        out.say(*drop_output.toss_summary(study))
+        offers.write(folder, drop_output.toss_offers(study), pictures=pictures)
+    frame, hidden = drop_output.tosses(study), drop_output.HIDDEN_TOSS_COLUMNS
+    out.show(frame, drop_output.toss_document(study), hidden=hidden)

@@ -120,17 +120,17 @@ def _time(seconds):
 
 
 KERNELS = {  # what waits for the compiler once: its module, and how it is told
-    "drops": ("feederscrew.dropping.drop_test", "the drop kernel", "ten seconds"),
-    "plate": ("feederscrew.dropping.plate_test", "the plate's kernel", "ten seconds"),
-    "trial": ("feederscrew.trial.runs", "the trial's kernel", "a minute"),
-    "conveying": ("feederscrew.conveying.sweep", "the conveying kernel", "ten seconds"),
+    "drops": ("feederscrew.dropping.drop_test", "compiled", "the drop kernel", "ten seconds"),
+    "plate": ("feederscrew.dropping.plate_test", "compiled", "the plate's kernel", "ten seconds"),
+    "trial": ("feederscrew.trial.runs", "compiled", "the trial's kernel", "a minute"),
+    "conveying": ("feederscrew.conveying.answer", "sweep_compiled", "the conveying kernel", "ten seconds"),
 }
 
 
 def compiling(out, name):
     """Say so when the first run of a kernel on this machine must wait for the compiler."""
-    module, kernel, seconds = KERNELS[name]
-    if not importlib.import_module(module).compiled():
+    module, is_compiled, kernel, seconds = KERNELS[name]
+    if not getattr(importlib.import_module(module), is_compiled)():
         out.say(f"Compiling {kernel}, once on this machine: about {seconds}.")
 
 

@@ -48,6 +48,7 @@ def rate(part, wanted, taken, play, tolerance, bowl, out):
     from feederscrew import bowl as bowls
     from feederscrew.output import columns, offers, proof
     from feederscrew.output import rate as rate_output
+    from feederscrew.rates.well_oriented import fed
     from feederscrew.studies.rate import rate as study
 
     solid, settings = out.part(part), out.settings(bowl)
@@ -59,7 +60,7 @@ def rate(part, wanted, taken, play, tolerance, bowl, out):
             solid, record, aspect_shares=aspect_shares, sigma=math.hypot(play, tolerance), **wanted
         )
         tried = bowls.verified(bowl["path"])
-        own = solid, record, result.rate.orientations.lying[result.rate.row].name
+        own = solid, record, fed(result.rate.orientations, result.rate.row).name
         document = proof.with_trial(rate_output.document(result), tried, *own)
         out.warn(*result.warnings, *rate_output.remarks(result), *proof.warnings(tried, *own))
         offers.write(folder, rate_output.offers(result))
@@ -98,11 +99,10 @@ def tune(part, target, wanted, taken, worst, bowl, out):
     effective = columns.conditions(solid) | bowls.texts(settings)
     progress.compiling(out, "conveying")
     record = bowls.record(settings)
-    shares = solid, taken, wanted["rule"]
-    arriving, rough = orientation.arriving(out, *shares), orientation.few(*shares)
+    arriving = orientation.arriving(out, solid, taken, wanted["rule"])
     with out.folder(solid.name, solid.inputs | arriving(record).inputs, effective) as folder:
         result = study(
-            solid, record, target=target, arriving=arriving, rough=rough, worst=worst,
+            solid, record, target=target, arriving=arriving, worst=worst,
             progress=progress.progress_in_bar(out, "settings"), **wanted,
         )  # fmt: skip
         tried = bowls.verified(bowl["path"])

@@ -107,7 +107,7 @@ class Output:
         Of these columns, from the first on, as many as that takes are left out, and it says which. Texts of
         a table that is still wider go on below.
         """
-        from feederscrew.output import tables, words
+        from feederscrew.output import tables
 
         printed = frame.without(hidden) if self.format == "table" else frame
         if self.format == "table" and spare is not None:
@@ -119,7 +119,7 @@ class Output:
         width = width or (None if spare is None else tables.PAGE)
         text = tables.text(printed, self.format, width)
         click.echo(text, nl=False)
-        note = words.heading_note(text) if self.format == "table" and not self.notes else ""
+        note = tables.heading_note(text) if self.format == "table" and not self.notes else ""
         if note:  # what the headings of orientations are turned from: once
             self.notes.append(note)
             self.say(note)

@@ -318,7 +318,7 @@ def count_stale(
 
 
 def _task(request: Request, choices: Choices) -> Task:
-    return Task.of(request, choices, loading.read_file(request.source).data)
+    return Task.of(request, choices, bytes(loading.read_file(request.source).data))
 
 
 def _stays(store: Store, request: Request, choices: Choices) -> bool:

@@ -21,9 +21,9 @@ from feederscrew.errors import ConfigError, FeederError
 from feederscrew.output import tables
 from feederscrew.output.folder import safe_name
 from feederscrew.output.tables import Frame
-from feederscrew.part import aspect_names
-from feederscrew.part.aspect_names import AspectNames
-from feederscrew.part.reading.formats import CARD_FORMAT, MESH_FORMATS
+from feederscrew.part.card import read_aspect_names
+from feederscrew.part.formats import CARD_FORMAT, MESH_FORMATS
+from feederscrew.part.record import AspectNames
 
 PART, NAMES, ASPECT, CONFIG = "part", "names", "aspect", "config"
 LISTED_OPTIONS = ("units", "density", "centre_of_mass", "body")
@@ -230,7 +230,7 @@ def _names(rows: list[ListedPart], faults: list[FeederError]) -> dict[str | None
         if row.names is not None and row.names not in names_by_file:
             names_by_file[row.names] = None
             try:
-                names_by_file[row.names] = aspect_names.read_aspect_names(row.names)
+                names_by_file[row.names] = read_aspect_names(row.names)
             except FeederError as fault:
                 located = ConfigError(f"{row.line}: {fault.where}", fault.what, fault.mend)
                 faults += getattr(fault, "faults", [located])

@@ -51,7 +51,8 @@ def work(task: Task) -> Outcome:
 
 def _results(task: Task) -> Outcome:
     request, choices, files = task.request, task.choices, Files()
-    part = load(request.source, **dict(request.options), names=request.names, stdin=io.BytesIO(task.data))
+    options: dict[str, Any] = dict(request.options)
+    part = load(request.source, **options, names=request.names, stdin=io.BytesIO(task.data))
     study, tested = _answered(part, task, files)
     results = study.aspects
     offers.write(files, aspects.offers(study), pictures=choices.pictures)
@@ -100,10 +101,11 @@ def _rate(part: Part, aspects: Aspects, task: Task, files: Files) -> tuple[dict[
     conditions, rule = task.request.conditions, task.choices.rule
     tried = conditions.tried, part, conditions.bowl  # what the bowl file says of its trial
     if part.vertices is None:
-        return {"note": "a part card has no outline: no rate"}, proof.warnings(*tried, None)
+        return {"note": "a part card has no outline: no rate"}, proof.warnings(*tried)
     study = rate(part, conditions.bowl, task.request.aspect, rule=rule, aspect_shares=Shares(aspects))
     path = study.rate.orientations.lying[study.rate.row].name
-    document = proof.with_trial(rate_output.document(study), *tried, path)
+    leaves_as = well_oriented.fed(study.rate.orientations, study.rate.row).name
+    document = proof.with_trial(rate_output.document(study), *tried, leaves_as)
     offers.write(files, rate_output.offers(study))
     wanted = ("aspect", "heading_deg", "pitch_mm", "p_orientation", "passes_devices")
     rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
@@ -111,7 +113,7 @@ def _rate(part: Part, aspects: Aspects, task: Task, files: Files) -> tuple[dict[
     remarks = rate_output.remarks(study)
     why = "; ".join(remarks) if document["parts_per_minute"] <= 0.0 else ""
     noted = {"note": why} if why else {}
-    warnings = (*study.warnings, *remarks, *proof.warnings(*tried, path))
+    warnings = (*study.warnings, *remarks, *proof.warnings(*tried, leaves_as))
     return named | noted | {name: document[name] for name in (*wanted, *rates)}, warnings
 
 

@@ -21,7 +21,7 @@ from feederscrew.dropping import launch_conditions as condition_keys
 from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
 from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3
-from feederscrew.resting import names_file
+from feederscrew.resting import aspects as aspect_rows
 from feederscrew.resting import posture as postures
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture
@@ -420,4 +420,4 @@ def write_names(part: Part, aspects: Aspects, path: Path) -> None:
     FeederError
         If the part is a card, which has its own names, or the file cannot be written.
     """
-    names_file.write_names(a_part(part), the_aspects(aspects), a_file("path", path))
+    aspect_rows.write_names(a_part(part), the_aspects(aspects), a_file("path", path))

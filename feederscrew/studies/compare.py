@@ -16,10 +16,10 @@ from feederscrew.part import load
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.records import ReadableRecord
+from feederscrew.resting import deviation, profiles
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.counts import count_files, deviation, profiles
-from feederscrew.resting.counts.calibration import Fit, fit_counts, fit_passes
-from feederscrew.resting.counts.profiles import DeviceCounts
+from feederscrew.resting.calibration import Fit, fit_counts, fit_passes
+from feederscrew.resting.profiles import DeviceCounts
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.studies import arguments
 from feederscrew.studies.aspects import aspects as resting
@@ -265,14 +265,14 @@ def _add_file(
     sets += [SetStudy(part, aspects, measured, profile, answers) for profile in measured.profiles]
 
 
-def _read(path: str | PathLike[str]) -> tuple[count_files.CountSheet, str]:
+def _read(path: str | PathLike[str]) -> tuple[profiles.CountSheet, str]:
     """The table of a file of counts, and its sha256."""
-    text, sha256 = count_files.read_count_text(path)
-    return count_files.parse_count_sheet(text, str(path)), sha256
+    text, sha256 = profiles.read_count_text(path)
+    return profiles.parse_count_sheet(text, str(path)), sha256
 
 
 def _answers(
-    part: Part, head: count_files.Head, launch: str | None, as_published: bool
+    part: Part, head: profiles.Head, launch: str | None, as_published: bool
 ) -> tuple[Aspects, tuple[profiles.AspectProfile, ...]]:
     """The aspects of a part with the answer for a launch, and the profiles of all rules and of that."""
     aspects = resting(part, as_published=as_published, launch=launch or head.launch or LAUNCH).aspects

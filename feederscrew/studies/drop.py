@@ -8,7 +8,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
-from feederscrew.dropping import drop_test, launch_conditions, plate_test, toss_runs, traces
+from feederscrew.dropping import drop_test, launch_conditions, plate_test, toss_runs
 from feederscrew.dropping.ensemble import Drops, Tally, wilson
 from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.dropping.toss_runs import FACE_NAMES, LaunchFile
@@ -48,9 +48,9 @@ class DropStudy(ReadableRecord):
         return {rule: self.aspects.probabilities[rule] for rule in RULES_DRAWN}
 
     @property
-    def telling(self) -> traces.DropTrace:
+    def telling(self) -> drop_test.DropTrace:
         """The followed drop to show: the first that tumbled and lies still, else tumbled, else the first."""
-        return traces.telling(self.result.traces)
+        return drop_test.telling(self.result.traces)
 
 
 def drop(

@@ -12,13 +12,12 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
-from feederscrew.part.record import Part
-from feederscrew.part.size_limits import small_part_remarks
-from feederscrew.rates import arrivals, stream
+from feederscrew.part.record import Part, small_part_remarks
+from feederscrew.rates import stream
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import ReadableRecord
+from feederscrew.resting import profiles
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH
 from feederscrew.running import RunSettings
 from feederscrew.studies import arguments
@@ -189,7 +188,7 @@ def trial(
     for bowl in driven:
         answer.answer(bowl)  # refuses a drive that cannot convey
         oriented = stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
-        oriented = arrivals.oriented(oriented, aspect_shares.measured)
+        oriented = stream.oriented(oriented, aspect_shares.measured)
         lying = oriented.lying
         tried = list(range(len(lying)))  # rows of the orientations that are laid down
         if aspect is not None:

@@ -24,8 +24,7 @@ from feederscrew.batch.inputs import read_orders
 from feederscrew.designing import loop
 from feederscrew.errors import FeederError
 from feederscrew.output import batch as batch_output
-from feederscrew.part import gate, load
-from feederscrew.part.repair import topology
+from feederscrew.part import gate, load, topology
 from feederscrew.resting.aspects import find
 from feederscrew_cli.main import feeder
 

@@ -11,9 +11,9 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import built_bowl, queues
+from feederscrew.designing import design, queues
 from feederscrew.output import report
-from feederscrew.output.report.chapters import CHAPTERS
+from feederscrew.output.report import CHAPTERS
 from feederscrew_cli import progress
 
 FIELDS = {
@@ -180,7 +180,7 @@ def test_report_bowl_and_batch_lead_with_a_trial_that_delivers_less(designed, ru
 @pytest.fixture
 def cubes(tmp_path, monkeypatch):
     """Two cubes of other sizes, queues that are soon over, and no solid."""
-    monkeypatch.setattr(built_bowl, "built", lambda study, settings: built_bowl.Built())
+    monkeypatch.setattr(design, "built", lambda study, settings: design.Built())
     monkeypatch.setattr(queues, "TOUCHING_PARTS", 4)
     monkeypatch.setattr(queues, "FILL_SECONDS", 2.0)
     monkeypatch.setattr(queues, "FILLS", queues.FILLS[1:])

@@ -90,7 +90,7 @@ def test_what_cannot_be_told_apart(run, block):
 
 
 def test_orientations_that_hardly_come_are_not_counted():
-    from feederscrew.output import tooling_tables as tables
+    from feederscrew.output import tooling as tables
 
     good, bad = (SimpleNamespace(isolated=isolated, efficiency=0.3) for isolated in (True, False))
     designs = good, bad, good, good

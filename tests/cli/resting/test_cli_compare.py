@@ -10,7 +10,7 @@ import pytest
 import shapes
 
 from feederscrew.errors import FeederError
-from feederscrew.resting.counts import count_files, profiles
+from feederscrew.resting import profiles
 from feederscrew.thesis.tables import table
 
 
@@ -179,7 +179,7 @@ def test_the_files_hold_what_was_published(files, request):
     printed = {
         row["x_over_y"]: row for row in sets_rows((root / "tests/data/square_cuboids.csv").read_text())
     }
-    heads = [count_files.parse_count_sheet(count_files.read_count_text(path)[0], str(path)) for path in files]
+    heads = [profiles.parse_count_sheet(profiles.read_count_text(path)[0], str(path)) for path in files]
     cuboids = [table for table in heads if table.head.series == "square cuboids"]
     assert len(cuboids) == len(printed) == 8
     for sheet in cuboids:
