@@ -83,17 +83,6 @@ def test_a_reversed_drive_swaps_forward_and_backward_on_a_level_track():
     assert np.isnan(grid.values["mu_limit"][np.flatnonzero(np.isclose(grid.first.in_unit, 180))]).all()
 
 
-def test_regimes_follow_from_the_limits():
-    grid = slide(25, "track.bank=20 deg").grid
-    forward, backward = (grid.values[name] > 0.6 for name in ("mu_forward", "mu_backward"))
-    codes = np.where(
-        forward & backward, limits.BOTH, np.where(forward, limits.FORWARD, limits.BACKWARD * backward)
-    )
-    hops = grid.codes == limits.HOP
-    assert (grid.codes == codes)[~hops].all()
-    assert hops.any(axis=0).sum() == (grid.second.values >= np.cos(3 * DEG) / np.sin(25 * DEG)).sum()
-
-
 @given(st.floats(0.0, 90.0), st.floats(0.05, 2.0))
 @settings(max_examples=30, deadline=None)
 def test_the_surface_rises_from_zero_to_its_cut(beta, highest):

@@ -194,15 +194,6 @@ def test_a_full_disk_leaves_nothing(folder, monkeypatch):
     assert list(folder.iterdir()) == []
 
 
-def test_what_a_killed_run_left_is_tidied_up(folder):
-    folder.mkdir()
-    old, fresh = folder / "tmp1.simulated", folder / "tmp2.simulated"
-    old.write_bytes(b"half"), fresh.write_bytes(b"half")
-    os.utime(old, (1.0, 1.0))
-    simulation_cache.write(KEY, {"p": np.arange(3.0)})
-    assert not old.exists() and fresh.exists() and simulation_cache.read(KEY) is not None
-
-
 def rewritten(entry, change):
     """The entry with other arrays in it, its digest made right again: whoever writes it can do so."""
     held = json.loads(entry.read_bytes())

@@ -57,46 +57,6 @@ def test_a_table_is_the_file_of_its_command(run, tmp_path):
     assert told["mass_g"] == pytest.approx(1e3 * fs.load(shapes_file).mass)
 
 
-@pytest.mark.parametrize(
-    ("call", "line"),
-    [
-        (
-            lambda part: fs.load("x.stl", density=7.8),
-            "density: is 7.8 kg/m3 - give kg/m3, 7850 for steel, or a text, '7.85 g/cm3'",
-        ),
-        (lambda part: fs.load(part), "source: is a Part - give the path of a file"),
-        (lambda part: fs.load(3), "source: is 3 - give the path of a file"),
-        (lambda part: fs.convey(None), "bowl: is None - give a Bowl, as read_bowl returns it"),
-        (lambda part: fs.rate(BOWL, part), "part: is a Bowl - give a Part, as load returns it"),
-        (lambda part: fs.aspects("x"), "part: is 'x' - give a Part, as load returns it"),
-        (
-            lambda part: fs.shake(part, None),
-            "bowls: is None - give a Bowl, as read_bowl returns it, or several in a list",
-        ),
-        (lambda part: fs.shake(part, []), "bowls: is empty - give a Bowl, as read_bowl returns it"),
-        (lambda part: fs.drop(part, drops=2.5), "drops: is 2.5 - give a whole number"),
-        (
-            lambda part: fs.rate(part, BOWL, "A", gap="2 s"),
-            "gap: '2 s' is a time, not a length - give it in mm",
-        ),
-        (
-            lambda part: fs.rate(part, BOWL, "A", aspect_shares=3),
-            "aspect_shares: is 3 - give what shares returned",
-        ),
-        (lambda part: fs.tune(part, BOWL, "A", "60"), "target: '60' has no unit - write 60 /min"),
-        (
-            lambda part: fs.posture(part, 3, "A"),
-            "aspects: is 3 - give Aspects, as find_aspects returns them",
-        ),
-        (lambda part: fs.size_bowl(part, "60/min", path=3), "path: is 3 - give the path of a file"),
-    ],
-)
-def test_a_fault_names_the_argument(part, call, line):
-    with pytest.raises(fs.FeederError) as caught:
-        call(part)
-    assert str(caught.value) == line
-
-
 NOTEBOOK_STUDIES = {  # function: its record, and what its text says
     "part": (lambda part: part, "8 x 12 x 20 mm"),
     "bowl": (lambda _: BOWL, "2 overrides: amplitude 0.05 mm at 50 Hz"),

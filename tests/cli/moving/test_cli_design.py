@@ -222,18 +222,6 @@ def test_what_is_of_one_part_is_refused_of_several(run, cubes, more, line):
     assert (done.exit_code, done.stdout, done.stderr) == (2, "", f"Error: {line}\n")
 
 
-def test_two_files_of_one_name_are_a_fault(run, cubes, tmp_path):
-    (tmp_path / "other").mkdir()
-    twin = tmp_path / "other" / "small.stl"
-    twin.write_bytes(cubes[0].read_bytes())
-    done = run("design", *cubes, twin, "--target", "40/min", "-o", "results")
-    assert done.exit_code == 1 and done.stdout == ""
-    assert done.stderr == (
-        f"Error: {twin}: is another part of the name small: results would be overwritten - rename a file\n"
-    )
-    assert not (tmp_path / "results").exists()
-
-
 class Terminal(io.StringIO):
     def isatty(self):
         return True
@@ -260,22 +248,3 @@ def test_a_bar_of_the_stage_and_the_time_to_go(monkeypatch, now):
     before = screen.getvalue()
     shown.end()
     assert screen.getvalue() == before
-
-
-def test_a_line_now_and_then_where_stderr_is_a_file(monkeypatch, now):
-    file = io.StringIO()
-    monkeypatch.setattr(progress.sys, "stderr", file)
-    shown = progress.StageBar()
-    for second in range(0, 41, 4):
-        now[0] = float(second)
-        shown.reach("queue", second, 60, float(second), 60.0 - second)
-    lines = file.getvalue().splitlines()
-    assert lines == ["queue: 27 % after 16 s, about 44 s to go", "queue: 53 % after 32 s, about 28 s to go"]
-    shown.clear()  # a line was printed: the next one has time
-    now[0] = 50.0
-    shown.reach("trial", 2, 16, 50.0, 10.0)
-    assert len(file.getvalue().splitlines()) == 2
-    quiet = progress.StageBar(False)
-    now[0] = 500.0
-    quiet.reach("trial", 2, 16, 50.0, 10.0)
-    assert len(file.getvalue().splitlines()) == 2

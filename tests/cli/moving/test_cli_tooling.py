@@ -79,16 +79,6 @@ def test_rate_reads_the_chain(run, block, tmp_path):
     assert doubtful["efficiency"] < made["efficiency"]
 
 
-def test_what_cannot_be_told_apart(run, block):
-    own = ("--limit", "1 s", "--without", "sorter")
-    result = run("tooling", block, "--aspect", "C", "--heading", "90deg", *WIDE, *own)
-    assert result.exit_code == 0
-    first, *pairs = result.stderr.splitlines()
-    assert first.startswith("C@90 is not isolated: ")
-    assert any("mm, but no chain that was tried can use it" in line for line in pairs)
-    assert not any("; 0 mm more" in line for line in pairs)
-
-
 def test_orientations_that_hardly_come_are_not_counted():
     from feederscrew.output import tooling as tables
 

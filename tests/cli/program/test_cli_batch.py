@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from feederscrew import batch as batches
-from feederscrew_cli import interrupt, progress
+from feederscrew_cli import progress
 
 ROOT = Path(__file__).parents[3]
 NUT = ROOT / "parts/squarenut_m5.stl"
@@ -87,11 +87,6 @@ def test_drops_add_a_drop_test_with_a_seed_from_the_part(run, tmp_path):
     assert dropped["seed"] == int(record["inputs"][0]["sha256"][:8], 16)
 
 
-def test_a_depfile_names_every_part(run, tmp_path):
-    run("batch", NUT, "-o", "out", *"--jobs 1 --no-pictures --rule closed -q --depfile all.d".split())
-    assert (tmp_path / "all.d").read_text() == f"out/summary.csv out/index.html: {NUT}\n{NUT}:\n"
-
-
 @pytest.mark.parametrize(
     ("call", "status", "line"),
     [
@@ -119,17 +114,6 @@ def test_an_interrupt_that_a_library_drops_still_ends_the_program(name):
     child.send_signal(getattr(signal, name))
     assert child.communicate(timeout=8.0)[1] == b"Stopped.\n"
     assert child.returncode == 130
-
-
-@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
-def test_a_closed_terminal_does_not_end_what_ignores_it():
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    try:
-        with interrupt.ended_within(60.0):
-            signal.raise_signal(signal.SIGHUP)
-        assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
-    finally:
-        signal.signal(signal.SIGHUP, before)
 
 
 def test_a_long_run_says_where_it_is_in_a_file_too(monkeypatch, capsys):

@@ -60,14 +60,6 @@ def test_markdown_with_its_pictures_beside_it(run, light):
     assert all((folder / name).stat().st_size > 60 for name in shown)
 
 
-def test_same_input_same_bytes_wherever_it_is_written(run, light):
-    run("report", PART, "-o", "one", "--set", "track.bank=5 deg")
-    run("report", PART, "-o", "two", "--set", "track.bank=5 deg", "-q")
-    one, two = (Path(place, PART.stem, "report.html").read_bytes() for place in ("one", "two"))
-    assert one == two
-    assert b"track.bank" in one and b"<td>5 deg</td><td>--set</td>" in one
-
-
 @pytest.mark.parametrize(
     ("arguments", "status", "line"),
     [

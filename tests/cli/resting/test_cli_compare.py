@@ -207,22 +207,6 @@ def test_each_set_is_compared_with_every_answer(run, files, tmp_path):
     assert len(record["inputs"]) == 2 * len(files)
 
 
-def test_another_mesh_than_the_one_counted_is_a_warning(run, files, tmp_path):
-    (cube,) = [path for path in files if path.stem == "short_cube"]
-    text = cube.read_text().replace("# part: ", f"# part: {cube.parent}/").replace("# mesh: c0", "# mesh: ff")
-    (tmp_path / "c.csv").write_text(text)
-    done = run("compare", "c.csv")
-    assert done.exit_code == 0
-    line, left_out = done.stderr.splitlines()
-    assert left_out.startswith("Left out of the table: ")
-    assert line.startswith("Warning: c.csv: counted with another part file: its mesh is ff5f7fbd, that of ")
-    old = run("compare", cube.parent / "short_cube.stl", "--with", "c.csv")
-    assert line in old.stderr.splitlines() and old.exit_code == 0
-    counts = cube.parent / "cuboid_047.csv"
-    told = run("calibrate", cube.parent / "cuboid_075.stl", "--with", counts).stderr
-    assert f"Warning: {counts}: counted with another part file" in told
-
-
 def test_a_file_without_a_part_and_one_with_a_fault(run, tmp_path):
     (tmp_path / "a.csv").write_text("aspect,x\nA,1\n")
     (tmp_path / "b.csv").write_text("# part: none.stl\naspect,x\nA,1\n")
@@ -262,18 +246,6 @@ def test_a_feeding_test_stands_beside_the_static_rules(run, tmp_path):
     (found,) = fitted["calibrations"]
     assert found["counts"] == "devices" and found["exponent_low"] < found["exponent"] < 8.0
     assert found["degrees_of_freedom"] in (None, 1)
-
-
-def test_counts_by_device_name_their_bowl_and_are_no_shares(run, request, tmp_path):
-    part = request.config.rootpath / "parts/lbracket_30x20x15.stl"
-    (tmp_path / "c.csv").write_text("device,passed,rejected\nwiper,3,4\n")
-    for command in ("compare", "calibrate"):
-        done = run(command, part, "--with", "c.csv")
-        what = "c.csv: counts by device but does not name the bowl - add a line '# config: FILE' at its top"
-        assert (done.exit_code, done.stderr) == (1, f"Error: {what}\n")
-    done = run("rate", part, "--aspect", "A", "--probabilities", "c.csv")
-    what = "c.csv:1: counts by device, which does not say how often the part lies on each aspect"
-    assert (done.exit_code, done.stderr) == (1, f"Error: {what} - give counts by aspect or by orientation\n")
 
 
 @pytest.mark.parametrize("counts", ["/dev/zero", "faulty.csv"])

@@ -19,7 +19,7 @@ from feederscrew.dropping import ensemble
 from feederscrew.output import plate as plate_output
 from feederscrew.output.tables import data_frame
 from feederscrew.studies.drop import shake as plate_study
-from feederscrew_cli import interrupt, progress
+from feederscrew_cli import interrupt
 
 PARTS = Path(__file__).parents[3] / "parts"
 COLUMNS = [
@@ -193,24 +193,6 @@ def test_an_interrupt_is_held_back_and_then_heard():
     assert done == ["all"]
 
 
-def test_progress_grows_with_what_is_needed(capsys, monkeypatch):
-    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
-    with progress.Progress(None, what="drops") as shown:
-        assert capsys.readouterr().err == ""  # nothing may be waited for
-        shown.reach(2000, 2000)
-        shown.reach(2000, 8000, 0.021)
-        shown.reach(8000, 8000, 0.0099)
-    lines = [
-        line.partition("]  ")[2].split("\x1b")[0].strip() for line in capsys.readouterr().err.split("\r")
-    ]
-    assert [line for line in lines if line] == [
-        "0/2000",
-        "2000/2000",
-        "2000/8000  widest interval ±2.1 %",
-        "8000/8000  widest interval ±0.99 %",
-    ]
-
-
 LAUNCHES = """# made up; 100 frames/s
 toss,frames_100Hz,x0_m,y0_m,z0_m,qw0,qx0,qy0,qz0,vx0,vy0,vz0,wx0,wy0,wz0,xe_m,ye_m,face_up_end
 4,80,0,0,0.00851,1,0,0,0,0,0,0,0,0,0,0,0,+z
@@ -322,17 +304,6 @@ def test_the_files_and_the_trend(run, plate_stl, tmp_path):
     assert float(course[-1]["time_s"]) == pytest.approx(0.5) and len(course) % 9 == 0
     told = json.loads((folder / "run.json").read_text())["drop plate"]
     assert told["effective"]["defaults"]["drive.amplitude"] == "0.5 mm"
-
-
-def test_several_bowl_files_are_several_plates(run, plate_stl, tmp_path):
-    for name, friction in (("wet", 0.1), ("dry", 0.7)):
-        text = f"drive: {{amplitude: 0.2 mm}}\nfriction: {{static: {friction}}}\n"
-        (tmp_path / f"{name}.yaml").write_text(text)
-    call = ("--config", tmp_path / "wet.yaml", "--config", tmp_path / "dry.yaml", "--launch", "place")
-    told = document(run("drop", plate_stl, *SHORT, *call, "--format", "json"))
-    assert [plate["bowl"] for plate in told["plates"]] == ["wet", "dry"]
-    wet, dry = (plate["velocity_mm_s"] for plate in told["plates"])
-    assert wet < 0.5 * dry
 
 
 @pytest.mark.parametrize(
