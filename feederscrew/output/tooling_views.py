@@ -26,8 +26,8 @@ VIEW_HALF_EXTENTS = 0.80  # of the part's largest extent, to each side of it
 def figure(devices: Any, orientations: Any, shares: Any, wanted: int) -> Any:
     """Draw the wanted orientation over the cut that it passes least, and the nearest of those that fall.
 
-    ``shares`` (M,) [1] are those of the orientations. Returns a Figure, None where no device cuts or gates the
-    track.
+    ``shares`` (M,) [1] are those of the orientations. Returns a Figure, None where no device cuts or gates
+    the track.
     """
     views = _views(devices, orientations, shares, wanted)
     if not views:
