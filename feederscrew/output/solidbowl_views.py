@@ -85,7 +85,7 @@ def blocks(solid: Any, part: Any, why: str = "", mark: str = "") -> list[Any]:
 def scene(solid: Any, part: Any) -> dict[str, Any]:
     """Return what the viewer draws of a BowlSolid with its parts, meshes of ``part``.
 
-    As ``report.cutting.over_cuts`` has it: the parts in place of one, the bowl in place of the track, both in
+    As ``report.over_cuts`` has it: the parts in place of one, the bowl in place of the track, both in
     mm about the bowl's middle.
     """
     middle = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))

@@ -10,7 +10,7 @@ from matplotlib.patches import PathPatch, Polygon
 from matplotlib.path import Path
 from shapely import affinity
 
-from feederscrew.output import style, tooling_tables
+from feederscrew.output import style
 from feederscrew.tooling import track_sections
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE  # what comes less often has no row
 from feederscrew.tooling.orientations import Hanging
@@ -86,12 +86,15 @@ def chain(devices: Any, orientations: Any, shares: Any, wanted: int | None = Non
     return page
 
 
-def limits(study: Any) -> Any:
-    """Draw every orientation of a ToolingStudy with its limits on the track, and what isolates it."""
+def limits(study: Any, words: str) -> Any:
+    """Draw every orientation of a ToolingStudy with its limits on the track, and what isolates it.
+
+    ``words`` say in its head how many can be isolated.
+    """
     orientations, shares = study.orientations, study.shares
     rows = _rows(orientations, shares, None)
     page = style.page(LIMITS_PAGE_WIDTH_PX, PAGE_HEAD_PX + ROW * len(rows) + PAGE_FOOT_PX)
-    _heading(page, tooling_tables.isolation_words(study), _missing(orientations, rows, shares))
+    _heading(page, words, _missing(orientations, rows, shares))
     second = FATE_COLUMN_PX + DEVICE_COLUMN_PX
     heads = (FATE_COLUMN_PX + 8, "from above"), (second + 8, "along the track"), (830, "isolated by")
     for left, text in heads:
@@ -258,10 +261,10 @@ def _isolated(study: Any, place: int) -> list[str]:
     if design is None:
         return ["not asked for"]
     if study.isolates(place):
-        words = " and ".join(cut.device.name for cut in design.cuts) or "no device"
+        named = " and ".join(cut.device.name for cut in design.cuts) or "no device"
         margin = f"margin {design.margin / MM:.2f} mm" if np.isfinite(design.margin) else ""
-        leave = 100.0 * tooling_tables.leaving(study, place)["efficiency"]
-        lines = textwrap.wrap(words, LAST_COLUMN_LETTERS)
+        leave = 100.0 * (design.least if tried is None else tried.efficiency)
+        lines = textwrap.wrap(named, LAST_COLUMN_LETTERS)
         return [*lines, f"{leave:.3g} % of the parts leave", margin]
     reasons = (*(() if tried is None else tried.faults), *design.reasons)
     why = textwrap.shorten("; ".join(reasons), 4 * LAST_COLUMN_LETTERS, placeholder=" ...")

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.reading import Setting
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.settings import Setting
 from feederscrew.errors import FeederError
 from feederscrew.machine.sizing import Size
 from feederscrew.part.record import Part

@@ -15,7 +15,7 @@ from feederscrew import check
 from feederscrew.mechanics import limits
 from feederscrew.output import compare, slide, style, tables
 from feederscrew.output.tables import Frame
-from feederscrew.resting.counts.deviation import deviation
+from feederscrew.resting.deviation import deviation
 from feederscrew.thesis import parts
 from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, table
 

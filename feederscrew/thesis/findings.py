@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from feederscrew import bowl
 from feederscrew.mechanics import limits
-from feederscrew.resting.counts.deviation import deviation
+from feederscrew.resting.deviation import deviation
 from feederscrew.thesis import figures, parts
 from feederscrew.thesis.motion import floor, track
 from feederscrew.thesis.tables import TOTAL, chapter_4, table

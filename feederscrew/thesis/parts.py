@@ -15,7 +15,7 @@ from feederscrew.geometry import vectors
 from feederscrew.part import mass
 from feederscrew.part.record import CardAspect, Part
 from feederscrew.resting.aspects import find
-from feederscrew.resting.counts.deviation import deviation
+from feederscrew.resting.deviation import deviation
 from feederscrew.resting.rules import formulas
 from feederscrew.thesis.tables import TOTAL, Cell, PrintedTable, chapter_4, is_number, last_digit, table
 from feederscrew.units import MM, factor
