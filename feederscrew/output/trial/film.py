@@ -65,8 +65,8 @@ WITH_FFMPEG = "install ffmpeg (Debian: apt install ffmpeg), or give a name that 
 def require_writer(path: str | os.PathLike[str]) -> None:
     """Raise the line that says what to install where a film cannot be written.
 
-    FeederError if the name does not end in one of ``ENDINGS``, or there is no such folder; MissingPackage if it
-    needs ffmpeg, which is not installed.
+    FeederError if the name does not end in one of ``ENDINGS``, or there is no such folder; MissingPackage if
+    it needs ffmpeg, which is not installed.
     """
     from matplotlib.animation import FFMpegWriter
 
