@@ -255,7 +255,7 @@ VIEWS = {  # by the name of the record's class
     "TrackStudy": RecordView(_track, "track.offers"),
     "Rate": RecordView(_rate),
     "RateStudy": RecordView(lambda study: f"{study.part.name} {_rate(study.rate)}", "rate.offers"),
-    "TuneStudy": RecordView(_tune, "tune.offers"),
+    "TuneStudy": RecordView(_tune, "rate.tune_offers"),
     "MachineSheet": RecordView(_machine, "machine.offers"),
     "ToolingStudy": RecordView(_tooling, "tooling.offers", ((),)),
     "TrialStudy": RecordView(_trial, "trial.tables.offers"),
