@@ -16,7 +16,7 @@ from feederscrew.output import style, tables, tooling_views
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture, Table, Views
 from feederscrew.output.report import CHAPTERS, over_cuts, page
-from feederscrew.output.trial import playback
+from feederscrew.output.trial import rides
 from feederscrew.part import load
 from feederscrew.studies.report import report
 from feederscrew.studies.trial import trial
@@ -251,7 +251,7 @@ def test_a_trial_plays(visit, tmp_path):
     block = shapes.part(shapes.box(20, 12, 5))
     (tmp_path / "bowl.yaml").write_text("devices:\n  - gap: 9 mm\n")
     run = trial(block, [bowls.read(tmp_path / "bowl.yaml")], "A", parts=2).runs[0]
-    scene, captions = playback.scene(block, run)
+    scene, captions = rides.scene(block, run)
     fates = [told.rpartition(" ")[2] for _, told in captions]
     assert fates[0] == "passed" != fates[1]
     views = Views(scene, tuple((*told, ()) for told in captions), "trial-views", "Orientation", plays=True)
