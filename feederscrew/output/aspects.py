@@ -14,8 +14,7 @@ from feederscrew.output import offers as offer
 from feederscrew.output.columns import G_MM2, MM2, UJ
 from feederscrew.output.tables import Frame
 from feederscrew.part.record import Part
-from feederscrew.resting import names_file
-from feederscrew.resting.aspects import postures
+from feederscrew.resting.aspects import names_text, postures
 from feederscrew.units import DEG, MM, quantity_text
 
 shading = heavy("feederscrew.output.shading")
@@ -139,7 +138,7 @@ def offers(study: Any, *, tipping: bool = False) -> list[offer.Offer]:
         rows = range(min(len(study.aspects.names), MOST_DRAWN_ASPECTS))
         drawn = study.part, study.aspects, rows, study.recommended
         what = "The part as it rests on each aspect"
-        offered.append(offer.text("names.yaml", names_file.text, study.part, study.aspects))
+        offered.append(offer.text("names.yaml", names_text, study.part, study.aspects))
         offered.append(offer.picture("aspects.png", what, aspect_views, *drawn))
     return offered + (tipping_graph.offers(study) if tipping else [])
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying import answer, sensitivity, steady
+from feederscrew.conveying import answer, steady
 from feederscrew.conveying.answer import throw_of_flight
 from feederscrew.conveying.operating_point import PHASES
 from feederscrew.heavy import heavy
@@ -62,8 +62,8 @@ def document(study: Any) -> dict[str, Any]:
         "longest_flight_periods": conveying.longest_flight,
         "hardest_impact_mm_s": conveying.hardest_impact / MM_S,
         "flights_per_period": conveying.flights,
-        "sensitivity": {name: changed(pair, sensitivity.SENSITIVITY_CHANGE) for name, pair in nearby},
-        "friction_doubt": changed(study.doubt, sensitivity.FRICTION_DOUBT),
+        "sensitivity": {name: changed(pair, answer.SENSITIVITY_CHANGE) for name, pair in nearby},
+        "friction_doubt": changed(study.doubt, answer.FRICTION_DOUBT),
         "restitution_doubt": rebound(study.bowl, study.rebound),
         "validity": study.validity,
         "bowl": bowls.texts(study.bowl.settings),
@@ -73,11 +73,11 @@ def document(study: Any) -> dict[str, Any]:
 def rebound(bowl: Any, neighbours: Any) -> dict[str, Any] | None:
     """Return a document's entry on the spread of restitution; None where nothing is thrown up.
 
-    ``neighbours`` are those of ``sensitivity.restitution_doubt``.
+    ``neighbours`` are those of ``answer.restitution_doubt``.
     """
     if neighbours is None:
         return None
-    low, high = sensitivity.rebounds(bowl)
+    low, high = answer.rebounds(bowl)
     return {
         "restitution_low": low,
         "restitution_high": high,

@@ -199,7 +199,7 @@ def offers(study: Any, settings: Sequence[Any], built: Any = None) -> list[offer
     study : DesignStudy
     settings : sequence of Setting
         As the user gave them.
-    built : designing.built_bowl.Built, optional
+    built : designing.design.Built, optional
         The machine below the bowl, and the bowl as a solid.
 
     Returns

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
+from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.dropping import toss_runs
+from feederscrew.dropping.drop_test import DropTrace, chosen
 from feederscrew.dropping.toss_runs import FACE_NAMES
-from feederscrew.dropping.traces import DropTrace, chosen
 from feederscrew.heavy import heavy
 from feederscrew.output import columns, style, tables
 from feederscrew.output import offers as offer

@@ -12,7 +12,7 @@ from feederscrew.output import style, tables
 from feederscrew.output.floor import CONTACT, polygon
 from feederscrew.output.tables import Frame
 from feederscrew.output.track import wall_and_edge
-from feederscrew.part.size_limits import small_part_remarks
+from feederscrew.part.record import small_part_remarks
 from feederscrew.studies.headings import HeadingsStudy
 from feederscrew.units import MM
 

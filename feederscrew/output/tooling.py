@@ -424,6 +424,6 @@ def _drawn(kind: str, study: Any, section: Any, mark: str, fields: Any) -> Any:
 
 
 def _step(section: Any, mark: str) -> bytes:
-    from feederscrew.solidbowl.exact import exact_section
+    from feederscrew.solidbowl.exact import exact_file
 
-    return marking.mark_step(exact_section.section_file(section()), mark)
+    return marking.mark_step(exact_file.section_file(section()), mark)

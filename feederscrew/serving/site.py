@@ -26,7 +26,7 @@ from feederscrew.output.page.blocks import Chapter, Page, Table
 from feederscrew.output.report import aspect_views
 from feederscrew.part import load
 from feederscrew.part.density import MATERIALS
-from feederscrew.part.reading.formats import CARD_FORMAT, MESH_FORMATS
+from feederscrew.part.formats import CARD_FORMAT, MESH_FORMATS
 from feederscrew.studies.aspects import AspectsStudy, aspects
 
 HOST = "127.0.0.1"

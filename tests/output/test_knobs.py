@@ -14,7 +14,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
 from feederscrew.conveying import answer, steady
-from feederscrew.conveying.sweep import sweep
+from feederscrew.conveying.answer import sweep
 from feederscrew.output.page import blocks
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown

@@ -12,7 +12,7 @@ from feederscrew.designing.record import DesignRequest, DesignStudy
 from feederscrew.output import headings as headings_output
 from feederscrew.output import rate as rate_output
 from feederscrew.output import tooling as tooling_output
-from feederscrew.part.size_limits import small_part_remarks
+from feederscrew.part.record import small_part_remarks
 from feederscrew.studies.headings import headings
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
