@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import cross, outline, sides, turned
 from feederscrew.tooling import footprints
-from feederscrew.tooling.devices.base import ENDLESS_HOLE_LENGTHS
+from feederscrew.tooling.devices.base import ENDLESS_HOLE_LENGTHS, size_of
 from feederscrew.tooling.devices.openings import WALL_OVERCUT_M
 from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M, neck, rolls_across, shoulder_margin
 
@@ -432,7 +432,7 @@ def lets_go(device, orientation) -> bool:
     where no tilt of it can rest on them. True of a device that cuts nothing.
     """
     track = orientation.track
-    cut, span = device.outline_on(track, ENDLESS_HOLE_LENGTHS * orientation.size), device.span_on(track)
+    cut, span = device.outline_on(track, ENDLESS_HOLE_LENGTHS * size_of(orientation)), device.span_on(track)
     if cut is None or (span is not None and span[1] >= track.extent - 1e-9):
         return True
     height = orientation.posture.height

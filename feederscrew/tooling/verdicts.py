@@ -48,15 +48,8 @@ def verdict(device, orientation, orientations=(), sigma=0.0) -> Verdict:
 
     Source: own; docs/tooling.md, "1. The method".
 
-    Parameters
-    ----------
-    device : Device
-    orientation : Orientation
-    orientations : sequence of Orientation
-        Of the part, which a device may name.
-    sigma : float [m]
-        Standard deviation of play and tolerance together: the share that passes is then
-        Phi(margin / sigma), not 0 or 1.
+    A device may name any of the part's ``orientations``. With a ``sigma`` [m], the standard deviation of play
+    and tolerance together, the share that passes is Phi(margin / sigma), not 0 or 1.
 
     Raises
     ------

@@ -5,8 +5,6 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.record import Track
-from feederscrew.errors import FeederError
 from feederscrew.output import tooling_tables as tables
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import steady
@@ -16,7 +14,7 @@ from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import make_device as device_of
 from feederscrew.tooling.isolating import chain, hole_search, proposal
 from feederscrew.tooling.isolating.chain import DesignConstraints
-from feederscrew.tooling.isolating.design import design, place
+from feederscrew.tooling.isolating.design import design
 from feederscrew.tooling.isolating.proposal import Goal
 from feederscrew.tooling.orientations import name_mirror_images, orientations
 from feederscrew.tooling.verdicts import verdict
@@ -104,41 +102,6 @@ def test_a_hole_parts_mirror_images(bracket):
     assert again.device == cut.device
 
 
-def test_a_hole_that_is_not_better_is_left_early(bracket, rng):
-    """What is said of a hole, and how many verdicts it counts as, does not depend on when it is left."""
-    _, _, every, _ = bracket
-    wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
-    others = [k for k in range(len(every)) if k != wanted][:6]
-    whole, short = (
-        hole_search._Judge(every, wanted, others, MARGIN, hole_search.HoleSearch()) for _ in range(2)
-    )
-    holes = [whole._random(rng) for _ in range(60)]
-    best = -np.inf
-    for corners in (one for one in holes if one is not None):
-        told = whole.score(corners)
-        assert short.score(corners, best) == (told if told[0] > best else (-np.inf, None))
-        best = max(best, told[0])
-    assert best > -np.inf
-    assert short.search.spent == whole.search.spent
-
-
-def test_where_no_hole_is_found_that_of_the_mirror_images_is_mirrored(bracket, monkeypatch):
-    _, _, every, _ = bracket
-    wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
-    partner = next(k for k, one in enumerate(every) if one.name == every[wanted].mirror)
-    search, direct = hole_search.HoleSearch(seed=3), hole_search._search
-
-    def found(every, k, *rest):
-        return None if k == wanted else direct(every, k, *rest)
-
-    monkeypatch.setattr(hole_search, "_search", found)
-    cut, held = hole_search.cut_out(every, wanted, [partner], MARGIN, search)
-    image, _ = hole_search.cut_out(every, partner, [wanted], MARGIN, search)
-    assert held == [partner]
-    assert cut.margin_pass == pytest.approx(image.margin_pass, abs=2e-6)
-    assert cut.margin_reject == pytest.approx(image.margin_reject, abs=2e-6)
-
-
 def test_a_bowl_of_the_design_is_as_pure_and_efficient(bracket, tmp_path):
     part, aspects, every, shares = bracket
     wanted = int(np.argmax([one.canyon for one in every]))
@@ -219,21 +182,6 @@ def test_what_cannot_be_told_apart_is_said():
     assert "B@0" in study.design.left_over and not study.design.stands
     (said,) = [why for why in study.design.reasons if "A@0 and B@0 differ by" in why]
     assert "mm more in" in said
-
-
-def test_orientations_that_do_not_exist(bracket):
-    _, _, every, _ = bracket
-    with pytest.raises(FeederError, match=r"there is no aspect 'Q' - choose one of A, B"):
-        place(every, "Q", None, "part.stl")
-    with pytest.raises(FeederError, match=r"aspect A has no stable heading 45 deg - choose one of"):
-        place(every, "a", np.radians(45.0), "part.stl")
-    assert every[place(every, "A", every[0].heading, "part.stl")] is every[0]
-
-
-def test_a_part_too_large_for_the_bowl_and_a_card_without_a_mesh():
-    part = shapes.part(shapes.box(20, 12, 5))
-    with pytest.raises(FeederError, match=r"track.radius: 20 mm is less than the part's 23"):
-        orientations(part, find(part), Track(climb=0.0, bank=0.0, radius=0.02, width=0.01))
 
 
 def test_a_purity_that_is_enough_makes_a_shorter_chain(bracket):

@@ -62,12 +62,3 @@ def test_the_design_of_a_dowel_begins_with_its_bank():
     assert all(cut.device.kind != "bank" for cut in level.cuts)
     across = tooling(DOWEL, BOWL, "A", heading=math.pi / 2, rule="csa", without="bank").design
     assert not across.isolated and "can roll back" in across.reasons[0]
-
-
-def test_margins_hold_play_and_tolerance_unless_told_otherwise():
-    given = tooling(DOWEL, BOWL, "A", heading=0.0, rule="csa", verdicts=1, vary=False)
-    assert given.margin == pytest.approx(2.5e-4)
-    bare = tooling(
-        DOWEL, BOWL, "A", heading=0.0, rule="csa", verdicts=1, vary=False, play=0.2e-3, tolerance=0.0
-    )
-    assert bare.margin == pytest.approx(3.5e-4)

@@ -13,7 +13,6 @@ from feederscrew.output import tooling_tables
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling import verdicts
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.isolating import design, tracks
 from feederscrew.tooling.isolating.chain import DesignConstraints
@@ -110,7 +109,10 @@ def test_a_narrower_track_lets_a_pulse_blow_off_what_is_heavy(block):
     heavy = tuple(replace(one, posture=replace(one.posture, mass=0.1)) for one in every)
     (width,) = tracks.widths(heavy, shares, 0, 2.5e-4)
     sorter = make_device("sorter", "design", like=(heavy[0].aspect, heavy[0].heading, 2.5e-4))
-    ways = [tracks._blown(sorter, one, heavy) for one in heavy[1:]]
+    ways = [
+        one.track.width + DeviceEncounter(one, heavy).blown(*sorter.jet.push(one, heavy), sorter.time)
+        for one in heavy[1:]
+    ]
     assert width == pytest.approx(math.floor(1e3 * min(ways)) * 1e-3) and heavy[0].width < width < 25e-3
     there = [replace(one, track=replace(one.track, width=width)) for one in heavy]
     blown = [
@@ -148,10 +150,3 @@ def test_other_sweeps_are_those_at_which_a_face_clears_itself(block):
         20,
         45,
     ]
-
-
-def test_the_force_that_shifts_does_not_hang_on_the_height(block):
-    one = block[0][0]
-    low, high = (verdicts.force_to_clear(one, 0.02, height) for height in (0.0, 1.0))
-    assert low == verdicts._force_to_shift(one, 0.02)
-    assert high == pytest.approx(one.posture.mass * one.gravity * one.foot_reach)

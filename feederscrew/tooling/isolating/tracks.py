@@ -10,84 +10,9 @@ from feederscrew.tooling.devices.kinds import leaning, names
 from feederscrew.tooling.fates import at_entry, course
 from feederscrew.tooling.isolating.chain import DESIGN_KEY, values_around
 from feederscrew.tooling.isolating.design import PURITY_GAIN, design
-from feederscrew.tooling.isolating.proposal import LEAST_SHARE, plain_cut
+from feederscrew.tooling.isolating.proposal import LEAST_SHARE, Design, plain_cut
 from feederscrew.tooling.orientations import place
 from feederscrew.tooling.verdicts import DeviceEncounter
-
-
-def holding_stretches(orientation, wall_friction, before, constraints):
-    """Return the stretches of track that hold an orientation which rolls on the level, devices in order.
-
-    Source: own; docs/tooling.md, "What a design takes".
-
-    Parameters
-    ----------
-    orientation : Orientation
-        As it comes.
-    wall_friction : float [1]
-    before : sequence of Device
-        Of the bowl file: where one leans the track already, nothing is added.
-    constraints : DesignConstraints
-
-    Returns
-    -------
-    tuple of Device
-        A bank; where it would have to be steep, a groove and a low bank behind it; none where it holds.
-    """
-    leans = orientation.track.bank > 0.0 or any(device.leans for device in before)
-    if orientation.kind != "rolling" or leans:
-        return ()
-    stretches = (kind.holding(orientation, wall_friction, DESIGN_KEY) for kind in leaning())
-    return min(_allowed(stretches, constraints), key=len, default=())
-
-
-def other_stretches(orientation, proposal, constraints) -> list[Any]:
-    """Return other stretches of track that may give an orientation more than a design does, one by one.
-
-    Source: own; docs/tooling.md, "What a design takes".
-
-    Parameters
-    ----------
-    orientation : Orientation
-        As it comes.
-    proposal : Design
-        Where it isolates, only what may turn more parts into the orientation is worth another track.
-    constraints : DesignConstraints
-
-    Returns
-    -------
-    list of tuple of Device
-    """
-    if orientation.track.bank > 0.0:
-        return []
-    present = {(cut.device.kind, cut.device.text) for cut in proposal.cuts}
-    stretches = _allowed(
-        (stretch for kind in leaning() for stretch in kind.leanings(orientation, DESIGN_KEY)), constraints
-    )
-    stretches = [stretch for stretch in stretches if (stretch[0].kind, stretch[0].text) not in present]
-    return sorted((stretch for stretch in stretches if stretch[0].grooved or not proposal.isolated), key=len)
-
-
-def _allowed(stretches, constraints) -> list[Any]:
-    """Those of some ways to lean the track that are any, and whose kinds of devices may be used."""
-    return [
-        stretch
-        for stretch in stretches
-        if stretch and constraints.allows(*(device.kind for device in stretch))
-    ]
-
-
-def led_on(orientations, leaning) -> tuple[Any, ...]:
-    """Return orientations as they are behind some stretches of track."""
-    for device in leaning:
-        orientations = tuple(device.onward(orientation) for orientation in orientations)
-    return tuple(orientations)
-
-
-def with_stretches(proposal, leaning):
-    """Return a design with those stretches before its own devices."""
-    return replace(proposal, cuts=(*(plain_cut(device) for device in leaning), *proposal.cuts))
-
 
 TRACK_REMARK = (
     "quasi-static: at the bowl's speed a part may be carried over a cut that returns it, laid over by a "
@@ -104,7 +29,7 @@ LEAN_GAIN = 1.05  # times the efficiency for which a track leans that need not
 BESIDE, WHOLE = 1e-3, 1e-3  # [m] that a track is wider than what lies on it, and the step of its width
 
 
-def design_with_track(orientations, shares, wanted, bowl, *, steady, cache=None, **options):
+def design_with_track(orientations, shares, wanted, bowl, *, steady, cache=None, **options) -> Design:
     """Return the design of an orientation, on the track as it is or as it leans best.
 
     Source: own; docs/tooling.md, "What a design takes".
@@ -121,151 +46,176 @@ def design_with_track(orientations, shares, wanted, bowl, *, steady, cache=None,
         Of orientations on tracks that lean, kept for other designs of the same part.
     **options
         As of ``design``: margin, search, goal, before and constraints.
-
-    Returns
-    -------
-    Design
     """
-    cache = {} if cache is None else cache
-    best = _held(orientations, shares, wanted, bowl, steady, cache, options)
-    if not options["constraints"].vary or options["before"] or orientations[wanted].returned:
+    cache, constraints = {} if cache is None else cache, options["constraints"]
+
+    def behind(stretch) -> tuple[Any, ...]:
+        """Orientations behind some stretches of track."""
+        key = tuple((device.kind, device.angle) for device in stretch)
+        if key not in cache:
+            onward = orientations
+            for device in stretch:
+                onward = tuple(device.onward(orientation) for orientation in onward)
+            cache[key] = onward
+        return cache[key]
+
+    def on_stretch(stretch, finding) -> Design | None:
+        """The design on a track that leans, by what comes on so."""
+        come = coming(orientations, shares, stretch)
+        if not come[wanted] > 0.0:
+            return None
+        proposal = finding(behind(stretch), come)
+        proposal = replace(proposal, efficiency=proposal.efficiency * float(come.sum() / shares.sum()))
+        return _with_stretches(proposal, stretch if proposal.cuts else stretch[:1])
+
+    def whole(lying, come) -> Design:
+        return _on_this_track(lying, come, wanted, bowl, steady, options)
+
+    # what rolls on the level comes on a bank or out of a groove
+    best, holding = (
+        None,
+        holding_stretches(orientations[wanted], bowl.friction.wall, options["before"], constraints),
+    )
+    if holding:
+        proposal = whole(behind(holding), shares)
+        best = _with_stretches(proposal, holding) if proposal.isolated or proposal.cuts else None
+    best = best or whole(orientations, shares)
+    if not constraints.vary or options["before"] or orientations[wanted].returned:
         return best
-    constraints = options["constraints"]
-    # on tracks that lean
+    # other tracks that lean: quickly, without what is by far the longest search; in full where that gains
     quick = replace(constraints, turn=False, without=(*constraints.without, *names(searched=True)))
-    there = bowl, steady, cache, options | {"constraints": quick}
     for stretch in other_stretches(orientations[wanted], best, constraints):
-        other = _leaning(orientations, shares, wanted, stretch, there, quick=True)
+        other = on_stretch(
+            stretch, lambda lying, come: design(lying, come, wanted, **options | {"constraints": quick})
+        )
         if gains(other, best):
-            whole = _leaning(orientations, shares, wanted, stretch, there)
-            best = whole if gains(whole, best) and whole.steady >= best.steady else best
+            other = on_stretch(
+                stretch,
+                lambda lying, come: _on_this_track(
+                    lying, come, wanted, bowl, steady, options | {"constraints": quick}
+                ),
+            )
+            best = other if other is not None and gains(other, best) and other.steady >= best.steady else best
     return best
 
 
-def _held(orientations, shares, wanted, bowl, steady, cache, options):
-    """The design of an orientation; one that rolls on the level comes on a bank or out of a groove."""
-    leaning = holding_stretches(
-        orientations[wanted], bowl.friction.wall, options["before"], options["constraints"]
+def holding_stretches(orientation, wall_friction, before, constraints) -> tuple[Any, ...]:
+    """Return the stretches of track that hold an orientation which rolls on the level, devices in order.
+
+    A bank; where it would have to be steep, a groove and a low bank behind it; none where the orientation, as
+    it comes, holds or a device ``before`` leans the track already. ``wall_friction`` [1] is that of the wall.
+
+    Source: own; docs/tooling.md, "What a design takes".
+    """
+    leans = orientation.track.bank > 0.0 or any(device.leans for device in before)
+    if orientation.kind != "rolling" or leans:
+        return ()
+    stretches = (kind.holding(orientation, wall_friction, DESIGN_KEY) for kind in leaning())
+    return min(_allowed(stretches, constraints), key=len, default=())
+
+
+def other_stretches(orientation, proposal, constraints) -> list[Any]:
+    """Return other stretches of track, devices in order, that may give an orientation more than a Design.
+
+    Where that isolates, only what may turn more parts into the orientation is worth another track.
+
+    Source: own; docs/tooling.md, "What a design takes".
+    """
+    if orientation.track.bank > 0.0:
+        return []
+    present = {(cut.device.kind, cut.device.text) for cut in proposal.cuts}
+    stretches = _allowed(
+        (stretch for kind in leaning() for stretch in kind.leanings(orientation, DESIGN_KEY)), constraints
     )
-    if leaning:
-        proposal = _on_this_track(_led(orientations, leaning, cache), shares, wanted, bowl, steady, options)
-        if proposal.isolated or proposal.cuts:
-            return with_stretches(proposal, leaning)
-    return _on_this_track(orientations, shares, wanted, bowl, steady, options)
+    stretches = [stretch for stretch in stretches if (stretch[0].kind, stretch[0].text) not in present]
+    return sorted((stretch for stretch in stretches if stretch[0].grooved or not proposal.isolated), key=len)
 
 
-def _leaning(orientations, shares, wanted, leaning, there, quick=False):
-    """The design on a track that leans, by what comes on so; ``quick``: what is not looked for in full."""
-    bowl, steady, cache, options = there
-    behind, come = _led(orientations, leaning, cache), coming(orientations, shares, leaning)
-    if not come[wanted] > 0.0:
-        return None
-    if quick:
-        proposal = design(behind, come, wanted, **options)
-    else:
-        proposal = _on_this_track(behind, come, wanted, bowl, steady, options)
-    proposal = replace(proposal, efficiency=proposal.efficiency * float(come.sum() / shares.sum()))
-    return with_stretches(proposal, leaning if proposal.cuts else leaning[:1])
+def _allowed(stretches, constraints) -> list[Any]:
+    """Those that are any, and whose kinds of devices may be used."""
+    return [one for one in stretches if one and constraints.allows(*(device.kind for device in one))]
 
 
-def _led(orientations, leaning, cache):
-    """Orientations behind some stretches of track, from a cache of those made before."""
-    key = tuple((device.kind, device.angle) for device in leaning)
-    if key not in cache:
-        cache[key] = led_on(orientations, leaning)
-    return cache[key]
+def _with_stretches(proposal, stretch) -> Design:
+    """A design with those stretches before its own devices."""
+    return replace(proposal, cuts=(*map(plain_cut, stretch), *proposal.cuts))
 
 
-def coming(orientations, shares, leaning):
+def coming(orientations, shares, stretch) -> np.ndarray:
     """Return the share (M,) [1] of the parts that comes in each orientation behind stretches of track.
 
     What rolls back in a groove before it turns does not come.
     """
-    there = at_entry(orientations, leaning)
-    flow, flat = course(leaning, there), leaning[0].grooved and leaning[0].angle < MAX_GROOVE_FACE_RAD - 1e-9
+    there = at_entry(orientations, stretch)
+    flow, flat = course(stretch, there), stretch[0].grooved and stretch[0].angle < MAX_GROOVE_FACE_RAD - 1e-9
     comes = np.array([0.0 if flat and orientation.may_roll_back else 1.0 for orientation in there])
     return (comes[:, None] * np.asarray(shares)[:, None] * flow.leaving).sum(axis=0)[: len(orientations)]
 
 
-def gains(other, best):
+def gains(other, best) -> bool:
     """Return whether a design gives more than another: it isolates, is purer, or more efficient."""
     if other is None or other.isolated != best.isolated:
         return other is not None and other.isolated
-    pure, before = (np.nan_to_num(orientation.purity) for orientation in (other, best))
+    pure, before = (np.nan_to_num(proposal.purity) for proposal in (other, best))
     if abs(pure - before) > PURITY_GAIN:
         return bool(pure > before)
     return other.efficiency > LEAN_GAIN * best.efficiency
 
 
-def widths(orientations, shares, wanted, margin):
-    """Return other widths [m] of the track that may give more, the nearest to it first.
+def widths(orientations, shares, wanted, margin) -> list[float]:
+    """Return other widths [m] of the track that may give the wanted one more, the nearest to it first.
+
+    Wide enough for an orientation that falls off; so narrow that the pulse of a sorter carries off it what
+    stays on a wider one. ``shares`` (M,) [1] are those of the orientations, ``margin`` [m] that of the
+    design.
 
     Source: own; docs/tooling.md, "What a design takes".
-
-    Parameters
-    ----------
-    orientations : sequence of Orientation
-    shares : (M,) float [1]
-    wanted : int
-    margin : float [m]
-
-    Returns
-    -------
-    list of float [m]
-        Wide enough for an orientation that falls off; so narrow that the pulse of a sorter carries off it
-        what stays on a wider one.
     """
-    orientation, widths = orientations[wanted], []
-    if orientation.falls_off:
-        widths.append(WHOLE * math.ceil((orientation.width + BESIDE) / WHOLE))
-    sensors = [
-        kind(DESIGN_KEY, like=(orientation.aspect, orientation.heading, float(margin)))
-        for kind in values_around()
-    ]
+    own, widths = orientations[wanted], []
+    if own.falls_off:
+        widths.append(WHOLE * math.ceil((own.width + BESIDE) / WHOLE))
+    sensors = [kind(DESIGN_KEY, like=(own.aspect, own.heading, float(margin))) for kind in values_around()]
     competitors = [k for k, share in enumerate(shares) if share >= LEAST_SHARE and k != wanted]
-    blown = [orientations[k] for k in competitors if not orientations[k].returned]
-    distances = [_blown(sensor, other, orientations) for sensor in sensors for other in blown]
-    narrow = WHOLE * math.floor(min(distances, default=math.inf) / WHOLE) if distances else math.inf
-    least = max(orientation.width, orientation.balcony) + BESIDE
-    if np.isfinite(orientation.balcony) and least <= narrow < orientation.track.width:
+    others = [orientations[k] for k in competitors if not orientations[k].returned]
+    narrow = math.inf  # how far from the wall the pulse of each sensor's nozzles carries each of the others
+    for sensor in sensors:
+        for other in others:
+            out, down = sensor.jet.push(other, orientations)
+            blown = DeviceEncounter(other, orientations).blown(out, down, sensor.time)
+            narrow = min(narrow, other.track.width + blown)
+    narrow = WHOLE * math.floor(narrow / WHOLE) if narrow < math.inf else narrow
+    least = max(own.width, own.balcony) + BESIDE
+    if np.isfinite(own.balcony) and least <= narrow < own.track.width:
         widths.append(narrow)
     return widths
 
 
-def _blown(sensor, orientation, orientations):
-    """How far from the wall [m] the pulse of a sensor's nozzles carries an orientation."""
-    encounter = DeviceEncounter(orientation, orientations)
-    outwards, down = sensor.jet.push(orientation, orientations)
-    return orientation.track.width + encounter.blown(outwards, down, sensor.time)
-
-
-def _on_this_track(orientations, shares, wanted, bowl, steady, options):
+def _on_this_track(orientations, shares, wanted, bowl, steady, options) -> Design:
     """The design of an orientation that the drive leaves lying on what is cut; if there is none, said so."""
 
-    def stays(proposal):
+    def stays(proposal) -> bool:
         lying = [orientations[proposal.wanted]]
         return not proposal.cuts or bool(steady(proposal.devices, lying, bowl, options["margin"])[0])
 
-    proposal = _isolating(orientations, shares, wanted, **options)
+    proposal = _isolating(orientations, shares, wanted, options)
     if stays(proposal):
         return proposal
-    cut = any(cut.device.corners for cut in proposal.cuts)
-    options = options | {"constraints": replace(options["constraints"], gentle=True)}
-    gentle = proposal if cut else _isolating(orientations, shares, wanted, **options)
-    same = (gentle.isolated, gentle.efficiency, gentle.purity) == (
-        proposal.isolated, proposal.efficiency, proposal.purity,
-    )  # fmt: skip
-    if same and stays(gentle):
+    gentle = proposal
+    if not any(cut.device.corners for cut in proposal.cuts):
+        eased = options | {"constraints": replace(options["constraints"], gentle=True)}
+        gentle = _isolating(orientations, shares, wanted, eased)
+    first, second = ((one.isolated, one.efficiency, one.purity) for one in (gentle, proposal))
+    if first == second and stays(gentle):
         return gentle
     reason = ROCKS.format(orientations[wanted].name)
     return replace(proposal, steady=False, remarks=(*proposal.remarks, reason))
 
 
-def _isolating(orientations, shares, wanted, **options):
+def _isolating(orientations, shares, wanted, options) -> Design:
     """The design for parts that travel; where none isolates, one for parts that are placed, and said so."""
     proposal = design(orientations, shares, wanted, **options)
     if proposal.isolated or not any(orientation.carry > 0.0 for orientation in orientations):
         return proposal
-    options["constraints"] = replace(options["constraints"], vary=False)
+    options = options | {"constraints": replace(options["constraints"], vary=False)}
     still = design(place(orientations), shares, wanted, **options)
     return replace(still, remarks=(*still.remarks, TRACK_REMARK)) if still.isolated else proposal
