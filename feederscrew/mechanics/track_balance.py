@@ -234,10 +234,11 @@ def held(seat, axes, load, closed, ratio) -> TrackSolution:
 
     Source: the equations of ``sliding`` with a choice of friction; docs/mechanics.md, "The track".
     """
-    wall, force = _Wall(seat, axes), load / seat.mass
+    (normals, courses), force = _pushes(seat, axes), load / seat.mass
 
     def acting_at(mobilised) -> "_Acting":
-        return wall.acting(force, mobilised * ratio, -mobilised[..., None] * ALONG_X)
+        pushes = normals - (mobilised * ratio)[..., None, None] * courses
+        return _Acting(force, pushes, -mobilised[..., None] * ALONG_X)
 
     mobilised = _mobilised(lambda mobilised: acting_at(mobilised).undivided(closed), force)
     acting = acting_at(mobilised)
@@ -322,7 +323,7 @@ class _Slide:
     """A part that slides on the floor; (..., 2) ``drag`` is the floor's friction for a normal force of 1."""
 
     def __init__(self, seat, axes, load, floor, course) -> None:
-        self.wall, self.rates, self.force = _Wall(seat, axes), _opening(seat, axes), load / seat.mass
+        self.pushes, self.rates, self.force = _pushes(seat, axes), _opening(seat, axes), load / seat.mass
         self.drag = -np.asarray(floor, dtype=float)[..., None] * course
         self.inertia = seat.inertia / (seat.mass * seat.height**2)
         self.resists = dot(self.drag, self.inertia[:2]) + self.inertia[2]
@@ -330,25 +331,21 @@ class _Slide:
 
     def motion(self, closed, use) -> Any:
         """Return what acts, the wall's reactions and the accelerations across the track and in turning."""
-        acting = self.wall.acting(self.force, use, self.drag)
+        normals, courses = self.pushes
+        acting = _Acting(self.force, normals - use[..., None, None] * courses, self.drag)
         walls = acting.reactions(closed, self.give)
         if all(closed):
             return acting, walls, *np.zeros((2, *walls.shape[:-1]))
         return acting, walls, acting.left_over(walls, 1), dot(acting.yaws, walls) / self.resists
 
 
-class _Wall:
-    """What the wall does at its two contacts, for any friction there."""
-
-    def __init__(self, seat, axes) -> None:
-        arms = seat.walls / seat.height
-        self.normals, self.courses = (
-            np.concatenate([force, np.cross(arms, force)], axis=-1) for force in (axes.normals, axes.courses)
-        )
-
-    def acting(self, force, use, drag) -> "_Acting":
-        """Return what acts on the part for a friction over normal force of ``use`` at the wall."""
-        return _Acting(force, self.normals - use[..., None, None] * self.courses, drag)
+def _pushes(seat, axes) -> tuple[NDArray[np.float64], ...]:
+    """Wrenches (..., 2, 6) of a force of 1 at the wall's contacts, along their normals and their courses."""
+    arms = seat.walls / seat.height
+    normals, courses = (
+        np.concatenate([force, np.cross(arms, force)], axis=-1) for force in (axes.normals, axes.courses)
+    )
+    return normals, courses
 
 
 class _Acting:

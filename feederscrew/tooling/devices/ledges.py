@@ -74,7 +74,7 @@ class Step(_Turner):
     @classmethod
     def changes(cls, often) -> list[float]:
         """Return the values [m] at which it changes what it does in some DeviceEncounters."""
-        turns = [encounter.pitched() for encounter in often]
+        turns = [encounter.pitched(False) for encounter in often]
         return sorted({x for turn in turns for x in (turn.lift, turn.sure, turn.holds) if np.isfinite(x)})
 
 
