@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from feederscrew import check
 from feederscrew.bowl.record import Track
 from feederscrew.conveying import answer
-from feederscrew.conveying.hop import NO_HOP, hop
+from feederscrew.conveying.hop import Hop, hop
 from feederscrew.errors import ConfigError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import convex, cross, outline, sides, turned
@@ -248,7 +248,7 @@ def travelling(orientations, bowl) -> tuple[Orientation, ...]:
     or even carry it on as it does what slides.
     """
     along, track, gravity = travel_speed(bowl), bowl.track, float(bowl.gravity)
-    thrown = hop(bowl) if along > 0.0 else NO_HOP
+    thrown = hop(bowl) if along > 0.0 else Hop(0.0, 0.0, 0.0)
     fastest = 2.0 * np.pi * bowl.drive.frequency * bowl.drive.amplitude
     held = np.tan(track.climb) <= bowl.friction.wall * np.tan(track.bank)
 

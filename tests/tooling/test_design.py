@@ -5,7 +5,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.output import tooling_tables as tables
+from feederscrew.output import tooling as tables
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import steady
 from feederscrew.resting.aspects import find
