@@ -46,15 +46,10 @@ def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
     Source: docs/mechanics.md, "The floor"; the mean agrees with the two-burst velocity of
     docs/conveying.md.
 
-    Parameters
-    ----------
-    acceleration : callable
-        Of phase [rad], velocity [m/s] and sense of sliding, +1 or -1: relative to the surface [m/s2].
-    windows : sequence of (float [rad], float [rad], float [1])
-        Phases from which and to which a part at rest breaks loose, from 0 to 2 pi, ascending, and its sense.
-    period : float [s]
-    samples : int
-        Of the Cycle, which is not settled where the part gets faster with every period.
+    ``acceleration`` of phase [rad], velocity [m/s] and sense of sliding, +1 or -1, is relative to the surface
+    [m/s2]; ``windows`` are phases [rad] from which and to which a part at rest breaks loose, from 0 to 2 pi,
+    ascending, and its sense. The Cycle, of ``samples`` in a ``period`` [s], is not settled where the part
+    gets faster with every period.
 
     Notes
     -----

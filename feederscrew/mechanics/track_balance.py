@@ -68,15 +68,9 @@ def seat(posture, heading, touching, lean) -> Seat:
 
     Source: docs/mechanics.md, "Headings"; the height of the contacts is own.
 
-    Parameters
-    ----------
-    posture : Posture
-    heading : float [rad]
-    touching : (2, 2) float [m]
-        Corners of the outline at the wall in track axes, from the foot of the centre of mass.
-    lean : float [1]
-        Sign of the bank: with it the upper end of an upright side touches the wall, against it the lower
-        end; upright, the reaction may act anywhere between and is put halfway.
+    ``touching`` (2, 2) [m] are corners of the outline at the wall in track axes, from the foot of the centre
+    of mass; ``lean`` is the sign of the bank: with it the upper end of an upright side touches the wall,
+    against it the lower end; upright, the reaction may act anywhere between and is put halfway.
     """
     plan, levels = turned(posture.corners[:, :2], heading), []
     near = EDGE_DEPTH_SHARE * np.ptp(plan, axis=0).max()

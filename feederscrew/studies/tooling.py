@@ -24,9 +24,16 @@ from feederscrew.studies.rate import Shares, arriving, the_shares
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.kinds import KINDS, leaning, names
 from feederscrew.tooling.fates import at_entry
-from feederscrew.tooling.isolating import tracks
 from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, DesignConstraints
-from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M, PLAY_M, TOLERANCE_M, place
+from feederscrew.tooling.isolating.design import (
+    DESIGN_MARGIN_M,
+    PLAY_M,
+    TOLERANCE_M,
+    design_with_track,
+    gains,
+    place,
+    widths,
+)
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Design, Goal
 from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations, travel_speed
@@ -338,7 +345,7 @@ def _best(
     best = _designed(own, wanted, request)
     if best.isolated or not request["constraints"].vary or request["before"]:
         return best
-    for width in tracks.widths(own.orientations, own.shares, wanted, request["margin"]):
+    for width in widths(own.orientations, own.shares, wanted, request["margin"]):
         if width not in cache:
             bowl = replace(own.bowl, track=replace(own.bowl.track, width=width))
             cache[width] = _Track(bowl, _coming(part, aspects, bowl), own.shares, {})
@@ -346,14 +353,14 @@ def _best(
             orientation.name for orientation in own.orientations
         ]
         other = _designed(cache[width], wanted, request) if has_same_orientations else None
-        if other is not None and tracks.gains(other, best):
+        if other is not None and gains(other, best):
             best = replace(other, width=width, remarks=(*other.remarks, WIDER.format(1e3 * width)))
     return best
 
 
 def _designed(there: _Track, wanted: int, request: dict[str, Any]) -> Design:
     problem = there.orientations, there.shares, wanted, there.bowl
-    return tracks.design_with_track(*problem, steady=steady, cache=there.cache, **request)
+    return design_with_track(*problem, steady=steady, cache=there.cache, **request)
 
 
 def tooling_without(

@@ -125,16 +125,9 @@ def course(devices, orientations, sigma=0.0, rows=None) -> DeviceFlow:
 
     Source: a chain of conditional shares; docs/tooling.md, "1. The method".
 
-    Parameters
-    ----------
-    devices : sequence of Device
-        In the order parts meet them.
-    orientations : sequence of Orientation
-        Of the part.
-    sigma : float [m]
-        Standard deviation of play and tolerance together, of every device.
-    rows : sequence of int, optional
-        Those that are followed, with what they become; the others count as if they did not come.
+    ``devices`` are in the order parts meet them, ``orientations`` those of the part; ``sigma`` [m] is the
+    standard deviation of play and tolerance together, of every device. With ``rows``, places of orientations,
+    only those are followed, with what they become; the others count as if they did not come.
 
     Raises
     ------

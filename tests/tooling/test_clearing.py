@@ -114,25 +114,6 @@ def test_three_points_do_not_carry_a_part_over_a_hole_larger_than_itself():
     assert whole == pytest.approx(shapely.Polygon(points).exterior.distance(shapely.Point(0, 0)), abs=1e-6)
 
 
-def test_a_design_stops_nothing_and_its_values_are_on_the_step():
-    """A block whose tall ways up only a blade or a sensor tells apart: neither holds anything up."""
-    part = shapes.part(shapes.box(22, 13, 6))
-    for without, step in (("sorter", 2e-4), ("wiper,cut_out", 1e-4)):
-        study = tooling(part, BOWL, "A", without=without, step=step, verdicts=200)
-        for cut in study.design.cuts:
-            assert cut.device.kind not in without.split(",")
-            value = cut.device.like[2] if cut.device.like else cut.device.limit
-            assert (
-                not np.isfinite(value)  # of a stretch, or of a jet
-                or value / step == pytest.approx(round(value / step), abs=1e-6)
-                or cut.device.corners
-            )
-            assert not cut.stops or not study.design.isolated
-        if study.design.isolated:
-            again = rate(part, replace(BOWL, devices=study.design.devices), "A", rule="csa").rate
-            assert again.jams == 0.0
-
-
 def test_a_sorter_blows_off_what_looks_other_than_its_own_by_more_than_its_play():
     part = shapes.part(shapes.box(20, 12, 5))
     every = orientations(part, find(part), replace(BOWL.track, width=0.04))

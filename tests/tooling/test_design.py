@@ -12,7 +12,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import make_device as device_of
-from feederscrew.tooling.isolating import chain, hole_search, proposal
+from feederscrew.tooling.isolating import chain, hole_search
 from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.isolating.design import design
 from feederscrew.tooling.isolating.proposal import Goal
@@ -137,30 +137,6 @@ def test_a_headed_pin_is_fed_hanging():
     assert across.sum() > 0.1
 
 
-def test_what_no_verdict_is_sure_of_counts_against_the_purity(monkeypatch, bracket):
-    """A fifth of all may leave: of the wanted one too, which counts once, and of a rare one, not named."""
-    _, _, every, shares = bracket
-    shares, wanted = np.where(np.arange(len(every)) == 1, 1e-3, shares), 0
-    direct = proposal.course
-
-    def doubted(devices, every):
-        flow = direct(devices, every)
-        vars(flow)["doubtful"] = np.full(len(every), 0.2)  # a cached property
-        return flow
-
-    monkeypatch.setattr(proposal, "course", doubted)
-    given = proposal.design_task(every, shares, wanted, MARGIN, 1.0, ())
-    found = proposal.propose(given, (), np.zeros(len(every), bool))
-    leaves = np.where(given.stays, shares, 0.0)
-    others = 0.2 * (shares.sum() - shares[wanted])
-    assert found.purity == pytest.approx(leaves[wanted] / (leaves.sum() + others), rel=1e-12)
-    assert found.hopeful == pytest.approx(leaves[wanted] / leaves.sum(), rel=1e-12)
-    (said,) = [why for why in found.reasons if why.startswith("no verdict is sure to return ")]
-    named_ones = said.removeprefix("no verdict is sure to return ").partition(":")[0].split()
-    assert every[2].name in named_ones
-    assert not {every[wanted].name, every[1].name} & set(named_ones)
-
-
 def test_rails_end_on_the_track():
     """An L that hangs over a track by more than half has no second rail there."""
     outline = [(0, 0), (26, 0), (26, 7), (9, 7), (9, 18), (0, 18)]
@@ -171,17 +147,6 @@ def test_rails_end_on_the_track():
     for wanted in flat:
         cuts = design(every, np.ones(len(every)), wanted, constraints=UNSEEN).cuts
         assert all(cut.device.span[1] < track.width for cut in cuts if cut.device.kind == "rails")
-
-
-def test_what_cannot_be_told_apart_is_said():
-    """A plate whose one face has a chamfer of 0.1 mm: its two faces down differ by nothing else."""
-    plate, thin = shapes.box(12, 12, 3.8), shapes.box(11.8, 11.8, 0.2)
-    thin.apply_translation([0, 0, 2.0])
-    study = tooling(shapes.part(plate.union(thin)), bowls.read(None, SETTINGS), "A", seconds=5.0)
-    assert not study.design.isolated
-    assert "B@0" in study.design.left_over and not study.design.stands
-    (said,) = [why for why in study.design.reasons if "A@0 and B@0 differ by" in why]
-    assert "mm more in" in said
 
 
 def test_a_purity_that_is_enough_makes_a_shorter_chain(bracket):

@@ -12,7 +12,7 @@ from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.isolating import tracks
+from feederscrew.tooling.isolating import design
 from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.orientations import orientations, travelling
 
@@ -26,7 +26,7 @@ ALONG, ACROSS, UPRIGHT = (next(one for one in EVERY if one.name == name) for nam
 def angles(one, friction, before=(), constraints=None):
     return [
         (device.kind, pytest.approx(math.degrees(device.angle)))
-        for device in tracks.holding_stretches(one, friction, before, constraints or DesignConstraints())
+        for device in design.holding_stretches(one, friction, before, constraints or DesignConstraints())
     ]
 
 
@@ -34,7 +34,7 @@ def test_the_bank_holds_by_the_friction_of_the_wall_with_a_degree_to_spare():
     assert angles(ALONG, 0.5) == [("bank", 7.0)]  # atan(tan 3 deg / 0.5) = 5.98 deg
     assert angles(ALONG, 0.9) == [("bank", 6.0)]
     assert angles(ACROSS, 0.3) == [("bank", 11.0)]  # 9.9 deg
-    bank = tracks.holding_stretches(ACROSS, 0.3, (), DesignConstraints())[0]
+    bank = design.holding_stretches(ACROSS, 0.3, (), DesignConstraints())[0]
     assert ACROSS.may_roll_back and not bank.onward(replace(ACROSS, wall_grip=0.3)).may_roll_back
 
 
