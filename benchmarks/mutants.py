@@ -46,7 +46,6 @@ TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "resting.rules.recommended.LAUNCH_WIDTH": JUDGED,
     "resting.rules.recommended.WIDTH_FLOOR": JUDGED,
     "tooling.verdicts.WORN": HOLDING,
-    "tooling.track_sections._width": DEVICES,
     "tooling.falling": f"tests/tooling/test_holding.py {HOLDING}",
     "tooling.verdicts": f"tests/tooling/test_turning.py {HOLDING}",
     "tooling.devices.blades": f"{VERDICTS} tests/tooling/test_clearing.py",
