@@ -385,9 +385,9 @@ def on_leaves(bowl: Bowl, user_words: Collection[str]) -> Machine:
     """Return the machine of a bowl with the leaves that tune it to its drive at its stroke.
 
     With the leaves that last and that a maker would take first: at most ``springs.USUAL_A_BANK`` in a bank,
-    tuned to the upper half of the range, because parts in the bowl lower the natural frequency. Of these, the
-    ones of the width in use, of about the length in use, and of a usual number. Where none lasts, with those
-    of least stress; as it is where no set tunes it. Fields of the machine that the user gave stay.
+    tuned to the upper half of the detuning [1], because parts in the bowl lower the natural frequency. Of
+    these, the ones of the width in use, of about the length in use, and of a usual number. Where none lasts,
+    with those of least stress; as it is where no set tunes it. Fields of the machine that the user gave stay.
 
     Source: ``springs.tuned_leaf_sets``; docs/bowl.md, "1. The part, and the rate".
     """
