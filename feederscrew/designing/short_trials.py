@@ -11,7 +11,7 @@ import shapely
 
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
-from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
+from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.designing.record import RobustRun
 from feederscrew.dropping.pool import gather
 from feederscrew.dropping.toss_runs import scattered

@@ -9,7 +9,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.schema import BY_NAME, Key
-from feederscrew.conveying import answer, sensitivity
+from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError, FeederError
 
 KNOBS = ("drive.amplitude", "drive.vibration_angle", "drive.frequency")  # turned one at a time
@@ -23,8 +23,8 @@ RATE_TOLERANCE = 0.01  # of the rate: no further step is made
 DECIDED = 0.03  # of the rate: as near as the parts that decide are asked for, which are known to 5 %
 # of the rate: a setting gives it; what arrives is sampled, so that it jumps by a few per cent
 ACCEPTED_RATE_ERROR = 0.04
-LED = 0.1  # of the rate: a setting that fewer parts lead no nearer to it is sought only if no other gives it
-LEADS = 2  # steps that fewer parts lead
+LED = 0.1  # of the rate: a setting led no nearer to it by the bowl's own shares waits for all others
+LEADS = 3  # steps that the shares of the bowl's own drive lead
 ROUNDS, REMEMBERED = 8, 3  # steps towards a setting, and those whose parts lead on
 SETTING_TOLERANCE = 0.01  # of a value: two settings are one
 SETTING_DIGITS = 5  # of a value as it is printed
@@ -65,6 +65,7 @@ def solutions(
     density: Density,
     *,
     rough: Density | None = None,
+    sampled: bool = False,
     worst: bool = False,
     progress: Callable[[int, int], Any] | None = None,
 ) -> list[Solution]:
@@ -81,7 +82,10 @@ def solutions(
         From a bowl to the well-oriented parts on a length of its track [1/m], with what arrives at its drive
         and without what that turns over; of None, at the bowl's own drive as if it turned over none.
     rough : callable, optional
-        The same of fewer parts, sooner: it leads to a setting that ``density`` then decides on.
+        The same with what arrives at the bowl's own drive, sooner: it leads to a setting that ``density``
+        then decides on.
+    sampled : bool
+        What arrives is sampled by ``density``: a setting is then no better known than to DECIDED.
     worst : bool
         Reach the target at the slowest of every start and surface, as ``well_oriented.velocity``.
     progress : function, optional
@@ -101,19 +105,18 @@ def solutions(
     curves = [_Curve.of(bowl, BY_NAME[name], worst) for name in KNOBS]
     if not any(np.isfinite(curve.speeds).any() for curve in curves):
         raise FeederError("track.climb", "is steeper than friction holds", "lower the climb")
-    likely = [(curve, value) for curve in curves for value in curve.starts(target / density(None))]
+    starts = [(curve, value) for curve in curves for value in curve.starts(target / density(None))]
+    likely: list[tuple[_Curve, float]] = []
     unlikely: list[tuple[_Curve, float]] = []
-    if rough is not None:
-        # fewer parts lead from each start, none beside another; those LED to the rate come first
-        starts, likely = likely, []
-        for curve, value in starts:
-            value, rate = _lead(curve, value, target, rough)
-            if not any(
-                other.key == curve.key and abs(value - near) <= SETTING_TOLERANCE * near
-                for other, near in likely + unlikely
-            ):
-                (likely if abs(rate - target) <= LED * target else unlikely).append((curve, value))
-    close = RATE_TOLERANCE if rough is None else DECIDED
+    # the bowl's own shares lead from each start, none beside another; those LED to the rate come first
+    for curve, value in starts:
+        value, rate = _lead(curve, value, target, rough or density)
+        if not any(
+            other.key == curve.key and abs(value - near) <= SETTING_TOLERANCE * near
+            for other, near in likely + unlikely
+        ):
+            (likely if abs(rate - target) <= LED * target else unlikely).append((curve, value))
+    close = DECIDED if sampled else RATE_TOLERANCE
     tried: list[Solution] = []
     near: list[Solution] = []
     for count, (curve, value) in enumerate(likely + unlikely):
@@ -195,20 +198,17 @@ class _Curve:
 
 
 def _lead(curve: _Curve, value: float, target: float, rough: Density) -> tuple[float, float]:
-    """The value that few parts lead to from a start, and the rate they give there.
-
-    They are too few for more than their mean at some drives near to each other.
-    """
-    densities = []
+    """The value that the shares of the bowl's own drive lead to from a start, and the rate there."""
+    rate = 0.0
     for _ in range(LEADS):
-        densities.append(rough(turned(curve.bowl, curve.key, curve.readable(value))))
-        if not densities[-1] > 0.0:
-            break
-        there = curve.nearest_crossing(value, target / float(np.mean(densities)))
-        if there is None:
+        at = curve.readable(value)
+        density = rough(turned(curve.bowl, curve.key, at))
+        rate = curve.speed(at) * density
+        there = curve.nearest_crossing(value, target / density) if density > 0.0 else None
+        if abs(rate - target) <= RATE_TOLERANCE * target or there is None:
             break
         value = there
-    return value, curve.speed(value) * float(np.mean(densities))
+    return value, rate
 
 
 def _settled(curve: _Curve, value: float, target: float, density: Density, close: float) -> Solution:
@@ -253,7 +253,7 @@ def _speeds(bowl: Bowl, key: Key, values: np.ndarray, worst: bool) -> np.ndarray
     here = answer.cells(there)
     if not worst:
         return here["velocity"]
-    surfaces = sensitivity.surfaces(there, (here["throw_number"] > 1.0).any())[1:]
+    surfaces = answer.surfaces(there, bool((here["throw_number"] > 1.0).any()))[1:]
     around = [here, *map(answer.cells, surfaces)]
     return np.min([cells["low"] for cells in around], axis=0)  # NaN where one friction has no steady state
 

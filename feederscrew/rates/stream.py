@@ -14,12 +14,12 @@ from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
 from feederscrew.rates.tipping import TrackTipping, marked
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.counts.profiles import AspectProfile, DeviceCounts, Measured
+from feederscrew.resting.profiles import AspectProfile, DeviceCounts, Measured
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended, launched
 from feederscrew.tooling import orientations as tooling
-from feederscrew.tooling.clearing import seconds
 from feederscrew.tooling.devices.base import UNSURE, Device
 from feederscrew.tooling.devices.orientation_names import place
+from feederscrew.tooling.falling import clearing_time
 from feederscrew.tooling.fates import at_entry, course
 from feederscrew.tooling.orientations import Orientation, travel_speed
 
@@ -265,16 +265,11 @@ def along(
     lying = at_entry(lying, chain)
     flow = course(chain, lying, sigma, rows)
     rules = {rule: np.array([orientation.chances[rule] for orientation in lying]) for rule in aspects.chances}
-    interval, ends = np.full((len(lying), 2), np.nan), aspects.recommended
-    if ends is not None:
-        own = [aspects.names.index(orientation.aspect) for orientation in lying]
-        shares = np.array([orientation.heading_share for orientation in lying])
-        interval = np.column_stack([ends.low[own] * shares, ends.high[own] * shares])
     # how long each blocks the track on its way off it, in the mean
     clearing = np.zeros(len(lying))
     for step, device in enumerate(chain if bowl is not None else ()):
         for row in np.flatnonzero(flow.ends[:, 0, 1 + step] > 0.0):
-            clearing[row] += flow.ends[row, 0, 1 + step] * seconds(device, lying[row], bowl)
+            clearing[row] += flow.ends[row, 0, 1 + step] * clearing_time(device, lying[row], bowl)
     return Orientations(
         lying=lying,
         stations=("track", *(device.kind for device in chain)),
@@ -284,7 +279,7 @@ def along(
         leaving=flow.leaving,
         leaves_as=check.frozen(np.array([flow.leaves_as(row) for row in range(len(lying))])),
         rules={rule: check.frozen(chance) for rule, chance in rules.items()},
-        interval=check.frozen(interval),
+        interval=check.frozen(_interval(lying, aspects)),
         decided=flow.decided,
         fates=flow.fates,
         stops=flow.stops,
@@ -293,6 +288,33 @@ def along(
         gap=0.0 if bowl is None else needed_spacing(chain, lying, bowl),
         tipping=tips,
     )
+
+
+def with_shares(queue: Orientations, aspects: Aspects) -> Orientations:
+    """Return the same orientations, devices and drive where the aspects arrive in other shares."""
+    rows = [aspects.names.index(orientation.aspect) for orientation in queue.lying]
+    lying = tuple(
+        replace(
+            orientation,
+            chances={rule: float(p[row]) * orientation.heading_share for rule, p in aspects.chances.items()},
+        )
+        for orientation, row in zip(queue.lying, rows)
+    )
+    rules = {
+        rule: check.frozen(np.array([orientation.chances[rule] for orientation in lying]))
+        for rule in aspects.chances
+    }
+    return replace(queue, lying=lying, rules=rules, interval=check.frozen(_interval(lying, aspects)))
+
+
+def _interval(lying: Sequence[Orientation], aspects: Aspects) -> np.ndarray:
+    """Lowest and highest probability by the recommended rule (M, 2) [1]; NaN without it."""
+    ends = aspects.recommended
+    if ends is None:
+        return np.full((len(lying), 2), np.nan)
+    rows = [aspects.names.index(orientation.aspect) for orientation in lying]
+    shares = np.array([orientation.heading_share for orientation in lying])
+    return np.column_stack([ends.low[rows] * shares, ends.high[rows] * shares])
 
 
 def counted_stations(queue: Orientations, counts: DeviceCounts) -> np.ndarray:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.bowl.record import Bowl, Track
-from feederscrew.conveying import answer, sensitivity
+from feederscrew.conveying import answer
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.mechanics.headings import headings, stable_row
@@ -155,7 +155,7 @@ def velocity(bowl: Bowl) -> Range:
     if here.status == "no steady state":
         what = "is steeper than friction holds: the part slides down continuously"
         raise FeederError("track.climb", what, "lower the climb or raise the friction")
-    surfaces = sensitivity.surfaces(bowl, here.throw_number > 1.0)[1:]
+    surfaces = answer.surfaces(bowl, here.throw_number > 1.0)[1:]
     around = [here, *map(answer.answer, surfaces)]
     low = min(0.0 if np.isnan(orientation.low) else orientation.low for orientation in around)
     high = max(0.0 if np.isnan(orientation.high) else orientation.high for orientation in around)

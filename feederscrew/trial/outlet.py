@@ -7,8 +7,8 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.dropping.ensemble import wilson
-from feederscrew.resting.counts import deviation
-from feederscrew.resting.counts.profiles import AspectProfile
+from feederscrew.resting import deviation
+from feederscrew.resting.profiles import AspectProfile
 
 
 @dataclass(frozen=True, eq=False)
