@@ -217,10 +217,7 @@ TRIPLE = "write x,y,z with points and commas, as in 1.5,0,-2"
         ("5,10,15 m", OUTSIDE),
         ("1,2", f"centre_of_mass: '1,2' is not three numbers - {TRIPLE}"),
         ("0,5,1,2,3,1", f"centre_of_mass: '0,5,1,2,3,1' is not three numbers - {TRIPLE}"),
-        (
-            "a,b,c",
-            "centre_of_mass: 'a' is not a number - write digits with a decimal point, as in 0.4",
-        ),
+        ("a,b,c", "centre_of_mass: 'a' is not a number - write digits with a decimal point, as in 0.4"),
         ("nan,1,1", "centre_of_mass: 'nan' is not a number - write digits with a decimal point, as in 0.4"),
         ("1 kg,1,1", "centre_of_mass: '1 kg' is a mass, not a length - give it in mm"),
     ],

@@ -193,18 +193,9 @@ TEXT = files.ascii_stl(BOX)
     ("data", "warnings"),
     [
         (files.binary_stl(BOX, b"solid part facet normal"), ()),
-        (
-            files.binary_stl(BOX, count=0),
-            (f"the header says 0 facets, {ALL}",),
-        ),
-        (
-            files.binary_stl(BOX, count=7),
-            (f"the header says 7 facets, {ALL}",),
-        ),
-        (
-            files.binary_stl(BOX, count=0xFFFFFFFF),
-            (f"the header says 4294967295 facets, {ALL}",),
-        ),
+        (files.binary_stl(BOX, count=0), (f"the header says 0 facets, {ALL}",)),
+        (files.binary_stl(BOX, count=7), (f"the header says 7 facets, {ALL}",)),
+        (files.binary_stl(BOX, count=0xFFFFFFFF), (f"the header says 4294967295 facets, {ALL}",)),
         (STL + b"\r\n", ("2 bytes after the last facet are left out",)),
         (files.ascii_stl(BOX, end="\r\n"), ()),
         (files.ascii_stl(BOX, end="\r"), ()),
@@ -316,7 +307,7 @@ def test_standard_input_is_named_in_lines():
             "a.step",
             "cascadio",
             'STEP needs cascadio, not installed - pip install "feederscrew[step]"',
-        ),
+        )
     ],
 )
 def test_missing_extra_is_named(tmp_path, monkeypatch, data, name, module, line):

@@ -69,22 +69,13 @@ def test_fractions_are_compared_as_printed():
                 "give a header 'aspect,counts' and one row an aspect"
             ],
         ),
-        (
-            "aspect;x\nA;1\n",
-            ["c.csv:1: the columns are not separated by commas - separate them by commas"],
-        ),
+        ("aspect;x\nA;1\n", ["c.csv:1: the columns are not separated by commas - separate them by commas"]),
         ("#\naspect,x,x\n", ["c.csv:2: two columns are called 'x' - give each its own name"]),
         ("aspect,x,\n", ["c.csv:1: a column has no name - give each its own name"]),
         ("aspect,PMI\n", ["c.csv:1: column 'PMI' has the name of a rule - give it another name"]),
-        (
-            "aspect,x\nA,1\nB,2\nC,3\nF,4\n",
-            ["c.csv:5: the part has no aspect 'F' - known are A, B, C"],
-        ),
+        ("aspect,x\nA,1\nB,2\nC,3\nF,4\n", ["c.csv:5: the part has no aspect 'F' - known are A, B, C"]),
         ("aspect,x\nA,1\nB,2\n", ["c.csv: has no row for aspect C - add it, 0 if never seen"]),
-        (
-            "aspect,x\nA,1\nB,2\nC,3\nA,4\n",
-            ["c.csv:5: aspect 'A' is already in line 2 - keep one of them"],
-        ),
+        ("aspect,x\nA,1\nB,2\nC,3\nA,4\n", ["c.csv:5: aspect 'A' is already in line 2 - keep one of them"]),
         (
             "aspect,x\nA,1,7\nB,2\nC,3\n",
             ["c.csv:2: has 2 values, the header names 1 - give one value a column"],
