@@ -388,8 +388,8 @@ def force_screw(body: Body, twist: Twist, twist_rate: Twist) -> Wrench:
     ``body``: in body axes; ``twist`` (...,): omega + eps v_A about a point A of the body, components along
     body axes; ``twist_rate`` (...,): time derivatives of those components; re-expressed at A where given
     elsewhere on the body. Returns (...,): at A.
-    The thesis, eq. [4.4] and eq. [4.6]; written out for its parts on the floor, eqs. [4.9] to [4.12], eqs.
-    [4.40] to [4.42], and on the track, eqs. [4.30], [4.31], eqs. [4.55], [4.56].
+    The thesis, eq. [4.4] and eq. [4.6]; written out for its parts on the floor, eqs. [4.9] to [4.12],
+    eqs. [4.40] to [4.42], and on the track, eqs. [4.30], [4.31], eqs. [4.55], [4.56].
     Source: G. R. Pennock, B. A. Oncu, "Application of screw theory to rigid body dynamics", J. Dynamic
     Systems, Measurement, and Control 114(2), 262-269, 1992.
     """
