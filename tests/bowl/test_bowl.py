@@ -65,15 +65,6 @@ def test_the_template_holds_the_defaults(file):
     assert origins["friction.kinetic"] == "as friction.static"
 
 
-def test_commented_keys_of_the_template_are_valid_once_uncommented(file):
-    text = documentation.template()
-    for key in ("kinetic", "wall", "static_backward", "kinetic_backward"):
-        text = text.replace(f"# {key}:", f"{key}:")
-    friction = bowl.read(file(text)).friction
-    assert (friction.static, friction.kinetic, friction.wall, *friction.backward) == (0.6,) * 5
-    assert friction.kinetic_backward == 0.6
-
-
 def test_the_shipped_files():
     assert (ROOT / "configs/bowl.yaml").read_text() == documentation.template()
     thesis = bowl.read(ROOT / "configs/thesis.yaml")
@@ -140,10 +131,6 @@ def test_all_faults_of_a_file_and_of_set_in_one_go(file):
         "overrides gravity",
         "overrides track.climb",
     ]
-
-
-def test_an_empty_section_is_all_defaults(file):
-    assert bowl.read(file("drive:\nfriction:\n")) == bowl.default()
 
 
 @pytest.mark.parametrize(
@@ -277,13 +264,6 @@ def test_the_schema_agrees_with_the_record():
         low, high = (units.quantity(text, key.dimension) for text in (key.lowest, key.highest))
         default = next(s.value for s in bowl.settings() if s.key is key)
         assert low <= default <= high
-
-
-def test_names_and_identities(file):
-    path = file("restitution: 0.1\n")
-    assert (bowl.name(), bowl.name("configs/thesis.yaml")) == ("defaults", "thesis")
-    assert bowl.identity() == {}
-    assert len(bowl.identity(path)["bowl.yaml"]) == 64
 
 
 @given(st.text(max_size=80))

@@ -47,11 +47,6 @@ def test_a_surface_that_passes_through_itself_is_refused(tmp_path, triangles):
     assert re.match(f"{CROSSING}|encloses no volume", files.refused(path))
 
 
-def test_a_surface_that_passes_through_itself_may_be_taken_as_it_is(tmp_path):
-    part = load(files.written(tmp_path, spiked()), allow_open=True)
-    assert re.match(CROSSING, part.warnings[0])
-
-
 def test_a_box_turned_by_little_does_not_pass_through_itself(tmp_path):
     assert load(files.written(tmp_path, prism(twisted(0.6)))).warnings == ()
 
@@ -107,23 +102,6 @@ def lathed(radii, around=9):
             np.column_stack([last + first, last + after, np.full(around, top)])]  # fmt: skip
     points = [[0.0, 0.0, 1.5], [0.0, 0.0, 1.5 + len(radii)]]
     return np.concatenate([rings.reshape(-1, 3), points]), np.concatenate([sides, *ends])
-
-
-@pytest.mark.parametrize("turns", [0, 1])
-def test_what_is_left_out_of_the_search_cuts_nothing(rng, turns):
-    """Corners drawn through the other side of a shaft; and a shaft that goes round its axis twice."""
-    vertices, faces = lathed(rng.uniform(1.0, 1.2, 30))
-    if turns:
-        vertices[:90, :2] = lathed(np.full(10, 1.0), 9)[0][np.arange(90) // 9 * 9 + np.arange(90) * 2 % 9, :2]
-    assert 0 < len(unseen(vertices, faces)) < len(faces) if turns else len(unseen(vertices, faces)) == 0
-    for corner in rng.integers(90, 250, 6):
-        drawn = vertices.copy()
-        drawn[corner, :2] *= rng.uniform(-2.0, -1.0)
-        cut = np.unique(crossings.find_crossings(drawn, faces, 1e-9).pairs)
-        left = unseen(drawn, faces)
-        assert len(cut)
-        assert set(cut) <= set(left)
-        assert len(left) < 0.8 * len(faces)
 
 
 def tube(turns, rises, thick, along=24, around=5):
