@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 import waits
 from conveying_reference import Reference, random_settings
 
-from feederscrew.conveying import steady, sweep
+from feederscrew.conveying import answer, steady
 from feederscrew.conveying.operating_point import OperatingPoint, plain
 from feederscrew.mechanics import limits
 
@@ -47,7 +47,7 @@ def race(restitution, count):
     box = random_settings(count, np.random.default_rng(1))
     settings = np.array([plain(*row, restitution) for row in box])
     few, fewer = max(20, count // 500), 5
-    compiled, out = seconds(lambda: sweep.sweep(settings, workers=1))
+    compiled, out = seconds(lambda: answer.sweep(settings, workers=1))
     python, same = seconds(lambda: plain_python(settings[:few]))
     scipy, _ = seconds(lambda: general(box[:fewer], restitution))
     rates = count / compiled, few / python, fewer / scipy
@@ -80,7 +80,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--points", type=int, default=100_000)
     count = parser.parse_args().points
-    waited, _ = seconds(lambda: sweep.sweep(np.array([plain(1.0, 0.5, 0.0, 0.4)])))
+    waited, _ = seconds(lambda: answer.sweep(np.array([plain(1.0, 0.5, 0.0, 0.4)])))
     print(f"compiling, or loading what was compiled before: {waited:.1f} s")
     held = [race(0.0, count), race(0.3, count), thresholds()]
     print("\nall targets hold" if all(held) else "\nsome targets are missed", f"({waits.busy()})")

@@ -16,7 +16,7 @@ import numpy as np
 import speed
 import waits
 
-from feederscrew.conveying import sweep
+from feederscrew.conveying import answer
 from feederscrew.conveying.operating_point import plain
 
 POINTS = 20_000
@@ -32,11 +32,11 @@ def drops():
 
 def points():
     """Points a second and core, beside plain Python."""
-    sweep.sweep(np.array([plain(1.0, 0.5, 0.0, 0.4)]))
+    answer.sweep(np.array([plain(1.0, 0.5, 0.0, 0.4)]))
     for restitution, (wanted, _) in conveying.TARGETS.items():
         box = conveying.random_settings(POINTS, np.random.default_rng(1))
         settings = np.array([plain(*row, restitution) for row in box])
-        took, _ = conveying.seconds(lambda: sweep.sweep(settings, workers=1))  # noqa: B023
+        took, _ = conveying.seconds(lambda: answer.sweep(settings, workers=1))  # noqa: B023
         few = max(20, POINTS // 500)
         slow, _ = conveying.seconds(lambda: conveying.plain_python(settings[:few]))  # noqa: B023
         beside = f"plain Python {few / slow:,.0f}"

@@ -157,9 +157,9 @@ def trial(out):
 
 def conveying(out):
     """Say so when the first map on this machine must wait for the compiler."""
-    from feederscrew.conveying import sweep
+    from feederscrew.conveying import answer
 
-    if not sweep.compiled():
+    if not answer.sweep_compiled():
         out.say("Compiling the conveying kernel, once on this machine: about ten seconds.")
 
 

@@ -9,10 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from feederscrew.conveying.operating_point import plain
-from feederscrew.conveying.scaling import Numbers, with_numbers
+from feederscrew.conveying.answer import sweep
+from feederscrew.conveying.operating_point import Numbers, plain, with_numbers
 from feederscrew.conveying.steady import VELOCITY
-from feederscrew.conveying.sweep import sweep
 
 DOCS = Path(__file__).resolve().parent
 METHOD = DOCS / "method/conveying.md"

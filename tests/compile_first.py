@@ -69,9 +69,9 @@ def compile_here(name, folder):
     from click.testing import CliRunner
 
     if name == "sweep":
-        from feederscrew.conveying import operating_point, sweep
+        from feederscrew.conveying import answer, operating_point
 
-        sweep.sweep(np.array([operating_point.plain(1.0, 0.5, 0.0, 0.4)]))
+        answer.sweep(np.array([operating_point.plain(1.0, 0.5, 0.0, 0.4)]))
         return
     from feederscrew_cli.main import feeder
 

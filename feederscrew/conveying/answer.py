@@ -1,9 +1,15 @@
 """From a bowl to its conveying velocity and back: SI units on both sides of the unitless kernel.
 
-With it the friction that keeps a part from slipping, points at other radii, and the best elliptical phase.
+With it maps of many settings, compiled and on every core; what becomes of an answer when the bowl is not
+quite what the file says; points at other radii; and the best elliptical phase.
 """
 
+import functools
+import inspect
 import math
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,85 +17,36 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew import check
-from feederscrew.bowl.record import Friction
-from feederscrew.conveying import operating_point, steady, waves
+from feederscrew.bowl.record import Bowl, Friction
+from feederscrew.conveying import operating_point, point_motion, steady, waves
 from feederscrew.conveying.operating_point import PHASES, OperatingPoint
 from feederscrew.errors import ConfigError
+from feederscrew.geometry.compiled import compiled, entry, on_disk, outlined
 from feederscrew.mechanics import limits
 from feederscrew.records import ReadableRecord
 
 MAX_ONSET_STEPS = 50
 ONSET_TOLERANCE = 1e-15  # relative
-
-
-def limits_of_slip(setting) -> tuple[float, float]:
-    """Return the least static friction against slip up and down the track.
-
-    Source: ``limits.forward_limit`` and ``limits.backward_limit``; an elliptical drive by Dinkelbach's
-    method.
-
-    Parameters
-    ----------
-    setting : OperatingPoint
-        Its own friction does not matter.
-
-    Returns
-    -------
-    (float, float) [1]
-        Zero or less where no slip comes on any surface; NaN past the hop where it comes on every one.
-    """
-    if setting.lead == 0.0 and setting.second == 0.0:
-        where = (setting.ratio, setting.angle, 0.0, setting.climb)
-        return float(limits.forward_limit(*where)), float(limits.backward_limit(*where))
-    if operating_point.throw_number(operating_point.law(setting)) >= 1.0 - limits.HOP_ROUNDING:
-        return math.nan, math.nan
-    return _least(setting, 1.0), _least(setting, -1.0)
-
-
-def _least(setting, direction) -> float:
-    """Greatest over the cycle of pull over normal force.
-
-    References
-    ----------
-    W. Dinkelbach, "On nonlinear fractional programming", Management Science 13(7), 492-498, 1967: the
-    ratio where the difference is greatest is the next estimate.
-    """
-    pull = operating_point.pull_wave(setting, direction, 0.0)
-    press = operating_point.lift_wave(setting)
-    mu = waves.height(pull, 0.0) / -waves.height(press, 0.0)
-    for _ in range(MAX_ONSET_STEPS):
-        angle = waves.crest(operating_point.pull_wave(setting, direction, mu))
-        new = waves.height(pull, angle) / -waves.height(press, angle)
-        if abs(new - mu) <= ONSET_TOLERANCE * abs(new):
-            break
-        mu = new
-    return new
-
-
-def throw_of_flight(periods) -> float:
-    """Return the throw number at which a part that does not rebound flies for a given time.
-
-    Source: Sloot and Kruyt 1996, by the parabola between two impacts; docs/conveying.md, "The model".
-
-    Parameters
-    ----------
-    periods : float [1 period]
-        Length of the flight, above 0; of one that starts from contact.
-
-    Returns
-    -------
-    float [1]
-        sqrt(1 + pi^2) for one period.
-    """
-    turn = 2.0 * math.pi * check.positive("periods", periods)
-    return math.hypot(1.0, (0.5 * turn * turn - 1.0 + math.cos(turn)) / (turn - math.sin(turn)))
-
-
 LEAST_ACCELERATION_RATIO = 1e-9  # [1] least acceleration ratio computed with: a bowl at rest carries nothing
 SWEEP_REGIMES = (*limits.POINT_REGIMES, "no steady state")  # a regime code of a map is a place in this list
 COEXISTING_VELOCITY_GAP = 0.01  # [A w] velocities this far apart are several
 POINT_MASS_REMARK = "point mass: fairly good where the part slides, larger deviations where it is thrown"
 VALIDITY_SOURCE = "Sloot and Kruyt 1996"
+COMPILED_FROM = 60  # settings one by one in a process, as a design asks for them: then the kernel is loaded
+SETTINGS_A_LOT = 256  # settings handed to a core at a time: their costs differ a hundredfold
+SENSITIVITY_CHANGE = 0.1  # of stroke, friction and angle, each by itself
+FRICTION_DOUBT = 0.2  # what a coefficient of friction is seldom known better than
+RESTITUTION_DOUBT = 0.16
+"""[1] Relative standard deviation of the restitution of single impacts of one body on one surface. 1,718
+filmed impacts have the quartiles 0.53, 0.60, 0.66, and half of that width is 0.67 standard deviations."""
+MAX_RESTITUTION = 0.99  # [1] restitution: at 1 a part never comes to rest on the track
+SENSITIVE_QUANTITIES = ("amplitude", "friction", "angle")
+INNER_RADIUS_SHARE = 0.5  # of the track's radius, where the curve starts
+RADIUS_STEPS = 26
+PHASE_STEP_RAD = np.radians(2.0)  # between the phases tried
+FINE_PHASES = 20  # phases to each side of the best one, within a step
+NEAR_BEST_SHARE = 0.9  # of the best velocity
+FRICTION_FACTORS = (0.5, 0.8, 1.0, 1.2, 1.5)  # of the bowl's coefficients
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,43 +74,8 @@ class Answer(ReadableRecord):
     runs_away: bool  # a part that once slides down the track fast enough does not stop again
 
 
-def settings(bowl) -> NDArray[np.float64]:
-    """Return what the kernel needs of a bowl.
-
-    Source: docs/conveying.md, "The model"; the bank is reckoned as friction by ``wedge.level``.
-
-    Parameters
-    ----------
-    bowl : Bowl
-        Its fields may be arrays that broadcast together.
-
-    Returns
-    -------
-    (..., 12) float [1 and rad, as OperatingPoint]
-        An ``OperatingPoint`` along the last axis; the acceleration ratio of a bowl at rest is ``STILL``.
-    """
-    here = limits.level(bowl)
-    drive, friction = here.drive, here.friction
-    ratio = np.maximum(
-        limits.acceleration_ratio(drive.amplitude, drive.frequency, bowl.gravity), LEAST_ACCELERATION_RATIO
-    )
-    surface = (friction.static, friction.kinetic, *friction.backward)
-    fields = (ratio, drive.vibration_angle, here.track.climb, *surface, bowl.restitution)
-    second = (drive.second_harmonic, drive.second_harmonic_phase, drive.second_harmonic_turn)
-    rows = np.broadcast_arrays(*fields, -np.asarray(drive.phase), *second)
-    return np.stack(rows, axis=-1).astype(float)
-
-
-def answer(bowl) -> Any:
-    """Compute how a part travels in a bowl, without compiling anything.
-
-    Parameters
-    ----------
-    bowl : Bowl
-
-    Returns
-    -------
-    Answer
+def answer(bowl: Bowl) -> Answer:
+    """Compute how a part travels in a bowl, without compiling anything; the same bits if compiled before.
 
     Raises
     ------
@@ -162,17 +84,44 @@ def answer(bowl) -> Any:
     """
     conveying(bowl)
     setting = OperatingPoint(*settings(bowl).tolist())
+    out = _surveyed(setting)
+    speed, mu, throw = float(greatest_speed(bowl)), bowl.friction, float(out[steady.THROW])
+    forward, backward = (
+        float(limits.of_floor(limit, mu.wall, bowl.track.bank)) for limit in limits_of_slip(setting)
+    )
+    velocities = {
+        "velocity": steady.VELOCITY, "low": steady.LOW, "high": steady.HIGH, "slowest": steady.SLOWEST,
+        "fastest": steady.FASTEST, "hardest_impact": steady.IMPACT,
+    }  # fmt: skip
+    status = int(out[steady.STATUS])
+    return Answer(
+        setting=setting,
+        speed=speed,
+        status=steady.STATUSES[status],
+        period=int(out[steady.PERIOD]),
+        **{name: float(out[place]) * speed for name, place in velocities.items()},
+        fractions={name: float(out[steady.FRACTIONS + k]) for k, name in enumerate(PHASES)},
+        longest_flight=float(out[steady.FLIGHT_TIME]),
+        flights=float(out[steady.HOPS]),
+        throw_number=throw,
+        mu_forward=forward,
+        mu_backward=backward,
+        margins={"forward": mu.static - forward, "backward": mu.backward[0] - backward, "hop": 1.0 - throw},
+        regime=SWEEP_REGIMES[-1 if status == steady.NO_STEADY_STATE else int(out[steady.REGIME])],
+        runs_away=bool(out[steady.RUNAWAY]),
+    )
+
+
+@functools.lru_cache(maxsize=64)  # a drive is asked for its velocity, its hop and its hardest landing
+def _surveyed(setting: OperatingPoint) -> NDArray[np.float64]:
+    if _surveyed.cache_info().misses > COMPILED_FROM and sweep_compiled():
+        return check.frozen(sweep(np.array([setting]))[0])
     out = np.empty(steady.COLUMNS)
     steady.survey(setting, out)
-    return _answer(bowl, setting, out)
+    return check.frozen(out)
 
 
-def throw_number(bowl) -> float:
-    """Return the plate's greatest downward acceleration over gravity, along the normal [1]; one setting."""
-    return operating_point.throw_number(operating_point.law(OperatingPoint(*settings(bowl).tolist())))
-
-
-def conveying(bowl):
+def conveying(bowl: Bowl) -> Bowl:
     """Return the bowl itself, once it can convey; raise ConfigError otherwise."""
     if not np.all(bowl.gravity > 0.0):
         raise ConfigError("gravity", "is not above 0", "give m/s2, 9.81 on earth")
@@ -189,53 +138,74 @@ def conveying(bowl):
     return bowl
 
 
-def cells(bowl) -> Any:
-    """Compute how a part travels over a map.
+def settings(bowl: Bowl) -> NDArray[np.float64]:
+    """Return what the kernel needs of a bowl: (..., 12), an ``OperatingPoint`` along the last axis.
 
-    Parameters
+    The bowl's fields may be arrays that broadcast together. The bank is reckoned as friction
+    (``limits.level``); the acceleration ratio is ``LEAST_ACCELERATION_RATIO`` of a bowl at rest.
+    Source: docs/conveying.md, "The model".
+    """
+    here = limits.level(bowl)
+    drive, friction = here.drive, here.friction
+    ratio = limits.acceleration_ratio(drive.amplitude, drive.frequency, bowl.gravity)
+    surface = (friction.static, friction.kinetic, *friction.backward)
+    second = (drive.second_harmonic, drive.second_harmonic_phase, drive.second_harmonic_turn)
+    rows = np.broadcast_arrays(
+        np.maximum(ratio, LEAST_ACCELERATION_RATIO), drive.vibration_angle, here.track.climb, *surface,
+        bowl.restitution, -np.asarray(drive.phase), *second,
+    )  # fmt: skip
+    return np.stack(rows, axis=-1).astype(float)
+
+
+def limits_of_slip(setting: OperatingPoint) -> tuple[float, float]:
+    """Return the least static friction [1] against slip up and down the track; its own does not matter.
+
+    Zero or less where no slip comes on any surface; NaN past the hop where it comes on every one. Of an
+    elliptical drive by Dinkelbach's method: the ratio of pull to normal force where their
+    difference is greatest in the cycle is the next estimate.
+
+    References
     ----------
-    bowl : Bowl
-        Its fields are arrays that broadcast together.
-
-    Returns
-    -------
-    dict of str to array
-        velocity, low, high [m/s] over the starts; several, whether they differ by more than
-        ``COEXISTING_VELOCITY_GAP``; regime, a place in ``REGIMES``; throw_number [1]; status, a place in
-        ``steady.STATUSES``.
-
-    Raises
-    ------
-    ConfigError
-        As ``answer`` does.
+    W. Dinkelbach, "On nonlinear fractional programming", Management Science 13(7), 492-498, 1967.
     """
-    from feederscrew.conveying.sweep import sweep
+    if setting.lead == 0.0 and setting.second == 0.0:
+        where = (setting.ratio, setting.angle, 0.0, setting.climb)
+        return float(limits.forward_limit(*where)), float(limits.backward_limit(*where))
+    if operating_point.throw_number(operating_point.law(setting)) >= 1.0 - limits.HOP_ROUNDING:
+        return math.nan, math.nan
+    least, press = [], operating_point.lift_wave(setting)
+    for direction in (1.0, -1.0):
+        pull = operating_point.pull_wave(setting, direction, 0.0)
+        mu = waves.height(pull, 0.0) / -waves.height(press, 0.0)
+        for _ in range(MAX_ONSET_STEPS):
+            angle = waves.crest(operating_point.pull_wave(setting, direction, mu))
+            before, mu = mu, waves.height(pull, angle) / -waves.height(press, angle)
+            if abs(mu - before) <= ONSET_TOLERANCE * abs(mu):
+                break
+        least.append(mu)
+    return least[0], least[1]
 
-    rows = settings(conveying(bowl))
-    out = sweep(rows.reshape(-1, rows.shape[-1])).reshape(*rows.shape[:-1], steady.COLUMNS)
-    status, speed = out[..., steady.STATUS].astype(int), np.asarray(greatest_speed(bowl))
-    return {
-        "velocity": out[..., steady.VELOCITY] * speed,
-        "low": out[..., steady.LOW] * speed,
-        "high": out[..., steady.HIGH] * speed,
-        "several": out[..., steady.HIGH] - out[..., steady.LOW] > COEXISTING_VELOCITY_GAP,
-        "regime": np.where(
-            status == steady.NO_STEADY_STATE, len(SWEEP_REGIMES) - 1, out[..., steady.REGIME].astype(int)
-        ),
-        "throw_number": np.where(speed > 0.0, out[..., steady.THROW], 0.0),  # not that of ``STILL``
-        "status": status,
-    }
+
+def throw_number(bowl: Bowl) -> float:
+    """Return the plate's greatest downward acceleration over gravity, along the normal [1]; one setting."""
+    return operating_point.throw_number(operating_point.law(OperatingPoint(*settings(bowl).tolist())))
 
 
-def greatest_speed(bowl) -> Any:
-    """Return A w [m/s], of the first harmonic.
+def throw_of_flight(periods: float) -> float:
+    """Return the throw number [1] at which a part that does not rebound flies for a time [periods], above 0.
 
-    Source: the derivative of the motion; docs/conveying.md, "The model".
+    Source: Sloot and Kruyt 1996, by the parabola between two impacts: sqrt(1 + pi^2) for one period.
     """
+    turn = 2.0 * math.pi * check.positive("periods", periods)
+    return math.hypot(1.0, (0.5 * turn * turn - 1.0 + math.cos(turn)) / (turn - math.sin(turn)))
+
+
+def greatest_speed(bowl: Bowl) -> Any:
+    """Return A w [m/s], of the first harmonic."""
     return bowl.drive.amplitude * 2.0 * np.pi * bowl.drive.frequency
 
 
-def validity(run, bowl) -> str:
+def validity(run: Answer, bowl: Bowl) -> str:
     """Say what an answer leaves out, in one sentence."""
     remarks = (
         f"{POINT_MASS_REMARK} ({VALIDITY_SOURCE})"
@@ -247,7 +217,106 @@ def validity(run, bowl) -> str:
     return f"{remarks}; the centripetal force, up to {100.0 * share:.2g} % of the weight, is left out"
 
 
-def scaled(bowl, *, amplitude=1.0, friction=1.0, angle=1.0):
+def cells(bowl: Bowl) -> dict[str, NDArray[Any]]:
+    """Compute how a part travels over a map: the bowl's fields are arrays that broadcast together.
+
+    Returns
+    -------
+    dict of str to array
+        velocity, low, high [m/s] over the starts; several, whether they differ by more than
+        ``COEXISTING_VELOCITY_GAP``; regime, a place in ``SWEEP_REGIMES``; throw_number [1]; status, a place
+        in ``steady.STATUSES``.
+
+    Raises
+    ------
+    ConfigError
+        As ``answer`` does.
+    """
+    rows = settings(conveying(bowl))
+    out = sweep(rows.reshape(-1, rows.shape[-1])).reshape(*rows.shape[:-1], steady.COLUMNS)
+    status, speed = out[..., steady.STATUS].astype(int), np.asarray(greatest_speed(bowl))
+    regime, last = out[..., steady.REGIME].astype(int), len(SWEEP_REGIMES) - 1
+    return {
+        "velocity": out[..., steady.VELOCITY] * speed,
+        "low": out[..., steady.LOW] * speed,
+        "high": out[..., steady.HIGH] * speed,
+        "several": out[..., steady.HIGH] - out[..., steady.LOW] > COEXISTING_VELOCITY_GAP,
+        "regime": np.where(status == steady.NO_STEADY_STATE, last, regime),
+        "throw_number": np.where(speed > 0.0, out[..., steady.THROW], 0.0),  # a bowl at rest has none
+        "status": status,
+    }
+
+
+def sweep(rows: NDArray[np.float64], workers: int | None = None) -> NDArray[np.float64]:
+    """Compute the steady motion of many settings, compiled, as ``steady.survey`` does for one.
+
+    The first call on a machine compiles for some seconds and keeps the result on disk: ``sweep_compiled``.
+
+    Parameters
+    ----------
+    rows : (N, 12) float [1 and rad]
+        One ``OperatingPoint`` a row.
+    workers : int, optional
+        Threads; by default one a core.
+
+    Returns
+    -------
+    (N, 17) float
+        Rows as ``steady.survey`` fills them.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, an entry is not finite, or a row is not a track.
+    """
+    rows = check.shaped("settings", rows, (-1, len(OperatingPoint._fields)))
+    # Rows that could fail the check of one setting, all at once; that names the reason.
+    s = OperatingPoint(*rows.T)
+    bad = (s.ratio <= 0.0) | (s.angle < 0.0) | (s.angle > np.pi / 2)
+    bad |= (s.kinetic > s.static) | (s.kinetic_back > s.static_back)
+    bad |= np.minimum(s.kinetic, s.kinetic_back) < 0.0
+    bad |= (s.restitution < 0.0) | (s.restitution >= 1.0)
+    for row in rows[bad]:
+        operating_point.checked(OperatingPoint(*row))
+    out, run = np.empty((len(rows), steady.COLUMNS)), _compiled_loop()
+    run(rows[:0], out[:0])
+    if len(rows) <= SETTINGS_A_LOT:
+        run(rows, out)
+        return out
+    lots = [slice(k, k + SETTINGS_A_LOT) for k in range(0, len(rows), SETTINGS_A_LOT)]
+    with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
+        list(pool.map(lambda lot: run(rows[lot], out[lot]), lots))
+    return out
+
+
+def sweep_compiled() -> bool:
+    """Tell whether the compiled functions are already on disk, or numba is set not to compile."""
+    return on_disk(_compiled_loop())
+
+
+@functools.cache
+def _compiled_loop() -> Callable[..., None]:
+    """The loop over settings, with every function it reaches; those of a period compiled into one piece."""
+    a_period = {
+        *(waves.value, waves.after, waves.above, waves.onward, waves.reached, waves.gain),
+        *(waves._beyond_sine, waves._beyond_cosine, operating_point.contact),
+        *(function for _, function in inspect.getmembers(point_motion, inspect.isfunction)),
+    } - {point_motion.turn, point_motion.at_rest}
+    for module in (waves, operating_point, point_motion, steady):
+        for _, function in inspect.getmembers(module, inspect.isfunction):
+            if function.__module__ == module.__name__:
+                (compiled if function in a_period else outlined)(function, arrays=True)
+    return entry(_loop, arrays=True)
+
+
+def _loop(rows, out) -> None:
+    for k in range(len(rows)):
+        s = rows[k]
+        drive = s[8], s[9], s[10], s[11]
+        steady.survey(OperatingPoint(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], *drive), out[k])
+
+
+def scaled(bowl: Bowl, *, amplitude: Any = 1.0, friction: Any = 1.0, angle: Any = 1.0) -> Bowl:
     """Return the bowl with its stroke, every coefficient of friction or its vibration angle multiplied."""
     drive = replace(
         bowl.drive,
@@ -255,97 +324,93 @@ def scaled(bowl, *, amplitude=1.0, friction=1.0, angle=1.0):
         vibration_angle=np.minimum(bowl.drive.vibration_angle * angle, np.pi / 2),
     )
     mu = bowl.friction
-    values = (mu.static, mu.kinetic, mu.wall, *mu.backward)
-    surfaces = Friction(*(value * friction for value in values))
+    surfaces = Friction(*(value * friction for value in (mu.static, mu.kinetic, mu.wall, *mu.backward)))
     return replace(bowl, drive=drive, friction=surfaces)
 
 
-def _answer(bowl, setting, out) -> Answer:
-    speed = float(greatest_speed(bowl))
-    status = int(out[steady.STATUS])
-    mu, throw, limit = bowl.friction, float(out[steady.THROW]), limits_of_slip(setting)
-    forward, backward = (
-        float(limits.of_floor(floor_limit, mu.wall, bowl.track.bank)) for floor_limit in limit
-    )
-    return Answer(
-        setting=setting,
-        speed=speed,
-        status=steady.STATUSES[status],
-        period=int(out[steady.PERIOD]),
-        velocity=float(out[steady.VELOCITY]) * speed,
-        low=float(out[steady.LOW]) * speed,
-        high=float(out[steady.HIGH]) * speed,
-        slowest=float(out[steady.SLOWEST]) * speed,
-        fastest=float(out[steady.FASTEST]) * speed,
-        fractions={name: float(out[steady.FRACTIONS + k]) for k, name in enumerate(PHASES)},
-        longest_flight=float(out[steady.FLIGHT_TIME]),
-        hardest_impact=float(out[steady.IMPACT]) * speed,
-        flights=float(out[steady.HOPS]),
-        throw_number=throw,
-        mu_forward=forward,
-        mu_backward=backward,
-        margins={
-            "forward": mu.static - forward,
-            "backward": mu.backward[0] - backward,
-            "hop": 1.0 - throw,
-        },
-        regime=SWEEP_REGIMES[-1]
-        if status == steady.NO_STEADY_STATE
-        else SWEEP_REGIMES[int(out[steady.REGIME])],
-        runs_away=bool(out[steady.RUNAWAY]),
-    )
+@dataclass(frozen=True)
+class Neighbours:
+    """Velocities on both sides of an operating point."""
+
+    less: float  # [m/s] NaN where there is no steady state
+    more: float  # [m/s]
+
+    def elasticity(self, velocity: float, change: float = SENSITIVITY_CHANGE) -> float:
+        """Return per cent of velocity for one per cent of the quantity; NaN where the part stands."""
+        return (self.more - self.less) / (2.0 * change * velocity) if velocity else math.nan
 
 
-INNER_RADIUS_SHARE = 0.5  # of the track's radius, where the curve starts
-RADIUS_STEPS = 26
+def sensitivity(bowl: Bowl) -> dict[str, Neighbours]:
+    """Return velocities with 'amplitude', 'friction' (all of it) and 'angle' a tenth lower and higher."""
+    return {name: _neighbours(bowl, name, SENSITIVITY_CHANGE) for name in SENSITIVE_QUANTITIES}
 
 
-def inwards(bowl) -> Any:
+def friction_doubt(bowl: Bowl) -> Neighbours:
+    """Return neighbours for friction a fifth lower and higher."""
+    return _neighbours(bowl, "friction", FRICTION_DOUBT)
+
+
+def _neighbours(bowl: Bowl, name: str, change: float) -> Neighbours:
+    return Neighbours(*(answer(scaled(bowl, **{name: 1.0 + sign * change})).velocity for sign in (-1.0, 1.0)))
+
+
+def restitution_doubt(bowl: Bowl) -> Neighbours:
+    """Return neighbours for both ends of the spread of restitution."""
+    return Neighbours(*(answer(replace(bowl, restitution=end)).velocity for end in rebounds(bowl)))
+
+
+def surfaces(bowl: Bowl, hops: bool) -> list[Bowl]:
+    """Return the bowl on the surfaces that may be there, its own first.
+
+    As it is, friction ``FRICTION_DOUBT`` lower and higher, and both ends of ``even_range`` where parts may
+    leave the track, as ``hops`` says: without that restitution decides nothing. Drive and friction may be
+    arrays that broadcast together. Source: docs/validation.md, "Restitution is a spread".
+    """
+    bowls = [bowl, *(scaled(bowl, friction=1.0 + sign * FRICTION_DOUBT) for sign in (-1.0, 1.0))]
+    return bowls + ([replace(bowl, restitution=end) for end in rebounds(bowl)] if hops else [])
+
+
+def rebounds(bowl: Bowl) -> tuple[float, ...]:
+    """Return both ends of the spread of a bowl's restitution [1], not above ``MAX_RESTITUTION``."""
+    return tuple(min(end, MAX_RESTITUTION) for end in even_range(bowl.restitution))
+
+
+def even_range(restitution: float) -> tuple[float, float]:
+    """Return both ends of the even range round a restitution [1] with ``RESTITUTION_DOUBT`` as deviation.
+
+    A uniform range has 1 / sqrt(12) of its width as its standard deviation. It ends at 0 and 1.
+    """
+    half = min(math.sqrt(3.0) * RESTITUTION_DOUBT * restitution, 1.0 - restitution)
+    return restitution - half, restitution + half
+
+
+def inwards(bowl: Bowl) -> Any:
     """Return the bowl at radii [m] from half the track's to the track's own, evenly spaced."""
     return at_radius(bowl, bowl.track.radius * np.linspace(INNER_RADIUS_SHARE, 1.0, RADIUS_STEPS))
 
 
-def at_radius(bowl, radius):
-    """Return the bowl as a part feels it nearer to its axis.
+def at_radius(bowl: Bowl, radius: Any) -> Any:
+    """Return the bowl as a part feels it nearer to its axis, at a radius [m], one or many.
 
-    Source: a bowl that moves as a screw, tan(angle) r = const; docs/bowl.md, "How it is computed".
-
-    Parameters
-    ----------
-    bowl : Bowl
-        Its drive is that at ``bowl.track.radius``.
-    radius : array_like [m]
-
-    Returns
-    -------
-    Bowl
-        Its amplitude, vibration angle and radius are arrays where ``radius`` is one.
+    Source: a bowl that moves as a screw; docs/bowl.md, "How it is computed". All points rise by the same
+    amplitude and turn by the same angle, so the tangent of the angle to the horizontal, vibration angle plus
+    climb, is inversely proportional to the radius.
 
     Raises
     ------
     ConfigError
         If the drive is elliptical.
-
-    Notes
-    -----
-    All points rise by the same amplitude and turn by the same angle, so the tangent of the angle to
-    the horizontal, vibration angle plus climb, is inversely proportional to the radius.
     """
     if np.any(bowl.drive.phase != 0.0):
         what = "is not 0 deg, an elliptical drive is not a screw motion to follow inwards"
         raise ConfigError("drive.phase", what, "leave out `curve`, or the phase")
     rise = np.sin(bowl.drive.vibration_angle + bowl.track.climb) * bowl.drive.amplitude
     turn = np.cos(bowl.drive.vibration_angle + bowl.track.climb) * bowl.drive.amplitude / bowl.track.radius
-    reach = turn * np.asarray(radius)
+    reach = turn * radius
     angle = np.arctan2(rise, reach) - bowl.track.climb
     drive = replace(bowl.drive, amplitude=np.hypot(rise, reach), vibration_angle=angle)
-    return replace(bowl, drive=drive, track=replace(bowl.track, radius=np.asarray(radius)))
-
-
-PHASE_STEP_RAD = np.radians(2.0)  # between the phases tried
-FINE_PHASES = 20  # phases to each side of the best one, within a step
-NEAR_BEST_SHARE = 0.9  # of the best velocity
-FRICTION_FACTORS = (0.5, 0.8, 1.0, 1.2, 1.5)  # of the bowl's coefficients
+    track: Any = replace(bowl.track, radius=radius)
+    return replace(bowl, drive=drive, track=track)
 
 
 @dataclass(frozen=True, eq=False)
@@ -364,17 +429,8 @@ class BestPhase:
     straight_over_friction: np.ndarray  # (K,) [m/s]
 
 
-def best_phase(bowl) -> Any:
-    """Find the phase of the drive at which a part travels fastest up the track.
-
-    Parameters
-    ----------
-    bowl : Bowl
-        Single values; its own phase does not matter.
-
-    Returns
-    -------
-    BestPhase
+def best_phase(bowl: Bowl) -> BestPhase:
+    """Find the phase of the drive at which a part travels fastest up the track; its own does not matter.
 
     Raises
     ------
@@ -387,43 +443,35 @@ def best_phase(bowl) -> Any:
     if np.isnan(velocities).all():
         what = "has no steady velocity at any value: the part slides down the track without stopping"
         raise ConfigError("drive.phase", what, "lower track.climb, or raise the friction")
-    near = phases[np.nanargmax(velocities)] + PHASE_STEP_RAD * np.linspace(-1.0, 1.0, 2 * FINE_PHASES + 1)
+    count, peak = len(phases), int(np.nanargmax(velocities))
+    near = phases[peak] + PHASE_STEP_RAD * np.linspace(-1.0, 1.0, 2 * FINE_PHASES + 1)
     near_velocities = cells(with_phase(bowl, near))["velocity"]
-    best = int(np.nanargmax(near_velocities))
-    phase, velocity = float(near[best]), float(near_velocities[best])
-    low, high = _range(phases, velocities, velocity)
+    fine = int(np.nanargmax(near_velocities))
+    phase, velocity = float(near[fine]), float(near_velocities[fine])
+    # First and last phase of those on both sides of the best that give nearly its velocity.
+    good = velocities >= NEAR_BEST_SHARE * velocity if velocity > 0.0 else velocities == velocities[peak]
+    below, above = (
+        next((k for k in range(count) if not good[(peak + side * (k + 1)) % count]), count - 1)
+        for side in (-1, 1)
+    )
     frictions = np.array(FRICTION_FACTORS)
+    at_best, straight = (
+        cells(with_phase(scaled(bowl, friction=frictions), here))["velocity"] for here in (phase, 0.0)
+    )
     return BestPhase(
         phases=check.frozen(phases),
         cells=around,
         phase=phase,
         velocity=velocity,
-        straight=_velocity(bowl, 0.0),
-        lowest=low,
-        highest=high,
+        straight=float(straight[FRICTION_FACTORS.index(1.0)]),
+        lowest=float(phases[peak] - PHASE_STEP_RAD * below),
+        highest=float(phases[peak] + PHASE_STEP_RAD * above),
         frictions=check.frozen(frictions),
-        best_over_friction=check.frozen(_over_friction(bowl, phase, frictions)),
-        straight_over_friction=check.frozen(_over_friction(bowl, 0.0, frictions)),
+        best_over_friction=check.frozen(at_best),
+        straight_over_friction=check.frozen(straight),
     )
 
 
-def with_phase(bowl, phase):
+def with_phase(bowl: Bowl, phase: Any) -> Bowl:
     """Return the bowl with another phase of its drive [rad], one or many."""
     return replace(bowl, drive=replace(bowl.drive, phase=phase))
-
-
-def _range(phases, velocities, best) -> tuple[float, float]:
-    """First and last phase of those on both sides of the best that give nearly its velocity."""
-    count, peak = len(phases), int(np.nanargmax(velocities))
-    good = velocities >= NEAR_BEST_SHARE * best if best > 0.0 else velocities == velocities[peak]
-    lower = next((k for k in range(count) if not good[(peak - k - 1) % count]), count - 1)
-    on = next((k for k in range(count) if not good[(peak + k + 1) % count]), count - 1)
-    return float(phases[peak] - PHASE_STEP_RAD * lower), float(phases[peak] + PHASE_STEP_RAD * on)
-
-
-def _velocity(bowl, phase) -> float:
-    return float(cells(with_phase(bowl, np.array([phase])))["velocity"][0])
-
-
-def _over_friction(bowl, phase, shares) -> NDArray[np.float64]:
-    return np.array([_velocity(scaled(bowl, friction=share), phase) for share in shares])

@@ -7,8 +7,8 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying.answer import LEAST_ACCELERATION_RATIO, settings
-from feederscrew.conveying.operating_point import FLIGHT, Law, OperatingPoint, law, throw_number
-from feederscrew.conveying.point_motion import TALLY, TRAVEL, State, at_rest, step
+from feederscrew.conveying.operating_point import FLIGHT, OperatingPoint, law, throw_number
+from feederscrew.conveying.point_motion import TALLY, TRAVEL, at_rest, step
 from feederscrew.conveying.steady import settle
 from feederscrew.conveying.waves import PERIOD_RAD, after, gain, onward, travel
 
@@ -29,9 +29,6 @@ class Hop:
     def text(self) -> str:
         """Height and length in words."""
         return f"{1e3 * self.height:.2g} mm high and {1e3 * self.flight:.2g} mm far"
-
-
-NO_HOP = Hop(0.0, 0.0, 0.0)  # on the track
 
 
 def hop(bowl: Bowl) -> Hop:
@@ -57,28 +54,18 @@ def hop(bowl: Bowl) -> Hop:
     References
     ----------
     Sloot and Kruyt, Powder Technology 87, 203-210, 1996: the flight between two plastic impacts, as in
-    ``flights.throw_of_flight``.
+    ``answer.throw_of_flight``.
     """
     setting = OperatingPoint(*settings(replace(bowl, devices=())).tolist())
     if setting.ratio <= LEAST_ACCELERATION_RATIO:
-        return NO_HOP
+        return Hop(0.0, 0.0, 0.0)
     height, flight, duration = _hop(setting._replace(restitution=0.0))
     amplitude = float(bowl.drive.amplitude)
     return Hop(height * amplitude, flight * amplitude, duration)
 
 
 def remark(bowl: Bowl) -> tuple[str, ...]:
-    """Say that the drive of a bowl throws parts higher than the margin of a static verdict.
-
-    Parameters
-    ----------
-    bowl : Bowl
-
-    Returns
-    -------
-    tuple of str
-        A sentence, or none where the hop is lower than ``MARGIN_M``.
-    """
+    """Say that a bowl's drive throws parts higher than ``HOP_MARGIN_M``: a sentence, or none."""
     own = hop(bowl)
     if own.height <= HOP_MARGIN_M:
         return ()
@@ -96,31 +83,27 @@ def _hop(setting: OperatingPoint) -> tuple[float, float, float]:
         return 0.0, 0.0, 0.0
     state, period = settle(rules, at_rest(rules))
     tally = np.zeros(TALLY)
-    height = farthest = longest = flight_distance = 0.0
-    for _ in range(
-        period + 1 if period > 0 else FOLLOWED_PERIODS
-    ):  # one more: a flight may begin in the last one
+    height = farthest = longest = distance = 0.0
+    # One period more than those after which it repeats: a flight may begin in the last one.
+    for _ in range(period + 1 if period > 0 else FOLLOWED_PERIODS):
         while state.angle < PERIOD_RAD:
             before = tally[TRAVEL]
             following = step(rules, state, tally)
             if state.phase == FLIGHT:
                 span = following.angle - state.angle
-                height = max(height, _greatest_gap(rules, state, span))
-                flight_distance = tally[TRAVEL] - before + (flight_distance if state.aloft > 0.0 else 0.0)
-                farthest, longest = max(farthest, abs(flight_distance)), max(longest, state.aloft + span)
+                # The greatest height: it rises until the plate's pull turns, then until its speed is gone.
+                arc = onward(rules.lift, state.angle)
+                low = min(max(after(rules.lift.falls, state.angle) - state.angle, 0.0), span)
+                high = span
+                if state.rising + gain(arc, low) <= 0.0:
+                    low = 0.0
+                for _ in range(PEAK_HALVINGS):
+                    middle = 0.5 * (low + high)
+                    low, high = (middle, high) if state.rising + gain(arc, middle) > 0.0 else (low, middle)
+                gap = max(state.height, state.height + state.rising * low + travel(arc, low))
+                height = max(height, gap)
+                distance = tally[TRAVEL] - before + (distance if state.aloft > 0.0 else 0.0)
+                farthest, longest = max(farthest, abs(distance)), max(longest, state.aloft + span)
             state = following
         state = state._replace(angle=0.0)
     return height, farthest, longest / PERIOD_RAD
-
-
-def _greatest_gap(rules: Law, state: State, span: float) -> float:
-    """The greatest height [A] of a flight over the plate within a span [rad]."""
-    arc = onward(rules.lift, state.angle)
-    low = min(max(after(rules.lift.falls, state.angle) - state.angle, 0.0), span)  # it rises until there
-    high = span
-    if state.rising + gain(arc, low) <= 0.0:
-        low = 0.0
-    for _ in range(PEAK_HALVINGS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if state.rising + gain(arc, middle) > 0.0 else (low, middle)
-    return max(state.height, state.height + state.rising * low + travel(arc, low))

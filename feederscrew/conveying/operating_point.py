@@ -1,15 +1,19 @@
 """One operating point of a track without units: its equations of motion, and what a part can do on it.
 
-An acceleration for every phase, a pull for every onset.
+An acceleration for every phase, a pull for every onset; and the five numbers that decide how fast a part
+travels where there is one coefficient of friction: along the track lengths scale with the amplitude along it,
+along the normal with the amplitude there; friction couples the two by mu tan(beta) alone.
 """
 
 import math
 from typing import NamedTuple
 
+from feederscrew import check
 from feederscrew.conveying.waves import Harmonic, Wave, above, harmonic, peak, value
 
 STICK, FORWARD, BACKWARD, FLIGHT = range(4)
 PHASES = ("stick", "forward", "backward", "flight")
+OVERTONE_RATIO = 4.0  # accelerations of the second harmonic over those of the first, for equal ways
 
 
 class OperatingPoint(NamedTuple):
@@ -35,43 +39,27 @@ class OperatingPoint(NamedTuple):
 
 
 def plain(ratio, angle, climb, friction, restitution=0.0) -> OperatingPoint:
-    """Return a track with one coefficient of friction, as most closed forms assume.
-
-    Source: docs/conveying.md, "The model".
-
-    Parameters
-    ----------
-    ratio : float [1]
-        A w^2 / g.
-    angle, climb : float [rad]
-        Vibration angle to the track; climb of the track.
-    friction, restitution : float [1]
-
-    Returns
-    -------
-    OperatingPoint
-    """
+    """Return a track with one coefficient of friction, as most closed forms assume; [1] and [rad]."""
     return OperatingPoint(ratio, angle, climb, friction, friction, friction, friction, restitution)
 
 
 def checked(setting) -> OperatingPoint:
     """Return the setting itself, once it describes a track; raise ValueError with a reason otherwise."""
-    if not all(math.isfinite(value) for value in setting):
-        raise ValueError("an entry of the setting is not finite")
-    if setting.ratio <= 0.0:
-        raise ValueError("the amplitude is zero: nothing moves")
-    if not 0.0 <= setting.angle <= math.pi / 2:
-        raise ValueError("the vibration angle is not from 0 to 90 deg")
-    if setting.kinetic > setting.static or setting.kinetic_back > setting.static_back:
-        raise ValueError("kinetic friction is above static friction")
-    if min(setting.kinetic, setting.kinetic_back) < 0.0:
-        raise ValueError("a coefficient of friction is negative")
-    if not 0.0 <= setting.restitution < 1.0:
-        raise ValueError("restitution is not from 0 to below 1")
+    reasons = (
+        (not all(map(math.isfinite, setting)), "an entry of the setting is not finite"),
+        (setting.ratio <= 0.0, "the amplitude is zero: nothing moves"),
+        (not 0.0 <= setting.angle <= math.pi / 2, "the vibration angle is not from 0 to 90 deg"),
+        (
+            setting.kinetic > setting.static or setting.kinetic_back > setting.static_back,
+            "kinetic friction is above static friction",
+        ),
+        (min(setting.kinetic, setting.kinetic_back) < 0.0, "a coefficient of friction is negative"),
+        (not 0.0 <= setting.restitution < 1.0, "restitution is not from 0 to below 1"),
+    )
+    for wrong, reason in reasons:
+        if wrong:
+            raise ValueError(reason)
     return setting
-
-
-OVERTONE_RATIO = 4.0  # accelerations of the second harmonic over those of the first, for equal ways
 
 
 class Law(NamedTuple):
@@ -89,23 +77,14 @@ class Law(NamedTuple):
 
 
 def law(setting) -> Law:
-    """Return the equations of motion of a setting.
-
-    Parameters
-    ----------
-    setting : OperatingPoint
-
-    Returns
-    -------
-    Law
-    """
+    """Return the equations of motion of an OperatingPoint."""
     return Law(
         harmonic(lift_wave(setting)),
-        _pull(setting, 1.0, 0.0),
-        _pull(setting, 1.0, setting.static),
-        _pull(setting, -1.0, setting.static_back),
-        _pull(setting, 1.0, setting.kinetic),
-        _pull(setting, -1.0, setting.kinetic_back),
+        harmonic(pull_wave(setting, 1.0, 0.0)),
+        harmonic(pull_wave(setting, 1.0, setting.static)),
+        harmonic(pull_wave(setting, -1.0, setting.static_back)),
+        harmonic(pull_wave(setting, 1.0, setting.kinetic)),
+        harmonic(pull_wave(setting, -1.0, setting.kinetic_back)),
         setting.kinetic,
         setting.kinetic_back,
         setting.restitution,
@@ -121,7 +100,7 @@ def lift_wave(setting) -> Wave:
 
 
 def pull_wave(setting, direction, friction) -> Wave:
-    """Return the acceleration left after friction of a part about to slip.
+    """Return the acceleration [A w2] left after friction of a part about to slip.
 
     Source: Newton's law along the track less Coulomb's friction; docs/conveying.md, "The model".
 
@@ -152,15 +131,8 @@ def pull_wave(setting, direction, friction) -> Wave:
     )
 
 
-def _pull(setting, direction, friction) -> Harmonic:
-    return harmonic(pull_wave(setting, direction, friction))
-
-
 def throw_number(rules) -> float:
-    """Return the plate's greatest downward acceleration over a part's own [1]; it hops above 1.
-
-    Source: docs/conveying.md, "The model".
-    """
+    """Return the plate's greatest downward acceleration over a part's own [1]; it hops above 1."""
     return 1.0 - peak(rules.lift) / rules.lift.level
 
 
@@ -173,3 +145,39 @@ def contact(rules, angle, speed) -> int:
     if speed < 0.0 or value(rules.onset_back, angle) > 0.0:
         return BACKWARD
     return STICK
+
+
+class Numbers(NamedTuple):
+    """What v / (A w cos(beta)) depends on, and on nothing else, with one coefficient of friction."""
+
+    coupling: float  # mu tan(beta)
+    steepness: float  # tan(climb) / mu
+    throw: float  # throw number
+    restitution: float
+    phase: float = 0.0  # [rad] by which the motion along the normal leads the one along the track
+
+
+def numbers(setting) -> Numbers:
+    """Return the five numbers of a setting: harmonic, with one coefficient of friction above 0."""
+    friction = setting.static
+    throw = setting.ratio * math.sin(setting.angle) / math.cos(setting.climb)
+    coupling, steepness = friction * math.tan(setting.angle), math.tan(setting.climb) / friction
+    return Numbers(coupling, steepness, throw, setting.restitution, -setting.lead)
+
+
+def with_numbers(five, friction) -> OperatingPoint:
+    """Return one of the many settings with given numbers, that of a friction [1].
+
+    Source: own; the five numbers of docs/conveying.md, "The model".
+
+    Raises
+    ------
+    ValueError
+        If the friction, the coupling or the throw number is not above 0.
+    """
+    check.positive("coupling", five.coupling)
+    check.positive("throw", five.throw)
+    angle = math.atan(five.coupling / check.positive("friction", friction))
+    climb = math.atan(five.steepness * friction)
+    ratio = five.throw * math.cos(climb) / math.sin(angle)
+    return plain(ratio, angle, climb, friction, five.restitution)._replace(lead=-five.phase)

@@ -12,7 +12,12 @@ from feederscrew.conveying.waves import PERIOD_RAD, above, after, gain, onward, 
 EVENT_TIE_RAD = 1e-12  # [rad] an event this little in the past is happening now
 NEWTON_TOLERANCE = 1e-14  # relative size of a last Newton step
 MAX_NEWTON_STEPS = 80
-LATE_NEWTON_STEPS = 10  # steps
+LATE_NEWTON_STEPS = 10
+LAST_BOUNCE_RAD = 1e-6  # a bounce that would last twice this ends endless bouncing: an error of second order
+MAX_EVENTS_A_PERIOD = 100_000
+TRAVEL, TIMES, LONGEST, HARDEST, FLIGHTS = 0, 1, 5, 6, 7  # places in a tally; TIMES holds one per phase
+STOPS, UPWARD, DOWNWARD = 8, 9, 10  # how often it came to rest on the plate, and slid or landed each way
+TALLY = 11
 
 
 def later(zeros, now) -> float:
@@ -23,23 +28,10 @@ def later(zeros, now) -> float:
 
 
 def slip_end(a, angle, speed) -> float:
-    """Return the first angle of this period at which a slip ends.
+    """Return the first angle [rad] of this period at which a slip ends; inf where it lasts beyond it.
 
+    The speed [A w] grows by ``a`` from ``angle`` on; a slip from rest grows first, and ends only after that.
     Source: own; docs/conveying.md, "How it is computed".
-
-    Parameters
-    ----------
-    a : Harmonic
-        Growth of the speed.
-    angle : float [rad]
-        Now. A slip that starts from rest grows first, and ends only after that.
-    speed : float [A w]
-        Size of the relative velocity.
-
-    Returns
-    -------
-    float [rad]
-        inf where it lasts beyond the period.
     """
     closing = speed > 0.0 and value(a, angle) < 0.0
     start, arc = angle if closing else later(a.falls, angle), onward(a, angle)
@@ -75,25 +67,10 @@ def _stop(arc, speed, low, high, steepest) -> float:
 
 
 def landing(lift, angle, height, speed) -> float:
-    """Return the first angle of this period at which a flight ends.
+    """Return the first angle [rad] of this period at which a flight ends; inf where it lasts beyond it.
 
+    ``height`` [A] is over the plate, zero at a take-off; ``speed`` [A w] along the normal, not negative then.
     Source: own; docs/conveying.md, "How it is computed".
-
-    Parameters
-    ----------
-    lift : Harmonic
-        Relative acceleration along the normal.
-    angle : float [rad]
-        Now.
-    height : float [A]
-        Over the plate; zero at a take-off.
-    speed : float [A w]
-        Relative velocity along the normal; not negative at a take-off.
-
-    Returns
-    -------
-    float [rad]
-        inf where the flight lasts beyond the period.
     """
     start, arc = angle, onward(lift, angle)
     while start < PERIOD_RAD:
@@ -115,21 +92,17 @@ def _descent(arc, height, speed, end) -> float:
         return math.inf
     x = end
     if height == 0.0 and speed > 0.0:
-        x = _beyond_bounce(arc, speed, end)
+        # A span just beyond a bounce, from its parabola: bounces may be a millionth of the stretch.
+        x = 2.0 * speed / max(-reached(arc, 0.0), speed)
+        while x < end and speed * x + travel(arc, x) > 0.0:
+            x *= 2.0
+        x = min(x, end)
     for _ in range(MAX_NEWTON_STEPS):
         step = (height + speed * x + travel(arc, x)) / (speed + gain(arc, x))
         x -= step
         if abs(step) <= NEWTON_TOLERANCE * x:
             break
     return x
-
-
-def _beyond_bounce(arc, speed, end) -> float:
-    """A span just beyond a bounce, from its parabola: bounces may be a millionth of the stretch."""
-    x = 2.0 * speed / max(-reached(arc, 0.0), speed)
-    while x < end and speed * x + travel(arc, x) > 0.0:
-        x *= 2.0
-    return min(x, end)
 
 
 def _dip(arc, height, speed, start, end) -> float:
@@ -146,15 +119,6 @@ def _dip(arc, height, speed, start, end) -> float:
         if abs(step) <= NEWTON_TOLERANCE * x:
             break
     return x
-
-
-TRAVEL, TIMES, LONGEST, HARDEST, FLIGHTS = 0, 1, 5, 6, 7  # places in a tally; TIMES holds one per phase
-STOPS, UPWARD, DOWNWARD = 8, 9, 10  # how often it came to rest on the plate, and slid or landed each way
-TALLY = 11
-LAST_BOUNCE_RAD = (
-    1e-6  # [rad] a bounce that would last twice this ends endless bouncing: an error of second order
-)
-MAX_EVENTS_A_PERIOD = 100_000  # in one period
 
 
 class State(NamedTuple):
@@ -174,23 +138,11 @@ def at_rest(rules) -> State:
 
 
 def turn(rules, state, tally) -> State:
-    """Follow the part to the end of this period of the drive.
+    """Follow the part to the end of this period of the drive; return its State, the clock set back by one.
 
-    Source: docs/conveying.md, "How it is computed".
-
-    Parameters
-    ----------
-    rules : Law
-    state : State
-    tally : (11,) float [as follows]
-        Way made [A], time in each phase [rad], longest flight [rad], hardest impact [A w], number of flights,
-        of times at rest on the plate, of slips and landings up the track and of those down; the one array
-        that is added to in place, because the loops over it are compiled.
-
-    Returns
-    -------
-    State
-        With its clock set back by one period.
+    Added to in place, for the compiled loops, is ``tally`` (11,): way made [A], time in each phase [rad],
+    longest flight [rad], hardest impact [A w], number of flights, of times at rest on the plate, of slips and
+    landings up the track and of those down.
     """
     for _ in range(MAX_EVENTS_A_PERIOD):
         if state.angle >= PERIOD_RAD:
@@ -268,25 +220,13 @@ def _fly(rules, state, tally) -> State:
 def land(rules, angle, speed, impact) -> State:
     """Return the state after an impact: restitution (Newton) across the track, Coulomb's bound along it.
 
-    Source: Newton's restitution, Coulomb's law for the impulses; docs/conveying.md, "The model".
-
-    Parameters
-    ----------
-    rules : Law
-    angle : float [rad]
-    speed, impact : float [A w]
-        Along the track and towards the plate, just before.
-
-    Returns
-    -------
-    State
+    ``speed`` and ``impact`` [A w] are along the track and towards the plate, just before. Source:
+    docs/conveying.md, "The model".
     """
     friction = rules.kinetic if speed > 0.0 else rules.kinetic_back
     rebound = rules.restitution * impact
     if rebound <= LAST_BOUNCE_RAD * max(0.0, -value(rules.lift, angle)):
-        rebound = (
-            0.0  # the endless bounces left out pass on the impulse of a plastic impact and of their time
-        )
+        rebound = 0.0  # the bounces left out pass on the impulse of a plastic impact and of their time
     loss = min(abs(speed), friction * (impact + rebound))
     speed -= math.copysign(loss, speed)
     phase = FLIGHT if rebound > 0.0 else contact(rules, angle, speed)

@@ -1,6 +1,7 @@
 """The steady motion: where a motion settles, its period and averages, and one cycle of it drawn out.
 
 A motion repeats after some periods, or slides on and never does; one setting may have several.
+Source: own; docs/conveying.md, "How it is computed".
 """
 
 import math
@@ -8,25 +9,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.conveying import point_motion as motion
 from feederscrew.conveying.operating_point import FLIGHT, FORWARD, STICK, contact, law, throw_number
-from feederscrew.conveying.point_motion import (
-    DOWNWARD,
-    FLIGHTS,
-    HARDEST,
-    LONGEST,
-    STOPS,
-    TALLY,
-    TIMES,
-    TRAVEL,
-    UPWARD,
-    State,
-    at_rest,
-    step,
-    turn,
-)
+from feederscrew.conveying.point_motion import State, at_rest, step, turn
 from feederscrew.conveying.waves import PERIOD_RAD, Wave, harmonic, onward, peak, travel, value
 from feederscrew.mechanics import limits
 
@@ -43,20 +30,27 @@ RUNS = -1  # in place of a period: the part slides on without stopping and does 
 LEAPS = 200  # of a motion that closes in slowly
 SPEED_BRACKET = 1e-13  # [A w] width of the bracket of its speed at which it is found
 MAX_RUNAWAY_SPEED = 1e6  # [A w] no bracket is sought beyond
+PERIODIC, AVERAGED, NO_STEADY_STATE = range(3)
+STATUSES = ("periodic", "averaged", "no steady state")
+STATUS, PERIOD, VELOCITY, LOW, HIGH, FRACTIONS = range(6)  # places in a row of results
+FLIGHT_TIME, IMPACT, HOPS, SLOWEST, FASTEST = range(FRACTIONS + 4, FRACTIONS + 9)
+THROW, REGIME, RUNAWAY, COLUMNS = range(FASTEST + 1, FASTEST + 5)
+AVERAGED_PERIODS, AVERAGED_LOTS = 32, 8  # where there is no period: periods of a lot, and lots averaged
+BRIEF_PERIODS, BRIEF_LOTS = 64, 4  # periods followed, lots averaged, where the first start has no period
+MAX_NOTED_STATES = 64  # states of steady motions that are noted, for further starts to join
+RUNAWAY_LOTS = 16  # averages taken of a part that would run away once it slid all the time, until it does
+ALTERNATING_STATES_GAP = 1e-8  # of two states: what closes in from alternate sides repeats doubly first
+DROP_FLIGHTS = (1.5,)  # flights [periods] of the drops among the starts
+MAX_BOUNCE_PERIODS = 3  # periods of the longest regular bounce among the starts
+BOUNCE_SPEED_FACTOR = 1.001  # such starts are too fast by this: exactly on it an unstable bounce would last
+MAX_TRACED_PERIODS = 4
+TRACE_SAMPLES = 240  # a period; every phase has at least a few
 
 
 def settle(rules, state) -> tuple[State, int]:
     """Follow a part until its state repeats every q periods of the drive, twice in a row.
 
-    Parameters
-    ----------
-    rules : Law
-    state : State
-
-    Returns
-    -------
-    (State, int)
-        State at the start of a period of the drive; q, ``RUNS``, or 0 where none up to 32 was found.
+    Returns the State at the start of a period; and q, ``RUNS``, or 0 where none up to 32 was found.
 
     Notes
     -----
@@ -67,26 +61,13 @@ def settle(rules, state) -> tuple[State, int]:
     return follow(rules, state, np.empty((0, 3)), TRANSIENT)
 
 
-def follow(rules, state, states, patience) -> Any:
-    """Follow a part as ``settle`` does, or to where it joins a motion that is known.
+def follow(rules, state, states, patience) -> tuple[State, int]:
+    """Follow a part as ``settle`` does, or to where it joins a known motion: ``JOINS`` is the number then.
 
-    Source: own; docs/conveying.md, "How it is computed".
-
-    Parameters
-    ----------
-    rules : Law
-    state : State
-    states : (N, 3) float [A, A w, A w]
-        Of ``noted``: states of steady motions at the start of a period.
-    patience : int
-        Periods followed before the motion is hastened, or counts as not periodic.
-
-    Returns
-    -------
-    (State, int)
-        The number is ``JOINS`` where the motion has become one that is known.
+    ``states`` (N, 3) are those ``noted`` of steady motions; ``patience`` the periods followed before the
+    motion is hastened, or counts as not periodic.
     """
-    tally = np.zeros(TALLY)
+    tally = np.zeros(motion.TALLY)
     history = np.empty((LONGEST_PERIOD + 1, 3))  # read no further back than it is written
     streak = np.zeros(LONGEST_PERIOD + 1)
     sliding, sense, even = 0, 0.0, evenly(rules)
@@ -158,8 +139,8 @@ def _leap(rules, history, count, state, tally) -> State:
 
 def _slid_forward(tally, sliding, sense) -> tuple[int, float]:
     """Periods for which a part has now slid without stopping or turning round, and which way."""
-    up, down = tally[UPWARD] > 0.0, tally[DOWNWARD] > 0.0
-    if tally[STOPS] > 0.0 or (up and down):
+    up, down = tally[motion.UPWARD] > 0.0, tally[motion.DOWNWARD] > 0.0
+    if tally[motion.STOPS] > 0.0 or (up and down):
         return 0, 0.0
     now = 1.0 if up else (-1.0 if down else 0.0)
     if now * sense < 0.0:
@@ -213,25 +194,9 @@ def _period_of_normal(history, count) -> int:
 def _hasten(rules, state, period, tally) -> tuple[State, int]:
     """Find the steady motion of a part whose motion along the normal repeats, but whose speed changes slowly.
 
-    Parameters
-    ----------
-    rules : Law
-    state : State
-    period : int
-        Of the motion along the normal; 0 for none.
-    tally : (11,) float
-        To count with.
-
-    Returns
-    -------
-    (State, int)
-        As ``settle`` returns them.
-
-    Notes
-    -----
     Over whole periods the speed is carried on by a function of one number that keeps the order of speeds, so
     it tends to the first fixed point in its way: that is bracketed by doubling the step, then closed in on
-    by the secant rule in its Illinois form.
+    by the secant rule in its Illinois form. ``period`` is that along the normal, 0 for none.
     """
     step = _on(rules, state, period, tally).speed - state.speed
     if step == 0.0:
@@ -244,13 +209,6 @@ def _hasten(rules, state, period, tally) -> tuple[State, int]:
         if (_runs(tally) and fall * rise > 0.0 and fall * far > 0.0) or abs(step) > MAX_RUNAWAY_SPEED:
             return state, RUNS
         step *= 2.0
-    far = _closed_in(rules, state, period, (near, rise, far, fall), tally)
-    return _at_speed(rules, state, far), period
-
-
-def _closed_in(rules, state, period, bracket, tally) -> float:
-    """The speed that a period does not change, between two of which one grows and the other does not."""
-    near, rise, far, fall = bracket
     side = 0
     for _ in range(LEAPS):
         if abs(far - near) <= SPEED_BRACKET or fall == 0.0:
@@ -265,7 +223,7 @@ def _closed_in(rules, state, period, bracket, tally) -> float:
             far, fall = middle, gained
             rise = 0.5 * rise if side == -1 else rise
             side = -1
-    return far
+    return _at_speed(rules, state, far), period
 
 
 def _at_speed(rules, state, speed) -> State:
@@ -276,55 +234,23 @@ def _at_speed(rules, state, speed) -> State:
 
 def _on(rules, state, periods, tally) -> State:
     """The state after some periods, stops and contacts counted."""
-    tally[STOPS], tally[UPWARD], tally[DOWNWARD] = 0.0, 0.0, 0.0
+    tally[motion.STOPS], tally[motion.UPWARD], tally[motion.DOWNWARD] = 0.0, 0.0, 0.0
     for _ in range(periods):
         state = turn(rules, state, tally)
     return state
 
 
 def _runs(tally) -> bool:
-    """Whether a part slid all the time, and one way."""
-    return tally[STOPS] == 0.0 and (tally[UPWARD] > 0.0) != (tally[DOWNWARD] > 0.0)
-
-
-PERIODIC, AVERAGED, NO_STEADY_STATE = range(3)
-STATUSES = ("periodic", "averaged", "no steady state")
-STATUS, PERIOD, VELOCITY, LOW, HIGH, FRACTIONS = range(6)  # places in a row of results
-FLIGHT_TIME, IMPACT, HOPS, SLOWEST, FASTEST = range(FRACTIONS + 4, FRACTIONS + 9)
-THROW, REGIME, RUNAWAY, COLUMNS = range(FASTEST + 1, FASTEST + 5)
-AVERAGED_PERIODS, AVERAGED_LOTS = (
-    32,
-    8,
-)  # periods averaged where there is no period, and in how many lots their spread is taken
-BRIEF_PERIODS, BRIEF_LOTS = (
-    64,
-    4,
-)  # periods followed, and lots averaged, of further starts where the first has no period
-MAX_NOTED_STATES = 64  # states of steady motions that are noted, for further starts to join
-RUNAWAY_LOTS = 16  # averages taken of a part that would run away once it slid all the time, until it does
-ALTERNATING_STATES_GAP = (
-    1e-8  # of two states: a motion that closes in from alternate sides repeats doubly first
-)
-DROP_FLIGHTS = (1.5,)  # flights [periods] of the drops among the starts
-MAX_BOUNCE_PERIODS = 3  # periods of the longest regular bounce among the starts
-BOUNCE_SPEED_FACTOR = (
-    1.001  # such starts are this much too fast: exactly on it, even an unstable bounce would last
-)
+    """Whether a part slid one way whenever it touched the plate."""
+    return tally[motion.STOPS] == 0.0 and (tally[motion.UPWARD] > 0.0) != (tally[motion.DOWNWARD] > 0.0)
 
 
 def steady(rules, state, out) -> None:
-    """Return the steady motion reached from one start.
+    """Fill in the steady motion reached from one start.
 
-    Source: own; docs/conveying.md, "How it is computed".
-
-    Parameters
-    ----------
-    rules : Law
-    state : State
-    out : (17,) float [each as named]
-        Filled with status, period, velocity and its spread [A w], fraction of the time in each phase,
-        longest flight [periods], hardest impact [A w], flights a period, velocity in the slowest and in the
-        fastest period of the drive [A w].
+    ``out`` (17,) has status, period, velocity and its spread [A w], fraction of the time in each phase,
+    longest flight [periods], hardest impact [A w], flights a period, velocity in the slowest and in the
+    fastest period of the drive [A w].
     """
     _steady(rules, state, out, np.empty((MAX_NOTED_STATES, 3)), 0, TRANSIENT)
 
@@ -343,15 +269,17 @@ def _steady(rules, state, out, states, count, patience) -> int:
 
 def _cycle(rules, state, repeat, out, states, noticed) -> int:
     """Averages over the periods after which the motion repeats; the least of them is its period."""
-    tally, start, period = np.zeros(TALLY), state, repeat
+    tally, start, period = np.zeros(motion.TALLY), state, repeat
     out[SLOWEST], out[FASTEST] = math.inf, -math.inf
     for count in range(1, repeat + 1):
         state = _noted_turn(rules, state, tally, out)
         if noticed < MAX_NOTED_STATES:
             states[noticed, 0], states[noticed, 1], states[noticed, 2] = noted(state)
             noticed += 1
-        if count < period and repeat % count == 0 and _state_distance(state, start) <= ALTERNATING_STATES_GAP:
-            period = count
+        if count < period and repeat % count == 0:
+            distance = max(abs(state.speed - start.speed), abs(state.height - start.height))
+            if max(distance, abs(state.rising - start.rising)) <= ALTERNATING_STATES_GAP:
+                period = count
     out[STATUS], out[PERIOD] = PERIODIC, period
     _averages(out, tally, float(repeat))
     out[LOW] = out[HIGH] = out[VELOCITY]
@@ -363,91 +291,47 @@ def _cycle(rules, state, repeat, out, states, noticed) -> int:
 def _long_run(rules, state, out, blocks) -> None:
     """Averages over lots of periods, unless the part slides through them all and gets faster."""
     for _ in range(RUNAWAY_LOTS):
-        tally, travelled, first = np.zeros(TALLY), 0.0, state.speed
+        tally, travelled, first = np.zeros(motion.TALLY), 0.0, state.speed
         low, high = math.inf, -math.inf
         out[SLOWEST], out[FASTEST] = math.inf, -math.inf
         for _ in range(blocks):
             for _ in range(AVERAGED_PERIODS):
                 state = _noted_turn(rules, state, tally, out)
-            velocity = (tally[TRAVEL] - travelled) / (AVERAGED_PERIODS * PERIOD_RAD)
-            travelled, low, high = tally[TRAVEL], min(low, velocity), max(high, velocity)
+            velocity = (tally[motion.TRAVEL] - travelled) / (AVERAGED_PERIODS * PERIOD_RAD)
+            travelled, low, high = tally[motion.TRAVEL], min(low, velocity), max(high, velocity)
         out[STATUS], out[PERIOD], out[LOW], out[HIGH] = AVERAGED, 0.0, low, high
         _averages(out, tally, float(AVERAGED_PERIODS * blocks))
-        if _slid(tally) and (state.speed - first) * state.speed > 0.0:
+        if _runs(tally) and (state.speed - first) * state.speed > 0.0:
             _nothing(out)
             break
-        if escape(rules) <= 0.0:
+        if _escape(rules) <= 0.0:
             break
 
 
 def _noted_turn(rules, state, tally, out) -> State:
     """The state a period of the drive on; the range of the velocities in single periods grows by its own."""
-    travelled = tally[TRAVEL]
+    travelled = tally[motion.TRAVEL]
     state = turn(rules, state, tally)
-    velocity = (tally[TRAVEL] - travelled) / PERIOD_RAD
+    velocity = (tally[motion.TRAVEL] - travelled) / PERIOD_RAD
     out[SLOWEST], out[FASTEST] = min(out[SLOWEST], velocity), max(out[FASTEST], velocity)
     return state
 
 
-def _slid(tally) -> bool:
-    """Whether the part slid one way whenever it touched the plate."""
-    return tally[STOPS] == 0.0 and (tally[UPWARD] == 0.0) != (tally[DOWNWARD] == 0.0)
+def _escape(rules) -> float:
+    """Greatest growth of the speed [A w a radian] of a part that slides all the time, up or down the track.
 
-
-def escape(rules) -> float:
-    """Return the greatest growth of the speed of a part that slides all the time, up or down the track.
-
-    Source: own; docs/conveying.md, "How it is computed": what a period of sliding adds.
-
-    Parameters
-    ----------
-    rules : Law
-
-    Returns
-    -------
-    float [A w a radian of the drive]
-        Positive where a part that once slides fast enough gets faster without end. Impacts pass on what the
-        weight would have in the time of the flight, so flight does not matter.
+    Positive where a part that once slides fast enough gets faster without end. Impacts pass on what the
+    weight would have in the time of the flight, so flight does not matter.
     """
     return max(rules.slip.level, rules.slip_back.level)
 
 
-def _state_distance(first, second) -> float:
-    return max(
-        abs(first.speed - second.speed), abs(first.height - second.height), abs(first.rising - second.rising)
-    )
-
-
 def _averages(out, tally, periods) -> None:
-    out[VELOCITY] = tally[TRAVEL] / (periods * PERIOD_RAD)
+    out[VELOCITY] = tally[motion.TRAVEL] / (periods * PERIOD_RAD)
     for phase in range(4):
-        out[FRACTIONS + phase] = tally[TIMES + phase] / (periods * PERIOD_RAD)
-    out[FLIGHT_TIME], out[IMPACT] = tally[LONGEST] / PERIOD_RAD, tally[HARDEST]
-    out[HOPS] = tally[FLIGHTS] / periods
-
-
-def survey(setting, out) -> None:
-    """Fill a row: steady motion from rest and, where impacts rebound, from throws; their range of velocity.
-
-    Source: own; docs/conveying.md, "How it is computed".
-
-    Parameters
-    ----------
-    setting : OperatingPoint
-    out : (17,) float [as of ``steady``]
-        As ``steady`` fills it from rest, its spread widened to all starts; NaN without a steady state.
-        Then the throw number, the regime, and whether a part that slides fast enough runs away: 1 or 0.
-    """
-    rules = law(setting)
-    out[THROW], out[REGIME] = throw_number(rules), regime(rules)
-    states = np.empty((MAX_NOTED_STATES, 3))
-    count = _steady(rules, at_rest(rules), out, states, 0, TRANSIENT)
-    if out[STATUS] == NO_STEADY_STATE:
-        out[RUNAWAY] = 1.0
-        return
-    out[RUNAWAY] = 1.0 if escape(rules) > 0.0 else 0.0
-    if setting.restitution > 0.0:
-        _widen(rules, out, states, count)
+        out[FRACTIONS + phase] = tally[motion.TIMES + phase] / (periods * PERIOD_RAD)
+    out[FLIGHT_TIME], out[IMPACT] = tally[motion.LONGEST] / PERIOD_RAD, tally[motion.HARDEST]
+    out[HOPS] = tally[motion.FLIGHTS] / periods
 
 
 def _nothing(out) -> None:
@@ -456,18 +340,29 @@ def _nothing(out) -> None:
     out[STATUS], out[PERIOD] = NO_STEADY_STATE, 0.0
 
 
-def regime(rules) -> int:
-    """Return what a part held by static friction does within a cycle, a place [1] in ``limits.REGIMES``.
+def survey(setting, out) -> None:
+    """Fill a row: steady motion from rest and, where impacts rebound, from throws; their range of velocity.
 
-    Source: Coulomb's law before the first slip; docs/conveying.md, "The model".
+    ``out`` (17,) is as ``steady`` fills it from rest, its spread widened to all starts; NaN without a steady
+    state. Then the throw number, the regime (what a part held by static friction does within a cycle, a
+    place in ``limits.REGIMES``), and whether a part that slides fast enough runs away: 1 or 0.
     """
-    if throw_number(rules) >= 1.0 - limits.HOP_ROUNDING:
-        return limits.HOP
-    forward = limits.FORWARD if peak(rules.onset) > 0.0 else limits.RIDE
-    return forward + (limits.BACKWARD if peak(rules.onset_back) > 0.0 else limits.RIDE)
-
-
-def _widen(rules, out, states, count) -> None:
+    rules = law(setting)
+    out[THROW] = throw_number(rules)
+    if out[THROW] >= 1.0 - limits.HOP_ROUNDING:
+        out[REGIME] = limits.HOP
+    else:
+        forward = limits.FORWARD if peak(rules.onset) > 0.0 else limits.RIDE
+        out[REGIME] = forward + (limits.BACKWARD if peak(rules.onset_back) > 0.0 else limits.RIDE)
+    states = np.empty((MAX_NOTED_STATES, 3))
+    count = _steady(rules, at_rest(rules), out, states, 0, TRANSIENT)
+    if out[STATUS] == NO_STEADY_STATE:
+        out[RUNAWAY] = 1.0
+        return
+    out[RUNAWAY] = 1.0 if _escape(rules) > 0.0 else 0.0
+    if setting.restitution == 0.0:
+        return
+    # Further starts: what they lead to widens the range of the velocity.
     other = np.zeros(COLUMNS)
     patience = TRANSIENT if out[STATUS] == PERIODIC else BRIEF_PERIODS
     for start in range(2 * MAX_BOUNCE_PERIODS + len(DROP_FLIGHTS)):
@@ -484,41 +379,29 @@ def _widen(rules, out, states, count) -> None:
 def thrown(rules, start) -> State:
     """Return start number ``start``: near a regular bounce, or dropped onto the plate at mid stroke.
 
-    Parameters
-    ----------
-    rules : Law
-    start : int
-        0 and 1 for a bounce of one period, at either place where the plate slows down through the speed that
-        keeps it up (a plain drive has one); 2 to 5 for two and three periods; 6 for the drop.
-
-    Returns
-    -------
-    State
-        In flight; with ``rising`` zero where there is no such bounce.
+    0 and 1 are a bounce of one period, at either place where the plate slows down through the speed that
+    keeps it up (a plain drive has one); 2 to 5 of two and three periods; 6 the drop. In flight; ``rising`` is
+    zero where there is no such bounce.
     """
     weight = -rules.lift.level
     if start < 2 * MAX_BOUNCE_PERIODS:
         flight = start // 2 + 1.0
         needed = math.pi * flight * weight * (1.0 - rules.restitution) / (1.0 + rules.restitution)
-        falls = plate_speed(rules.lift, needed).falls
+        falls = _plate_speed(rules.lift, needed).falls
         angle = falls[0] if start % 2 == 0 else falls[1]
         if angle == math.inf:
             return State(0.0, FLIGHT, 0.0, 0.0, 0.0, 0.0)
     else:
         flight, angle = DROP_FLIGHTS[start - 2 * MAX_BOUNCE_PERIODS], math.pi
-    rising = math.pi * flight * weight - value(plate_speed(rules.lift, 0.0), angle)
+    rising = math.pi * flight * weight - value(_plate_speed(rules.lift, 0.0), angle)
     return State(angle, FLIGHT, 0.0, 0.0, BOUNCE_SPEED_FACTOR * rising, 0.0)
 
 
-def plate_speed(lift, less):
-    """Return the velocity of the plate along its normal, less a constant [A w], as a harmonic."""
+def _plate_speed(lift, less) -> Any:
+    """The velocity of the plate along its normal, less a constant [A w], as a harmonic."""
     once, twice, half = lift.phase, lift.second_phase, 0.5 * lift.second
     sine, cosine = -lift.swing * math.sin(once), lift.swing * math.cos(once)
     return harmonic(Wave(-less, sine, cosine, -half * math.sin(twice), half * math.cos(twice)))
-
-
-MAX_TRACED_PERIODS = 4  # periods at most
-TRACE_SAMPLES = 240  # a period; every phase has at least a few
 
 
 @dataclass(frozen=True, eq=False)
@@ -534,56 +417,41 @@ class CycleTrace:
 
 
 def trace(setting) -> CycleTrace:
-    """Return the steady cycle a part falls into from rest.
+    """Return the steady cycle a part falls into from rest, of at most four periods.
 
-    Parameters
-    ----------
-    setting : OperatingPoint
-
-    Returns
-    -------
-    CycleTrace
-        Of at most four periods; of a motion without a period, the last ones followed.
+    Of a motion without a period, the last ones followed.
     """
     rules = law(setting)
     state, period = settle(rules, at_rest(rules))
-    pieces, tally = [], np.zeros(TALLY)
+    pieces, tally = [], np.zeros(motion.TALLY)
     for count in range(min(period, MAX_TRACED_PERIODS) if period > 0 else MAX_TRACED_PERIODS):
         while state.angle < PERIOD_RAD:
-            before = tally[TRAVEL]
+            before = tally[motion.TRAVEL]
             after = step(rules, state, tally)
-            pieces.append(_piece(rules, state, after.angle, before, count))
+            # Time, phase, way relative to the plate and height in one phase, sampled to both of its ends.
+            span = after.angle - state.angle
+            samples = np.linspace(0.0, span, max(2, round(TRACE_SAMPLES * span / PERIOD_RAD)))
+            sign = 1.0 if state.phase in (FORWARD, FLIGHT) else -1.0
+            growth = {STICK: None, FORWARD: rules.slip, FLIGHT: rules.free}.get(state.phase, rules.slip_back)
+            slip, height = np.full_like(samples, before), np.zeros_like(samples)
+            if growth is not None:
+                arc = onward(growth, state.angle)
+                slip += [state.speed * x + sign * travel(arc, x) for x in samples]
+            if state.phase == FLIGHT:
+                arc = onward(rules.lift, state.angle)
+                height += [state.height + state.rising * x + travel(arc, x) for x in samples]
+            time = count + (state.angle + samples) / PERIOD_RAD
+            pieces.append(np.stack([time, np.full_like(samples, state.phase), slip, height]))
             state = after
         state = state._replace(angle=0.0)
     time, phase, slip, height = np.concatenate(pieces, axis=1)
-    return _around_plate(setting, time, phase.astype(int), slip, height)
-
-
-def _piece(rules, state, end, distance, count) -> NDArray[np.float64]:
-    """Time, phase, way relative to the plate and height in one phase, sampled to both of its ends."""
-    span = end - state.angle
-    samples = np.linspace(0.0, span, max(2, round(TRACE_SAMPLES * span / PERIOD_RAD)))
-    sign = 1.0 if state.phase in (FORWARD, FLIGHT) else -1.0
-    growth = {STICK: None, FORWARD: rules.slip, FLIGHT: rules.free}.get(state.phase, rules.slip_back)
-    slip, height = np.full_like(samples, distance), np.zeros_like(samples)
-    if growth is not None:
-        arc = onward(growth, state.angle)
-        slip += [state.speed * x + sign * travel(arc, x) for x in samples]
-    if state.phase == FLIGHT:
-        arc = onward(rules.lift, state.angle)
-        height += [state.height + state.rising * x + travel(arc, x) for x in samples]
-    time = count + (state.angle + samples) / PERIOD_RAD
-    return np.stack([time, np.full_like(samples, state.phase), slip, height])
-
-
-def _around_plate(setting, time, phase, slip, height) -> CycleTrace:
+    # The plate, along and square to the track: two harmonics, each in a direction of its own.
     first, second = setting.angle, setting.angle + setting.second_turn
-    along = _displacement(setting, np.cos(first), np.cos(second), PERIOD_RAD * time + setting.lead)
-    normal = _displacement(setting, np.sin(first), np.sin(second), PERIOD_RAD * time)
-    columns = (time, phase, along, along + slip, normal, normal + height)
+    ways = []
+    for cosine, lead in ((np.cos, setting.lead), (np.sin, 0.0)):
+        angle = PERIOD_RAD * time + lead
+        overtone = setting.second * np.sin(2.0 * angle + setting.second_phase)
+        ways.append(cosine(first) * np.sin(angle) + cosine(second) * overtone)
+    along, normal = ways
+    columns = (time, phase.astype(int), along, along + slip, normal, normal + height)
     return CycleTrace(*(check.frozen(array) for array in columns))
-
-
-def _displacement(setting, first, second, angle) -> NDArray[np.float64]:
-    """Of the plate along an axis [A], to which the two harmonics have these cosines."""
-    return first * np.sin(angle) + second * setting.second * np.sin(2.0 * angle + setting.second_phase)

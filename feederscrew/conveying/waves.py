@@ -14,8 +14,11 @@ from numpy.typing import NDArray
 PERIOD_RAD = 2.0 * math.pi  # one period of the drive
 MAX_ZEROS = 4  # zeros in a period
 OUTWEIGHS = math.sqrt(5.0)  # then the slope keeps its sign between the first harmonic's zeros and this one's
-ZERO_PRECISION_RAD = 4e-16  # [rad]
+ZERO_PRECISION_RAD = 4e-16
 MAX_ZERO_STEPS = 200
+SERIES = 0.5  # [rad] below it the integrals use their series: the differences would lose digits
+GRAZE = 1e-14  # of the swing: a level passed by less is not passed; its two zeros would round to one
+INF = math.inf
 
 
 class Wave(NamedTuple):
@@ -29,10 +32,7 @@ class Wave(NamedTuple):
 
 
 def height(wave, angle) -> float:
-    """Return the wave at an angle [rad], in its own unit.
-
-    Source: the double angles of sine and cosine.
-    """
+    """Return the wave at an angle [rad], in its own unit, by the double angles of sine and cosine."""
     s, c = math.sin(angle), math.cos(angle)
     once = wave.sine * s + wave.cosine * c
     return wave.level + once + 2.0 * wave.sine_2 * s * c + wave.cosine_2 * (c - s) * (c + s)
@@ -44,33 +44,19 @@ def slope(wave) -> Wave:
 
 
 def find_bends(wave) -> NDArray[np.float64]:
-    """Find where a wave turns.
+    """Find where a wave turns: (4,) angles [rad] from 0 to 2 pi, ascending, then inf.
 
-    Source: own; docs/conveying.md, "How it is computed", and the Notes.
-
-    Parameters
-    ----------
-    wave : Wave
-
-    Returns
-    -------
-    (4,) float [rad]
-        From 0 to 2 pi, ascending, then inf.
-
-    Notes
-    -----
     With S and T the harmonics of the slope, its own slope at a zero has |cos| <= T/S of the first harmonic,
     so S^2 > 5 T^2 keeps its sign: one zero between the extremes of the first. Otherwise two derivatives
     later the second is 4 T / S > 1 of the first: one zero between the extremes of the second.
+    Source: own; docs/conveying.md, "How it is computed".
     """
     rate = slope(wave)
     if math.hypot(rate.sine, rate.cosine) > OUTWEIGHS * math.hypot(rate.sine_2, rate.cosine_2):
-        top = math.atan2(rate.sine, rate.cosine)
-        return crossings(rate, _knots(top, math.pi, 2), 0)
+        return crossings(rate, _knots(math.atan2(rate.sine, rate.cosine), math.pi, 2), 0)
     second = slope(rate)
     third = slope(second)
-    top = 0.5 * math.atan2(third.sine_2, third.cosine_2)
-    knots = _knots(top, 0.5 * math.pi, MAX_ZEROS)
+    knots = _knots(0.5 * math.atan2(third.sine_2, third.cosine_2), 0.5 * math.pi, MAX_ZEROS)
     return crossings(rate, crossings(second, crossings(third, knots, 0), 0), 0)
 
 
@@ -95,8 +81,6 @@ def crest(wave) -> float:
 def crossings(wave, knots, sense) -> NDArray[np.float64]:
     """Find the zeros of a wave that has at most one between neighbouring knots.
 
-    Source: own; docs/conveying.md, "How it is computed".
-
     Parameters
     ----------
     wave : Wave
@@ -111,7 +95,7 @@ def crossings(wave, knots, sense) -> NDArray[np.float64]:
     (4,) float [rad]
         From 0 to 2 pi, ascending, then inf.
     """
-    places = _knots(0.0, 0.0, 0)
+    zeros = _knots(0.0, 0.0, 0)
     for k in range(MAX_ZEROS):
         if knots[k] == math.inf:
             break
@@ -120,17 +104,14 @@ def crossings(wave, knots, sense) -> NDArray[np.float64]:
             high = knots[k + 1]
         before, after = height(wave, low) > 0.0, height(wave, high) > 0.0
         if (after and not before and sense >= 0) or (before and not after and sense <= 0):
-            _insert(places, _zero(wave, low, high, after) % PERIOD_RAD % PERIOD_RAD)
-    return places
-
-
-def _insert(ascending, number) -> None:
-    """Put a number into its place; the last of them, an inf, gives way."""
-    place = len(ascending) - 1
-    while place > 0 and ascending[place - 1] > number:
-        ascending[place] = ascending[place - 1]
-        place -= 1
-    ascending[place] = number
+            zero = _zero(wave, low, high, after) % PERIOD_RAD % PERIOD_RAD
+            # Into its place among the others; the last, an inf, gives way.
+            place = MAX_ZEROS - 1
+            while place > 0 and zeros[place - 1] > zero:
+                zeros[place] = zeros[place - 1]
+                place -= 1
+            zeros[place] = zero
+    return zeros
 
 
 def _zero(wave, low, high, rises) -> float:
@@ -151,11 +132,6 @@ def _zero(wave, low, high, rises) -> float:
         if last <= ZERO_PRECISION_RAD:
             break
     return x
-
-
-SERIES = 0.5  # [rad] below it the integrals use their series: the differences would lose digits
-GRAZE = 1e-14  # of the swing: a level passed by less is not passed; its two zeros would round to one
-INF = math.inf
 
 
 class Harmonic(NamedTuple):
@@ -187,23 +163,16 @@ def harmonic(wave) -> Harmonic:
 
 
 def peak(a) -> float:
-    """Return the greatest value of a harmonic, in its own unit: here accelerations [A w2].
-
-    Source: own; docs/conveying.md, "Elliptical drives".
-    """
+    """Return the greatest value of a harmonic, in its own unit: here accelerations [A w2]."""
     if a.second == 0.0:
         return a.level + a.swing
-    once, twice = a.phase, a.second_phase
-    sines = a.swing * math.cos(once), a.swing * math.sin(once)
-    twofold = a.second * math.cos(twice), a.second * math.sin(twice)
+    sines = a.swing * math.cos(a.phase), a.swing * math.sin(a.phase)
+    twofold = a.second * math.cos(a.second_phase), a.second * math.sin(a.second_phase)
     return value(a, crest(Wave(a.level, sines[0], sines[1], twofold[0], twofold[1])))
 
 
 def value(a, angle) -> float:
-    """Return the harmonic at an angle [rad], in its own unit.
-
-    Source: docs/conveying.md, "Elliptical drives".
-    """
+    """Return the harmonic at an angle [rad], in its own unit."""
     once = a.level + a.swing * math.sin(angle + a.phase)
     return once if a.second == 0.0 else once + a.second * math.sin(2.0 * angle + a.second_phase)
 
@@ -244,10 +213,7 @@ def onward(a, start) -> Arc:
 
 
 def reached(arc, span) -> float:
-    """Return the harmonic after a span [rad], in its own unit.
-
-    Source: the addition theorems, as products of the half span.
-    """
+    """Return the harmonic after a span [rad], by the addition theorems, as products of the half span."""
     s, c = math.sin(0.5 * span), math.cos(0.5 * span)
     once = arc.level + arc.sine + 2.0 * s * (arc.cosine * c - arc.sine * s)
     if arc.second == 0.0:
@@ -257,10 +223,7 @@ def reached(arc, span) -> float:
 
 
 def gain(arc, span) -> float:
-    """Integrate over a span [rad]: the velocity gained [A w]. As a product, short spans keep their digits.
-
-    Source: the integral of ``value``; docs/conveying.md, "How it is computed".
-    """
+    """Integrate over a span [rad]: the velocity gained [A w]. As a product, short spans keep their digits."""
     s, c = math.sin(0.5 * span), math.cos(0.5 * span)
     once = arc.level * span + 2.0 * s * (arc.sine * c + arc.cosine * s)
     if arc.second == 0.0:
@@ -270,10 +233,7 @@ def gain(arc, span) -> float:
 
 
 def travel(arc, span) -> float:
-    """Integrate twice over a span [rad]: the way made from rest [A].
-
-    Source: the integral of ``gain``; docs/conveying.md, "How it is computed".
-    """
+    """Integrate twice over a span [rad]: the way made from rest [A]."""
     curved = arc.cosine * _beyond_sine(span) - arc.sine * _beyond_cosine(span)
     once = 0.5 * (arc.level + arc.sine) * span * span + curved
     if arc.second == 0.0:

@@ -1,7 +1,11 @@
-"""Many drops of one part: run on several cores, counted by face, with intervals."""
+"""Many drops of one part: run on several cores, counted by face, with intervals.
 
+Source: docs/resting.md, "The drop test".
+"""
+
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,8 +13,9 @@ from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.dropping.kernel import one_drop as kernel
-from feederscrew.dropping.launch_conditions import sample
+from feederscrew.dropping.launch_conditions import Launch, Starts, sample
 from feederscrew.dropping.pool import gather
+from feederscrew.dropping.rounded_hull import Shape
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.rules.recommended import launched
 
@@ -19,9 +24,8 @@ DROPS_A_LOOK = 8 * DROPS_A_BATCH  # drops between two looks at the intervals, wh
 MAX_DROPS_UNTIL_WIDTH = 1_000_000  # drops at which ``until`` gives up
 NORMAL_95 = 1.959963984540054  # two-sided 95 % point
 RESTITUTION_GROUPS = 4  # of drops, by restitution
-NUMERICAL_SHARE_ERROR = (
-    0.01  # [1] what steps and tolerances may move a share of a half: 0.009 seen, docs/resting.md
-)
+# [1] What steps and tolerances may move a share of a half: 0.009 seen, docs/resting.md.
+NUMERICAL_SHARE_ERROR = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,19 +39,8 @@ class Drops:
     partial: bool  # stopped by the user before all were done
 
 
-def drops_of(arrays, most) -> Drops:
-    """Return the drops of a finished run from plain arrays, once every number is one that a drop can have.
-
-    Parameters
-    ----------
-    arrays : dict of str to array
-        The fields of ``Drops`` but for ``partial``, each (N,).
-    most : int
-        Drops that the run was for.
-
-    Returns
-    -------
-    Drops
+def drops_of(arrays: Mapping[str, np.ndarray], most: int) -> Drops:
+    """Return the drops of a finished run of ``most`` from the fields of ``Drops`` as plain arrays.
 
     Raises
     ------
@@ -89,18 +82,28 @@ class Aim:
     rows: np.ndarray  # (F,) class of each face
     count: int  # classes
 
-    def widest(self, faces) -> float:
+    def widest(self, faces: NDArray[np.int64]) -> float:
         """Return half the longest interval after drops on (N,) ``faces``."""
-        counts = counted(faces, self.rows, self.count)
+        counts = count_classes(faces, self.rows, self.count)
         return half_width(*wilson(counts, counts.sum()))
 
-    def needed(self, done, widest) -> int:
+    def needed(self, done: int, widest: float) -> int:
         """Return how many drops it takes: ``done``, or an estimate; intervals narrow with 1 / sqrt(N)."""
         excess = (widest / self.width) ** 2
         return done if excess <= 1.0 else DROPS_A_LOOK * int(np.ceil(excess * done / DROPS_A_LOOK))
 
 
-def drop(shape, launch, rng, *, count=None, aim=None, jobs=1, steps=None, progress=None) -> Drops:
+def drop(
+    shape: Shape,
+    launch: Launch,
+    rng: np.random.Generator,
+    *,
+    count: int | None = None,
+    aim: Aim | None = None,
+    jobs: int = 1,
+    steps: kernel.Steps | None = None,
+    progress: Callable[[int, int, float | None], None] | None = None,
+) -> Drops:
     """Drop a part again and again.
 
     Parameters
@@ -131,85 +134,97 @@ def drop(shape, launch, rng, *, count=None, aim=None, jobs=1, steps=None, progre
     KeyboardInterrupt
         If no batch was finished.
     """
-    steps, count = steps or kernel.Steps(), MAX_DROPS_UNTIL_WIDTH if count is None else int(count)
+    precise, most = steps or kernel.Steps(), MAX_DROPS_UNTIL_WIDTH if count is None else int(count)
 
-    def starts(size):
-        return sample(launch, shape, size, rng)
+    def batch(starts: Starts, part: slice) -> tuple[NDArray[Any], ...]:
+        energies = starts.energies[part]
+        faces, times = np.full(len(energies), kernel.UNSETTLED), np.zeros(len(energies))
+        kernel.settle_all(shape, kernel.scratch(shape), starts.launched(part), precise, faces, times)
+        return faces, times, energies, starts.restitutions[part]
 
-    work = partial(_rounds, partial(_batch, shape, steps), starts, count, aim, progress or _unheard)
-    done, interrupted = gather(work, jobs)
-    faces, times, energies, restitutions = (check.frozen(np.concatenate(column)) for column in zip(*done))
+    def work(begin: Callable[..., Future]) -> None:
+        """Begin round after round and wait for its batches, until there are enough."""
+        tasks: list[Future] = []
+        done, total, widest = 0, min(most, DROPS_A_LOOK) if aim else most, None
+        while done < total:
+            starts = sample(launch, shape, min(DROPS_A_LOOK, most - done), rng)
+            firsts = range(0, len(starts.energies), DROPS_A_BATCH)
+            fresh = [begin(batch, starts, slice(first, first + DROPS_A_BATCH)) for first in firsts]
+            for task in fresh:
+                done += len(task.result()[0])
+                if progress:
+                    progress(done, total, widest)
+            tasks += fresh
+            if aim:
+                widest = aim.widest(np.concatenate([task.result()[0] for task in tasks]))
+                total = min(aim.needed(done, widest), most)
+                if progress:
+                    progress(done, total, widest)
+
+    results, interrupted = gather(work, jobs)
+    faces, times, energies, restitutions = (check.frozen(np.concatenate(column)) for column in zip(*results))
     return Drops(faces, times, energies, restitutions, interrupted)
 
 
-def tally(drops, rows, count, *, surface=False) -> Any:
-    """Count drops by class.
+def tally(drops: Drops, rows: NDArray[np.int64], count: int, *, surface: bool = False) -> Tally:
+    """Count drops by class, of ``count``; ``rows`` (F,) is the class of each face.
 
-    Parameters
-    ----------
-    drops : Drops
-    rows : (F,) int
-        Class of each face.
-    count : int
-        Classes.
-    surface : bool
-        Restitution is the user's own: what its spread does is in the interval. That of a launch's name has it
-        already, in what the name leaves open.
-
-    Returns
-    -------
-    Tally
+    With ``surface`` restitution is the user's own: what its spread does is in the interval. That of a
+    launch's name has it already, in what the name leaves open.
     """
-    total = len(drops.faces)
-    counts = counted(drops.faces, rows, count)
+    total, counts = len(drops.faces), count_classes(drops.faces, rows, count)
     settled = int(counts.sum())
     low, high = wilson(counts, settled)
     order, third = np.argsort(drops.energies, kind="stable"), max(total // 3, 1)
-    ends = [shares(counted(drops.faces[part], rows, count)) for part in (order[:third], order[-third:])]
-    ends, p = [np.nan_to_num(end) for end in ends], shares(counts)
-    possible = np.bincount(rows, minlength=count) > 0
-    moved = _moved_by(drops.restitutions, drops.faces, rows, count)
-    surface_moved = moved if surface else 0.0
-    ends_known = (_wider(counts, low, -1.0, surface_moved), _wider(counts, high, 1.0, surface_moved))
-    launch_known = launched(p, *ends_known, possible & bool(settled))
+    gentle, violent = (
+        check.frozen(np.nan_to_num(shares(count_classes(drops.faces[part], rows, count))))
+        for part in (order[:third], order[-third:])
+    )
+    p, restitution = shares(counts), _restitution_spread(drops, rows, count)
+    if settled:
+        # Numerical error and restitution are independent of the sampling.
+        numerical = 4.0 * NUMERICAL_SHARE_ERROR * p * (1.0 - p)
+        moved = restitution if surface else 0.0
+        ends = [
+            np.clip(p + sign * np.hypot(np.hypot(end - p, numerical), moved), 0.0, 1.0)
+            for sign, end in ((-1.0, low), (1.0, high))
+        ]
+        known = launched(p, ends[0], ends[1], np.bincount(rows, minlength=count) > 0)
+    else:
+        known = low, high
     return Tally(
         counts=check.frozen(counts),
         unsettled=total - settled,
         unsettled_share=(total - settled) / max(total, 1),
         p=check.frozen(p),
-        low=check.frozen(launch_known[0] if settled else low),
-        high=check.frozen(launch_known[1] if settled else high),
+        low=check.frozen(known[0]),
+        high=check.frozen(known[1]),
         widest=half_width(low, high),
-        gentle=check.frozen(ends[0]),
-        violent=check.frozen(ends[1]),
-        restitution=check.frozen(moved),
+        gentle=gentle,
+        violent=violent,
+        restitution=check.frozen(restitution),
     )
 
 
-def counted(faces, rows, count) -> NDArray[np.int64]:
-    """Count drops by class, (A,) [1], from the faces (N,) they rest on.
-
-    Source: docs/resting.md, "The drop test".
-    """
+def count_classes(faces: NDArray[np.int64], rows: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """Count drops by class, (A,) [1], from the faces (N,) they rest on."""
     return np.bincount(rows[faces[faces != kernel.UNSETTLED]], minlength=count)
 
 
-def shares(counts) -> NDArray[np.float64]:
-    """Return the shares (A,) [1] of counts (A,); NaN where all are zero.
-
-    Source: docs/resting.md, "The drop test".
-    """
+def shares(counts: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return the shares (A,) [1] of counts (A,); NaN where all are zero."""
     total = counts.sum()
     return counts / total if total else np.full(len(counts), np.nan)
 
 
-def _moved_by(values, faces, rows, count) -> NDArray[np.float64]:
-    """(A,) [1] half the 95 % interval of a share that values (N,) of the drops make, beyond their sampling.
+def _restitution_spread(drops: Drops, rows: NDArray[np.int64], count: int) -> NDArray[np.float64]:
+    """(A,) [1] half the 95 % interval of a share that restitution makes, beyond the sampling.
 
     In groups of like values the shares differ by more than samples of one share do: that excess is theirs.
     """
+    values = drops.restitutions
     groups = np.array_split(np.argsort(values, kind="stable"), RESTITUTION_GROUPS)
-    counts = np.array([counted(faces[group], rows, count) for group in groups])
+    counts = np.array([count_classes(drops.faces[group], rows, count) for group in groups])
     settled = counts.sum(axis=1, keepdims=True)
     if not settled.all() or np.ptp(values) == 0.0:
         return np.zeros(count)
@@ -218,27 +233,10 @@ def _moved_by(values, faces, rows, count) -> NDArray[np.float64]:
     return NORMAL_95 * np.sqrt(np.maximum(((run_shares - p) ** 2).mean(axis=0) - sampled, 0.0))
 
 
-def _wider(counts, end, sign, moved) -> NDArray[np.float64]:
-    """(A,) end of Wilson's interval moved out by numerical error and restitution, as independent errors."""
-    p = shares(counts)
-    if not counts.any():
-        return end
-    numerical = 4.0 * NUMERICAL_SHARE_ERROR * p * (1.0 - p)
-    return np.clip(p + sign * np.hypot(np.hypot(end - p, numerical), moved), 0.0, 1.0)
+def wilson(counts: Any, total: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the ends (A,) [1] of the 95 % interval of a share, from counts (A,) of a total.
 
-
-def wilson(counts, total) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the ends of the 95 % interval of a share, from counts.
-
-    Parameters
-    ----------
-    counts : (A,) int
-    total : int
-
-    Returns
-    -------
-    low, high : (A,) float [1]
-        They hold counts / total, and are not empty where a count is 0 or ``total``.
+    They hold counts / total, and are not empty where a count is 0 or ``total``.
 
     References
     ----------
@@ -253,43 +251,6 @@ def wilson(counts, total) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return np.minimum(np.maximum(middle - half, 0.0), p), np.maximum(np.minimum(middle + half, 1.0), p)
 
 
-def half_width(low, high) -> float:
-    """Return half the longest of the intervals from ``low`` (A,) to ``high`` (A,) [1].
-
-    Source: docs/resting.md, "The drop test".
-    """
+def half_width(low: NDArray[np.float64], high: NDArray[np.float64]) -> float:
+    """Return half the longest of the intervals from ``low`` (A,) to ``high`` (A,) [1]."""
     return float(0.5 * (high - low).max())
-
-
-def _rounds(batch, starts, count, aim, tell, begin) -> None:
-    """Begin round after round and wait for its batches, until there are enough."""
-    tasks, done, total, widest = [], 0, min(count, DROPS_A_LOOK) if aim else count, None
-    while done < total:
-        sampled = starts(min(DROPS_A_LOOK, count - done))
-        size = len(sampled.energies)
-        fresh = [
-            begin(batch, sampled, slice(first, first + DROPS_A_BATCH))
-            for first in range(0, size, DROPS_A_BATCH)
-        ]
-        for task in fresh:
-            done += len(task.result()[0])
-            tell(done, total, widest)
-        tasks += fresh
-        if aim:
-            widest = aim.widest(np.concatenate([task.result()[0] for task in tasks]))
-            total = min(aim.needed(done, widest), count)
-            tell(done, total, widest)
-
-
-def _batch(
-    shape, steps, starts, part
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Faces, times, energies and restitutions of some drops."""
-    energies = starts.energies[part]
-    faces, times = np.full(len(energies), kernel.UNSETTLED), np.zeros(len(energies))
-    kernel.settle_all(shape, kernel.scratch(shape), starts.launched(part), steps, faces, times)
-    return faces, times, energies, starts.restitutions[part]
-
-
-def _unheard(*told) -> None:
-    """Progress that nobody wants to see."""

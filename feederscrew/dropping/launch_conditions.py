@@ -1,5 +1,6 @@
 """How parts arrive on the plane: presets, from which a drop draws, and conditions as a user gives them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -7,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew import check
-from feederscrew.conveying.sensitivity import even_range
+from feederscrew.conveying.answer import even_range
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.falling import Launched
-from feederscrew.dropping.rounded_hull import lowest_on
+from feederscrew.dropping.rounded_hull import Shape, lowest_on
 from feederscrew.errors import ArgumentError
 from feederscrew.resting.rules.recommended import launch_named
 from feederscrew.units import GRAVITY, QuantityError, factor, quantity, quantity_text
@@ -35,21 +36,18 @@ class Launch:
     friction: tuple[float, float]
     axis: str = ANY_AXIS  # it spins about: ANY, LEVEL, or FLIP_AXIS
 
-    def but(self, **ranges) -> Any:
+    def but(self, **ranges: Any) -> "Launch":
         """Return the launch with some ranges replaced; named 'own' once one is."""
-        changes = {name: changes for name, changes in ranges.items() if changes is not None}
+        changes = {name: ends for name, ends in ranges.items() if ends is not None}
         return replace(self, name="own", **changes) if changes else self
 
-    def scattering(self) -> Any:
-        """Return the launch with one value of restitution as ``sensitivity.even_range`` round it."""
+    def scattering(self) -> "Launch":
+        """Return the launch with one value of restitution as ``answer.even_range`` round it."""
         low, high = self.restitution
         return replace(self, restitution=even_range(low) if low == high else (low, high))
 
 
-SURFACE: dict[str, Any] = {
-    "restitution": (0.2, 0.6),
-    "friction": (0.2, 0.5),
-}  # hard on hard: for every launch
+SURFACE: dict[str, Any] = {"restitution": (0.2, 0.6), "friction": (0.2, 0.5)}  # hard on hard, every launch
 PRESETS = {
     launch.name: launch
     for launch in (
@@ -66,7 +64,7 @@ over a table, spinning about a horizontal axis. feed: out of a hopper into a bow
 each range comes from."""
 
 
-def named(name) -> Any:
+def named(name: str) -> Launch:
     """Return the preset of a name, or of a former one."""
     return PRESETS[launch_named(name)]
 
@@ -80,35 +78,38 @@ class Starts:
     frictions: np.ndarray  # (N,)
     energies: np.ndarray  # (N,) fall and kinetic energy, in units of m g L: how violent the launch is
 
-    def some(self, part) -> "Starts":
+    def some(self, part: slice) -> "Starts":
         """Return those of a slice."""
         return Starts(self.states[part], self.restitutions[part], self.frictions[part], self.energies[part])
 
-    def launched(self, part=slice(None)) -> Launched:
+    def launched(self, part: slice = slice(None)) -> Launched:
         """Return those of a slice as the kernels take them: a Launched."""
         return Launched(self.states[part], self.restitutions[part], self.frictions[part])
 
 
-def sample(launch, shape, count, rng) -> Starts:
+def sample(launch: Launch, shape: Shape, count: int, rng: np.random.Generator) -> Starts:
     """Draw the starting conditions of some drops.
 
-    Parameters
-    ----------
-    launch : Launch
-    shape : Shape
-    count : int
-    rng : numpy.random.Generator
-        Each drop takes DRAWS_A_DROP numbers, so that drops come out the same however they are batched.
-
-    Returns
-    -------
-    Starts
+    Each takes DRAWS_A_DROP numbers of ``rng``, so that drops come out the same however they are batched.
     """
     u = rng.random((count, DRAWS_A_DROP))
     states = np.zeros((count, body.STATE))
-    attitude, axes = _turns(launch.axis, shape, u)
-    fall, spin = _between(launch.fall, u[:, 8]), _between(launch.spin, u[:, 3])
-    drift = _between(launch.speed, u[:, 6])
+    attitude, turn = _attitudes(u[:, :3]), 2.0 * np.pi * u[:, 4]
+    if launch.axis == ANY_AXIS:
+        axes = _directions(u[:, 4], u[:, 5])
+    elif launch.axis == FLIP_AXIS:
+        along = np.cross(shape.flat, np.eye(3)[np.argmin(np.abs(shape.flat))])
+        along /= np.sqrt((along**2).sum())
+        across = np.cross(shape.flat, along)
+        axes = np.cos(turn)[:, None] * along + np.sin(turn)[:, None] * across
+        attitude, axes = _held_level(axes, u[:, :3])
+    else:
+        axes = _in_body(attitude, np.stack([np.cos(turn), np.sin(turn), np.zeros(count)], axis=1))
+
+    def between(ends: tuple[float, float], column: int) -> NDArray[np.float64]:
+        return ends[0] + (ends[1] - ends[0]) * u[:, column]
+
+    fall, spin, drift = between(launch.fall, 8), between(launch.spin, 3), between(launch.speed, 6)
     states[:, body.Q : body.Q + 4] = attitude
     states[:, body.Z] = fall - lowest_points(shape, attitude)
     ahead = np.stack([np.cos(2.0 * np.pi * u[:, 7]), np.sin(2.0 * np.pi * u[:, 7])], axis=1)
@@ -117,65 +118,41 @@ def sample(launch, shape, count, rng) -> Starts:
     turning = 0.5 * (states[:, body.W : body.W + 3] ** 2 * shape.inertia).sum(axis=1)
     return Starts(
         states=check.frozen(states),
-        restitutions=check.frozen(_between(launch.restitution, u[:, 9])),
-        frictions=check.frozen(_between(launch.friction, u[:, 10])),
+        restitutions=check.frozen(between(launch.restitution, 9)),
+        frictions=check.frozen(between(launch.friction, 10)),
         energies=check.frozen(fall + 0.5 * drift**2 + turning),
     )
 
 
-def _turns(kind, shape, u) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(N, 4) attitudes and (N, 3) axes of spin, in body axes."""
-    attitude = _attitudes(u[:, :3])
-    if kind == ANY_AXIS:
-        return attitude, _directions(u[:, 4], u[:, 5])
-    turn = 2.0 * np.pi * u[:, 4]
-    if kind == FLIP_AXIS:
-        along = np.cross(shape.flat, np.eye(3)[np.argmin(np.abs(shape.flat))])
-        along /= np.sqrt((along**2).sum())
-        across = np.cross(shape.flat, along)
-        axis = np.cos(turn)[:, None] * along + np.sin(turn)[:, None] * across
-        return _held_level(axis, u[:, :3])
-    level = np.stack([np.cos(turn), np.sin(turn), np.zeros(len(u))], axis=1)
-    return attitude, _in_body(attitude, level)
-
-
-def _held_level(axis, u) -> Any:
+def _held_level(
+    axis: NDArray[np.float64], u: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(N, 4) attitudes that turn axes of the body (N, 3) to at most FLIP_LEAN_RAD from the level, and they.
 
     An axis and its opposite are as likely: the one that is nearer to where it is turned to is taken.
     """
-    rise, ahead = FLIP_LEAN_RAD * (2.0 * u[:, 0] - 1.0), 2.0 * np.pi * u[:, 1]
+    rise, ahead, half = FLIP_LEAN_RAD * (2.0 * u[:, 0] - 1.0), 2.0 * np.pi * u[:, 1], np.pi * u[:, 2]
     level = np.cos(rise)
     there = np.stack([level * np.cos(ahead), level * np.sin(ahead), np.sin(rise)], axis=1)
     axis = np.where((axis * there).sum(axis=1)[:, None] < 0.0, -axis, axis)
-    quaternions = np.column_stack([1.0 + (axis * there).sum(axis=1), np.cross(axis, there)])
-    quaternions /= np.sqrt((quaternions**2).sum(axis=1))[:, None]
-    half = np.pi * u[:, 2]
-    return _after(quaternions, np.column_stack([np.cos(half), np.sin(half)[:, None] * axis])), axis
-
-
-def _after(p, q) -> Any:
-    """(N, 4) quaternion of the turns q (N, 4), then p (N, 4)."""
+    p = np.column_stack([1.0 + (axis * there).sum(axis=1), np.cross(axis, there)])
+    p /= np.sqrt((p**2).sum(axis=1))[:, None]
+    q = np.column_stack([np.cos(half), np.sin(half)[:, None] * axis])
+    # The quaternion of the turn q about the axis, then p.
     whole = p[:, 0] * q[:, 0] - (p[:, 1:] * q[:, 1:]).sum(axis=1)
-    return np.column_stack([whole, p[:, :1] * q[:, 1:] + q[:, :1] * p[:, 1:] + np.cross(p[:, 1:], q[:, 1:])])
+    turned = p[:, :1] * q[:, 1:] + q[:, :1] * p[:, 1:] + np.cross(p[:, 1:], q[:, 1:])
+    return np.column_stack([whole, turned]), axis
 
 
-def lowest_points(shape, attitudes) -> NDArray[np.float64]:
-    """Return heights (N,) [L] of the lowest point over the centre, for attitudes (N, 4) [1] of the body.
-
-    Source: the support function of a body in the direction down.
-    """
+def lowest_points(shape: Shape, attitudes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return heights (N,) [L] of the lowest point over the centre, for attitudes (N, 4) [1] of the body."""
     up = _in_body(attitudes, np.array([[0.0, 0.0, 1.0]]))
     lowest = np.einsum("ni,vi->nv", up, shape.vertices).min(axis=1)
     rims = np.einsum("ni,nri->nr", up, lowest_on(shape, up))
     return np.minimum(lowest, rims.min(axis=1, initial=np.inf))
 
 
-def _between(ends, share) -> NDArray[np.float64]:
-    return ends[0] + (ends[1] - ends[0]) * share
-
-
-def _attitudes(u) -> NDArray[np.float64]:
+def _attitudes(u: NDArray[np.float64]) -> NDArray[np.float64]:
     """(N, 4) unit quaternions, uniform over all attitudes.
 
     K. Shoemake, "Uniform random rotations", Graphics Gems III, 124-132, 1992.
@@ -185,98 +162,80 @@ def _attitudes(u) -> NDArray[np.float64]:
     return np.stack([low * np.sin(a), low * np.cos(a), high * np.sin(b), high * np.cos(b)], axis=1)
 
 
-def _in_body(q, vectors) -> NDArray[np.float64]:
+def _in_body(q: NDArray[np.float64], vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     """(N, 3) vectors of the floor's axes in body axes, for (N, 4) quaternions."""
     turned = 2.0 * np.cross(q[:, 1:], vectors)
     return vectors - q[:, :1] * turned + np.cross(q[:, 1:], turned)
 
 
-def _directions(u, v) -> NDArray[np.float64]:
+def _directions(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
     """(N, 3) unit vectors, uniform over the sphere."""
     z, turn = 2.0 * u - 1.0, 2.0 * np.pi * v
     flat = np.sqrt(np.maximum(1.0 - z * z, 0.0))
     return np.stack([flat * np.cos(turn), flat * np.sin(turn), z], axis=1)
 
 
-CONDITION_KEYS = {  # argument: dimension, unit from the part's length and gravity; lowest, highest
-    "fall": ("length", lambda length, gravity: length, 0.0, 1000.0),
-    "spin": ("angular velocity", lambda length, gravity: np.sqrt(gravity / length), 0.0, 100.0),
-    "speed": ("velocity", lambda length, gravity: np.sqrt(gravity * length), 0.0, 100.0),
-    "restitution": ("number", lambda length, gravity: 1.0, 0.0, 1.0),
-    "friction": ("number", lambda length, gravity: 1.0, 0.0, 5.0),
+CONDITION_KEYS = {  # argument: dimension; lowest, highest without dimensions
+    "fall": ("length", 0.0, 1000.0),
+    "spin": ("angular velocity", 0.0, 100.0),
+    "speed": ("velocity", 0.0, 100.0),
+    "restitution": ("number", 0.0, 1.0),
+    "friction": ("number", 0.0, 5.0),
 }
 MIN_HALF_WIDTH, MAX_HALF_WIDTH = 1e-4, 0.5  # [1] half-widths of an interval that drops may go on for
-LIMIT_UNITS = {
-    "length": "mm",
-    "velocity": "mm/s",
-    "angular velocity": "rad/s",
-    "number": "",
-}  # units of limits
+LIMIT_UNITS = {"length": "mm", "velocity": "mm/s", "angular velocity": "rad/s", "number": ""}
 
 
-def launch_of(preset, length, texts, gravity=GRAVITY) -> Launch:
-    """Return a preset with the user's own ranges in it.
-
-    Source: docs/resting.md, "The drop test".
+def launch_of(
+    preset: str, length: float, texts: Mapping[str, str | None], gravity: float = GRAVITY
+) -> Launch:
+    """Return a preset, by its name or a former one, with the user's own ranges in it.
 
     Parameters
     ----------
     preset : str
-        A key of ``PRESETS``, or a former name.
     length : float [m]
         Of the part: cube root of its hull's volume.
     texts : dict of str to (str or None)
         By key of CONDITION_KEYS: a quantity, or two with a colon between; None keeps the preset's.
     gravity : float [m/s2]
 
-    Returns
-    -------
-    Launch
-
     Raises
     ------
     ArgumentError
         If a text is no such quantity, or out of range.
     """
-    ranges = {
-        key: None if text is None else _range(key, text, length, gravity) for key, text in texts.items()
-    }
+    units = _units(length, gravity)
+    ranges = {key: None if text is None else _range(key, text, units[key]) for key, text in texts.items()}
     return named(preset).but(**ranges)
 
 
-def single(text) -> float | None:
+def _units(length: float, gravity: float) -> dict[str, float]:
+    """SI units in one of each range, for a part of a length [m]."""
+    rate, speed = float(np.sqrt(gravity / length)), float(np.sqrt(gravity * length))
+    return {"fall": length, "spin": rate, "speed": speed, "restitution": 1.0, "friction": 1.0}
+
+
+def single(text: str | None) -> float | None:
     """Return a number [1] as typed, if it is one value and no range such as '0.3:0.3'; else None."""
     return None if text is None or ":" in text else _read("restitution", text, "number")
 
 
-def described(launch, length, gravity=GRAVITY) -> Any:
-    """Return the name and ranges of a launch in the units of the shop, for documents.
-
-    Source: docs/resting.md, "The drop test".
-
-    Parameters
-    ----------
-    launch : Launch
-    length : float [m]
-    gravity : float [m/s2]
-
-    Returns
-    -------
-    dict
-    """
-    speed, rate = 1e3 * np.sqrt(gravity * length), np.sqrt(gravity / length)
+def described(launch: Launch, length: float, gravity: float = GRAVITY) -> dict[str, Any]:
+    """Return the name and ranges of a launch of a part of a length [m] in the units of the shop."""
+    units = _units(length, gravity)
     return {
         "name": launch.name,
         "height_mm": [1e3 * length * end for end in launch.fall],
-        "spin_rad_s": [rate * end for end in launch.spin],
-        "speed_mm_s": [speed * end for end in launch.speed],
+        "spin_rad_s": [units["spin"] * end for end in launch.spin],
+        "speed_mm_s": [1e3 * units["speed"] * end for end in launch.speed],
         "restitution": list(launch.restitution),
         "friction": list(launch.friction),
         "axis": launch.axis,
     }
 
 
-def share(text, where) -> float:
+def share(text: str, where: str) -> float:
     """Read a share [1] above 0 and below 1 as typed, '1%' or '0.01'."""
     value = _read(where, text, "number")
     if not MIN_HALF_WIDTH <= value <= MAX_HALF_WIDTH:
@@ -285,29 +244,28 @@ def share(text, where) -> float:
     return value
 
 
-def _range(key, text, length, gravity) -> tuple[float, float]:
-    """Read (lowest, highest) without dimensions from 'a' or 'a:b'."""
-    dimension, unit, lowest, highest = CONDITION_KEYS[key]
-    size = unit(length, gravity)
+def _range(key: str, text: str, size: float) -> tuple[float, float]:
+    """Read (lowest, highest) without dimensions from 'a' or 'a:b', in a unit of a size."""
+    dimension, lowest, highest = CONDITION_KEYS[key]
     ends = [_read(key, end, dimension) / size for end in text.split(":")]
     if len(ends) > 2 or ends[0] > ends[-1]:
         what = f"{quantity_text(text)} is not a range"
         raise ArgumentError(key, what, "give one value, or the smaller and the larger as a:b")
     if not lowest <= ends[0] <= ends[-1] <= highest:
-        limits = f"give {_limit(lowest * size, dimension)} to {_limit(highest * size, dimension)}"
+        limits = " to ".join(_limit(end * size, dimension) for end in (lowest, highest))
         of_part = "" if dimension == "number" else " for this part"
-        raise ArgumentError(key, f"{quantity_text(text)} is out of range", limits + of_part)
+        raise ArgumentError(key, f"{quantity_text(text)} is out of range", f"give {limits}{of_part}")
     return ends[0], ends[-1]
 
 
-def _limit(value, dimension) -> str:
+def _limit(value: float, dimension: str) -> str:
     """A limit in SI units as a user would type it, rounded down to three digits."""
     number = value / factor(LIMIT_UNITS[dimension], dimension)
     step = 10.0 ** (np.floor(np.log10(number)) - 2.0) if number > 0.0 else 1.0
     return f"{np.floor(number / step + 1e-9) * step:.6g} {LIMIT_UNITS[dimension]}".strip()
 
 
-def _read(where, text, dimension) -> float:
+def _read(where: str, text: str, dimension: str) -> float:
     try:
         return quantity(text, dimension)
     except QuantityError as fault:

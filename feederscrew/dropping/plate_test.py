@@ -1,110 +1,58 @@
 """A virtual dynamic bowl test of one part: many, one at a time, on plates that vibrate, on several cores.
 
+What is seen of them becomes shares, rates and velocities, each with its interval.
 Source: docs/resting.md, "On the vibrating plate"; the bowl tests of the thesis (MDBT).
 """
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import gammaincinv  # half a quantile of chi-square; scipy.stats takes a third of a second
 
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.dropping import launch_conditions
-from feederscrew.dropping.ensemble import Aim
+from feederscrew.dropping.ensemble import NORMAL_95, Aim, wilson
 from feederscrew.dropping.kernel import falling
 from feederscrew.dropping.kernel import ride as shaken
 from feederscrew.dropping.kernel.falling import Steps
 from feederscrew.dropping.kernel.floor_motion import Floor
-from feederscrew.dropping.launch_conditions import sample
-from feederscrew.dropping.occupancy import Occupancy, lasting, occupancy
+from feederscrew.dropping.kernel.one_drop import UNSETTLED
+from feederscrew.dropping.launch_conditions import Launch, Starts, sample
 from feederscrew.dropping.pool import in_batches
 from feederscrew.dropping.rounded_hull import Shape, shape_of_part
 from feederscrew.errors import ArgumentError
+from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import on_disk
+from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
+from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.running import USUAL_RUN, RunSettings
 
-STEPS_A_PERIOD = (
-    200  # steps of a period, at least: eight times as many change a flat part's velocity by 2 % at most
-)
+# Of a period, at least: eight times as many change a flat part's velocity by 2 % at most.
+STEPS_A_PERIOD = 200
 PLATE_STEP_REFINEMENT = 2.0  # than the steps of a drop
 SLOW_CONTACT_SHARE = 0.1  # of the plate's greatest speed upwards: slower contacts do not rebound
-
-
-def floor_of(bowl, length, coarse=1.0) -> Floor:
-    """Return the plate that moves as the bowl's floor does; level, its x axis along the drive.
-
-    Source: docs/resting.md, "On the vibrating plate".
-
-    Parameters
-    ----------
-    bowl : Bowl
-    length : float [m]
-        Of the part, cube root of its hull's volume.
-    coarse : float [1]
-        By how much steps are longer than those that velocities need.
-
-    Returns
-    -------
-    Floor
-    """
-    drive, time = bowl.drive, math.sqrt(length / bowl.gravity)
-    rate = 2.0 * math.pi * drive.frequency * time
-    second_angle = drive.vibration_angle + drive.second_harmonic_turn
-    second = drive.amplitude * drive.second_harmonic / length
-    return Floor(
-        rate=rate,
-        along=drive.amplitude * math.cos(drive.vibration_angle) / length,
-        up=drive.amplitude * math.sin(drive.vibration_angle) / length,
-        lead=-drive.phase,
-        second_along=second * math.cos(second_angle),
-        second_up=second * math.sin(second_angle),
-        second_phase=drive.second_harmonic_phase,
-        step=coarse * 2.0 * math.pi / rate / STEPS_A_PERIOD,
-    )
-
-
-def steps_of(floor, coarse=1.0) -> Any:
-    """Return steps for a plate: finer than a drop's unless ``coarse``, and rebounds as slow as its own."""
-    usual, once = Steps(), min(coarse, PLATE_STEP_REFINEMENT)
-    return usual._replace(
-        flight=coarse * usual.flight / PLATE_STEP_REFINEMENT,
-        contact=coarse * usual.contact / PLATE_STEP_REFINEMENT**2,
-        swing=once * usual.swing / PLATE_STEP_REFINEMENT,
-        tolerance=once * usual.tolerance / PLATE_STEP_REFINEMENT,
-        threshold=min(
-            usual.threshold, max(SLOW_CONTACT_SHARE * (floor.up + 2.0 * floor.second_up) * floor.rate, 1e-4)
-        ),
-    )
-
-
-def throw_number(bowl) -> float:
-    """Return the level floor's greatest downward acceleration over gravity [1], as of a track.
-
-    Source: the normal force of eq. [4.14] at the upper reversal; docs/conveying.md, "The model".
-    """
-    if bowl.drive.amplitude == 0.0:
-        return 0.0
-    return float(answer.throw_number(replace(bowl, track=replace(bowl.track, climb=0.0, bank=0.0))))
-
-
-def kick_of(floor, times) -> float:
-    """Return the energy [m g L] of a point at so many ``times`` that of the floor's quickest motion.
-
-    Source: docs/resting.md, "On the vibrating plate".
-    """
-    first, second = math.hypot(floor.along, floor.up), math.hypot(floor.second_along, floor.second_up)
-    quickest = floor.rate * (first + 2.0 * second)
-    return times * 0.5 * quickest**2
-
-
 PARTS_A_BATCH = 10  # parts a core takes at a time
+DEFAULT_PLATE_PARTS = 400  # parts, where the user names no number
+PARTS_A_LOOK = 400  # parts between two looks at the intervals
+MAX_PLATE_STEPS = 20_000_000  # for one part: a minute of computing; 10 mm for ten minutes take 4,000,000
+MIN_LOOKS, MAX_LOOKS = 8, 600  # looks at a part, one a period or one in so many
+RATE_DRAWS = 400  # of the rates, for the interval of where they lead
+MISSED_TRANSITIONS = 0.5  # transition out of each class that may have been missed, shared by the ways out
+MIN_TRANSITIONS = 5  # transitions: with fewer nothing is said of where they lead
+BALANCE_DOUBLINGS = 48  # of the time to which the balance of the rates is followed
+MIN_SHARE_CHANGE = 0.005  # smallest change of a share that is called one
+SURE_ERRORS = 3.0  # standard errors by which it must stand out
+DERIVED_FIELDS = ("plate_low", "plate_high", "rates", "rates_low", "rates_high")  # from other fields
+SHARE_SUM_ROUNDING = 1e-9  # [1] by which shares may add up to more than 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,77 +63,6 @@ class Rides:
     places: np.ndarray  # (N, K, 2) of its centre of mass, in units of L
     lost: int  # further parts, left out: their motion took far more steps than it should
     partial: bool  # stopped by the user before all were done
-
-
-def ride(shape, floor, starts, looks, steps, *, kick=math.inf, jobs=1, progress=None) -> Rides:
-    """Follow parts on a plate.
-
-    Source: docs/resting.md, "On the vibrating plate".
-
-    Parameters
-    ----------
-    shape : Shape
-    floor : Floor
-    starts : feederscrew.dropping.launch_conditions.Starts
-        Of the N parts, relative to the plate.
-    looks : (K,) float [sqrt(L/g)]
-        Times, ascending.
-    steps : Steps
-    kick : float [m g L]
-        Energy that the floor gives a part at most: one whose face it does not tip it off is followed no
-        further. Infinite, all parts are followed to the end.
-    jobs : int
-        Cores to use; the outcome does not depend on it.
-    progress : function, optional
-        Told after every batch how many parts are done.
-
-    Returns
-    -------
-    Rides
-        After an interrupt from the keyboard, the batches that were finished, up to the first that was not:
-        a run of so many parts gives the same.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If no batch was finished.
-    """
-    batch = partial(_batch, shape, floor, starts, looks, steps, kick)
-    batch(slice(0, 0))  # compiled here, if need be
-    columns, stopped = in_batches(batch, len(starts.energies), PARTS_A_BATCH, jobs, progress)
-    faces, places, whole = columns
-    return Rides(check.frozen(faces[whole]), check.frozen(places[whole]), int((~whole).sum()), stopped)
-
-
-def joined(rides) -> Rides:
-    """Return several rides, one after the other, as one."""
-    return Rides(
-        faces=check.frozen(np.concatenate([own.faces for own in rides])),
-        places=check.frozen(np.concatenate([own.places for own in rides])),
-        lost=sum(own.lost for own in rides),
-        partial=any(own.partial for own in rides),
-    )
-
-
-def compiled():
-    """Tell whether the kernel of the plate is on disk already."""
-    return on_disk(shaken.ride_all)
-
-
-def _batch(
-    shape, floor, starts, looks, steps, kick, part
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_]]:
-    """Faces and places of some parts, and whether every look was taken."""
-    launched = starts.launched(part)
-    record = shaken.empty_looks(len(launched.states), looks)
-    shaken.ride_all(shape, falling.scratch(shape), floor, launched, steps, record, kick)
-    return record.faces, record.places, record.taken == len(looks)
-
-
-DEFAULT_PLATE_PARTS = 400  # parts, where the user names no number
-PARTS_A_LOOK = 400  # parts between two looks at the intervals
-MAX_PLATE_STEPS = 20_000_000  # for one part: a minute of computing; 10 mm for ten minutes take 4,000,000
-MIN_LOOKS, MAX_LOOKS = 8, 600  # looks at a part, one a period or one in so many
 
 
 @dataclass(frozen=True)
@@ -203,6 +80,29 @@ class PlatePace:
 
 
 EXACT_PACE = PlatePace(scatters=True)
+
+
+@dataclass(frozen=True, eq=False)
+class Occupancy:
+    """What N parts did on a plate; A classes. Intervals are of 95 %, over the parts."""
+
+    start: np.ndarray  # (A,) [1] share of the parts by what they lay on at the first look that shows it
+    plate: np.ndarray  # (A,) [1] share of the time, in the second half
+    plate_low: np.ndarray  # (A,) [1]
+    plate_high: np.ndarray
+    error: np.ndarray  # (A,) [1] standard error of that share, from part to part
+    limit: np.ndarray  # (A,) [1] share to which the rates lead in the end; NaN where too little was seen
+    limit_low: np.ndarray  # (A,) [1]
+    limit_high: np.ndarray
+    changing: np.ndarray  # (A,) bool: the share still changed from the third quarter to the last
+    counts: np.ndarray  # (A, A) int, from row to column; the diagonal, onto an equal face
+    times: np.ndarray  # (A,) [s] spent in each class, of all parts together
+    rates: np.ndarray  # (A, A) [1/s]; NaN where no time was spent
+    rates_low: np.ndarray  # (A, A) [1/s]
+    rates_high: np.ndarray
+    velocity: np.ndarray  # (3,) [m/s] mean along the drive, over all; low, high
+    velocities: np.ndarray  # (A, 3) [m/s] while in a class; NaN where nothing was seen, ends NaN of one part
+    course: np.ndarray  # (K, A) [1] share of the parts at each look
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,15 +126,23 @@ class PlateResult(ReadableRecord):
         return int(counts.sum() - np.trace(counts))
 
     @property
-    def unsettled(self):
+    def unsettled(self) -> int:
         """Return how many parts have not lain on any face yet."""
         return round(self.parts * (1.0 - float(self.occupancy.course[-1].sum())))
 
 
-def test(part, aspects, bowls, preset, own, *, drops=None, pace=EXACT_PACE, run=USUAL_RUN):
+def test(
+    part: Part,
+    aspects: Aspects,
+    bowls: Sequence[Bowl],
+    preset: str,
+    own: Mapping[str, str | None],
+    *,
+    drops: int | None = None,
+    pace: PlatePace = EXACT_PACE,
+    run: RunSettings = USUAL_RUN,
+) -> list[PlateResult]:
     """Put parts on a vibrating plate, one at a time, and follow what they lie on.
-
-    Source: docs/resting.md, "On the vibrating plate".
 
     Parameters
     ----------
@@ -245,7 +153,7 @@ def test(part, aspects, bowls, preset, own, *, drops=None, pace=EXACT_PACE, run=
     bowls : sequence of Bowl
         One plate each: the drive, its restitution, and the kinetic friction.
     preset : str
-        A key of ``launch.PRESETS``: how the parts come onto the plate.
+        A key of ``launch_conditions.PRESETS``: how the parts come onto the plate.
     own : dict of str to (str or None)
         Ranges that replace the preset's, and the bowl's restitution and friction.
     drops : int, optional
@@ -270,154 +178,414 @@ def test(part, aspects, bowls, preset, own, *, drops=None, pace=EXACT_PACE, run=
     """
     faces = require_ground(part, aspects)
     shape, length = shape_of_part(part, faces)
-    count, results = DEFAULT_PLATE_PARTS if drops is None else drops, []
-    setup = _PlateSetup(faces.rows, len(aspects.names), shape, length, pace, run)
-    came = (launch_conditions.launch_of(preset, length, own, bowl.gravity) for bowl in bowls)
-    launches = [_surfaced(launch, bowl, own, pace) for launch, bowl in zip(came, bowls)]
+    count, classes = DEFAULT_PLATE_PARTS if drops is None else drops, len(aspects.names)
+    launches = [_launch_on(bowl, preset, length, own, pace) for bowl in bowls]
     run.begin()
-    for k, bowl in enumerate(bowls):
+    results: list[PlateResult] = []
+    for k, (bowl, launch) in enumerate(zip(bowls, launches)):
+        floor, unit = floor_of(bowl, length, pace.coarse), np.sqrt(length / bowl.gravity)
+        period = looks_apart(bowl.drive.frequency, pace.seconds)
+        number = max(round(pace.seconds / period), MIN_LOOKS)
+        looks = (np.ceil(pace.settling * unit / period) + np.arange(number + 1)) * period / unit
+        steps = steps_of(floor, pace.coarse)
+        needed = looks[-1] / min(steps.contact, floor.step)
+        if needed > MAX_PLATE_STEPS:
+            what = f"a part so small takes {needed:.2g} steps at this drive for so long"
+            raise ArgumentError("seconds", what, "follow it for less, or check the part's unit")
+        starts = sample(launch, shape, count, np.random.default_rng(run.seed))
+        follow = partial(
+            ride, shape, floor, looks=looks, steps=steps, kick=_kick_of(floor, pace.kick), jobs=run.jobs
+        )
+        tell = run.progress and partial(_tell_after, run.progress, k * count, len(bowls) * count)
         try:
-            tell = _after(k * count, len(bowls) * count, run.progress)
-            results.append(_plate(setup, bowl, launches[k], count, tell))
+            rides = _follow_enough(follow, starts, pace, Aim(pace.width or 0.0, faces.rows, classes), tell)
         except KeyboardInterrupt:
             if not results:
                 raise
             results[-1] = replace(results[-1], partial=True)
-        if results[-1].partial:
+            break
+        rng = np.random.default_rng((run.seed, len(rides.faces)))
+        seen = occupancy(rides.faces, length * rides.places[:, :, 0], faces.rows, classes, period, rng)
+        counted = (len(rides.faces), rides.lost, number * period)
+        result = _result(bowl, launch, length, counted, seen)
+        results.append(replace(result, partial=rides.partial, rides=rides if pace.keep else None))
+        if rides.partial:
             break
     return results
 
 
-def shaken_of(part, aspects, bowl, preset, pace, counted, looks) -> PlateResult:
-    """Return what parts did on one plate, from what was seen of them in an earlier run that was not stopped.
-
-    Source: docs/resting.md, "On the vibrating plate".
-
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    aspects : Aspects
-        Of that part.
-    bowl : Bowl
-    preset : str
-        A key of ``launch.PRESETS``.
-    pace : PlatePace
-        Of that run.
-    counted : (int, int, float [s])
-        Parts, those that were lost, and the time counted for each.
-    looks : Occupancy
-
-    Returns
-    -------
-    PlateResult
-    """
-    _, length = shape_of_part(part, require_ground(part, aspects))
-    launch = _surfaced(launch_conditions.launch_of(preset, length, {}, bowl.gravity), bowl, {}, pace)
-    parts, lost, seconds = counted
-    return PlateResult(
-        bowl=bowl,
-        launch=launch_conditions.described(launch, length, bowl.gravity),
-        throw_number=throw_number(bowl),
-        parts=parts,
-        seconds=seconds,
-        occupancy=looks,
-        lost=lost,
-        partial=False,
-    )
-
-
-def _after(before, total, progress) -> Any:
-    """``progress`` for parts that come after others; None without one."""
-    return progress and (lambda done: progress(before + done, total))
-
-
-def _surfaced(launch, bowl, own, pace):
-    """The launch with the bowl's restitution and friction, where the user gave none."""
+def _launch_on(
+    bowl: Bowl, preset: str, length: float, own: Mapping[str, str | None], pace: PlatePace
+) -> Launch:
+    """A launch with the bowl's restitution and friction, where the user gave none."""
+    launch = launch_conditions.launch_of(preset, length, own, bowl.gravity)
     surface = {"restitution": bowl.restitution, "friction": bowl.friction.kinetic}
-    launch = replace(
-        launch, **{key: (value, value) for key, value in surface.items() if own.get(key) is None}
-    )
-    restitution = own.get("restitution")
+    ranges: Any = {key: (value, value) for key, value in surface.items() if own.get(key) is None}
+    launch, restitution = replace(launch, **ranges), own.get("restitution")
     single = restitution is None or launch_conditions.single(restitution) is not None
-    thrown = throw_number(bowl) > 1.0
-    return launch.scattering() if pace.scatters and single and thrown else launch
+    return launch.scattering() if pace.scatters and single and throw_number(bowl) > 1.0 else launch
 
 
-@dataclass(frozen=True, eq=False)
-class _PlateSetup:
-    """A part, and the way in which it is followed on every plate."""
-
-    rows: np.ndarray  # (F,) int, class of each of its faces
-    classes: int
-    shape: Shape
-    length: float  # [m] the unit of length
-    pace: PlatePace
-    run: RunSettings
+def _tell_after(progress: Callable[[int, int], None], before: int, total: int, done: int) -> None:
+    progress(before + done, total)
 
 
-def _plate(setup, bowl, launch, count, progress) -> PlateResult:
-    """The test on one plate."""
-    shape, length, pace = setup.shape, setup.length, setup.pace
-    floor, unit = floor_of(bowl, length, pace.coarse), np.sqrt(length / bowl.gravity)
-    period = looks_apart(bowl.drive.frequency, pace.seconds)
-    number = max(round(pace.seconds / period), MIN_LOOKS)
-    looks = (np.ceil(pace.settling * unit / period) + np.arange(number + 1)) * period / unit
-    starts = sample(launch, shape, count, np.random.default_rng(setup.run.seed))
-    steps, kick = steps_of(floor, pace.coarse), kick_of(floor, pace.kick)
-    _must_end(looks[-1] / min(steps.contact, floor.step))
-    follow = partial(ride, shape, floor, looks=looks, steps=steps, kick=kick, jobs=setup.run.jobs)
-    rides = _enough(follow, starts, pace, setup.rows, setup.classes, progress)
-    rng = np.random.default_rng((setup.run.seed, len(rides.faces)))
-    record = occupancy(rides.faces, length * rides.places[:, :, 0], setup.rows, setup.classes, period, rng)
-    return PlateResult(
-        bowl=bowl,
-        launch=launch_conditions.described(launch, length, bowl.gravity),
-        throw_number=throw_number(bowl),
-        parts=len(rides.faces),
-        seconds=number * period,
-        occupancy=record,
-        lost=rides.lost,
-        partial=rides.partial,
-        rides=rides if pace.keep else None,
-    )
+def _tell_later(progress: Callable[[int], None], before: int, done: int) -> None:
+    progress(before + done)
 
 
-def _must_end(steps) -> None:
-    """Refuse to follow a part for more steps than anybody waits for."""
-    if steps > MAX_PLATE_STEPS:
-        what = f"a part so small takes {steps:.2g} steps at this drive for so long"
-        raise ArgumentError("seconds", what, "follow it for less, or check the part's unit")
-
-
-def _enough(follow, starts, pace, rows, classes, progress) -> Rides:
+def _follow_enough(
+    follow: Callable[..., Rides],
+    starts: Starts,
+    pace: PlatePace,
+    aim: Aim,
+    progress: Callable[[int], None] | None,
+) -> Rides:
     """Rides of all parts or, with a width, of as many as make no share's interval wider."""
     count, done = len(starts.energies), [] if pace.done is None else [pace.done]
     size = count if pace.width is None else PARTS_A_LOOK
     first = sum(len(rides.faces) + rides.lost for rides in done)
-    aim = pace.width and Aim(pace.width, rows, classes)
-    while first < count and not (aim and done and aim.widest(_last(done)) <= pace.width):
-        tell = progress and (lambda parts, before=first: progress(before + parts))
+    while first < count:
+        if pace.width and done:
+            last = np.concatenate([lasting(rides.faces)[:, -1] for rides in done])
+            if aim.widest(last) <= pace.width:
+                break
+        tell = progress and partial(_tell_later, progress, first)
         try:
             done.append(follow(starts.some(slice(first, first + size)), progress=tell))
         except KeyboardInterrupt:
             if not done:
                 raise
-            return replace(joined(done), partial=True)
+            done[-1] = replace(done[-1], partial=True)
+            break
         if done[-1].partial:
             break
         first += size
-    return joined(done)
+    return Rides(
+        faces=check.frozen(np.concatenate([own.faces for own in done])),
+        places=check.frozen(np.concatenate([own.places for own in done])),
+        lost=sum(own.lost for own in done),
+        partial=any(own.partial for own in done),
+    )
 
 
-def _last(done) -> NDArray[np.int64]:
-    """(N,) face that each part lies on at its last look."""
-    return np.concatenate([lasting(rides.faces)[:, -1] for rides in done])
+def _result(
+    bowl: Bowl, launch: Launch, length: float, counted: tuple[int, int, float], seen: Occupancy
+) -> PlateResult:
+    """The record of parts, those lost, and the time [s] counted for each."""
+    return PlateResult(
+        bowl=bowl,
+        launch=launch_conditions.described(launch, length, bowl.gravity),
+        throw_number=throw_number(bowl),
+        parts=counted[0],
+        seconds=counted[2],
+        occupancy=seen,
+        lost=counted[1],
+        partial=False,
+    )
 
 
-def looks_apart(frequency, seconds) -> float:
-    """Return the time between looks [s]: whole periods of the drive, so that the plate stands alike.
+def result_of(
+    part: Part,
+    aspects: Aspects,
+    bowl: Bowl,
+    preset: str,
+    pace: PlatePace,
+    counted: tuple[int, int, float],
+    seen: Occupancy,
+) -> PlateResult:
+    """Return what parts did on one plate, from what was seen in an earlier run that was not stopped.
 
-    Source: docs/resting.md, "On the vibrating plate".
+    ``counted`` are its parts, those that were lost, and the time [s] counted for each.
     """
+    _, length = shape_of_part(part, require_ground(part, aspects))
+    return _result(bowl, _launch_on(bowl, preset, length, {}, pace), length, counted, seen)
+
+
+def ride(
+    shape: Shape,
+    floor: Floor,
+    starts: Starts,
+    looks: NDArray[np.float64],
+    steps: Steps,
+    *,
+    kick: float = math.inf,
+    jobs: int = 1,
+    progress: Callable[[int], None] | None = None,
+) -> Rides:
+    """Follow parts on a plate.
+
+    Parameters
+    ----------
+    shape : Shape
+    floor : Floor
+    starts : Starts
+        Of the N parts, relative to the plate.
+    looks : (K,) float [sqrt(L/g)]
+        Times, ascending.
+    steps : Steps
+    kick : float [m g L]
+        Energy that the floor gives a part at most: one whose face it does not tip it off is followed no
+        further. Infinite, all parts are followed to the end.
+    jobs : int
+        Cores to use; the outcome does not depend on it.
+    progress : function, optional
+        Told after every batch how many parts are done.
+
+    Returns
+    -------
+    Rides
+        After an interrupt from the keyboard, the batches that were finished, up to the first that was not:
+        a run of so many parts gives the same.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If no batch was finished.
+    """
+
+    def batch(part: slice) -> tuple[NDArray[Any], ...]:
+        launched = starts.launched(part)
+        record = shaken.empty_looks(len(launched.states), looks)
+        shaken.ride_all(shape, falling.scratch(shape), floor, launched, steps, record, kick)
+        return record.faces, record.places, record.taken == len(looks)
+
+    batch(slice(0, 0))  # compiled here, if need be
+    columns, stopped = in_batches(batch, len(starts.energies), PARTS_A_BATCH, jobs, progress)
+    faces, places, whole = columns
+    return Rides(check.frozen(faces[whole]), check.frozen(places[whole]), int((~whole).sum()), stopped)
+
+
+def compiled() -> bool:
+    """Tell whether the kernel of the plate is on disk already."""
+    return on_disk(shaken.ride_all)
+
+
+def looks_apart(frequency: float, seconds: float) -> float:
+    """Return the time between looks [s]: whole periods of the drive, so that the plate stands alike."""
     return max(int(np.ceil(seconds * frequency / MAX_LOOKS)), 1) / frequency
+
+
+def floor_of(bowl: Bowl, length: float, coarse: float = 1.0) -> Floor:
+    """Return the plate that moves as the bowl's floor does; level, its x axis along the drive.
+
+    ``length`` [m] is the part's, the cube root of its hull's volume; ``coarse`` [1] by how much steps are
+    longer than those that velocities need.
+    """
+    drive, time = bowl.drive, math.sqrt(length / bowl.gravity)
+    rate = 2.0 * math.pi * drive.frequency * time
+    second_angle = drive.vibration_angle + drive.second_harmonic_turn
+    second = drive.amplitude * drive.second_harmonic / length
+    return Floor(
+        rate=rate,
+        along=drive.amplitude * math.cos(drive.vibration_angle) / length,
+        up=drive.amplitude * math.sin(drive.vibration_angle) / length,
+        lead=-drive.phase,
+        second_along=second * math.cos(second_angle),
+        second_up=second * math.sin(second_angle),
+        second_phase=drive.second_harmonic_phase,
+        step=coarse * 2.0 * math.pi / rate / STEPS_A_PERIOD,
+    )
+
+
+def steps_of(floor: Floor, coarse: float = 1.0) -> Steps:
+    """Return steps for a plate: finer than a drop's unless ``coarse``, and rebounds as slow as its own."""
+    usual, once = Steps(), min(coarse, PLATE_STEP_REFINEMENT)
+    slow = SLOW_CONTACT_SHARE * (floor.up + 2.0 * floor.second_up) * floor.rate
+    return usual._replace(
+        flight=coarse * usual.flight / PLATE_STEP_REFINEMENT,
+        contact=coarse * usual.contact / PLATE_STEP_REFINEMENT**2,
+        swing=once * usual.swing / PLATE_STEP_REFINEMENT,
+        tolerance=once * usual.tolerance / PLATE_STEP_REFINEMENT,
+        threshold=min(usual.threshold, max(slow, 1e-4)),
+    )
+
+
+def throw_number(bowl: Bowl) -> float:
+    """Return the level floor's greatest downward acceleration over gravity [1], as of a track.
+
+    Source: the normal force of eq. [4.14] at the upper reversal; docs/conveying.md, "The model".
+    """
+    if bowl.drive.amplitude == 0.0:
+        return 0.0
+    return float(answer.throw_number(replace(bowl, track=replace(bowl.track, climb=0.0, bank=0.0))))
+
+
+def _kick_of(floor: Floor, times: float) -> float:
+    """The energy [m g L] of a point at so many ``times`` that of the floor's quickest motion."""
+    first, second = math.hypot(floor.along, floor.up), math.hypot(floor.second_along, floor.second_up)
+    quickest = floor.rate * (first + 2.0 * second)
+    return times * 0.5 * quickest**2
+
+
+def occupancy(
+    faces: NDArray[np.int64],
+    places: NDArray[np.float64],
+    rows: NDArray[np.int64],
+    count: int,
+    period: float,
+    rng: np.random.Generator,
+) -> Occupancy:
+    """Return shares, rates and velocities of N parts at K looks.
+
+    Parameters
+    ----------
+    faces : (N, K) int
+        Face each part lies on at each look, UNSETTLED where that is open: such a part
+        still counts for the face it lay on before.
+    places : (N, K) float [m]
+        How far it has come along the drive.
+    rows : (F,) int
+        Class of each face.
+    count : int
+        Classes.
+    period : float [s]
+        Between two looks.
+    rng : numpy.random.Generator
+        For ``limit`` and its interval.
+
+    Returns
+    -------
+    Occupancy
+
+    Notes
+    -----
+    A rate is the number of transitions over the time spent; its interval is that of a Poisson count
+    (F. Garwood, Biometrika 28, 437-442, 1936). The interval of a share of time is Wilson's for so many
+    parts, which is too wide where a part changes often: ``error`` knows of that. ``limit`` is the mean over
+    RATE_DRAWS of all rates, each from a Gamma distribution of its count (with MISSED_TRANSITIONS) and time,
+    of where they lead from the last look on; a class in which no time was spent is left out, as nothing is
+    known of how it is left.
+    """
+    held = lasting(faces)
+    classes = np.where(held == UNSETTLED, count, np.asarray(rows)[held])  # one more for parts not yet down
+    inside = classes[:, :, None] == np.arange(count)
+    looks = inside.shape[1]
+    # The class each lay on first; transitions from row to column.
+    first = classes[np.arange(len(classes)), np.argmax(classes < count, axis=1)]
+    before, after = classes[:, :-1], classes[:, 1:]
+    moved = (held[:, 1:] != held[:, :-1]) & (before < count)
+    counts, times = np.zeros((count, count), int), period * inside[:, :-1].sum(axis=(0, 1))
+    np.add.at(counts, (before[moved], after[moved]), 1)
+    each = inside[:, looks // 2 :].mean(axis=1)
+    half = each.mean(axis=0)
+    low, high = wilson(half * len(held), len(held))
+    limit, ends = _limits(counts, times, inside[:, -1].mean(axis=0), rng)
+    # Whether a share changed from the third quarter to the last by more than chance.
+    third, last = (inside[:, k * looks // 4 : (k + 1) * looks // 4] for k in (2, 3))
+    change = last.mean(axis=1) - third.mean(axis=1)
+    error = change.std(axis=0) / np.sqrt(len(change))
+    # Mean velocity over the second half, and while in each class.
+    middle = places.shape[1] // 2
+    whole = (places[:, -1] - places[:, middle]) / (period * (places.shape[1] - 1 - middle))
+    within = inside[:, middle:-1]
+    distances = np.einsum("nk,nka->na", np.diff(places[:, middle:], axis=1), within)
+    arrays = {
+        "start": np.bincount(first, minlength=count + 1)[:count] / len(classes),
+        "plate": half, "plate_low": low, "plate_high": high,
+        "error": each.std(axis=0) / np.sqrt(len(each)),
+        "limit": limit, "limit_low": ends[0], "limit_high": ends[1],
+        "changing": np.abs(change.mean(axis=0)) > np.maximum(SURE_ERRORS * error, MIN_SHARE_CHANGE),
+        "counts": counts, "times": times, "course": inside.mean(axis=0), **_rates(counts, times),
+        "velocity": _ratio(whole[:, None], np.ones((len(whole), 1)))[0],
+        "velocities": _ratio(distances, period * within.sum(axis=1)),
+    }  # fmt: skip
+    return Occupancy(**{name: check.frozen(np.asarray(value)) for name, value in arrays.items()})
+
+
+def lasting(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the face (N, K) [1] each part lies on or lay on last; UNSETTLED before the first."""
+    at = np.where(faces == UNSETTLED, 0, np.arange(faces.shape[1]))
+    return np.take_along_axis(faces, np.maximum.accumulate(at, axis=1), axis=1)
+
+
+def _rates(counts: NDArray[np.int64], times: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    spent = np.where(times > 0.0, times, np.nan)[:, None]
+    with np.errstate(invalid="ignore"):
+        low = np.where(counts > 0, gammaincinv(np.maximum(counts, 1), 0.025), 0.0)
+    high = gammaincinv(counts + 1, 0.975)
+    return {"rates": counts / spent, "rates_low": low / spent, "rates_high": high / spent}
+
+
+def _limits(
+    counts: NDArray[np.int64], times: NDArray[np.float64], last: NDArray[np.float64], rng: np.random.Generator
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Where the rates lead (A,), and the ends (2, A) of its interval."""
+    if counts.sum() - np.trace(counts) < MIN_TRANSITIONS:
+        return np.full(len(last), np.nan), np.full((2, len(last)), np.nan)
+    spent = times > 0.0
+    prior = MISSED_TRANSITIONS / max(spent.sum() - 1, 1)
+    shape = (counts + prior)[np.ix_(spent, spent)]
+    rates = rng.gamma(shape, size=(RATE_DRAWS, *shape.shape)) / times[spent, None]
+    drawn = np.full((RATE_DRAWS, len(last)), np.nan)
+    drawn[:, spent] = limit_of(rates, last[spent])
+    return drawn.mean(axis=0), np.percentile(drawn, (2.5, 97.5), axis=0)
+
+
+def limit_of(rates: NDArray[np.float64], start: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the shares (..., A) [1] to which transitions lead in the end from ``start`` (..., A) [1].
+
+    ``rates`` (..., A, A) [1/s] are from row to column; the diagonal does not matter. It is ``start`` where
+    there is no transition. Source: the stationary distribution of a Markov chain.
+    """
+    rates = rates * (1.0 - np.eye(rates.shape[-1]))
+    leaving = rates.sum(axis=-1)
+    quickest = np.maximum(leaving.max(axis=-1), np.finfo(float).tiny)[..., None, None]
+    step = 0.5 * rates / quickest
+    step += np.eye(rates.shape[-1]) * (1.0 - step.sum(axis=-1))[..., None]
+    for _ in range(BALANCE_DOUBLINGS):
+        step = vectors.product(step, step)
+        step /= step.sum(axis=-1, keepdims=True)
+    return np.einsum("...i,...ij->...j", start, step)
+
+
+def _ratio(distances: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(A, 3) sum of (N, A) ways over sum of (N, A) times, and its interval over the parts: NaN of one."""
+    total = np.where(times.sum(axis=0) > 0.0, times.sum(axis=0), np.nan)
+    mean = distances.sum(axis=0) / total
+    parts = (times > 0.0).sum(axis=0)
+    wider = np.sqrt(parts / np.where(parts > 1, parts - 1.0, np.nan))  # as the mean is of the same parts
+    error = NORMAL_95 * wider * np.sqrt(((distances - mean * times) ** 2).sum(axis=0)) / total
+    return np.stack([mean, mean - error, mean + error], axis=-1)
+
+
+def occupancy_arrays(seen: Occupancy) -> dict[str, np.ndarray]:
+    """Return an Occupancy as plain arrays, without those that follow from others."""
+    return {name: value for name, value in vars(seen).items() if name not in DERIVED_FIELDS}
+
+
+def occupancy_from(arrays: Mapping[str, np.ndarray], count: int, parts: int) -> Occupancy:
+    """Return an Occupancy of some classes and parts from plain arrays, once every number can be one of it.
+
+    Intervals and rates follow from the other numbers, and are computed again.
+
+    Raises
+    ------
+    ValueError
+        If a number or a shape cannot be of so many parts.
+    KeyError
+        If an array is missing.
+    """
+
+    def read(name: str, *bounds: Any, **kind: Any) -> Any:
+        return check.ranged(name, arrays[name], *bounds, **kind)
+
+    row, square = (count,), (count, count)
+    start, plate = read("start", row, 0.0, 1.0), read("plate", row, 0.0, 1.0)
+    counts, times = read("counts", square, 0, np.inf, whole=True), read("times", row, 0.0)
+    course, changing = read("course", (-1, count), 0.0, 1.0), arrays["changing"]
+    if changing.shape != row or changing.dtype.kind != "b":
+        raise ValueError("changing is not one answer a class")
+    most = 1.0 + SHARE_SUM_ROUNDING
+    if len(course) < 1 or any((shares.sum(axis=-1) > most).any() for shares in (start, plate, course)):
+        raise ValueError("shares add up to more than 1, or there are none")
+    low, high = wilson(plate * parts, parts)
+    fields = {
+        "start": start, "plate": plate, "plate_low": low, "plate_high": high,
+        "error": read("error", row, 0.0, 1.0),
+        **{name: read(name, row, 0.0, most, gaps=True) for name in ("limit", "limit_low", "limit_high")},
+        "changing": changing, "counts": counts, "times": times, "course": course, **_rates(counts, times),
+        "velocity": read("velocity", (3,), gaps=True),
+        "velocities": read("velocities", (count, 3), gaps=True),
+    }  # fmt: skip
+    return Occupancy(**{name: check.frozen(np.asarray(value)) for name, value in fields.items()})

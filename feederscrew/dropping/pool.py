@@ -1,13 +1,14 @@
 """Batches of drops on several cores, of which an interrupt keeps what is done."""
 
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import takewhile
 from typing import Any
 
 import numpy as np
 
 
-def gather(work, jobs) -> Any:
+def gather(work: Callable[[Callable[..., Future]], None], jobs: int) -> tuple[list[Any], bool]:
     """Return the results of batches, in order.
 
     Parameters
@@ -30,9 +31,10 @@ def gather(work, jobs) -> Any:
     KeyboardInterrupt
         If no batch was finished.
     """
-    tasks, partial, pool = [], False, ThreadPoolExecutor(jobs)
+    tasks: list[Future] = []
+    partial, pool = False, ThreadPoolExecutor(jobs)
 
-    def begin(function, *arguments):
+    def begin(function: Callable[..., Any], *arguments: Any) -> Future:
         tasks.append(pool.submit(function, *arguments))
         return tasks[-1]
 
@@ -40,7 +42,10 @@ def gather(work, jobs) -> Any:
         work(begin)
     except KeyboardInterrupt:
         pool.shutdown(cancel_futures=True)  # a thread cannot be stopped: this waits for running batches
-        tasks, partial = list(takewhile(_finished, tasks)), True
+        partial = True
+        tasks = list(
+            takewhile(lambda task: task.done() and not task.cancelled() and not task.exception(), tasks)
+        )
         if not tasks:
             raise
     finally:
@@ -49,21 +54,17 @@ def gather(work, jobs) -> Any:
     return [task.result() for task in ended], partial
 
 
-def in_batches(batch, count, size, jobs, progress=None) -> Any:
+def in_batches(
+    batch: Callable[[slice], Any],
+    count: int,
+    size: int,
+    jobs: int,
+    progress: Callable[[int], None] | None = None,
+) -> tuple[list[np.ndarray], bool]:
     """Return what a function makes of many items, a batch of them at a time.
 
-    Parameters
-    ----------
-    batch : function
-        Handed a slice of the items; gives arrays, with a row for each of them.
-    count : int
-        Items, above 0.
-    size : int
-        Of them in a batch.
-    jobs : int
-        Threads.
-    progress : function, optional
-        Told after every batch how many items are done.
+    ``batch`` is handed a slice of the ``count`` items, ``size`` of them, and gives arrays with a row for
+    each; ``progress`` is told after every batch how many items are done.
 
     Returns
     -------
@@ -78,7 +79,7 @@ def in_batches(batch, count, size, jobs, progress=None) -> Any:
         If no batch was finished.
     """
 
-    def work(begin) -> None:
+    def work(begin: Callable[..., Future]) -> None:
         cuts = [slice(first, min(first + size, count)) for first in range(0, count, size)]
         for cut, task in [(cut, begin(batch, cut)) for cut in cuts]:
             task.result()
@@ -87,7 +88,3 @@ def in_batches(batch, count, size, jobs, progress=None) -> Any:
 
     results, partial = gather(work, jobs)
     return [np.concatenate(column) for column in zip(*results)], partial
-
-
-def _finished(task) -> Any:
-    return task.done() and not task.cancelled() and task.exception() is None

@@ -3,7 +3,9 @@
 import hashlib
 import math
 import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,12 +13,14 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from feederscrew import check, documents
-from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
+from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.dropping.kernel import body, one_drop
 from feederscrew.dropping.launch_conditions import lowest_points
 from feederscrew.dropping.pool import in_batches
 from feederscrew.dropping.rounded_hull import principal_axes, shape_of_part
 from feederscrew.errors import FeederError
+from feederscrew.part.record import Part
+from feederscrew.resting.exact_tumbling import Ground
 from feederscrew.resting.profiles import FaultList, split_cells
 from feederscrew.units import GRAVITY, QuantityError, decimal, quantity_text
 
@@ -27,13 +31,15 @@ END_COLUMNS, FACE_COLUMN = ("xe_m", "ye_m"), "face_up_end"
 FACE_NAMES = ("-x", "+x", "-y", "+y", "-z", "+z")  # sides of a part by the axes of its file
 CAMERA_PATTERN = re.compile(r"frames_(\d+(?:\.\d+)?)Hz")
 QUATERNION_TOLERANCE = 0.02  # [1] that the length of a quaternion may differ from 1 by
-MAX_SPEED_M_S, MAX_SPIN_RAD_S, MAX_DISTANCE_M = (
-    1e3,
-    1e4,
-    1e3,
-)  # [m/s], [rad/s], [m]: beyond, the unit is not SI
+MAX_SPEED_M_S, MAX_SPIN_RAD_S, MAX_DISTANCE_M = 1e3, 1e4, 1e3  # beyond, the unit is not SI
 MAX_LAUNCHES_BYTES, MAX_TOSSES = 5_000_000, 5_000  # [bytes], tosses
 STATE_EXAMPLE = f"give the columns toss,{','.join(STATE_COLUMNS)} in SI units"
+DEFAULT_RUNS = 64  # runs of each toss
+TOSSES_A_BATCH = 4  # tosses a core takes at a time
+DRAWS_A_RUN = 11  # normal numbers a run takes: 3 velocity, 3 spin, 3 attitude, restitution, friction
+MAX_SUNK_SHARE = 0.02  # [1] of the part's length: a launch may begin so far below, by the error of its pose
+FRICTION_SPREAD = 0.2  # relative standard deviation of a coefficient of friction (assumption)
+MODEL_DOUBT = 2.4  # [1] what the model leaves out, as so many times what a picture of the camera leaves open
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,14 +59,14 @@ class LaunchFile:
     faces: tuple[str, ...] | None  # (N,) of FACE_NAMES: what points up at rest, as measured
 
 
-def read_launches(path) -> LaunchFile:
+def read_launches(path: str | Path) -> LaunchFile:
     """Read a file of launches.
 
     Parameters
     ----------
     path : str or Path
-        CSV in SI units: a column ``toss`` and those of STATE; ``xe_m``, ``ye_m`` and ``face_up_end`` where
-        the end was measured; a column ``frames_148Hz`` says how many pictures a second the camera took.
+        CSV in SI units: a column ``toss`` and those of STATE_COLUMNS; ``xe_m``, ``ye_m`` and ``face_up_end``
+        where the end was measured; a column ``frames_148Hz`` says how many pictures a second the camera took.
         Lines that begin with '#' and other columns are left out.
 
     Returns
@@ -74,21 +80,15 @@ def read_launches(path) -> LaunchFile:
     FeederError
         If it cannot be read, is empty, too large or lacks a column.
     """
-    data = documents.content(path, MAX_LAUNCHES_BYTES, "a CSV file of launches", FeederError)
+    data, where = (
+        documents.content(path, MAX_LAUNCHES_BYTES, "a CSV file of launches", FeederError),
+        str(path),
+    )
     if len(data) > MAX_LAUNCHES_BYTES:
         raise FeederError(path, f"has more than {MAX_LAUNCHES_BYTES // 1_000_000} MB", "split the file")
-    header, rows = _table(documents.decoded(data, str(path)), str(path))
-    few = FaultList(str(path))
-    for number, row in rows:
-        _checked(header, row, f"{path}:{number}", few)
-    few.raise_any()
-    return _launches(header, rows, str(path), hashlib.sha256(data).hexdigest())
-
-
-def _table(text, where) -> tuple[Any, ...]:
-    """Header, and rows with the numbers of their lines, each a dict of cells by column."""
-    lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if line.strip(", \t")]
-    lines = [(k, line) for k, line in lines if not line.lstrip().startswith("#")]
+    # Header, and rows with the numbers of their lines.
+    lines = [(k, line) for k, line in enumerate(documents.decoded(data, where).splitlines(), 1)]
+    lines = [(k, line) for k, line in lines if line.strip(", \t") and not line.lstrip().startswith("#")]
     if len(lines) < 2:
         raise FeederError(where, "has no launch", STATE_EXAMPLE)
     if len(lines) > MAX_TOSSES + 1:
@@ -100,18 +100,40 @@ def _table(text, where) -> tuple[Any, ...]:
     twice = [name for name in header if name and header.count(name) > 1]
     if twice:
         raise FeederError(f"{where}:{first}", f"column {twice[0]} is given twice", "keep one of them")
-    split = [(number, split_cells(where, number, line, STATE_EXAMPLE)) for number, line in lines[1:]]
-    return header, [(number, dict(zip(header, row))) for number, row in split]
+    cells = [split_cells(where, number, line, STATE_EXAMPLE) for number, line in lines[1:]]
+    rows, numbers = [dict(zip(header, row)) for row in cells], [number for number, _ in lines[1:]]
+    few = FaultList(where)
+    for number, row in zip(numbers, rows):
+        _add_faults(header, row, f"{path}:{number}", few)
+    few.raise_any()
+
+    def columns(names: Sequence[str]) -> NDArray[np.float64]:
+        return check.frozen(np.array([[float(row[name]) for name in names] for row in rows]))
+
+    attitudes = columns(ATTITUDE_COLUMNS)
+    rate = next((float(match[1]) for match in map(CAMERA_PATTERN.fullmatch, header) if match), 0.0)
+    return LaunchFile(
+        source=where,
+        sha256=hashlib.sha256(data).hexdigest(),
+        names=tuple(row["toss"] for row in rows),
+        lines=tuple(numbers),
+        positions=columns(POSITION_COLUMNS),
+        attitudes=check.frozen(attitudes / np.sqrt((attitudes**2).sum(axis=1))[:, None]),
+        velocities=columns(VELOCITY_COLUMNS),
+        spins=columns(SPIN_COLUMNS),
+        frame=1.0 / rate if rate > 0.0 else 0.0,
+        ends=columns(END_COLUMNS) if set(END_COLUMNS) <= set(header) else None,
+        faces=tuple(row[FACE_COLUMN] for row in rows) if FACE_COLUMN in header else None,
+    )
 
 
-def _checked(header, row, where, few) -> None:
+def _add_faults(header: Sequence[str], row: dict[str, str], where: str, few: FaultList) -> None:
     """Add what is wrong with one launch to the faults."""
     wanted = (*STATE_COLUMNS, *(END_COLUMNS if set(END_COLUMNS) <= set(header) else ()))
     bad = [name for name in wanted if not _is_number(row.get(name, ""))]
     for name in bad:
-        few.add(
-            where, f"{name}: {quantity_text(row.get(name, ''))} is not a number", "give a number in SI units"
-        )
+        what = f"{name}: {quantity_text(row.get(name, ''))} is not a number"
+        few.add(where, what, "give a number in SI units")
     if not row["toss"]:
         few.add(where, "the toss has no name", "give each launch a name or number of its own")
     if FACE_COLUMN in header and row.get(FACE_COLUMN, "") not in FACE_NAMES:
@@ -132,45 +154,12 @@ def _checked(header, row, where, few) -> None:
                 few.add(where, f"{name} is {row[name]}", f"give {what}, from {-most:g} to {most:g}")
 
 
-def _is_number(text) -> bool:
+def _is_number(text: str) -> bool:
     try:
         decimal(text)
     except QuantityError:
         return False
     return True
-
-
-def _launches(header, rows, source, digest) -> Any:
-    """The record of a table without faults."""
-
-    def columns(names) -> NDArray[np.float64]:
-        return check.frozen(np.array([[float(row[name]) for name in names] for _, row in rows]))
-
-    attitudes = columns(ATTITUDE_COLUMNS)
-    rate = next((float(match[1]) for match in map(CAMERA_PATTERN.fullmatch, header) if match), 0.0)
-    return LaunchFile(
-        source=source,
-        sha256=digest,
-        names=tuple(row["toss"] for _, row in rows),
-        lines=tuple(number for number, _ in rows),
-        positions=columns(POSITION_COLUMNS),
-        attitudes=check.frozen(attitudes / np.sqrt((attitudes**2).sum(axis=1))[:, None]),
-        velocities=columns(VELOCITY_COLUMNS),
-        spins=columns(SPIN_COLUMNS),
-        frame=1.0 / rate if rate > 0.0 else 0.0,
-        ends=columns(END_COLUMNS) if set(END_COLUMNS) <= set(header) else None,
-        faces=tuple(row[FACE_COLUMN] for _, row in rows) if FACE_COLUMN in header else None,
-    )
-
-
-DEFAULT_RUNS = 64  # runs of each toss
-TOSSES_A_BATCH = 4  # tosses a core takes at a time
-DRAWS_A_RUN = 11  # normal numbers a run takes: 3 velocity, 3 spin, 3 attitude, restitution, friction
-MAX_SUNK_SHARE = (
-    0.02  # [1] of the part's length: a launch may begin so far below the plane, by the error of its pose
-)
-FRICTION_SPREAD = 0.2  # relative standard deviation of a coefficient of friction (assumption)
-MODEL_DOUBT = 2.4  # [1] what the model leaves out, as so many times what a picture of the camera leaves open
 
 
 @dataclass(frozen=True)
@@ -198,7 +187,15 @@ class Tosses:
 
 
 def follow(
-    part, resting_faces, launches, surface, rng, *, runs=DEFAULT_RUNS, jobs=1, progress=None
+    part: Part,
+    resting_faces: Ground,
+    launches: LaunchFile,
+    surface: SurfaceRanges,
+    rng: np.random.Generator,
+    *,
+    runs: int = DEFAULT_RUNS,
+    jobs: int = 1,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Tosses:
     """Follow each launch of a file until the part lies still, again and again with small changes.
 
@@ -229,17 +226,23 @@ def follow(
 
     Notes
     -----
-    What is not known: the restitution and friction of this toss (RESTITUTION_DOUBT,
-    FRICTION_SPREAD), and the state
-    one picture of the camera. In that time gravity changes a velocity by g times the time, and spin turns the
-    part by the spin times the time: velocities, those of a point at half the part's length from the centre,
-    and attitudes scatter as a value does that is anywhere in such an interval, by 1 / sqrt(12) of it. Rigid
-    corners and one coefficient are not what happens: MODEL_DOUBT times as much makes the mean ``p`` of every
-    other filmed toss the share that comes true (source: docs/validation.md, "Filmed tosses of a cube").
+    What is not known: the restitution and friction of this toss (RESTITUTION_DOUBT, FRICTION_SPREAD), and the
+    state within one picture of the camera. In that time gravity changes a velocity by g times the time, and
+    spin turns the part by the spin times the time: velocities, those of a point at half the part's length
+    from the centre, and attitudes scatter as a value does that is anywhere in such an interval, by
+    1 / sqrt(12) of it. Rigid corners and one coefficient are not what happens: MODEL_DOUBT times as much
+    makes the mean ``p`` of every other filmed toss the share that comes true (source: docs/validation.md,
+    "Filmed tosses of a cube").
     """
     shape, length = shape_of_part(part, resting_faces)
     principal = principal_axes(part.inertia)[1]
-    states = _states(launches, length, principal)
+    # States as the kernel has them: along the principal axes, without dimensions.
+    turns = _rotations(launches.attitudes) * Rotation.from_matrix(np.array(principal))
+    states = np.zeros((len(launches.names), body.STATE))
+    states[:, : body.VX] = launches.positions / length
+    states[:, body.VX : body.Q] = launches.velocities / np.sqrt(GRAVITY * length)
+    states[:, body.Q : body.W] = np.roll(turns.as_quat(), 1, axis=1)
+    states[:, body.W :] = np.einsum("ni,ij->nj", launches.spins, principal) / np.sqrt(GRAVITY / length)
     # Raise a fault for the first launch that begins in the plane.
     lowest = states[:, body.Z] + lowest_points(shape, states[:, body.Q : body.W])
     below = np.flatnonzero(lowest < -MAX_SUNK_SHARE)
@@ -257,37 +260,60 @@ def follow(
         [np.full_like(turning, velocity), np.full_like(turning, 2.0 * velocity), turning], axis=1
     )
 
-    def batch(cut) -> Any:
-        work = one_drop.scratch(shape)
-        answers = [
-            _toss(shape, work, *_varied(states[n], uncertain[n], surface, draws[n]))
-            for n in range(cut.start, cut.stop)
-        ]
-        return [np.stack(column) for column in zip(*answers)]
+    steps = one_drop.Steps(early=False)
+
+    def batch(cut: slice) -> list[np.ndarray]:
+        """(T, K, 13) ends, (T, K) faces and (T, K) times of the runs of some tosses."""
+        work, count = one_drop.scratch(shape), cut.stop - cut.start
+        ends = np.zeros((count, runs, body.STATE))
+        faces, times = np.zeros((count, runs), int), np.zeros((count, runs))
+        for n in range(count):
+            begun = _varied(states[cut.start + n], uncertain[cut.start + n], surface, draws[cut.start + n])
+            for k, (state, restitution, friction) in enumerate(zip(*begun)):
+                work.state[:] = state
+                faces[n, k], times[n, k], _ = one_drop.settle(shape, work, restitution, friction, steps)
+                ends[n, k] = work.state
+        return [ends, faces, times]
 
     tell = None if progress is None else lambda done: progress(done, len(states))
     (ends, faces, times), partial = in_batches(batch, len(states), TOSSES_A_BATCH, jobs, tell)
-    return _summed(launches, length, principal, resting_faces.rows, runs, (ends, faces, times), partial)
+    # The runs of each toss as one answer.
+    count, second = len(ends), np.sqrt(length / GRAVITY)
+    ups, settled = _upward(ends[:, :, body.Q : body.W], principal), faces != one_drop.UNSETTLED
+    shares, best, lain = np.zeros((count, len(FACE_NAMES))), np.full(count, -1), np.full(count, -1)
+    places, spreads, seconds = np.full((count, 2), np.nan), np.full(count, np.nan), np.full(count, np.nan)
+    for n in range(count):
+        calm = settled[n]
+        if not calm.any():
+            continue
+        counts = np.bincount(ups[n][calm], minlength=len(FACE_NAMES))
+        shares[n] = counts / calm.sum()
+        first = ups[n][np.argmax(calm)]
+        best[n] = first if counts[first] == counts.max() else np.argmax(counts)
+        chosen = calm & (ups[n] == best[n])
+        spots = length * ends[n, chosen, :2]
+        lain[n] = np.bincount(resting_faces.rows[faces[n][chosen]]).argmax()
+        places[n] = length * ends[n, 0, :2] if chosen[0] else np.median(spots, axis=0)
+        spreads[n] = np.median(np.hypot(*(spots - places[n]).T))
+        seconds[n] = second * np.median(times[n][chosen])
+    released = _upward(launches.attitudes[:count], np.eye(3))
+    arrays = {
+        "shares": shares, "faces": best, "rows": lain, "places": places, "spreads": spreads,
+        "times": seconds, "settled": settled.sum(axis=1), "released": released,
+    }  # fmt: skip
+    return Tosses(runs, **{name: check.frozen(array) for name, array in arrays.items()}, partial=partial)
 
 
-def _states(launches, length, principal) -> NDArray[np.float64]:
-    """(N, 13) states as the kernel has them: along the principal axes, without dimensions."""
-    turns = _rotations(launches.attitudes) * Rotation.from_matrix(np.array(principal))
-    states = np.zeros((len(launches.names), body.STATE))
-    states[:, : body.VX] = launches.positions / length
-    states[:, body.VX : body.Q] = launches.velocities / np.sqrt(GRAVITY * length)
-    states[:, body.Q : body.W] = np.roll(turns.as_quat(), 1, axis=1)
-    states[:, body.W :] = np.einsum("ni,ij->nj", launches.spins, principal) / np.sqrt(GRAVITY / length)
-    return states
-
-
-def _rotations(quaternions) -> Rotation:
+def _rotations(quaternions: NDArray[np.float64]) -> Rotation:
     """Rotations from the part's axes to the plane's, of (N, 4) quaternions w x y z."""
     return Rotation.from_quat(np.roll(quaternions, -1, axis=-1))
 
 
 def _varied(
-    state, uncertain, surface, draws
+    state: NDArray[np.float64],
+    uncertain: NDArray[np.float64],
+    surface: SurfaceRanges,
+    draws: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """(K, 13) states, (K,) restitutions and (K,) frictions of the runs of one toss."""
     states = np.repeat(state[None], len(draws), axis=0)
@@ -299,24 +325,12 @@ def _varied(
     return states, np.clip(bounce, 0.0, 1.0), scattered(surface.friction, FRICTION_SPREAD, draws[:, 10])
 
 
-def scattered(ends, relative, draws) -> NDArray[np.float64]:
-    """Return values of what is known as one value or as a range.
+def scattered(ends: tuple[float, float], relative: float, draws: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return values (K,) of what is known as one value or as a range, in its unit.
 
-    Source: docs/validation.md, "Restitution is a spread".
-
-    Parameters
-    ----------
-    ends : (float, float) [that of the value]
-        Equal for one value.
-    relative : float [1]
-        Standard deviation of one value, over it.
-    draws : (K,) float [1]
-        Normal numbers; 0 gives the value, or the middle of the range.
-
-    Returns
-    -------
-    (K,) float [that of the value]
-        About one value normal, not below a tenth of it; in a range as good as uniform.
+    About one value, of equal ``ends``, normal with the standard deviation ``relative`` of it, not below a
+    tenth of it; in a range as good as uniform. ``draws`` (K,) are normal numbers: 0 gives the value, or the
+    middle of the range. Source: docs/validation.md, "Restitution is a spread".
     """
     low, high = ends
     if low == high:
@@ -324,50 +338,7 @@ def scattered(ends, relative, draws) -> NDArray[np.float64]:
     return low + (high - low) / (1.0 + np.exp(-1.702 * draws))  # the normal distribution to 0.01
 
 
-def _toss(
-    shape, work, states, restitutions, frictions
-) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
-    """(K, 13) ends, (K,) faces and (K,) times of the runs of one toss."""
-    steps, count = one_drop.Steps(early=False), len(states)
-    ends, faces, times = np.zeros_like(states), np.zeros(count, int), np.zeros(count)
-    for k in range(count):
-        work.state[:] = states[k]
-        faces[k], times[k], _ = one_drop.settle(shape, work, restitutions[k], frictions[k], steps)
-        ends[k] = work.state
-    return ends, faces, times
-
-
-def _summed(launches, length, principal, rows, runs, answers, partial) -> Tosses:
-    """The runs of each toss as one answer."""
-    ends, faces, times = answers
-    count = len(ends)
-    ups = _upward(ends[:, :, body.Q : body.W], principal)
-    shares, best = np.zeros((count, len(FACE_NAMES))), np.full(count, -1)
-    sides = [np.full(count, -1), np.full((count, 2), np.nan), np.full(count, np.nan), np.full(count, np.nan)]
-    second = np.sqrt(length / GRAVITY)
-    for n in range(count):
-        calm = faces[n] != one_drop.UNSETTLED
-        if not calm.any():
-            continue
-        counts = np.bincount(ups[n][calm], minlength=len(FACE_NAMES))
-        shares[n] = counts / calm.sum()
-        first = ups[n][np.argmax(calm)]
-        best[n] = first if counts[first] == counts.max() else np.argmax(counts)
-        chosen = calm & (ups[n] == best[n])
-        spots = length * ends[n, chosen, :2]
-        sides[0][n] = np.bincount(rows[faces[n][chosen]]).argmax()
-        sides[1][n] = length * ends[n, 0, :2] if chosen[0] else np.median(spots, axis=0)
-        sides[2][n] = np.median(np.hypot(*(spots - sides[1][n]).T))
-        sides[3][n] = second * np.median(times[n][chosen])
-    released = _upward(launches.attitudes[:count], np.eye(3))
-    settled = (faces != one_drop.UNSETTLED).sum(axis=1)
-    shares, best, lain, places, spreads, seconds, settled, released = (
-        check.frozen(array) for array in (shares, best, *sides, settled, released)
-    )
-    return Tosses(runs, shares, best, lain, places, spreads, seconds, settled, released, partial)
-
-
-def _upward(quaternions, principal) -> Any:
+def _upward(quaternions: NDArray[np.float64], principal: NDArray[np.float64]) -> Any:
     """Index into FACE_NAMES of the side that points up most, for (..., 4) attitudes along principal axes."""
     w, x, y, z = np.moveaxis(quaternions, -1, 0)
     up = np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)], axis=-1)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.dropping.occupancy import MIN_TRANSITIONS
+from feederscrew.dropping.plate_test import MIN_TRANSITIONS
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables

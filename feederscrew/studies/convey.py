@@ -12,7 +12,8 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew.bowl.reading import KeyRange, Setting
 from feederscrew.bowl.record import Bowl
-from feederscrew.conveying import answer, sensitivity, steady
+from feederscrew.conveying import answer, steady
+from feederscrew.conveying.answer import Neighbours
 from feederscrew.conveying.steady import STATUSES
 from feederscrew.geometry import grids
 from feederscrew.machine import checks
@@ -30,19 +31,19 @@ class ConveyStudy(ReadableRecord):
     answer: answer.Answer
 
     @cached_property
-    def nearby(self) -> dict[str, sensitivity.Neighbours]:
-        """Velocities with each quantity ``sensitivity.CHANGE`` lower and higher, a dict of Neighbours."""
-        return sensitivity.sensitivity(self.bowl)
+    def nearby(self) -> dict[str, Neighbours]:
+        """Velocities with each quantity ``answer.SENSITIVITY_CHANGE`` lower and higher."""
+        return answer.sensitivity(self.bowl)
 
     @cached_property
-    def doubt(self) -> sensitivity.Neighbours:
-        """Velocities for friction ``sensitivity.FRICTION_DOUBT`` lower and higher, Neighbours."""
-        return sensitivity.friction_doubt(self.bowl)
+    def doubt(self) -> Neighbours:
+        """Velocities for friction ``answer.FRICTION_DOUBT`` lower and higher, Neighbours."""
+        return answer.friction_doubt(self.bowl)
 
     @cached_property
-    def rebound(self) -> sensitivity.Neighbours | None:
+    def rebound(self) -> Neighbours | None:
         """Velocities at both ends of the spread of restitution; None where nothing is thrown up."""
-        return sensitivity.restitution_doubt(self.bowl) if self.answer.throw_number > 1.0 else None
+        return answer.restitution_doubt(self.bowl) if self.answer.throw_number > 1.0 else None
 
     @property
     def validity(self) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import check
-from feederscrew.dropping import drop_test, traces
+from feederscrew.dropping import drop_test
 from feederscrew.dropping.ensemble import Drops, Tally
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
@@ -43,9 +43,9 @@ class DropStudy(ReadableRecord):
         return {rule: self.aspects.probabilities[rule] for rule in RULES_DRAWN}
 
     @property
-    def telling(self) -> traces.DropTrace:
+    def telling(self) -> drop_test.DropTrace:
         """The followed drop to show: the first that tumbled and lies still, else tumbled, else the first."""
-        return traces.telling(self.result.traces)
+        return drop_test.telling(self.result.traces)
 
 
 def drop(

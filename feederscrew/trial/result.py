@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.conveying import sensitivity
+from feederscrew.conveying import answer
 from feederscrew.conveying.hop import hop
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.rates import stream
@@ -138,7 +138,7 @@ class TrialRun:
 
         None where no part is thrown up: then restitution decides nothing of a velocity.
         """
-        return sensitivity.restitution_doubt(self.bowl) if self.throw_number > 1.0 else None
+        return answer.restitution_doubt(self.bowl) if self.throw_number > 1.0 else None
 
     @property
     def parts(self):
@@ -238,7 +238,7 @@ class TrialRun:
         if self.throw_number > 1.0:
             hops = hop(self.bowl)
             yield HOPS_TEXT.format(self.throw_number, 1e3 * hops.height, 1e3 * hops.flight)
-            low, high = sensitivity.rebounds(self.bowl)
+            low, high = answer.rebounds(self.bowl)
             yield BOUNCES_TEXT.format(low, high, 1e3 * self.rebound.less, 1e3 * self.rebound.more)
         for k in np.flatnonzero(self.odd):
             verdict = "passes" if self.predicted[k] else "is returned"

@@ -115,20 +115,6 @@ def test_thresholds_by_bisection(beta, climb, friction):
     assert bisected(share(3), 0.01, 8.0) == pytest.approx(float(limits.hop_ratio(**where)), rel=1e-14)
 
 
-def test_friction_at_its_limit_still_rides():
-    friction = float(limits.forward_limit(0.5, 30 * DEG))
-    assert travel_of(plain(0.5, 30 * DEG, 0.0, friction * (1 + 1e-15)))[steady.VELOCITY] == 0.0
-    assert travel_of(plain(0.5, 30 * DEG, 0.0, friction * (1 - 1e-9)))[steady.VELOCITY] > 0.0
-
-
-def test_unequal_friction_both_ways_mirrors_as_well():
-    up = plain(1.2, 25 * DEG, 2 * DEG, 0.35)._replace(static=0.3, kinetic=0.25)
-    down = up._replace(
-        climb=-up.climb, lead=math.pi, static=0.35, kinetic=0.35, static_back=0.3, kinetic_back=0.25
-    )
-    assert travel_of(down)[steady.VELOCITY] == pytest.approx(-travel_of(up)[steady.VELOCITY], rel=1e-12)
-
-
 def test_bristles_carry_a_part_that_is_shaken_along_the_track_only():
     even = plain(0.8, 0.0, 0.0, 0.4)
     assert travel_of(even)[steady.VELOCITY] == pytest.approx(0.0, abs=1e-14)
@@ -139,20 +125,6 @@ def test_several_velocities_at_one_setting():
     found = travel_of(thrown_at(1.712, 20 * DEG, restitution=0.3))
     assert found[steady.LOW] == pytest.approx(0.149, abs=2e-3)
     assert found[steady.HIGH] == pytest.approx(0.929, abs=2e-3)
-
-
-def test_longer_periods_and_none():
-    assert travel_of(thrown_at(4.3))[steady.PERIOD] == 2
-    found = travel_of(thrown_at(2.25, restitution=0.6))
-    assert found[steady.STATUS] == steady.AVERAGED
-    assert found[steady.LOW] < found[steady.VELOCITY] < found[steady.HIGH]
-
-
-def test_times_add_up_to_a_period():
-    for setting in (plain(0.5, 0.5, 0.0, 0.3), thrown_at(2.0, restitution=0.3), thrown_at(4.3)):
-        assert travel_of(setting)[steady.FRACTIONS : steady.FRACTIONS + 4].sum() == pytest.approx(
-            1.0, abs=1e-12
-        )
 
 
 def test_landing_keeps_to_the_friction_cone():

@@ -8,7 +8,7 @@ import pytest
 from mechanics_samples import box_posture
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying import answer, sensitivity
+from feederscrew.conveying import answer
 from feederscrew.conveying.operating_point import FLIGHT, PHASES, plain
 from feederscrew.conveying.steady import trace
 from feederscrew.errors import ConfigError
@@ -62,14 +62,6 @@ def test_velocity_scales_with_stroke_frequency_and_gravity():
     assert answer.answer(moon).velocity == pytest.approx(answer.answer(here).velocity / 6.0)
 
 
-def test_margins_and_limits():
-    found = answer.answer(driven(50, 0.1, 25, 0.4))
-    assert found.margins["hop"] == pytest.approx(1.0 - found.throw_number)
-    assert found.margins["forward"] == pytest.approx(0.4 - found.mu_forward)
-    assert found.regime == ("forward" if found.mu_backward <= 0.4 < found.mu_forward else found.regime)
-    assert sum(found.fractions.values()) == pytest.approx(1.0)
-
-
 def banked(*more):
     """The setting whose velocity independent code has by three-dimensional vectors: 15.28 mm/s."""
     drive = ("drive.amplitude=0.15 mm", "drive.frequency=50 Hz", "drive.vibration_angle=25 deg")
@@ -85,25 +77,6 @@ def test_a_banked_track_with_a_wall_is_a_level_one_of_another_friction():
                                  f"friction.kinetic={found.setting.kinetic!r}"))  # fmt: skip
     assert found.velocity == level.velocity
     assert (found.regime, found.throw_number) == (level.regime, level.throw_number)
-
-
-@pytest.mark.parametrize("stroke", [0.15, 0.3, 0.5])
-def test_a_bank_takes_every_friction_with_it_hops_included(stroke):
-    """Bristles that hold more downwards, and impacts: all of it by the same two shares."""
-    bristles = ("friction.static_backward=0.7", "friction.kinetic_backward=0.6", "restitution=0.2")
-    here = banked(*bristles, f"drive.amplitude={stroke} mm", "friction.static=0.5")
-    mu, bank = here.friction, here.track.bank
-    values = [m / np.cos(bank) + mu.wall * np.tan(bank) for m in (mu.static, mu.kinetic, *mu.backward)]
-    static, kinetic, static_back, kinetic_back = map(float, values)
-    friction = replace(
-        mu, static=static, kinetic=kinetic, static_backward=static_back, kinetic_backward=kinetic_back
-    )
-    level = replace(here, friction=friction, track=replace(here.track, bank=0.0))
-    one, other = answer.answer(here), answer.answer(level)
-    assert (one.velocity, one.low, one.high) == pytest.approx(
-        (other.velocity, other.low, other.high), rel=1e-9
-    )
-    assert one.fractions == pytest.approx(other.fractions, rel=1e-9)
 
 
 def test_limits_of_slip_are_told_of_the_floor_beside_its_wall():
@@ -139,13 +112,6 @@ def test_slide_and_track_take_the_bank_as_convey_does():
         there = banked(f"drive.amplitude={0.15 * share / 0.6381678} mm")
         state = track_balance.motion(place, there, np.array([0.5 * np.pi])).state
         assert bool((state == HOP).any()) == hops
-
-
-def test_no_steady_state_goes_by_the_effective_friction():
-    """A climb steeper than the floor's friction is carried beside a rough wall, not beside a smooth one."""
-    steep = ("track.climb=25 deg", "drive.amplitude=0.6 mm", "friction.static=0.4")
-    assert answer.answer(banked(*steep)).status == "periodic"
-    assert answer.answer(banked(*steep, "friction.wall=0.2")).status == "no steady state"
 
 
 @pytest.mark.parametrize(
@@ -185,16 +151,16 @@ def test_one_screw_moves_the_whole_bowl():
 
 def test_sensitivity_is_a_difference_of_answers():
     here = driven(50, 1.0, 25, 0.4)
-    nearby = sensitivity.sensitivity(here)
+    nearby = answer.sensitivity(here)
     more = driven(50, 1.1, 25, 0.4)
     assert nearby["amplitude"].more == pytest.approx(answer.answer(more).velocity)
     assert nearby["friction"].less == pytest.approx(answer.answer(driven(50, 1.0, 25, 0.36)).velocity)
     assert nearby["angle"].more == pytest.approx(answer.answer(driven(50, 1.0, 27.5, 0.4)).velocity)
-    assert sensitivity.friction_doubt(here).more == pytest.approx(
+    assert answer.friction_doubt(here).more == pytest.approx(
         answer.answer(driven(50, 1.0, 25, 0.48)).velocity
     )
-    assert sensitivity.Neighbours(0.9, 1.1).elasticity(1.0) == pytest.approx(1.0)
-    assert np.isnan(sensitivity.Neighbours(0.0, 0.1).elasticity(0.0))
+    assert answer.Neighbours(0.9, 1.1).elasticity(1.0) == pytest.approx(1.0)
+    assert np.isnan(answer.Neighbours(0.0, 0.1).elasticity(0.0))
 
 
 def test_validity_names_its_source_where_parts_hop():
@@ -309,13 +275,3 @@ def test_title_of_a_cycle_says_what_is_shown(overrides, title):
     drive = tuple(text for text in drive if text.partition("=")[0] not in names)
     found = answer.answer(bowls.read(None, (*drive, *overrides)))
     assert re.fullmatch(title, convey.cycle_title(trace(found.setting), found))
-
-
-def test_a_phase_of_the_second_harmonic_may_be_written_as_a_whole_turn_more():
-    """220 deg, as thesis and papers print it, is -140 deg: the same motion."""
-    keys = ("drive.phase=20 deg", "drive.second_harmonic=0.3")
-    found = [
-        answer.answer(bowls.read(None, (*keys, f"drive.second_harmonic_phase={angle} deg"))).velocity
-        for angle in (220.0, -140.0, 140.0)
-    ]
-    assert found[0] == pytest.approx(found[1], rel=1e-9) != pytest.approx(found[2], rel=1e-3)

@@ -8,7 +8,7 @@ import pytest
 from conveying_reference import Reference
 
 from feederscrew.bowl.record import Friction
-from feederscrew.conveying import answer, sensitivity
+from feederscrew.conveying import answer
 
 
 def level(bowl, share=1.0):
@@ -38,7 +38,7 @@ def test_floor_and_wall_told_apart_by_a_general_solver_carry_a_part_as_fast(stro
 
 def test_a_level_track_of_the_friction_of_both_carries_as_fast_at_any_share_of_it():
     bowl = awkward.bowl("track.bank=14 deg")
-    own, nearby = answer.answer(bowl).velocity, sensitivity.sensitivity(bowl)["friction"]
+    own, nearby = answer.answer(bowl).velocity, answer.sensitivity(bowl)["friction"]
     assert own == pytest.approx(answer.answer(level(bowl)).velocity, rel=1e-9)
     assert nearby.less == pytest.approx(answer.answer(level(bowl, 0.9)).velocity, rel=1e-9)
     assert nearby.more == pytest.approx(answer.answer(level(bowl, 1.1)).velocity, rel=1e-9)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from feederscrew.conveying import steady
-from feederscrew.conveying.scaling import Numbers, with_numbers
+from feederscrew.conveying.operating_point import Numbers, with_numbers
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = DOCS / "conveying.md"

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from feederscrew.conveying import steady
-from feederscrew.conveying.scaling import Numbers, numbers, with_numbers
+from feederscrew.conveying.operating_point import Numbers, numbers, with_numbers
 
 DEG = math.pi / 180.0
 FRICTIONS = st.floats(0.02, 3.0)

@@ -8,7 +8,7 @@ from conveying_agreement import agreed
 from conveying_reference import Reference, random_settings
 
 import feederscrew as fs
-from feederscrew.conveying import answer, steady, sweep, waves
+from feederscrew.conveying import answer, steady, waves
 from feederscrew.conveying.operating_point import OperatingPoint, plain
 from feederscrew.conveying.waves import PERIOD_RAD, above, harmonic, value
 from feederscrew.mechanics import limits
@@ -104,7 +104,7 @@ def test_compiled_equals_plain():
         for restitution in (0.0, 0.4)
         for lead, share, phase, turn in rng.uniform((-3, 0, -3, 0), (3, 1, 3, 1), (1, 4))
     ]
-    for row, setting in zip(sweep.sweep(np.array(rows)), rows, strict=True):
+    for row, setting in zip(answer.sweep(np.array(rows)), rows, strict=True):
         out = travel_of(setting)
         if out[steady.STATUS] == steady.PERIODIC and out[steady.HIGH] - out[steady.LOW] < 1e-9:
             np.testing.assert_allclose(row, out, rtol=1e-9, atol=1e-11)
@@ -119,15 +119,6 @@ def test_a_second_harmonic_carries_a_part_along_a_level_track():
     assert abs(velocity) > 0.05
     other = travel_of(uneven._replace(second_phase=-0.5 * math.pi))
     assert other[steady.VELOCITY] == pytest.approx(-velocity, rel=1e-12)
-
-
-@pytest.mark.parametrize("phase", [0.0, 0.7, 2.0])
-def test_half_a_turn_of_the_second_harmonic_turns_the_ratchet_round(phase):
-    setting = plain(2.0, 0.0, 0.0, 0.3)._replace(second=0.4, second_phase=phase)
-    turned = setting._replace(second_phase=phase + math.pi)
-    assert travel_of(turned)[steady.VELOCITY] == pytest.approx(
-        -travel_of(setting)[steady.VELOCITY], abs=1e-12
-    )
 
 
 def test_two_modes_that_swing_apart_make_an_asymmetric_feeder():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from conveying_reference import random_settings
 
-from feederscrew.conveying import steady, sweep
+from feederscrew.conveying import answer, steady
 from feederscrew.conveying.operating_point import OperatingPoint, plain
 
 
@@ -16,24 +16,24 @@ def settings():
 
 def test_threads_change_nothing(settings):
     many = np.tile(settings, (8, 1))
-    np.testing.assert_array_equal(sweep.sweep(many, workers=3), sweep.sweep(many, workers=1))
+    np.testing.assert_array_equal(answer.sweep(many, workers=3), answer.sweep(many, workers=1))
 
 
 def test_every_status():
     rows = [plain(0.5, 0.5, 0.0, 0.3), plain(4.5, 0.5236, 0.0, 0.3, 0.6), plain(2.0, 0.5, 0.35, 0.3)]
-    found = sweep.sweep(np.array(rows))[:, steady.STATUS]
+    found = answer.sweep(np.array(rows))[:, steady.STATUS]
     assert [steady.STATUSES[int(code)] for code in found] == list(steady.STATUSES)
 
 
 def test_a_compiled_kernel_is_kept(settings):
-    sweep.sweep(settings[:1])
-    assert sweep.compiled()
+    answer.sweep(settings[:1])
+    assert answer.sweep_compiled()
 
 
 def test_faults_of_a_row(settings):
     wrong = settings.copy()
     wrong[3, OperatingPoint._fields.index("kinetic")] = 2.0
     with pytest.raises(ValueError, match="kinetic friction is above static"):
-        sweep.sweep(wrong)
+        answer.sweep(wrong)
     with pytest.raises(ValueError, match="shape"):
-        sweep.sweep(settings[:, :5])
+        answer.sweep(settings[:, :5])

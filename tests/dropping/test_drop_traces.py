@@ -8,8 +8,8 @@ import shapes
 from scipy.constants import g
 from scipy.spatial.transform import Rotation
 
-from feederscrew.dropping import drop_test, traces
-from feederscrew.dropping.traces import telling
+from feederscrew.dropping import drop_test
+from feederscrew.dropping.drop_test import telling
 from feederscrew.output import drop, style, tables
 from feederscrew.output.tables import data_frame
 from feederscrew.part import load
@@ -117,7 +117,7 @@ def test_a_part_let_fall_flat_lands_as_late_as_it_must(tmp_path):
 
 def test_a_long_drop_stays_small():
     part, aspects, result = followed(PARTS / "washer_m6.stl", count=6)
-    most = traces.MAX_TRACE_ROWS + 2 * traces.MAX_IMPACTS + 3
+    most = drop_test.MAX_TRACE_ROWS + 2 * drop_test.MAX_IMPACTS + 3
     assert max(len(trace.times) for trace in result.traces) <= most
     assert max(trace.times[-1] for trace in result.traces) > 2.0
     text = tables.text(drop.traces(DropStudy(part, aspects, result)), "csv")
@@ -140,7 +140,7 @@ def test_rows_are_no_further_apart_than_promised(bracket):
     second = np.sqrt(np.cbrt(bracket[0].hull.volume) / g)
     _, _, calm = followed(PARTS / "lbracket_30x20x15.stl", "drop", count=4, drops=4)
     for trace in (*bracket[2].traces, *calm.traces):
-        assert np.diff(trace.times).max() < 2.001 * traces.ROW_INTERVAL * second
+        assert np.diff(trace.times).max() < 2.001 * drop_test.ROW_INTERVAL * second
         first = np.argmax(trace.impacts)
         time, height = trace.times[: first + 1], trace.positions[: first + 1, 2]
         assert height == pytest.approx(height[0] - 0.5 * g * time**2, abs=1e-9)
@@ -191,7 +191,7 @@ def test_the_drop_shown_tumbles_if_one_does(bracket):
 def test_stills_go_from_the_first_impact_to_the_end(bracket):
     _, aspects, result = bracket
     for trace in result.traces:
-        rows = traces.chosen(trace, 12)
+        rows = drop_test.chosen(trace, 12)
         assert rows[0] == np.argmax(trace.impacts) and rows[-1] == len(trace.times) - 1
         assert len(rows) == 12 and (np.diff(rows) > 0).all()
         end = drop.still_caption(trace, rows[-1], aspects.names, 0.0)
@@ -203,7 +203,7 @@ def test_the_curve_shows_energy_over_the_heights_it_comes_down_to(bracket):
     _, aspects, result = bracket
     trace = result.traces[0]
     axes = style.figure().add_subplot()
-    drop.curve(axes, trace, aspects, traces.chosen(trace, 12))
+    drop.curve(axes, trace, aspects, drop_test.chosen(trace, 12))
     assert axes.get_xlabel() == "time [ms]" and axes.get_ylabel() == "energy as height [mm]"
     energy, height = axes.get_lines()[:2]
     assert energy.get_ydata() == pytest.approx(trace.energies / MM)

@@ -10,8 +10,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.dropping import plate_test
 from feederscrew.dropping.launch_conditions import PRESETS, sample
-from feederscrew.dropping.occupancy import lasting, limit_of, occupancy
-from feederscrew.dropping.plate_test import PARTS_A_BATCH, ride
+from feederscrew.dropping.plate_test import PARTS_A_BATCH, lasting, limit_of, occupancy, ride
 from feederscrew.resting.aspects import find
 
 BOX, _ = drop_bodies.box((1.0, 1.3, 1.7))

@@ -14,12 +14,12 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
 from feederscrew.conveying import answer, steady
-from feederscrew.conveying.sweep import sweep
+from feederscrew.conveying.answer import sweep
 from feederscrew.output.page import blocks
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Chapter, Knobs, Page
-from feederscrew.output.report.moving import bowl_values, knobs, rate_values
+from feederscrew.output.report import bowl_values, knobs, rate_values
 from feederscrew.rates.well_oriented import fed
 from feederscrew.studies.report import report
 

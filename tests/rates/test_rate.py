@@ -8,7 +8,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying import answer, sensitivity
+from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
 from feederscrew.part.loading import load
 from feederscrew.rates import well_oriented
@@ -129,14 +129,14 @@ def test_velocity_brackets_the_spread_of_restitution_where_parts_hop():
 
 def test_the_spread_of_restitution_alone_widens_what_friction_leaves_open(monkeypatch):
     wide = well_oriented.velocity(bouncing(0.5))
-    monkeypatch.setattr(sensitivity, "even_range", lambda restitution: (restitution, restitution))
+    monkeypatch.setattr(answer, "even_range", lambda restitution: (restitution, restitution))
     narrow = well_oriented.velocity(bouncing(0.5))
     assert wide.value == narrow.value and wide.high - wide.low > 1.05 * (narrow.high - narrow.low)
 
 
 def test_a_part_that_does_not_hop_asks_for_no_restitution():
-    assert len(sensitivity.surfaces(BOWL, False)) == 3
-    ends = [one.restitution for one in sensitivity.surfaces(bouncing(0.95), True)[3:]]
+    assert len(answer.surfaces(BOWL, False)) == 3
+    ends = [one.restitution for one in answer.surfaces(bouncing(0.95), True)[3:]]
     assert ends == pytest.approx([0.9, 0.99])  # of 0.687 to 1.213
 
 
