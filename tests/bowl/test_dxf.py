@@ -186,23 +186,6 @@ def test_a_spline_is_read_as_it_runs(tmp_path):
     )
 
 
-def test_a_rational_spline_is_a_circle(tmp_path):
-    """Nine control points: Piegl and Tiller, sec. 7.5. The spline of a CAD program's circle."""
-    root = np.sqrt(0.5)
-    places = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
-
-    def draw(space, look):
-        spline = space.add_rational_spline(
-            [(5.0 * x, 5.0 * y, 0.0) for x, y in places], [1, root] * 4 + [1], 2
-        )
-        spline.knots = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
-        spline.dxf.layer = look["layer"]
-
-    (ring,) = drawn(tmp_path, draw)
-    assert np.hypot(*np.array(ring).T) == pytest.approx(5e-3, abs=1e-12)
-    assert area(ring) == pytest.approx(25.0 * np.pi, rel=1e-3)
-
-
 # One unit in millimetres: BIPM, SI Brochure, and NIST SP 811, table B.8
 IN_MM = {
     1: 25.4, 2: 304.8, 4: 1.0, 5: 10.0, 6: 1e3, 8: 25.4e-6, 9: 0.0254, 10: 914.4, 12: 1e-6, 13: 1e-3, 14: 1e2,
@@ -282,12 +265,6 @@ def test_what_is_no_flat_closed_outline_is_refused_by_name(tmp_path, kind):
     with pytest.raises(ConfigError, match=word) as told:
         drawn(tmp_path, draw)
     assert str(told.value).startswith("bowl.yaml:3: ") and str(told.value).isprintable()
-
-
-def test_more_entities_than_a_hole_has_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(dxf, "MAX_ENTITIES", 30)
-    with pytest.raises(ConfigError, match="entities"):
-        drawn(tmp_path, line(*[(k, k % 2) for k in range(40)]))
 
 
 def test_several_outlines_and_corners_on_a_straight_side(tmp_path):

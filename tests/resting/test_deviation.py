@@ -73,12 +73,6 @@ def test_few_expected_are_joined_the_weakest_first():
     assert (found.degrees_of_freedom, found.joined) == (2, 2)
 
 
-def test_nothing_is_left_to_test_when_all_is_joined():
-    found = measure.chi_square([3, 2], [0.5, 0.5])
-    assert np.isnan(found.statistic) and np.isnan(found.p_value)
-    assert (found.degrees_of_freedom, found.joined) == (0, 2)
-
-
 def test_the_p_value_is_uniform_when_the_rule_is_true(rng):
     fractions = np.array([0.2, 0.3, 0.5])
     p = [measure.chi_square(rng.multinomial(400, fractions), fractions).p_value for _ in range(2000)]

@@ -78,12 +78,6 @@ def test_a_drop_test_holds_its_sampling():
     assert found.high == pytest.approx(1.0 - found.low)
 
 
-def test_of_a_part_that_rests_on_one_class_alone_nothing_is_open():
-    p = np.array([1.0, 0.0])
-    low, high = recommended.launched(p, p, p, np.array([True, False]))
-    assert low.tolist() == high.tolist() == [1.0, 0.0]
-
-
 @pytest.mark.parametrize(("exponent", "name"), [(2.0, "hard"), (0.0, "soft"), (1.5, "exponent 1.5")])
 def test_the_answer_of_a_part_says_its_rule(exponent, name):
     found = find(shapes.part(shapes.box(4.0, 7.0, 11.0)), exponent=exponent)
