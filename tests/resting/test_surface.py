@@ -64,12 +64,15 @@ def test_the_interval_narrows_with_the_root_of_the_counts():
     assert (few.high - few.low) / (many.high - many.low) == pytest.approx(10.0, rel=0.05)
 
 
-def test_the_interval_covers_the_truth_as_often_as_it_says():
-    rng = np.random.default_rng(5)
-    truth = surface_shares(SHARES, HEIGHTS, RADIUS, 1.5)
-    fits = [calibrate(rng.multinomial(400, truth), SHARES, HEIGHTS, RADIUS) for _ in range(200)]
-    assert 180 <= sum(fit.low <= 1.5 <= fit.high for fit in fits) <= 199
-    assert 0.35 < np.mean([fit.chi_square.p_value for fit in fits]) < 0.65
+def test_the_interval_ends_where_the_likelihood_has_fallen_by_half_of_chi_square():
+    """Wilks 1938: 3.8415 / 2 for 95 %."""
+    counts = np.array([210, 120, 55, 15])
+    fit = calibrate(counts, SHARES, HEIGHTS, RADIUS)
+    likelihood = [
+        (counts * np.log(surface_shares(SHARES, HEIGHTS, RADIUS, exponent))).sum()
+        for exponent in (fit.low, fit.exponent, fit.high)
+    ]
+    assert np.subtract(likelihood[1], likelihood[::2]) == pytest.approx(3.8415 / 2.0, rel=1e-4)
 
 
 def test_counts_on_one_aspect_only_bound_the_exponent_from_below():
