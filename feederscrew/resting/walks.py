@@ -168,6 +168,16 @@ def roll_from_facet(edges, facet) -> int:
 
 
 @compiled
+def rolls(edges, directions, ends) -> None:
+    """Fill (N,) ends with the facet a part set down with each of (N, 3) directions down comes to rest on."""
+    corner = edges.origins[edges.facet_edges[0]]
+    for n in range(len(directions)):
+        x = row(directions, n)
+        corner = support(edges, x, corner)
+        ends[n] = roll_from_facet(edges, roll_from_corner(edges, x, corner))
+
+
+@compiled
 def triangle_area(a, b, c) -> float:
     """Signed area [sr] of a spherical triangle of unit vectors, positive counter-clockwise from outside.
 

@@ -194,6 +194,24 @@ def test_an_independent_monte_carlo_of_the_flow(seed, offset):
     assert (np.abs(found - result.shares) < 4.0 * spread + 0.006).all()
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_rolls_agree_with_basin_areas(seed):
+    from feederscrew.geometry.compiled import SMALL, fitting
+    from feederscrew.resting import walks
+    from feederscrew.resting.half_edges import half_edges, sinks
+
+    points, centre = random_body(seed)
+    hull = convex_hull(points, centre)
+    result, edges = tumble(hull), half_edges(hull)
+    starts = np.random.default_rng(seed).normal(size=(20000, 3))
+    ends = np.empty(len(starts), int)
+    rolls = fitting(walks.rolls, SMALL + 1)
+    rolls(edges, starts / np.linalg.norm(starts, axis=1, keepdims=True), ends)
+    found = np.bincount(np.searchsorted(sinks(edges), ends), minlength=len(result.sinks)) / len(starts)
+    spread = np.sqrt(result.shares * (1 - result.shares) / len(starts))
+    assert (np.abs(found - result.shares) < 4.5 * spread + 1e-4).all()
+
+
 def test_a_failed_check_is_said():
     from feederscrew.resting.exact_tumbling import _doubts
 
