@@ -62,21 +62,6 @@ def test_what_the_reader_says_of_odd_drawings_stays_out_of_sight(tmp_path, caplo
     assert caplog.records == []
 
 
-<<<<<<< HEAD
-=======
-def test_every_damage_is_a_line(drawing, rng):
-    data = drawing.read_bytes()
-    for _ in range(40):
-        start, length = rng.integers(len(data)), rng.integers(1, 200)
-        odd = rng.choice([b"", b"-inf", b"nan", b"1e999", b"\x00", b"\n", bytes(rng.bytes(30))])
-        drawing.write_bytes(data[:start] + odd + data[start + length :])
-        try:
-            dxf.outlines(drawing, "HOLE", "bowl.yaml:3").rings
-        except ConfigError as fault:
-            assert str(fault).startswith("bowl.yaml:3: ")
-
-
->>>>>>> 5d4fe18216d306054cf21e4f2bb88663de7c78af
 @pytest.mark.parametrize("place", ["nan", "inf", "1e12"])
 def test_a_corner_at_no_place_of_a_bowl_is_a_line(drawing, place):
     text = drawing.read_text()
@@ -291,14 +276,6 @@ def test_several_outlines_and_corners_on_a_straight_side(tmp_path):
     assert len(corner) == 3 and area(corner) == pytest.approx(4.5)
 
 
-<<<<<<< HEAD
-=======
-def test_a_layer_has_one_name_in_upper_and_lower_case(tmp_path):
-    drawn(tmp_path, slot, layer="My Hole (1)")
-    assert len(dxf.outlines(tmp_path / "drawn.dxf", "my hole (1)", "x").rings) == 1
-
-
->>>>>>> 5d4fe18216d306054cf21e4f2bb88663de7c78af
 def test_only_a_file_of_some_size_is_read(tmp_path):
     (tmp_path / "big.dxf").touch()
     os.truncate(tmp_path / "big.dxf", 1 << 40)
