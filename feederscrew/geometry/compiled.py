@@ -175,6 +175,7 @@ def _fingerprint(module):
     digest = hashlib.sha256("\n".join(names).encode())
     for path in [
         Path(__file__),
+        Path(__file__).with_name("object_code.py"),
         *sorted(path for pattern in patterns for path in library.glob(pattern)),
     ]:
         digest.update(path.read_bytes())

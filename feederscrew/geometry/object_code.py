@@ -22,8 +22,7 @@ from typing import Any
 import numpy as np
 
 TRIED_ON = ("linux",)  # systems on which object code is kept
-THUNK = "entry_of_words"  # renamed where the words or their order change: older files are then not read
-MOST_RECENT = 16  # records whose words are kept
+THUNK = "entry_of_words"
 # functions of C that a kernel may call: found in every process
 CALLABLE = {
     "sin",
@@ -53,7 +52,6 @@ class ObjectCode:
         self.folder, self.digest = folder, digest
         self._by_types: dict[tuple[Any, ...], Callable[[Any], int] | None] = {}  # None: numba does it
         self._lock = threading.Lock()
-        self._recent: dict[int, tuple[Any, list[int], list[Any]]] = {}  # records, with their words and types
 
     def on_disk(self) -> bool:
         """Return whether object code of the sources as they are is on disk, whatever the arguments."""
@@ -64,9 +62,7 @@ class ObjectCode:
         words: list[int] = []
         types: list[Any] = []
         for value in values:
-            own_words, own_types = self._words_of(value)
-            words += own_words
-            types += own_types
+            _flatten(value, words, types)
         key = tuple(types)
         if key not in self._by_types:
             with self._lock:
@@ -76,20 +72,6 @@ class ObjectCode:
         run = self._by_types[key]
         if run is None or run(np.array(words, np.int64).ctypes.data) != 0:
             self.dispatcher()(*values)
-
-    def _words_of(self, value: Any) -> tuple[list[int], list[Any]]:
-        """Return the words of an argument and its type; a record that was handed over before has the same."""
-        recent = self._recent.get(id(value))
-        if recent is not None and recent[0] is value:
-            return recent[1], recent[2]
-        words: list[int] = []
-        types: list[Any] = []
-        _flatten(value, words, types)
-        if isinstance(value, tuple):
-            if len(self._recent) >= MOST_RECENT:
-                self._recent.clear()
-            self._recent[id(value)] = value, words, types
-        return words, types
 
     def _name(self) -> str:
         return f"{self.py_func.__name__}-{self.digest}"
@@ -119,12 +101,11 @@ class ObjectCode:
         engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine(llvm))
         engine.add_object_file(llvm.ObjectFileRef.from_data(data[32:]))
         engine.finalize_object()
-        address = engine.get_function_address(THUNK)
-        if not address:
-            return False
         _engines.append(engine)
         # the lock of the interpreter is free meanwhile, as in numba's nogil
-        self._by_types[key] = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)(address)
+        self._by_types[key] = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)(
+            engine.get_function_address(THUNK)
+        )
         return True
 
     def _compile(self, values: Sequence[Any], key: tuple[Any, ...], count: int) -> None:
@@ -168,8 +149,7 @@ def _flatten(value: Any, words: list[int], types: list[Any]) -> None:
     if isinstance(value, np.ndarray):
         shape, strides = value.shape, value.strides
         words += (0, 0, value.size, value.itemsize, value.__array_interface__["data"][0], *shape, *strides)
-        kind, flags = value.dtype, value.flags
-        types.append((kind.char, kind.itemsize, kind.names, len(shape), flags.c_contiguous, flags.writeable))
+        types.append((value.dtype, len(shape), value.flags.c_contiguous, value.flags.writeable))
     elif isinstance(value, tuple):
         types.append((type(value).__name__, len(value)))
         for part in value:

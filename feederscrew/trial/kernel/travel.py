@@ -4,7 +4,7 @@ import math
 
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, X, Y, Z
-from feederscrew.geometry.compiled import compiled, kept_entry, outlined
+from feederscrew.geometry.compiled import compiled, entry, outlined
 from feederscrew.trial.kernel import pairs, steps
 from feederscrew.trial.kernel.track_contacts import find_contacts
 
@@ -125,7 +125,7 @@ def _find_islands(solid, work, active, dt):
     return islands
 
 
-@kept_entry
+@entry
 def ride(surface, limits, solid, floor, work, sent, together):
     """Follow every part that is sent from its start, one at a time; where none is, move a crowd on.
 
