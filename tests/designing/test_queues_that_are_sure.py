@@ -11,7 +11,7 @@ from feederscrew import bowl as bowls
 from feederscrew.designing import proposals, queues
 from feederscrew.designing.record import FilledQueue, share_interval
 from feederscrew.resting.aspects import find
-from feederscrew.trial.queue import BLOCK
+from feederscrew.trial.queue import PARTS_IN_SHARES as BLOCK
 
 TARGET = 0.5  # [1/s] asked for
 LEAST = 0.9 * TARGET

@@ -9,7 +9,7 @@ from scipy import stats
 from feederscrew.geometry import vectors
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import part_poses, starts
+from feederscrew.trial import part_poses
 from feederscrew.trial.shape import solid_of
 
 PARTS = 1200
@@ -23,7 +23,7 @@ FLAT = next(k for k, one in enumerate(EVERY) if one.height < 6e-3 and one.length
 def laid():
     """States (N, 13) and times (N,) [s] of parts laid flat along the wall, their solid and its unit [m]."""
     solid, length, principal = solid_of(PART)
-    states, times = starts.laid_down(BOWL, EVERY, np.full(PARTS, FLAT), solid, principal, length, seed=4)
+    states, times = part_poses.laid_down(BOWL, EVERY, np.full(PARTS, FLAT), solid, principal, length, seed=4)
     return states, times, solid, length, principal
 
 
@@ -58,4 +58,6 @@ def test_parts_begin_turned_and_tilted_a_little(laid):
     assert np.sqrt((angles**2).mean()) == pytest.approx(0.2, rel=0.05)
     assert stats.kstest(angles, stats.halfnorm(scale=0.2).cdf).pvalue > 0.01
     assert is_even(np.arctan2(axes[:, 1], axes[:, 0]), -np.pi, np.pi)
-    assert all(starts.lowest(laid[2].corners, state) == pytest.approx(0.0, abs=1e-9) for state in states[:50])
+    assert all(
+        part_poses.lowest(laid[2].corners, state) == pytest.approx(0.0, abs=1e-9) for state in states[:50]
+    )

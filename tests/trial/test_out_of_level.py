@@ -14,7 +14,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import course, part_poses, runs, staging, starts
+from feederscrew.trial import course, part_poses, runs, staging
 from feederscrew.trial.looks import OTHER, Looks
 from feederscrew.trial.shape import solid_of
 
@@ -42,7 +42,7 @@ def highest_rise(degrees):
     known, one = runs.setting(solid, length, STILL), EVERY[UPRIGHT]
     state = part_poses.pose_on_track(one, principal, length, STILL.track, place=0.0, aside=5e-3)
     state = tilted(state, np.radians(degrees))
-    state[body.Z] -= starts.lowest(solid.corners, state) - 1e-9
+    state[body.Z] -= part_poses.lowest(solid.corners, state) - 1e-9
     state[body.VZ] = -FALL / np.sqrt(STILL.gravity * length)
     stage = staging.plain(STILL.track, EVERY, 0.1)
     follow = runs.past(known, stage, limits=(0.08, 1.0, 0.0, 1.0), interval=1e-3, places=90)

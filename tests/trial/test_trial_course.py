@@ -18,7 +18,7 @@ from feederscrew.running import RunSettings
 from feederscrew.studies import rate
 from feederscrew.studies import trial as studies
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import course, landing, looks, part_poses, rounding, runs, shape, staging, starts
+from feederscrew.trial import course, looks, part_poses, runs, shape, staging
 from feederscrew.trial.kernel import plate_views, workspace
 
 OWN = [
@@ -188,7 +188,7 @@ def test_a_round_side_touches_with_points_on_its_circle():
     disc = shapes.part(shapes.prism(np.column_stack([5 * np.cos(turn), 5 * np.sin(turn)]), 8))
     solid, length, _ = shape.solid_of(disc)
     axis = np.eye(3)[np.argmax(np.abs(solid.inertia - np.median(solid.inertia)))]
-    fine = rounding.rounded(solid, [axis])
+    fine = shape.rounded(solid, [axis])
     across = fine.corners - np.einsum("ci,i->c", fine.corners, axis)[:, None] * axis
     assert len(fine.corners) == 2 * 24 * 3  # 15 degrees in parts of at most 6
     assert fine.on_circle.all() and not len(fine.singles)
@@ -197,7 +197,7 @@ def test_a_round_side_touches_with_points_on_its_circle():
     np.testing.assert_allclose(np.sort(vectors.product(middles, axis)) * length, [-4e-3, 4e-3])
     np.testing.assert_allclose(np.linalg.norm(across, axis=1) * length, 5e-3, rtol=1e-5)
     np.testing.assert_array_equal(fine.vertices[fine.triangles], solid.vertices[solid.triangles])
-    box = rounding.rounded(shape.solid_of(PART)[0], [axis])
+    box = shape.rounded(shape.solid_of(PART)[0], [axis])
     assert len(box.corners) == 8 and not len(box.circles)  # a box has no circle
 
 
@@ -326,7 +326,7 @@ def test_parts_that_fall_onto_the_track_go_on_as_they_come_to_lie(bowl):
     every = orientations(PART, aspects, one.track)
     own, begun = {"launch": "drop", "parts": 24}, []
     kinds = [RunSettings(2, jobs, before=lambda: begun.append(1)) for jobs in (1, 2)]
-    both = [landing.landing(PART, one, aspects, every, every, run=run, **own) for run in kinds]
+    both = [course.landing(PART, one, aspects, every, every, run=run, **own) for run in kinds]
     fell = both[0]
     assert begun == [1, 1]  # once each, not again where those that lie go on
     np.testing.assert_array_equal(fell.fates, both[1].fates)
@@ -340,7 +340,7 @@ def test_parts_that_fall_onto_the_track_go_on_as_they_come_to_lie(bowl):
 def test_parts_that_fall_anywhere_over_the_track_clear_the_wall():
     bowl, aspects = bowls.read(None, OWN), find(PART)
     below = looks.AspectsBelow(PART, aspects)
-    states, times = starts.falling(bowl, named("feed"), below.shape, 40, shape.solid_of(PART)[1], 3)
+    states, times = part_poses.falling(bowl, named("feed"), below.shape, 40, shape.solid_of(PART)[1], 3)
     for state in states:
         corners = state[:3] + np.einsum("ij,cj->ci", part_poses.matrix(state), below.shape.vertices)
         assert corners[:, 1].min() > 0.0 and corners[:, 2].min() > 1.99

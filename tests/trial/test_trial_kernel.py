@@ -15,7 +15,7 @@ from feederscrew.geometry import vectors
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import looks, part_poses, rounding, runs, shape, staging
+from feederscrew.trial import looks, part_poses, runs, shape, staging
 
 BOWL = bowls.read(
     None,
@@ -231,7 +231,7 @@ def test_a_round_part_is_held_where_the_free_edge_cuts_off_the_lowest_of_its_cir
     bowl = replace(BOWL, track=track, drive=replace(BOWL.drive, amplitude=0.0))
     pin = shapes.part(shapes.cylinder(1.62, 6.0, 24))
     solid, length, principal = shape.solid_of(pin)
-    known = runs.setting(rounding.rounded(solid, [np.eye(3)[0]]), length, bowl)
+    known = runs.setting(shape.rounded(solid, [np.eye(3)[0]]), length, bowl)
     stage = staging.plain(track, orientations(pin, find(pin), track), 1.0)
     turn, lowest = np.radians(50.0), []
     for beyond in np.linspace(-0.03, 0.03, 13):  # [mm] that the lowest of its end lies beyond the edge

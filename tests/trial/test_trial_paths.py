@@ -8,8 +8,8 @@ import pytest
 from feederscrew.geometry.compiled import zero_rows
 from feederscrew.output.trial import figures
 from feederscrew.trial import course, runs
-from feederscrew.trial.air import Watch
 from feederscrew.trial.kernel import workspace
+from feederscrew.trial.staging import Watch
 
 RADIUS = 0.15  # [m] of the wall
 

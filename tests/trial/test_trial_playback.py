@@ -55,7 +55,7 @@ def test_one_that_passes_and_one_that_does_not_are_shown_of_two_trials():
 
     from feederscrew.output.trial.rides import rides_to_show
     from feederscrew.trial import course, runs
-    from feederscrew.trial.air import STILL_AIR
+    from feederscrew.trial.staging import STILL_AIR
 
     def tried(names, ends, fate):
         rides = [SimpleNamespace(outcomes=np.array(one), paths=np.zeros((len(one), 2, 8))) for one in ends]

@@ -13,7 +13,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.resting.counts import profiles
 from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import crowd, looks, outlet, part_poses, queue, runs, shape
+from feederscrew.trial import looks, part_poses, queue, result, runs, shape
 from feederscrew.trial.kernel import travel
 from feederscrew.trial.kernel.steps import BEHIND, BELOW
 
@@ -35,7 +35,7 @@ def parts_on(bowl, *places, heights=None, friction=None):
     known = runs.setting(SOLID, LENGTH, bowl)
     if friction is not None:
         known = replace(known, friction=np.full(5, friction))
-    on = crowd.PartsOnTrack(known, crowd.crowded(bowl, EVERY, (), 0.5), len(places))
+    on = queue.PartsOnTrack(known, queue.crowded(bowl, EVERY, (), 0.5), len(places))
     for n, place in enumerate(places):
         state = part_poses.pose_on_track(FLAT, PRINCIPAL, LENGTH, bowl.track, place=place, aside=1e-3)
         state[body.Z] += 0.0 if heights is None else heights[n] / LENGTH
@@ -185,7 +185,7 @@ def test_the_track_of_a_queue_has_every_hole_once(tmp_path):
     path = tmp_path / "bowl.yaml"
     path.write_text("devices:\n  - gap: 9 mm\n  - wiper: 6 mm\n  - canyon: 2 mm\n")
     bowl = bowls.read(path, OWN)
-    made = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
+    made = queue.crowded(bowl, EVERY, bowl.devices, 0.1)
     assert len(made.windows) == 3 and made.outlet == made.windows[-1, 1]
     assert (made.windows[1:, 0] == made.windows[:-1, 1]).all()
     assert len(made.stage.plates) == 2  # the track in one piece, and the blade
@@ -198,7 +198,7 @@ def test_the_track_goes_on_lower_behind_a_step(tmp_path):
     path = tmp_path / "bowl.yaml"
     path.write_text("devices:\n  - step: 8 mm\n  - gap: 5 mm\n")
     bowl = bowls.read(path, OWN)
-    made = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
+    made = queue.crowded(bowl, EVERY, bowl.devices, 0.1)
     assert made.levels == pytest.approx([0.0, -8e-3, -8e-3])
     assert made.stage.plates.origin_z == pytest.approx([0.0, -8e-3])
 
@@ -207,7 +207,7 @@ def test_what_left_stands_beside_what_was_measured():
     told = replace(queued(BOWL, 1, 0.02), whole=np.array([[9, 3, 0, 2]]))
     columns = profiles.parse_profile("aspect,MDFT\nA,0.5\nB,0.3\nC,0.2\n", "counts.csv", ASPECTS.names)
     shares = np.full(len(EVERY), 1.0 / len(EVERY))
-    seen = outlet.outlet(told, EVERY, shares, ASPECTS.names, columns)
+    seen = result.outlet(told, EVERY, shares, ASPECTS.names, columns)
     assert seen.shares == pytest.approx([0.75, 0.25, 0.0]) and seen.other == 2
     assert seen.offered.sum() == pytest.approx(1.0)
     low, high = seen.ends

@@ -11,9 +11,9 @@ from feederscrew.dropping.kernel import body
 from feederscrew.geometry.compiled import zero_rows
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import part_poses, runs, shape, staging, starts
-from feederscrew.trial.arrays import workspace_of
+from feederscrew.trial import part_poses, runs, shape, staging
 from feederscrew.trial.kernel import steps, track_contacts, travel, workspace
+from feederscrew.trial.runs import workspace_of
 
 OWN = [
     "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
@@ -45,7 +45,7 @@ def lying(bowl, aside=None):
     every = orientations(PART, find(PART), bowl.track)
     one = min(every, key=lambda one: one.height)
     state = part_poses.pose_on_track(one, PRINCIPAL, LENGTH, bowl.track, place=0.1, aside=aside or 0.0)
-    return state if aside else starts.clear(state, SOLID, bowl.track, LENGTH, 0.0)
+    return state if aside else part_poses.clear(state, SOLID, bowl.track, LENGTH, 0.0)
 
 
 @pytest.mark.parametrize(("ahead", "friction"), [(1.0, 0.4), (-1.0, 0.2)])
