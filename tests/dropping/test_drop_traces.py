@@ -107,21 +107,8 @@ def test_turning_the_file_turns_the_attitudes_back(tmp_path):
         assert corners(turned, trace)[:, :, 2].min() > -2e-5
 
 
-def test_a_part_let_fall_flat_lands_as_late_as_it_must(tmp_path):
-    shapes.box(10.0, 10.0, 10.0).export(tmp_path / "cube.stl")
-    own = {"fall": "30 mm"}
-    _, _, result = followed(tmp_path / "cube.stl", preset="drop", count=3, drops=3, own=own)
-    for trace in result.traces:
-        assert trace.times[np.argmax(trace.impacts)] == pytest.approx(np.sqrt(0.06 / g), rel=1e-3)
 
 
-def test_a_long_drop_stays_small():
-    part, aspects, result = followed(PARTS / "washer_m6.stl", count=6)
-    most = drop_test.MAX_TRACE_ROWS + 2 * drop_test.MAX_IMPACTS + 3
-    assert max(len(trace.times) for trace in result.traces) <= most
-    assert max(trace.times[-1] for trace in result.traces) > 2.0
-    text = tables.text(drop.traces(DropStudy(part, aspects, result)), "csv")
-    assert len(text) < 150e3 * len(result.traces)
 
 
 @pytest.mark.parametrize("preset", ["place", "drop", "feed"])
@@ -197,16 +184,3 @@ def test_stills_go_from_the_first_impact_to_the_end(bracket):
         end = drop.still_caption(trace, rows[-1], aspects.names, 0.0)
         assert end == f"{1e3 * trace.times[-1]:.0f} ms, rests on {aspects.names[trace.row]}"
         assert drop.still_caption(trace, rows[0], aspects.names, 0.0).endswith("ms, hits")
-
-
-def test_the_curve_shows_energy_over_the_heights_it_comes_down_to(bracket):
-    _, aspects, result = bracket
-    trace = result.traces[0]
-    axes = style.figure().add_subplot()
-    drop.curve(axes, trace, aspects, drop_test.chosen(trace, 12))
-    assert axes.get_xlabel() == "time [ms]" and axes.get_ylabel() == "energy as height [mm]"
-    energy, height = axes.get_lines()[:2]
-    assert energy.get_ydata() == pytest.approx(trace.energies / MM)
-    assert (energy.get_ydata() >= height.get_ydata() - 1e-9).all()
-    saddle = next(line for line in drop.references(trace, aspects) if "tips" in line[1])
-    assert saddle[0] == pytest.approx((aspects.heights + aspects.barriers)[trace.row] / MM)
