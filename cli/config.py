@@ -39,9 +39,9 @@ def init(file, replace, machine, quiet):
     from feederscrew.bowl import documentation
 
     if machine is not None and machine.strip().casefold() == "list":
-        from feederscrew.machine import drive_units
+        from feederscrew.machine import drive_sizing
 
-        click.echo("\n".join(drive_units.lines()))
+        click.echo("\n".join(drive_sizing.lines()))
         return
     text = _of_machine(machine) if machine is not None else documentation.template()
     if file == "-":
@@ -53,9 +53,9 @@ def init(file, replace, machine, quiet):
 
 
 def _of_machine(name):
-    from feederscrew.machine import drive_units
+    from feederscrew.machine import drive_sizing
 
-    return drive_units.bowl_file(drive_units.unit(name))
+    return drive_sizing.bowl_file(drive_sizing.unit(name))
 
 
 @config.command(short_help="Print the JSON Schema of a bowl file, for editors.")

@@ -253,11 +253,11 @@ def _folder(out, solid, inputs, settings):
 
 def _written(out, folder, study, settings, pictures):
     """What one design leaves in its folder; returns the design with what its machine is out of limits in."""
-    from feederscrew.designing import built_bowl
+    from feederscrew.designing import design
     from feederscrew.output import design_pages, designs, offers
 
-    built = built_bowl.Built() if study.partial else built_bowl.built(study, settings)
-    study = built_bowl.with_machine(study, built)
+    built = design.Built() if study.partial else design.built(study, settings)
+    study = design.with_machine(study, built)
     if study.bowl is not None:  # read back and compared, whether or not it is kept
         designs.bowl_file(study, settings, built.sheet)
     out.warn(*study.warnings, *([f"no solid of the bowl is made: {built.why}"] if built.why else []))

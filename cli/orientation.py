@@ -96,16 +96,6 @@ def arriving(out, part, taken, rule):
     return shares_of
 
 
-def few(part, taken, rule):
-    """Return the same function of few parts, sooner; None where nothing is fed, or as many as are named."""
-    from feederscrew.studies import rate as study
-    from feederscrew.studies.tune import ROUGH_PARTS
-
-    if rule != "recommended" or any(taken[name] is not None for name in ("launch", "probabilities", "fed")):
-        return None
-    return lambda bowl: study.shares(part, bowl, seed=taken["seed"], fed=ROUGH_PARTS)
-
-
 def choice(taken):
     """Return the keywords of ``studies.rate.shares`` that the options name; a wrong call if two clash."""
     has_rule = (

@@ -37,11 +37,10 @@ def tune(part, target, wanted, taken, worst, bowl, out):
     effective = columns.conditions(solid) | bowls.texts(settings)
     progress.conveying(out)
     record = bowls.record(settings)
-    shares = solid, taken, wanted["rule"]
-    arriving, rough = orientation.arriving(out, *shares), orientation.few(*shares)
+    arriving = orientation.arriving(out, solid, taken, wanted["rule"])
     with out.folder(solid.name, solid.inputs | arriving(record).inputs, effective) as folder:
         result = study(
-            solid, record, target=target, arriving=arriving, rough=rough, worst=worst,
+            solid, record, target=target, arriving=arriving, worst=worst,
             progress=progress.progress_in_bar(out, "settings"), **wanted,
         )  # fmt: skip
         tried = bowls.verified(bowl["path"])

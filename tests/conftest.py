@@ -19,7 +19,7 @@ from hypothesis import settings
 from feederscrew.dropping import arrival
 from feederscrew.output import shading as shading_output
 from feederscrew.output import style
-from feederscrew.studies import aspects, simulation_cache, tune
+from feederscrew.studies import aspects, simulation_cache
 from feederscrew_cli.main import feeder
 
 # A shell that starts the tests in the background ignores these, and so would every command they start.
@@ -128,14 +128,14 @@ def _compiled(request):
         request.getfixturevalue("trial_compiled")
 
 
-def _counts(dropped, fed, led):
+def _counts(dropped, fed):
     return (
-        *((aspects, "MAX_DROPS", dropped), (tune, "ROUGH_PARTS", led)),
+        (aspects, "MAX_DROPS", dropped),
         *((arrival, name, fed) for name in ("FIRST_PARTS", "MAX_ARRIVALS", "LONGER_TIME_PARTS")),
     )
 
 
-FEW, FEWEST = _counts(500, 60, tune.ROUGH_PARTS), _counts(100, 20, 15)
+FEW, FEWEST = _counts(500, 60), _counts(100, 20)
 MANY = [(module, name, getattr(module, name)) for module, name, _ in FEW]
 
 

@@ -149,14 +149,14 @@ def test_every_function_of_a_bowl_takes_settings(monkeypatch):
 
 def test_a_design_keeps_what_its_bowl_was_read_from_and_the_settings(monkeypatch, bowl):
     """As ``feeder design --config``: it kept the devices alone, without the names of the keys."""
-    from feederscrew.designing import built_bowl, loop
+    from feederscrew.designing import design, loop
 
     calls = []
     monkeypatch.setattr(
         loop, "design", lambda part, plain, given, request, **own: calls.append((plain, given))
     )
-    monkeypatch.setattr(built_bowl, "built", lambda study, settings: None)
-    monkeypatch.setattr(built_bowl, "with_machine", lambda study, built: study)
+    monkeypatch.setattr(design, "built", lambda study, settings: None)
+    monkeypatch.setattr(design, "with_machine", lambda study, built: study)
     part = fs.load(ROOT / "parts/washer_m6.stl")
     fs.design(part, "60/min", fs.read_bowl(bowl), kept_keys={"track.width"}, climb="2 deg")
     fs.design(part, "60/min", frequency="60 Hz")

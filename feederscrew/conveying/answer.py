@@ -83,8 +83,7 @@ def answer(bowl: Bowl) -> Answer:
     """
     conveying(bowl)
     setting = OperatingPoint(*settings(bowl).tolist())
-    out = np.empty(steady.COLUMNS)
-    steady.survey(setting, out)
+    out = _surveyed(setting)
     speed, mu, throw = float(greatest_speed(bowl)), bowl.friction, float(out[steady.THROW])
     forward, backward = (
         float(limits.of_floor(limit, mu.wall, bowl.track.bank)) for limit in limits_of_slip(setting)
@@ -110,6 +109,13 @@ def answer(bowl: Bowl) -> Answer:
         regime=SWEEP_REGIMES[-1 if status == steady.NO_STEADY_STATE else int(out[steady.REGIME])],
         runs_away=bool(out[steady.RUNAWAY]),
     )
+
+
+@functools.lru_cache(maxsize=64)  # a drive is asked for its velocity, its hop and its hardest landing
+def _surveyed(setting: OperatingPoint) -> tuple[float, ...]:
+    out = np.empty(steady.COLUMNS)
+    steady.survey(setting, out)
+    return tuple(out.tolist())
 
 
 def conveying(bowl: Bowl) -> Bowl:
@@ -271,6 +277,9 @@ def sweep(rows: NDArray[np.float64], workers: int | None = None) -> NDArray[np.f
         operating_point.checked(OperatingPoint(*row))
     out, run = np.empty((len(rows), steady.COLUMNS)), _compiled_loop()
     run(rows[:0], out[:0])
+    if len(rows) <= SETTINGS_A_LOT:
+        run(rows, out)
+        return out
     lots = [slice(k, k + SETTINGS_A_LOT) for k in range(0, len(rows), SETTINGS_A_LOT)]
     with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
         list(pool.map(lambda lot: run(rows[lot], out[lot]), lots))

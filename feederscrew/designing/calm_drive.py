@@ -16,8 +16,7 @@ from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ConfigError
 from feederscrew.machine import drive_sizing, sizing
 from feederscrew.machine.drive_sizing import is_two_axis
-from feederscrew.machine.springs import analyse_springs
-from feederscrew.machine.stroke import greatest_amplitude
+from feederscrew.machine.springs import analyse_springs, greatest_amplitude
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 

@@ -1,18 +1,31 @@
 """The study of ``feeder design``: from a part and a rate to a bowl that its own trial confirms."""
 
-from collections.abc import Callable, Collection, Sequence
-from dataclasses import replace
-from typing import Unpack, overload
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import reduce
+from typing import Any, Unpack, overload
+
+import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl import Bowl
-from feederscrew.designing import built_bowl, families, loop
+from feederscrew import units
+from feederscrew.bowl import schema
+from feederscrew.bowl.record import Bowl, Machine
+from feederscrew.bowl.schema import BOWL_KEYS
+from feederscrew.bowl.settings import Setting, of_device
+from feederscrew.designing import families, loop
 from feederscrew.designing.families import FamilyStudy
-from feederscrew.designing.record import DESIGN_OUTCOMES, DesignRequest, DesignStudy
-from feederscrew.errors import ArgumentError
-from feederscrew.part import Part
-from feederscrew.studies import arguments
+from feederscrew.designing.nearest import tried_nearest
+from feederscrew.designing.record import DESIGN_OUTCOMES, HOLDS, DesignRequest, DesignStudy
+from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.machine import checks, drive_sizing
+from feederscrew.machine.drive_sizing import is_two_axis
+from feederscrew.part.record import Part
+from feederscrew.solidbowl.plan import ARC_CHORD_M, STEEL_NAME
+from feederscrew.studies import arguments, solidbowl
+from feederscrew.studies import bowl as machines
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
+from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.rate import MIN_POSITIVE, Shares, the_shares
 from feederscrew.studies.tooling import listed as names_of
 from feederscrew.units import listed
@@ -155,15 +168,240 @@ def design(
         raise ArgumentError("outcome", f"is {request.outcome!r}", f"give {listed(list(DESIGN_OUTCOMES))}")
     plain = arguments.a_bowl(bowls.default() if bowl is None else bowl, overrides, settings)
     kept_keys = frozenset(kept_keys) | {setting.key.name for setting in plain.settings if setting.is_own}
-    kept_settings = built_bowl.settings_of(plain, kept_keys)
+    kept_settings = settings_of(plain, kept_keys)
     if isinstance(part, (list, tuple)) and part:
         parts = [arguments.a_part(given_part) for given_part in part]
         family = families.family(parts, plain, kept_keys, request, tell=progress)
-        members = (
-            built_bowl.with_machine(member, built_bowl.built(member, kept_settings))
-            for member in family.members
-        )
+        members = (with_machine(member, built(member, kept_settings)) for member in family.members)
         return replace(family, members=tuple(members))
     shared = the_shares(aspect_shares)
     study = loop.design(arguments.a_part(part), plain, kept_keys, request, shares=shared, tell=progress)
-    return built_bowl.with_machine(study, built_bowl.built(study, kept_settings))
+    return with_machine(study, built(study, kept_settings))
+
+
+DRIVE_TEXTS = (
+    ("frequency", 1.0, "Hz"),
+    ("vibration_angle", np.radians(1.0), "deg"),
+    ("phase", np.radians(1.0), "deg"),
+)
+TRACK_TEXTS = (
+    ("climb", np.radians(1.0), "deg"),
+    ("bank", np.radians(1.0), "deg"),
+    ("radius", 1e-3, "mm"),
+    ("width", 1e-3, "mm"),
+)
+FIGURES = ": asked for "  # between what is wrong with a drive and its figures, in a DriveMismatch
+
+
+@dataclass(frozen=True, eq=False)
+class Built:
+    """What is built for a design: the machine below its bowl, and the bowl as a solid."""
+
+    sheet: MachineSheet | None = None  # as it is driven; None where no machine can be
+    drawn: MachineSheet | None = None  # the same with its order and its solid; None where there is no solid
+    why: str = ""  # there is none
+    remarks: tuple[str, ...] = ()  # of `feeder bowl` of that file with the part and the rate
+    lacks: str = ""  # what keeps the leaves and magnets that were sized from making the drive
+
+
+def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
+    """Return the machine below the bowl of a design, sized for it, and that bowl as a solid of steel.
+
+    Parameters
+    ----------
+    study : DesignStudy
+    settings : sequence of Setting
+        As the user gave them.
+
+    Returns
+    -------
+    Built
+    """
+    if study.bowl is None:
+        return Built()
+    listed = [s for s in settings if s.is_own and not s.key.name.startswith("devices")]
+    user_lines = [f"{s.key.name}={s.text}" for s in listed]
+    own = [*_texts("drive", study.bowl.drive, DRIVE_TEXTS), *_texts("track", study.bowl.track, TRACK_TEXTS)]
+    words = {line.partition("=")[0] for line in own} | {"drive.amplitude", "drive.peak_to_peak"}
+    words |= {"sizing.fill_density"}
+    kept_lines = [line for line in user_lines if line.partition("=")[0] not in words]
+    devices = tuple(of_device(k, device) for k, device in enumerate(study.devices, start=1))
+    try:
+        base_settings = bowls.settings(None, (*kept_lines, *own))
+        stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
+        tried = bowls.settings(None, (*kept_lines, *own, stroke))
+        sized, why = _sized((*base_settings, *devices), study, (*tried, *devices))
+        driven = replace(sized.bowl, drive=study.bowl.drive)  # at the stroke that was tried
+        words = drive_sizing.user_keys(listed, "machine")
+        machine = driven.machine if "leaves" in words else drive_sizing.on_leaves(driven, words)
+        under = [f"machine.{name}={text}" for name, text in _machine(machine)]
+        lines = _last((*kept_lines, *own, stroke, *under, *_fill(study.part, sized)))
+        own_settings = (*bowls.settings(None, lines), *devices)
+        sheet = machines.machine(own_settings)
+    except FeederError as fault:
+        return Built(why=str(fault))
+    sheet = replace(sheet, turns=sized.turns)
+    owned = "leaves" in words or is_two_axis(sheet.bowl.drive)
+    lacks = "" if owned else drive_sizing.leaf_shortfall(sheet.bowl)
+    warned = {*study.warnings, *checks.remarks(sheet)}
+    return Built(sheet, _drawn(sheet, sized), why, tuple(_ordered(own_settings, study, warned)), lacks)
+
+
+def _ordered(settings: Sequence[Setting], study: DesignStudy, warned: Collection[str]) -> Iterator[str]:
+    """What ``feeder bowl`` with the part and the rate warns of: it takes the drive that was tried.
+
+    What is ``warned`` of the design is warned of already is left out.
+    """
+    rate = f"{study.request.target * units.MINUTE:.4g}/min"
+    try:
+        sheet = machines.bowl(settings, study.part, study.request.target, as_tried=True)
+    except FeederError as fault:
+        yield f"feeder bowl finds no machine of this file for {rate}: {fault}"
+        return
+    drives = {warning.partition(FIGURES)[0] for warning in warned if FIGURES in warning}
+    for remark in sheet.remarks:
+        drive, figures, _ = remark.partition(FIGURES)
+        if remark not in warned and not (figures and drive in drives):  # the drive is told as it was tried
+            yield remark
+
+
+def settings_of(bowl: Bowl, kept_keys: Collection[str] = ()) -> tuple[Setting, ...]:
+    """Return a bowl as settings that the user gave, for the machine below a design of the library.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its devices are left out: a design has its own.
+    kept_keys : collection of str
+        Names of keys that count as given although they have their default value.
+
+    Returns
+    -------
+    tuple of Setting
+        What differs from the defaults is given as well.
+    """
+    usual, lines = bowls.default(), {}
+    for key in BOWL_KEYS:
+        if key.field in lines or key.word in schema.UNBALANCE_NAMES:
+            continue
+        pair: list[Any] = [reduce(getattr, key.field.split("."), record) for record in (bowl, usual)]
+        value, default = pair
+        if key.name == "machine.supply":  # follows the mains
+            default = 2.0 * bowl.sizing.mains_frequency
+        if value is None or (value == default and key.name not in kept_keys):
+            continue
+        if key.choices:
+            lines[key.field] = f"{key.name}={value}"
+        else:
+            scale = key.share * (units.factor(key.unit, key.dimension) if key.unit else 1.0)
+            lines[key.field] = f"{key.name}={value / scale:.12g} {key.unit}".strip()
+    return bowls.settings(None, tuple(lines.values()))
+
+
+def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
+    """Return a design that knows what its own machine is out of limits in, and what it cannot make.
+
+    Parameters
+    ----------
+    study : DesignStudy
+    built : Built
+        Of that design.
+
+    Returns
+    -------
+    DesignStudy
+        Its ``warnings`` hold those of ``feeder bowl`` for its file. Where the leaf springs that are drawn do
+        not make the angle that was tried, or its bowl makes no solid, it falls short.
+    """
+    sheet = built.sheet
+    solid = (f"no solid of its bowl can be made: {built.why}",) if built.why else ()
+    if study.bowl is None or sheet is None:
+        return replace(study, machine_lacks=solid) if solid else study
+    warnings = [*checks.remarks(sheet)]
+    warnings += [] if built.drawn is None else checks.solid_remarks(built.drawn)
+    warnings += built.remarks
+    other = sheet.mismatch
+    lacking: tuple[str, ...] = (
+        (f"the vibration angle {other.text}",)
+        if other is not None and other.other_angle and not other.two_axis
+        else ()
+    )
+    lacking += (f"the machine that is drawn does not make its drive: {built.lacks}",) if built.lacks else ()
+    lacking += solid
+    completed = replace(
+        study,
+        bowl=replace(study.bowl, machine=sheet.bowl.machine),
+        machine_drawn=True,
+        drive_mismatch=other,
+        machine_warnings=tuple(dict.fromkeys(warnings)),
+        machine_lacks=lacking,
+    )
+    if study.status != HOLDS or not lacking or other is None:
+        return completed
+    angle = np.degrees(other.wanted.spring_angle)
+    change = f"springs that stand at {angle:.3g} deg"
+    changed_springs = tried_nearest(study, study.request.target, change, trials=len(study.attempts))
+    return replace(completed, nearest=changed_springs)
+
+
+def _last(lines: Iterable[str]) -> tuple[str, ...]:
+    """Of several lines of one key the last."""
+    return tuple({line.partition("=")[0]: line for line in lines}.values())
+
+
+def _fill(part: Part, sized: MachineSheet) -> Iterator[str]:
+    """What fills the bowl, and how high its outlet is: a bowl file says both without the part."""
+    room = part.volume if part.hull is None else part.hull.volume
+    if room:
+        yield f"sizing.fill_density={part.mass / room:.9g} kg/m3"
+    if sized.solid is not None:  # rounded down: the cuts may stand as high as they just can
+        yield f"sizing.outlet_height={np.floor(1e9 * sized.depth) / 1e6:.9g} mm"
+
+
+def _drawn(sheet: MachineSheet, sized: MachineSheet) -> MachineSheet | None:
+    """The sheet with the solid, and how its mass lies about the axis; None without one."""
+    if sized.solid is None:
+        return None
+    under = replace(sheet.bowl.machine, unbalance=sized.bowl.machine.unbalance)
+    return replace(sheet, bowl=replace(sheet.bowl, machine=under), order=sized.order, solid=sized.solid)
+
+
+def _sized(
+    settings: Sequence[Setting], study: DesignStudy, tried: Sequence[Setting]
+) -> tuple[MachineSheet, str]:
+    """The bowl of a design, with its solid, or else why there is none.
+
+    Where the static rule lets nothing or too little through, it is the bowl at the stroke that was tried,
+    whose settings are ``tried``; where that makes no solid, that of a track without devices.
+    """
+    wanted = solidbowl.solid_options(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
+    target = study.request.target
+    for own, as_tried in ((settings, False), (tried, True)):
+        try:
+            return machines.bowl(own, study.part, target, solid=wanted, as_tried=as_tried), ""
+        except FeederError as fault:
+            why = str(fault)
+    try:
+        return machines.bowl(settings, study.part, study.request.target), why
+    except FeederError:
+        plain = [s for s in settings if not s.key.name.startswith("devices.")]
+        return machines.bowl(plain, study.part, MIN_POSITIVE), why
+
+
+def _texts(section: str, record: object, rows: Iterable[tuple[str, float, str]]) -> list[str]:
+    return [f"{section}.{name}={getattr(record, name) / unit:.9g} {text}" for name, unit, text in rows]
+
+
+def _machine(machine: Machine) -> Iterator[tuple[str, str]]:
+    yield "bowl_mass", f"{machine.bowl_mass:.6g} kg"
+    yield "bowl_inertia", f"{machine.bowl_inertia:.6g} kg m2"
+    yield "base_mass", f"{machine.base_mass:.6g} kg"
+    yield "base_inertia", f"{machine.base_inertia:.6g} kg m2"
+    yield "spring_radius", f"{1e3 * machine.spring_radius:.6g} mm"
+    yield "spring_angle", f"{np.degrees(machine.spring_angle):.6g} deg"
+    yield "leaf_width", f"{1e3 * machine.leaf_width:.6g} mm"
+    yield "leaf_thickness", f"{1e3 * machine.leaf_thickness:.6g} mm"
+    yield "leaf_length", f"{1e3 * machine.leaf_length:.6g} mm"
+    yield "leaves", f"{machine.leaves:.0f}"
+    for word, value in schema.unbalance_values(machine).items():
+        yield word, f"{value:.12g} {'m' if word in schema.CENTRE else 'kg m2'}"

@@ -6,27 +6,29 @@ import itertools
 import math
 import re
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
 from feederscrew.bowl.devices import check_written
-from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.record import Bowl, Track
 from feederscrew.designing import calm_drive, proposals, short_trials
+from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import DEVICE, DRIVE, PART, RATE_KEPT, Attempt, DesignRequest, RobustRun
-from feederscrew.designing.robust import LEAST_SHARE_LEAVING, denied, robust_run
+from feederscrew.designing.short_trials import LEAST_SHARE_LEAVING, denied, robust_run
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.part.record import Part
-from feederscrew.rates import arrivals, stream
+from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import FLAT_KIND
+from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.counts.profiles import Measured
 from feederscrew.running import RunSettings
 from feederscrew.studies import solidbowl
 from feederscrew.studies.rate import Shares, shares
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
-from feederscrew.tooling.orientations import neck
+from feederscrew.tooling.orientations import Orientation, neck
 from feederscrew.trial import runs
 
 SHORT_TRIAL_PARTS = 2  # parts of each orientation in a short trial
@@ -53,6 +55,8 @@ ASKED_STEP = 1.2  # between the velocities at which chains are looked for
 SLOWER = 1.2  # a chain that gains so many times what was taken for it is proposed again, at its own drive
 LYING = proposals.Recipe(1, proposals.MARGINS[0], "any", ())  # of what a part may do at best
 Progress = Callable[[str, int, int, float, float], None]
+Place = tuple[float, int]  # bank [rad] of a track, and row of an orientation on it
+ChainKey = tuple[Track, str, tuple[tuple[str, str], ...]]
 USUAL_S = {"trial": 4.0, "draws": 1.0, "queue": 60.0}  # [s] a trial, a draw, all queues, before any was timed
 USUAL_SLOWNESS_S = 10.0  # [s] of stages that count as having taken as long as usual
 USUAL_TRIALS = 5  # of a design: the mean of those of docs/design.md is 5.4
@@ -70,17 +74,20 @@ class Search:
     kept_keys: frozenset[str]
     tell: Callable[[str], None]  # of a sentence
     shares: Shares | None = None
-    attempts: list = field(default_factory=list)
-    passed: list = field(default_factory=list)  # (rate, Candidate) of clean attempts
-    failed: list = field(default_factory=list)  # the same of others that deliver
+    attempts: list[Attempt] = field(default_factory=list)
+    passed: list["Candidate"] = field(default_factory=list)  # of clean attempts
+    failed: list["Candidate"] = field(default_factory=list)  # of others that deliver
     before: Callable[[], None] | None = None
     reserve: float = RESERVE
     least: float = 0.0  # [m/s] through tooling, where what is wanted was lost at a slower drive
-    avoided: dict = field(default_factory=dict)  # kinds of devices at which a row was lost, by bank and row
-    tracks: list = field(default_factory=list)  # of each bank what comes along it
-    proposed: dict = field(default_factory=dict)  # proposals or None, by bank, row and way
-    chains: set = field(default_factory=set)  # tracks and chains that were tried, whatever the drive
-    lost_behind: list = field(default_factory=list)  # (bank and row, first devices) that lost all of it
+    # kinds of devices at which a row was lost, by bank and row
+    avoided: dict[Place, tuple[str, ...]] = field(default_factory=dict)
+    tracks: list["_BankedTrack"] = field(default_factory=list)  # of each bank what comes along it
+    # by bank, row and way
+    proposed: dict[tuple[float, int, proposals.Recipe], Proposal | None] = field(default_factory=dict)
+    chains: set[ChainKey] = field(default_factory=set)  # tried on their tracks, whatever the drive
+    # bank and row, and the first devices that lost all of it
+    lost_behind: list[tuple[Place, tuple[str, ...]]] = field(default_factory=list)
     reach: float = np.inf  # trials, those made included, after which the next cost class has its turn
     most: float = np.inf  # short trials that are worth it
     first: int = 0  # trials that were made before this search began
@@ -99,29 +106,18 @@ class Search:
         if self.before and not self.attempts:  # what has to be compiled is told before the first trial
             self.before()
         number = len(self.attempts) + 1
-        last = f"; trial {number - 1}: {outcome(self.attempts[-1])}" if self.attempts else ""
         self.clock.begin("trial", counts=runs.compiled())
-        self.tell(f"trial {number} of at most {max(self.limit, number)}: {text}{last}{self._times()}")
-        self._progressed("trial", number - 1, max(self.limit, number))
-
-    def end_trial(self) -> None:
-        """Note how long a trial took."""
-        self.clock.end()
+        most = max(self.limit, number)
+        self.tell(f"trial {number} of at most {most}: {text}{self._so_far()}")
+        self._progressed("trial", number - 1, most)
 
     def begin_proof(self, text: str) -> None:
         """Tell that draws begin, what came of the last trial, the time gone and to go."""
-        last = f"; trial {len(self.attempts)}: {outcome(self.attempts[-1])}" if self.attempts else ""
         self.clock.begin("draws")
-        self.tell(f"{text}{last}{self._times()}")
+        self.tell(f"{text}{self._so_far()}")
 
     def run(self, stage: str) -> RunSettings:
-        """Return how draws or a queue run: as was asked, and progress is told.
-
-        Parameters
-        ----------
-        stage : str
-            'draws' or 'queue'.
-        """
+        """Return how 'draws' or a 'queue' run: as was asked, and progress is told."""
 
         def tell_progress(done: int, total: int) -> None:
             if self.clock.reach(stage, done, total):
@@ -129,16 +125,25 @@ class Search:
 
         return replace(self.request.run, progress=tell_progress)
 
+    def _rest(self) -> float:
+        return self.clock.rest(len(self.attempts), self.limit, self.request.draws)
+
     def _progressed(self, stage: str, done: int, total: int) -> None:
         if self.progress:
-            gone, rest = self.clock.gone, self.clock.rest(len(self.attempts), self.limit, self.request.draws)
-            self.progress(stage, done, total, gone, rest)
+            self.progress(stage, done, total, self.clock.gone, self._rest())
 
-    def _times(self) -> str:
+    def _so_far(self) -> str:
+        last = f"; trial {len(self.attempts)}: {outcome(self.attempts[-1])}" if self.attempts else ""
         if not self.clock.timed:
-            return ""
-        rest = self.clock.rest(len(self.attempts), self.limit, self.request.draws)
-        return f"; {self.clock.gone:.0f} s gone, about {_about(rest):.0f} s to go"
+            return last
+        rest = self._rest()  # on steps of 10 s above 20 s
+        rest = max(round(rest / 10.0) * 10.0, 10.0) if rest > 20.0 else max(rest, 1.0)
+        return f"{last}; {self.clock.gone:.0f} s gone, about {rest:.0f} s to go"
+
+    @property
+    def measured(self) -> Measured | None:
+        """What was counted of what arrives; None where nothing was."""
+        return None if self.shares is None else self.shares.measured
 
     @property
     def spent(self) -> bool:
@@ -150,36 +155,19 @@ class Search:
         need = RATE_KEPT * self.request.target / max(attempt.rate, 1e-300)
         return float(np.clip(need, LEAST_SHARE_LEAVING, 1.0))
 
-    def avoid(
-        self, place: tuple[float, int], proposal: proposals.Proposal, tried: short_trials.Tried
-    ) -> None:
-        """Note the devices of a chain at which what is wanted is lost; rails are the only way to hang.
+    def avoid(self, place: Place, proposal: Proposal, tried: short_trials.Tried) -> None:
+        """Note at which devices what is wanted was lost on a track, and behind which all of it.
 
-        Parameters
-        ----------
-        place : (float [rad], int)
-            Bank of the track, and row of the orientation.
-        proposal : Proposal
-        tried : Tried
+        Rails are the only way to hang. Another chain that begins as the one that lost all does no better.
         """
         lost = {cut.device.kind for cut in proposal.cuts if not cut.device.hangs}
         kinds = sorted(kind for kind in lost if proposals.lost_at(tried, kind))
-        avoided = self.avoided.get(place, ())
-        self.avoided[place] = tuple(dict.fromkeys((*avoided, *kinds)))
-
-    def note_lost(
-        self, place: tuple[float, int], proposal: proposals.Proposal, tried: short_trials.Tried
-    ) -> None:
-        """Note the first devices of a chain, where nothing wanted comes past the last of them.
-
-        Another chain that begins with them does no better on that track: parameters as for ``avoid``.
-        """
+        self.avoided[place] = tuple(dict.fromkeys((*self.avoided.get(place, ()), *kinds)))
         ends = {end for n, k in enumerate(tried.rows) if k == proposal.row for end in tried.places[n]}
         if tried.efficiency > 0.0 or len(ends) != 1:
             return
         (end,) = ends
-        names = [f" at {device.name}" for device in proposal.devices]
-        heads = [k for k, name in enumerate(names) if end.endswith(name)]
+        heads = [k for k, device in enumerate(proposal.devices) if end.endswith(f" at {device.name}")]
         if len(heads) == 1:
             self.lost_behind.append((place, proposal.chain[: heads[0] + 1]))
 
@@ -193,7 +181,7 @@ class Search:
 class Candidate:
     """A chain on its bowl, as it was tried."""
 
-    proposal: proposals.Proposal
+    proposal: Proposal
     bowl: Bowl
     orientations: Orientations
     weights: np.ndarray  # (M,)
@@ -201,17 +189,23 @@ class Candidate:
     attempt: Attempt
     drawn: RobustRun | None = None  # some draws that it did not all hold
 
+    def plain_bowl(self, search: Search) -> calm_drive.PlainBowl:
+        """Return its bowl without devices, with the keys that the user gave."""
+        bare = replace(self.bowl, devices=())
+        return calm_drive.PlainBowl(bare, search.kept_keys, None, search.request.drive)
+
+    @property
+    def nearly(self) -> bool:
+        """Whether all draws of its screening but one held."""
+        drawn = self.drawn
+        return drawn is not None and drawn.held == drawn.draws - 1 >= SCREENED - 1
+
 
 def outcome(attempt: Attempt) -> str:
     """Return what came of a short trial, in few words."""
     if attempt.faults:
         return ", ".join(attempt.faults[:2])
     return f"clean, {60.0 * attempt.rate:.3g}/min" if attempt.clean else "nothing leaves"
-
-
-def _about(seconds: float) -> float:
-    """Seconds as a guess says them: on steps of 10 s above 20 s."""
-    return max(round(seconds / 10.0) * 10.0, 10.0) if seconds > 20.0 else max(seconds, 1.0)
 
 
 class Clock:
@@ -297,7 +291,7 @@ class _BankedTrack:
     rank: float  # [1] how likely the bank is to do
 
     @functools.cached_property
-    def fastest(self):
+    def fastest(self) -> float:
         """Velocity [m/s] at the fastest drive."""
         return calm_drive.speed(calm_drive.driven(self.plain_bowl, np.inf, hops=True))
 
@@ -309,11 +303,16 @@ class _Idea:
     track: _BankedTrack
     row: int
     recipe: proposals.Recipe
-    proposal: proposals.Proposal | None = None  # once it was looked for
+    proposal: Proposal | None = None  # once it was looked for
     left_out: int = 0  # times that a device was left out at which it was lost
 
+    @property
+    def place(self) -> Place:
+        """Bank of its track, and its row."""
+        return self.track.plain_bowl.bowl.track.bank, self.row
 
-def candidates(search, cost_class=None) -> Iterator[Any]:
+
+def candidates(search: Search, cost_class: int | None = None) -> Iterator[Candidate]:
     """Try proposals, and yield each Candidate that is clean and brings the target, within the budget.
 
     Parameters
@@ -324,13 +323,12 @@ def candidates(search, cost_class=None) -> Iterator[Any]:
         Of the chains; all of them, the cheapest first, without it.
     """
     for number in proposals.COST_CLASSES if cost_class is None else (cost_class,):
-        yield from _of_class(search, number)
+        if cost_class_of(search.plain.devices) <= number:  # else the user's own devices are dearer
+            yield from _of_class(search, number)
 
 
-def _of_class(search, cost_class) -> Iterator[Any]:
+def _of_class(search: Search, cost_class: int) -> Iterator[Candidate]:
     """Candidates of a cost class: no device at all, then the most promising chain of all banks, and so on."""
-    if cost_class_of(search.plain.devices) > cost_class:  # the user's own devices are dearer
-        return
     share = dict(zip(proposals.COST_CLASSES, BUDGETS, strict=True))[cost_class]
     search.reach = search.first + math.ceil(share * (search.request.budget - search.first))
     tracks = _tracks(search)
@@ -339,16 +337,15 @@ def _of_class(search, cost_class) -> Iterator[Any]:
             alone = proposals.bare(track.orientations, track.weights, search.request, search.plain.devices)
             if alone is not None and not _tried_before(search, track, alone) and not search.spent:
                 yield from _tried_out(search, track.plain_bowl, alone, track.weights)
-    recipes = proposals.recipes_of(cost_class, search.request)
+    # what is not rare needs nothing that turns others into it
     ideas = [
         _Idea(track, row, recipe)
-        for track in tracks for row in track.rows for recipe in recipes if _worth(search, track, row, recipe)
-    ]  # fmt: skip
-    yield from _best_first(search, ideas)
-
-
-def _best_first(search, ideas) -> Iterator[Any]:
-    """Candidates of ideas, the most promising first; a chain is looked for where its bound is the highest."""
+        for track in tracks
+        for row in track.rows
+        for recipe in proposals.recipes_of(cost_class, search.request)
+        if not recipe.turns or _share(search, track, row) < proposals.RARE_ORIENTATION
+    ]
+    # the most promising first; a chain is looked for where its bound is the highest
     order = itertools.count()  # of equal ones the first
     heap = [(-_bound(search, idea), next(order), idea) for idea in ideas]
     heapq.heapify(heap)
@@ -360,14 +357,15 @@ def _best_first(search, ideas) -> Iterator[Any]:
             proposal = _proposal(search, idea)
             if proposal is not None and not _tried_before(search, idea.track, proposal):
                 idea = replace(idea, proposal=proposal)
-                heapq.heappush(heap, (-_score(search, idea), next(order), idea))
+                heapq.heappush(heap, (-_score(search, idea, proposal), next(order), idea))
             continue
-        if _tried_before(search, idea.track, idea.proposal) or _lost_before(search, idea):
+        if _tried_before(search, idea.track, idea.proposal) or idea.proposal.purity < HOPELESS:
             continue
-        if idea.proposal.purity < HOPELESS:
+        chain = idea.proposal.chain  # what is wanted was lost whole at a device of one that begins so
+        if any(own == idea.place and chain[: len(head)] == head for own, head in search.lost_behind):
             continue
         yield from _tried_out(search, idea.track.plain_bowl, idea.proposal, idea.track.weights)
-        kinds = search.avoided.get(_place(idea.track, idea.row), ())
+        kinds = search.avoided.get(idea.place, ())
         more = tuple(kind for kind in kinds if kind not in idea.recipe.without)
         if more and idea.left_out < AVOIDED:
             recipe = replace(idea.recipe, without=(*idea.recipe.without, *more))
@@ -375,118 +373,89 @@ def _best_first(search, ideas) -> Iterator[Any]:
             heapq.heappush(heap, (-_bound(search, other), next(order), other))
 
 
-def _proposal(search, idea):
+def _proposal(search: Search, idea: _Idea) -> Proposal | None:
     """The chain of an idea; None where none is, or there is none with less asked for.
 
     A smaller margin asks for less, and so do chains without turning devices: where even those isolate
     nothing, the longer search is left out.
     """
-    if idea.recipe.turns and _proposal_of(search, idea, replace(idea.recipe, turns=False)) is None:
-        return None
-    least = replace(idea.recipe, margin=min(proposals.MARGINS))
-    if least != idea.recipe and _proposal_of(search, idea, least) is None:
-        return None
-    return _proposal_of(search, idea, idea.recipe)
+    recipe = idea.recipe
+    easier = [replace(recipe, turns=False)] if recipe.turns else []
+    easier.append(replace(recipe, margin=min(proposals.MARGINS)))
+    for other in (*easier, recipe):
+        key = (*idea.place, other)
+        if key not in search.proposed:
+            search.proposed[key] = _proposed(search, idea.track, idea.row, other)
+        if search.proposed[key] is None:
+            return None
+    return search.proposed[(*idea.place, recipe)]
 
 
-def _proposal_of(search, idea, recipe):
-    """The chain that a way proposes for the orientation of an idea, looked for once."""
-    key = *_place(idea.track, idea.row), recipe
-    if key not in search.proposed:
-        search.proposed[key] = _proposed(search, idea.track, idea.row, recipe)
-    return search.proposed[key]
-
-
-def _tracks(search):
+def _tracks(search: Search) -> list[_BankedTrack]:
     """The tracks that are tried, of each bank: once for all cost classes."""
-    if not search.tracks:
-        aspects = _aspects(search)
-        banks = _banks(search, aspects)
-        for place, bank in enumerate(banks):
-            plain_bowl = calm_drive.section(
-                search.part, aspects, search.plain, search.kept_keys, diameter=search.request.diameter,
-                bank=bank, drive=search.request.drive,
-            )  # fmt: skip
-            start = replace(calm_drive.driven(plain_bowl, 0.0), devices=search.plain.devices)
-            if search.shares is None:
-                search.shares = arriving(search, start)
-            orientations, weights = offered(search, start)
-            rows = proposals.promising(orientations, weights, search.request)[: proposals.PROPOSED_ROWS]
-            search.tracks.append(_BankedTrack(plain_bowl, orientations, weights, rows, BANK_RANK**place))
-        lying = [
-            _promise(search, banked_track, row, LYING)
-            for banked_track in search.tracks
-            for row in banked_track.rows
-        ]  # also of what may hang: infinite
-        turns = any(
-            _share(search, banked_track, row) < proposals.RARE_ORIENTATION
-            for banked_track in search.tracks
-            for row in banked_track.rows
-        )
-        if not any(rate >= search.request.target for rate in lying) and not turns:
-            search.most = search.first + TRIALS_OF_RARE
+    if search.tracks:
+        return search.tracks
+    if search.shares is not None:
+        aspects = search.shares.aspects
+    else:
+        from feederscrew.studies.aspects import answered
+
+        aspects = answered(search.part)
+    for number, bank in enumerate(_banks(search, aspects)):
+        plain_bowl = calm_drive.section(
+            search.part, aspects, search.plain, search.kept_keys, diameter=search.request.diameter,
+            bank=bank, drive=search.request.drive,
+        )  # fmt: skip
+        start = replace(calm_drive.driven(plain_bowl, 0.0), devices=search.plain.devices)
+        if search.shares is None:
+            search.shares = arriving(search, start)
+        orientations, weights = offered(search, start)
+        rows = proposals.promising(orientations, weights, search.request)[: proposals.PROPOSED_ROWS]
+        search.tracks.append(_BankedTrack(plain_bowl, orientations, weights, rows, BANK_RANK**number))
+    # also of what may hang: infinite
+    placed = [(track, row) for track in search.tracks for row in track.rows]
+    enough = any(_promise(search, track, row, LYING) >= search.request.target for track, row in placed)
+    turns = any(_share(search, track, row) < proposals.RARE_ORIENTATION for track, row in placed)
+    if not enough and not turns:
+        search.most = search.first + TRIALS_OF_RARE
     return search.tracks
 
 
-def _worth(search, track, row, recipe):
-    """Whether an idea is one at all: what is not rare needs nothing that turns others into it."""
-    return not recipe.turns or _share(search, track, row) < proposals.RARE_ORIENTATION
-
-
-def _bound(search, idea):
+def _bound(search: Search, idea: _Idea) -> float:
     """How promising [1] the chain of an idea can be at best."""
-    enough = search.reserve * search.request.target
-    rate = min(_promise(search, idea.track, idea.row, idea.recipe) / enough, 1.0)
-    flat = idea.track.plain_bowl.bowl.track.bank <= HANGS_BELOW
-    rank = idea.track.rank if idea.recipe.outcome == "lying" else 1.0 if flat else BANK_RANK**2
-    simplicity = (TURNED if idea.recipe.turns else 1.0) * (HOLED if idea.recipe.holes else 1.0)
-    share = _share(search, idea.track, idea.row) ** OFTENER
-    return rate * rank * simplicity * share * _of_margin(idea.recipe.margin) * AGAIN**idea.left_out
+    recipe, track = idea.recipe, idea.track
+    rate = min(_promise(search, track, idea.row, recipe) / (search.reserve * search.request.target), 1.0)
+    flat = track.plain_bowl.bowl.track.bank <= HANGS_BELOW
+    rank = track.rank if recipe.outcome == "lying" else 1.0 if flat else BANK_RANK**2
+    simplicity = (TURNED if recipe.turns else 1.0) * (HOLED if recipe.holes else 1.0)
+    share = _share(search, track, idea.row) ** OFTENER
+    margin = LEAST_OF_MARGIN + (1.0 - LEAST_OF_MARGIN) * min(recipe.margin / proposals.MARGINS[0], 1.0)
+    return rate * rank * simplicity * share * margin * AGAIN**idea.left_out
 
 
-def _of_margin(margin):
-    """How promising [1] a margin [m] is: 1 of the greatest that is asked for."""
-    return LEAST_OF_MARGIN + (1.0 - LEAST_OF_MARGIN) * min(margin / proposals.MARGINS[0], 1.0)
-
-
-def _score(search, idea):
+def _score(search: Search, idea: _Idea, proposal: Proposal) -> float:
     """How promising [1] a chain is: rate, purity, margin and number of devices, and what was lost before."""
-    proposal = idea.proposal
-    lost = set(search.avoided.get(_place(idea.track, idea.row), ()))
+    lost = set(search.avoided.get(idea.place, ()))
     loss = LOST_BEFORE if lost & {cut.device.kind for cut in proposal.cuts} else 1.0
     return _bound(search, idea) * proposal.purity * EACH_DEVICE ** len(proposal.cuts) * loss
 
 
-def _place(track, row) -> tuple[Any, ...]:
-    """What names an orientation on a track of some bank."""
-    return track.plain_bowl.bowl.track.bank, row
-
-
-def chain_key(track, proposal, lying) -> tuple[Any, ...]:
+def chain_key(track: Track, proposal: Proposal, lying: Sequence[Orientation]) -> ChainKey:
     """Return what names a chain on a track and what shall leave it, whatever the drive.
 
-    Parameters
-    ----------
-    track : Track
-    proposal : Proposal
-    lying : sequence of Orientation
-
-    Returns
-    -------
-    tuple
-        The order of what a sensor lets pass makes no difference.
+    The order of what a sensor lets pass makes no difference.
     """
     wanted = "hanging" if proposal.hangs else lying[proposal.row].name
     return track, wanted, tuple((device.kind, device.canonical_text) for device in proposal.devices)
 
 
-def _tried_before(search, track, proposal):
+def _tried_before(search: Search, track: _BankedTrack, proposal: Proposal) -> bool:
     """Whether a chain was tried on that track, or one whose values differ by less than makes a difference."""
     key = chain_key(track.plain_bowl.bowl.track, proposal, track.orientations.lying)
     return key in search.chains or any(_is_alike(key, other) for other in search.chains)
 
 
-def _is_alike(key, other) -> bool:
+def _is_alike(key: ChainKey, other: ChainKey) -> bool:
     """Whether two chains for the same track and orientation differ by little in each of their numbers."""
     if key[:2] != other[:2] or len(key[2]) != len(other[2]):
         return False
@@ -498,19 +467,13 @@ def _is_alike(key, other) -> bool:
     return all(abs(a - b) <= max(LITTLE, LITTLE_SHARE * abs(a)) for a, b in values)
 
 
-def _lost_before(search, idea) -> bool:
-    """Whether what is wanted was lost whole at a device of another chain that begins in the same way."""
-    place, chain = _place(idea.track, idea.row), idea.proposal.chain
-    return any(own == place and chain[: len(head)] == head for own, head in search.lost_behind)
-
-
-def _least(search):
+def _least(search: Search) -> float:
     """Parts [1/s] that an orientation has to promise, if it is to be tried beside what is clean already."""
     best, target = search.best_rate, search.request.target
     return target if 0.0 < best < target else LEAST_USE * best
 
 
-def _promise(search, track, row, recipe):
+def _promise(search: Search, track: _BankedTrack, row: int, recipe: proposals.Recipe) -> float:
     """Parts [1/s] that an orientation brings at the fastest drive, were all others returned."""
     if recipe.outcome != "lying" and neck(track.orientations.lying[row]) is not None:
         return np.inf  # what hangs comes from several headings
@@ -519,41 +482,48 @@ def _promise(search, track, row, recipe):
     return share * track.fastest / pitch
 
 
-def _share(search, track, row) -> float:
+def _share(search: Search, track: _BankedTrack, row: int) -> float:
     """Share [1] in which an orientation comes, with those that count as it."""
     equivalent = proposals.equivalent_rows(track.orientations.lying, row, search.request.up)
     return float(track.weights[[row, *equivalent]].sum())
 
 
-def _proposed(search, track, row, recipe):
+def _proposed(search: Search, track: _BankedTrack, row: int, recipe: proposals.Recipe) -> Proposal | None:
     """A chain for one orientation at the drive that its share asks for; None where there is none."""
-    gain = _share(search, track, row)
-    proposal = _at(search, track, row, recipe, gain)
-    more = 0.0 if proposal is None else _gain(search, track, proposal)
-    if more > SLOWER * gain:
-        return _at(search, track, row, recipe, more) or proposal
-    return proposal
+
+    def at_drive_for(gain: float) -> Proposal | None:
+        velocity = required_velocity(search, track.orientations, track.weights, gain)
+        step = math.ceil(math.log(velocity, ASKED_STEP) - 1e-9)  # the same drive for shares that are alike
+        bowl = calm_drive.driven(track.plain_bowl, ASKED_STEP**step)
+        return proposals.proposed(
+            search.part, replace(bowl, devices=search.plain.devices), _aspects(search), row,
+            track.orientations, search.request, recipe,
+        )  # fmt: skip
+
+    share = _share(search, track, row)
+    proposal = at_drive_for(share)
+    if proposal is None:
+        return None
+    # the share that leaves as wanted, as the static rule says
+    through = _through(search, replace(track.plain_bowl.bowl, devices=proposal.devices))
+    gain = short_trials.gain(through, track.weights, proposal.states(through))
+    return (at_drive_for(gain) if gain > SLOWER * share else None) or proposal
 
 
-def _at(search, track, row, recipe, gain):
-    """The chain for a drive that a share [1] asks for."""
-    velocity = required_velocity(search, track.orientations, track.weights, gain)
-    step = math.ceil(math.log(velocity, ASKED_STEP) - 1e-9)  # the same drive for shares that are alike
-    bowl = calm_drive.driven(track.plain_bowl, ASKED_STEP**step)
-    bowl = replace(bowl, devices=search.plain.devices)
-    return proposals.proposed(
-        search.part, bowl, search.shares.aspects, row, track.orientations, search.request, recipe
-    )
+def _aspects(search: Search) -> Aspects:
+    if search.shares is None:
+        raise ValueError("what arrives is not known before the tracks are")
+    return search.shares.aspects
 
 
-def _gain(search, track, proposal):
-    """Share of the parts that leaves as wanted, as the static rule says [1]."""
-    bowl = replace(track.plain_bowl.bowl, devices=proposal.devices)
-    orientations = proposals.known_through(search.part, search.shares.aspects, bowl)
-    return short_trials.gain(orientations, track.weights, proposal.states(orientations))
+def _through(search: Search, bowl: Bowl) -> Orientations:
+    """What becomes of each orientation on the track and through the devices of a bowl."""
+    return proposals.known_through(search.part, _aspects(search), bowl)
 
 
-def required_velocity(search, orientations, weights, gain, spacing=0.0):
+def required_velocity(
+    search: Search, orientations: Orientations, weights: np.ndarray, gain: float, spacing: float = 0.0
+) -> float:
     """Return the velocity [m/s] that brings the target, with a reserve, at a share that leaves as wanted.
 
     Parts come in a row, ``spacing`` [m] farther than they do by themselves where devices need that.
@@ -562,7 +532,7 @@ def required_velocity(search, orientations, weights, gain, spacing=0.0):
     return search.reserve * search.request.target * pitch / max(gain, 1e-3)
 
 
-def _banks(search, aspects):
+def _banks(search: Search, aspects: Aspects) -> tuple[float, ...]:
     """Banks of the track that are tried: the steeper one first where the part rolls."""
     if "track.bank" in search.kept_keys:
         return (search.plain.track.bank,)
@@ -571,49 +541,44 @@ def _banks(search, aspects):
     return calm_drive.STEEP_BANKS if rolling > ROLLS * chances.sum() else calm_drive.BANKS
 
 
-def _aspects(search):
-    if search.shares is not None:
-        return search.shares.aspects
-    from feederscrew.studies.aspects import answered
-
-    return answered(search.part)
-
-
-def arriving(search, bowl):
-    """Return what lies at the entry of the track of a bowl, a Shares."""
+def arriving(search: Search, bowl: Bowl) -> Shares:
+    """Return what lies at the entry of the track of a bowl."""
     bare = replace(bowl, devices=())
     return shares(search.part, bare, rule=search.request.rule, jobs=search.request.jobs)
 
 
-def at_its_drive(search, candidate) -> tuple[Any, ...]:
+def at_its_drive(search: Search, candidate: Candidate) -> tuple[Shares, Candidate]:
     """Return a Candidate with what arrives on the floor of its own bowl, and those Shares.
 
     The search itself takes them from one drive; what the user says of them is kept.
     """
+    if search.shares is None:
+        raise ValueError("what arrives is not known before the tracks are")
     if search.shares_given:
         return search.shares, candidate
-    arrivals_there, bowl = arriving(search, candidate.bowl), candidate.bowl
-    orientations = arrivals.oriented(
-        proposals.known_through(search.part, arrivals_there.aspects, bowl), arrivals_there.measured
+    there = arriving(search, candidate.bowl)
+    orientations = stream.oriented(
+        proposals.known_through(search.part, there.aspects, candidate.bowl), there.measured
     )
-    if [orientation.name for orientation in orientations.lying] != [
-        orientation.name for orientation in candidate.orientations.lying
-    ]:
+    if [one.name for one in orientations.lying] != [one.name for one in candidate.orientations.lying]:
         return search.shares, candidate  # the same orientations, or its rows are others
     weights = np.nan_to_num(orientations.rules[search.request.rule])
-    return arrivals_there, replace(candidate, orientations=orientations, weights=weights / weights.sum())
+    return there, replace(candidate, orientations=orientations, weights=weights / weights.sum())
 
 
-def offered(search, bowl) -> tuple[Any, ...]:
-    """Return what comes along a track, Orientations, and in which shares (M,) [1]."""
-    orientations = proposals.known_through(search.part, search.shares.aspects, bowl)
-    orientations = arrivals.oriented(orientations, search.shares.measured)
+def offered(search: Search, bowl: Bowl) -> tuple[Orientations, np.ndarray]:
+    """Return what comes along a track, and in which shares (M,) [1]."""
+    orientations = stream.oriented(
+        _through(search, bowl), None if search.shares is None else search.shares.measured
+    )
     weights = np.nan_to_num(orientations.rules[search.request.rule])
     total = weights.sum()
     return orientations, weights / total if total > 0.0 else np.full(len(weights), 1.0 / len(weights))
 
 
-def _tried_out(search, plain_bowl, proposal, weights) -> Iterator[Any]:
+def _tried_out(
+    search: Search, plain_bowl: calm_drive.PlainBowl, proposal: Proposal, weights: np.ndarray
+) -> Iterator[Candidate]:
     """Try a proposal and what mends it; the Candidate where one is clean and fast enough.
 
     One that one draw alone denies is taken where nothing mends it: the draws of its proof are more.
@@ -621,53 +586,35 @@ def _tried_out(search, plain_bowl, proposal, weights) -> Iterator[Any]:
     lost, before, nearly = 0, None, None
     for _ in range(MENDED + 1):
         candidate = _screened(search, attempted(search, plain_bowl, proposal, weights))
-        calmed = _calmed(search, plain_bowl, candidate, weights)
+        calmed = _calmed(search, candidate)
         if calmed.attempt.clean:
             search.passed.append(calmed)
-        if calmed.attempt.clean and calmed.attempt.rate >= search.request.target:
-            yield calmed
-            return
+            if calmed.attempt.rate >= search.request.target:
+                yield calmed
+                return
         if candidate.attempt.clean:
             return
         search.failed.append(candidate)
-        nearly = nearly or _with_one_draw_denied(candidate)
+        nearly = nearly or (candidate if candidate.nearly else None)
         if not candidate.attempt.efficiency > 0.0 and not candidate.proposal.hangs:
             lost += 1
-        same = _showed(candidate) == before  # what was changed made no difference
-        before = _showed(candidate)
-        changed = None
-        if not (same or lost == LOST_TRIALS or search.spent):
-            changed = proposals.better(
-                proposal, candidate.tried, candidate.orientations.lying, candidate.drawn
-            )
-        if (
-            changed is None
-            or chain_key(plain_bowl.bowl.track, changed, candidate.orientations.lying) in search.chains
-        ):
+        attempt, lying = candidate.attempt, candidate.orientations.lying
+        after = attempt.faults, attempt.efficiency, attempt.stopped
+        if after == before or lost == LOST_TRIALS or search.spent:  # what was changed made no difference
+            break
+        before = after
+        changed = proposals.better(proposal, candidate.tried, lying, candidate.drawn)
+        if changed is None or chain_key(plain_bowl.bowl.track, changed, lying) in search.chains:
             break
         proposal = changed
-    chosen = _livened(search, plain_bowl, candidate, weights) or nearly
+    chosen = _livened(search, candidate) or nearly
     if chosen is not None:
         yield chosen
         return
-    place = plain_bowl.bowl.track.bank, proposal.row
-    search.avoid(place, proposal, candidate.tried)
-    search.note_lost(place, proposal, candidate.tried)
+    search.avoid((plain_bowl.bowl.track.bank, proposal.row), proposal, candidate.tried)
 
 
-def _with_one_draw_denied(candidate):
-    """The candidate where all draws of its screening but one held; else None."""
-    drawn = candidate.drawn
-    return candidate if drawn is not None and drawn.held == drawn.draws - 1 >= SCREENED - 1 else None
-
-
-def _showed(candidate) -> tuple[Any, ...]:
-    """What the trial of a candidate showed: equal where another one did the same."""
-    attempt = candidate.attempt
-    return attempt.faults, attempt.efficiency, attempt.stopped
-
-
-def _livened(search, plain_bowl, candidate, weights):
+def _livened(search: Search, candidate: Candidate) -> Candidate | None:
     """The candidate at a livelier drive, where parts stay at a blade or at rails; None where none is clean.
 
     Where one draw alone denies that, it is taken as well.
@@ -675,51 +622,47 @@ def _livened(search, plain_bowl, candidate, weights):
     for _ in range(LIVELIER_TRIALS):
         if search.spent or not stays_at_steel(candidate.proposal, candidate.attempt.faults):
             return None
-        candidate = livened(search, plain_bowl, candidate, weights)
-        if candidate is None:
+        other = livened(search, candidate)
+        if other is None:
             return None
+        candidate = other
         if candidate.attempt.clean:
             search.passed.append(candidate)
             return candidate if candidate.attempt.rate >= search.request.target else None
-        if _with_one_draw_denied(candidate) is not None:
+        if candidate.nearly:
             return candidate
     return None
 
 
-def livened(search, plain_bowl, candidate, weights):
-    """Return a Candidate: the same chain screened at a livelier drive; None where there is none.
-
-    Parameters
-    ----------
-    search : Search
-    plain_bowl : PlainBowl
-        The bowl without devices.
-    candidate : Candidate
-        At the drive at which parts stay or jam.
-    weights : (M,) float [1]
-    """
-    bowl = calm_drive.livelier(plain_bowl, candidate.bowl)
-    if bowl is None:
-        return None
-    step = f"livelier drive, {2e3 * bowl.drive.amplitude:.3g} mm peak to peak"
-    return _screened(
-        search, attempted(search, plain_bowl, replace(candidate.proposal, step=step), weights, bowl)
-    )
+def livened(search: Search, candidate: Candidate) -> Candidate | None:
+    """Return the same chain screened at a livelier drive than that at which parts stay; None without one."""
+    bowl = calm_drive.livelier(candidate.plain_bowl(search), candidate.bowl)
+    return None if bowl is None else _screened(search, _at_drive(search, candidate, bowl, "livelier"))
 
 
-def stays_at_steel(proposal, faults) -> bool:
+def _at_drive(search: Search, candidate: Candidate, bowl: Bowl, word: str) -> Candidate:
+    """The chain of a candidate tried at the drive of a bowl."""
+    step = f"{word} drive, {2e3 * bowl.drive.amplitude:.3g} mm peak to peak"
+    proposal = replace(candidate.proposal, step=step)
+    return attempted(search, candidate.plain_bowl(search), proposal, candidate.weights, bowl)
+
+
+def stays_at_steel(proposal: Proposal, faults: Iterable[str]) -> bool:
     """Return whether faults, sentences of a trial or of draws, name a blade or rails at which parts stay."""
     names = [cut.device.name for cut in proposal.cuts if cut.device.overhead or cut.device.hangs]
     return any(f"stopped at {name}" in fault for fault in faults for name in names)
 
 
-def _calmed(search, plain_bowl, candidate, weights):
+def _calmed(search: Search, first: Candidate) -> Candidate:
     """The candidate at a calmer drive that is clean, where the one it had turns or loses what is wanted."""
-    first = candidate
+    candidate = first
     for _ in range(CALMER_TRIALS):
-        if candidate.attempt.clean or search.spent or not _moved_out(candidate):
+        drawn = candidate.drawn  # in a trial on the track, or in draws by turning it
+        turned = drawn is not None and "is lost (" in drawn.worst and "on the track" in drawn.worst
+        moved_out = turned or bool(short_trials.lost_by_motion(candidate.tried))
+        if candidate.attempt.clean or search.spent or not moved_out:
             break
-        other = calmer(search, plain_bowl, candidate, weights)
+        other = calmer(search, candidate)
         if other is None:
             break
         search.most += 1  # no other chain is left out for it
@@ -727,34 +670,13 @@ def _calmed(search, plain_bowl, candidate, weights):
     return candidate if candidate.attempt.clean else first
 
 
-def _moved_out(candidate):
-    """Whether the drive loses what is wanted: in a trial on the track, or in draws by turning it."""
-    drawn = candidate.drawn
-    return bool(short_trials.lost_by_motion(candidate.tried)) or (
-        drawn is not None and "is lost (" in drawn.worst and "on the track" in drawn.worst
-    )
+def calmer(search: Search, candidate: Candidate) -> Candidate | None:
+    """Return the same chain tried at a calmer drive than that which lost parts; None without one."""
+    bowl = calm_drive.calmer(candidate.plain_bowl(search), candidate.bowl)
+    return None if bowl is None else _at_drive(search, candidate, bowl, "calmer")
 
 
-def calmer(search, plain_bowl, candidate, weights) -> Candidate | None:
-    """Return a Candidate: the same chain tried at a calmer drive; None where there is none.
-
-    Parameters
-    ----------
-    search : Search
-    plain_bowl : PlainBowl
-        The bowl without devices.
-    candidate : Candidate
-        At the drive that turned or lost what is wanted.
-    weights : (M,) float [1]
-    """
-    bowl = calm_drive.calmer(plain_bowl, candidate.bowl)
-    if bowl is None:
-        return None
-    step = f"calmer drive, {2e3 * bowl.drive.amplitude:.3g} mm peak to peak"
-    return attempted(search, plain_bowl, replace(candidate.proposal, step=step), weights, bowl)
-
-
-def _screened(search, candidate):
+def _screened(search: Search, candidate: Candidate) -> Candidate:
     """A clean candidate after some draws of part, friction, drive and cuts; denied where one fails."""
     if not candidate.attempt.clean or candidate.attempt.rate < search.request.target:
         return candidate
@@ -774,30 +696,34 @@ def _screened(search, candidate):
     return replace(candidate, attempt=attempt, drawn=drawn)
 
 
-def attempted(search, plain_bowl, proposal, weights, driven=None) -> Candidate:
-    """Return a Candidate: one short trial at the drive that the target asks for, or at that of a bowl.
+def attempted(
+    search: Search,
+    plain_bowl: calm_drive.PlainBowl,
+    proposal: Proposal,
+    weights: np.ndarray,
+    driven: Bowl | None = None,
+) -> Candidate:
+    """Return one short trial at the drive that the target asks for, or at that of a bowl.
 
-    Parameters
-    ----------
-    search : Search
-    plain_bowl : PlainBowl
-    proposal : Proposal
-    weights : (M,) float [1]
-    driven : Bowl, optional
-        Whose drive is taken.
+    Weights are shares (M,) [1] of the orientations.
     """
-    part = search.part
     check_written(proposal.devices, "design.yaml")
-    plain_bowl = _drawable(search, plain_bowl, proposal)
+    if "track.climb" not in search.kept_keys and any(device.leans for device in proposal.devices):
+        # as steep as a spacing section that leads down needs the track: else it has no solid
+        bowl = replace(plain_bowl.bowl, devices=proposal.devices)
+        climb = solidbowl.drawable_climb(bowl, search.part, _through(search, bowl))
+        plain_bowl = replace(
+            plain_bowl, bowl=replace(plain_bowl.bowl, track=replace(bowl.track, climb=climb))
+        )
     own = driven_for(search, plain_bowl, proposal, weights) if driven is None else driven
     bowl = replace(own, track=plain_bowl.bowl.track, devices=proposal.devices)
-    orientations = arrivals.oriented(
-        proposals.known_through(part, search.shares.aspects, bowl), search.shares.measured
+    orientations = stream.oriented(
+        _through(search, bowl), None if search.shares is None else search.shares.measured
     )
-    name = orientations.lying[proposal.row].name
     search.chains.add(chain_key(bowl.track, proposal, orientations.lying))
-    search.begin_trial(f"{name}, {proposal.step}")
+    search.begin_trial(f"{orientations.lying[proposal.row].name}, {proposal.step}")
     tried = _short(search, bowl, orientations, weights, proposal)
+    faults = tuple(denied(tried))
     attempt = Attempt(
         wanted=orientations.states[tried.state].name,
         chain=proposal.chain,
@@ -809,50 +735,34 @@ def attempted(search, plain_bowl, proposal, weights, driven=None) -> Candidate:
         purity=tried.purity,
         stopped=tried.stopped,
         rate=tried.rate,
-        faults=tuple(denied(tried)),
-        cause=_cause(tried, proposal),
+        faults=faults,
+        cause=_cause(tried, proposal) if faults else "",
         peak_to_peak=2.0 * bowl.drive.amplitude,
         throw_number=float(throw_number(bowl)),
         cost_class=proposal.cost_class,
     )
     search.attempts.append(attempt)
-    search.end_trial()
+    search.clock.end()
     return Candidate(proposal, bowl, orientations, weights, tried, attempt)
 
 
-def _drawable(search, plain_bowl, proposal):
-    """The bowl, its track as steep as a spacing section that leads down needs it: else it has no solid."""
-    if "track.climb" in search.kept_keys or not any(device.leans for device in proposal.devices):
-        return plain_bowl
-    bowl = replace(plain_bowl.bowl, devices=proposal.devices)
-    orientations = proposals.known_through(search.part, search.shares.aspects, bowl)
-    track = replace(bowl.track, climb=solidbowl.drawable_climb(bowl, search.part, orientations))
-    return replace(plain_bowl, bowl=replace(plain_bowl.bowl, track=track))
-
-
-def _cause(tried, proposal):
+def _cause(tried: short_trials.Tried, proposal: Proposal) -> str:
     """Which fault a trial shows: what loses the wanted orientation first, then what lets others leave."""
-    if not list(denied(tried)):
-        return ""
-    right = set(short_trials.wanted_rows(tried.orientations, tried.states))
     if short_trials.lost_by_motion(tried) or not tried.velocity > 0.0:
         return DRIVE
+    right = short_trials.wanted_rows(tried.orientations, tried.states)
     lost = any(k in right and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
     return DEVICE if lost or proposal.devices else PART
 
 
-def driven_for(search, plain_bowl, proposal, weights):
+def driven_for(
+    search: Search, plain_bowl: calm_drive.PlainBowl, proposal: Proposal, weights: np.ndarray
+) -> Bowl:
     """Return the bowl at the drive that brings the target, with the gaps that its devices need there.
 
-    Parameters
-    ----------
-    search : Search
-    plain_bowl : PlainBowl
-    proposal : Proposal
-    weights : (M,) float [1]
+    Weights are shares (M,) [1] of the orientations.
     """
-    bowl = replace(plain_bowl.bowl, devices=proposal.devices)
-    orientations = proposals.known_through(search.part, search.shares.aspects, bowl)
+    orientations = _through(search, replace(plain_bowl.bowl, devices=proposal.devices))
     gain, spacing = short_trials.gain(orientations, weights, proposal.states(orientations)), 0.0
     for _ in range(2):
         velocity = max(required_velocity(search, orientations, weights, gain, spacing), search.least)
@@ -863,22 +773,22 @@ def driven_for(search, plain_bowl, proposal, weights):
     return bowl
 
 
-def _short(search, bowl, orientations, weights, proposal):
+def _short(
+    search: Search, bowl: Bowl, orientations: Orientations, weights: np.ndarray, proposal: Proposal
+) -> short_trials.Tried:
     """The short trial: what is wanted first; where none of it leaves, the others are not tried."""
-    request, rows = search.request, short_trials.often(weights, (proposal.row,))
-    own = {"run": request.run}
-    own |= {"aspects": search.shares.aspects, "any_heading": proposal.any_heading}
+
+    def single(own: Sequence[int], each: int) -> short_trials.Tried:
+        return short_trials.single(
+            search.part, bowl, orientations, weights, proposal.rows, rows=own, each=each,
+            run=search.request.run, aspects=_aspects(search), any_heading=proposal.any_heading,
+        )  # fmt: skip
+
+    rows = short_trials.often(weights, (proposal.row,))
     right = set(short_trials.wanted_rows(orientations, proposal.states(orientations)))
     first = [k for k in rows if k in right] or [proposal.row]
-    tried = short_trials.single(
-        search.part, bowl, orientations, weights, proposal.rows, rows=first, each=SHORT_TRIAL_PARTS, **own
-    )
-    rows_besides = [k for k in rows if k not in first]
-    if not tried.efficiency > 0.0 or not rows_besides:
+    others = [k for k in rows if k not in first]
+    tried = single(first, SHORT_TRIAL_PARTS)
+    if not tried.efficiency > 0.0 or not others:
         return tried
-    each = SHORT_TRIAL_PARTS if len(rows_besides) <= short_trials.FEW_OTHERS else 1
-    return tried.joined(
-        short_trials.single(
-            search.part, bowl, orientations, weights, proposal.rows, rows=rows_besides, each=each, **own
-        )
-    )
+    return tried.joined(single(others, SHORT_TRIAL_PARTS if len(others) <= short_trials.FEW_OTHERS else 1))

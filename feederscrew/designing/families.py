@@ -1,16 +1,20 @@
 """One bowl for several parts: a chain whose values suit all of them, or else what is changed between them."""
 
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from feederscrew.bowl.record import Bowl
 from feederscrew.designing import calm_drive, exploring, loop, proposals
 from feederscrew.designing.exploring import Search
 from feederscrew.designing.loop import merit
-from feederscrew.designing.record import FALLS_SHORT, HOLDS, NONE, NOT_PROVED, DesignStudy
+from feederscrew.designing.record import FALLS_SHORT, HOLDS, NONE, NOT_PROVED, DesignRequest, DesignStudy
 from feederscrew.errors import FeederError
+from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.studies.aspects import answered
 from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.tooling.isolating.chain import Cut
 
 PROPOSED = tuple(sorted(name for name, kind in KINDS.items() if kind.proposed))
 SHARED_TRACK_KEYS = ("track.radius", "track.width", "track.bank", "track.climb")
@@ -25,7 +29,7 @@ class FamilyStudy(ReadableRecord):
     stopped: bool = False  # by the user, before each part was designed and tried
 
     @property
-    def status(self):
+    def status(self) -> str:
         """The worst word of its parts: holds where each does; not proved where the user stopped it."""
         if self.partial:
             return NOT_PROVED
@@ -35,36 +39,44 @@ class FamilyStudy(ReadableRecord):
     @property
     def shared(self) -> bool:
         """Whether all run on one track through one chain: only drive and sensors are set anew."""
-        return all(
-            member.bowl is not None and iron(member) == iron(self.members[0]) for member in self.members
-        )
+        steel = [_steel(member) for member in self.members]
+        return None not in steel and all(own == steel[0] for own in steel)
 
     @property
-    def partial(self):
+    def partial(self) -> bool:
         """Whether the user stopped it."""
         return self.stopped or any(member.partial for member in self.members)
 
 
-def iron(study) -> tuple[Any, ...]:
-    """Return what of a design is steel: its track, and its devices but what a sensor is shown."""
-    devices = tuple((device.kind, device.sees if device.senses else device.text) for device in study.devices)
+def _steel(study: DesignStudy) -> tuple[Any, ...] | None:
+    """What of a design is steel: its track and its devices, but not what a sensor is shown; None of none."""
+    if study.bowl is None:
+        return None
+    own: tuple[Any, ...] = study.devices
     track = study.bowl.track
+    devices = tuple((device.kind, device.sees if device.senses else device.text) for device in own)
     return (track.radius, track.width, track.bank, track.climb), devices
 
 
-def named_apart(parts) -> None:
+def named_apart(parts: Sequence[Part]) -> None:
     """Say which two parts have one name; raises FeederError."""
     names = [FAMILY_FOLDER, *(part.name.casefold() for part in parts)]
     for k, name in enumerate(names[1:]):
         if name in names[: k + 1]:
-            raise FeederError(
-                parts[k].source,
-                f"is another part of the name {parts[k].name}: results would be overwritten",
-                "rename a file",
-            )
+            what = f"is another part of the name {parts[k].name}: results would be overwritten"
+            raise FeederError(parts[k].source, what, "rename a file")
 
 
-def family(parts, plain, kept_keys, request, *, tell=None, before=None, progress=None) -> FamilyStudy:
+def family(
+    parts: Sequence[Part],
+    plain: Bowl,
+    kept_keys: Collection[str],
+    request: DesignRequest,
+    *,
+    tell: Callable[[str], None] | None = None,
+    before: Callable[[], None] | None = None,
+    progress: exploring.Progress | None = None,
+) -> FamilyStudy:
     """Design one bowl for several parts, each tried in it.
 
     The part that needs the widest track is designed first; its track and its kinds of devices are offered
@@ -94,53 +106,54 @@ def family(parts, plain, kept_keys, request, *, tell=None, before=None, progress
     """
     named_apart(parts)
     tell = tell or (lambda text: None)
-    plain, kept_keys, first = _common(parts, plain, frozenset(kept_keys), request)
-    designs: dict[int, DesignStudy] = {}
-    try:
-        for k in (first, *(k for k in range(len(parts)) if k != first)):
-            tell(f"{parts[k].name}:")
-            lead = designs.get(first)
-            own = {"tell": tell, "before": before, "progress": progress}
-            designs[k] = _member(parts[k], lead, plain, kept_keys, request, own)
-            if designs[k].partial:
-                return FamilyStudy(tuple(designs[n] for n in sorted(designs)))
-        members = tuple(designs[k] for k in range(len(parts)))
-        return FamilyStudy(_of_one_chain(members, request, kept_keys, tell, before))
-    except KeyboardInterrupt:
-        if not designs:
-            raise
-        return FamilyStudy(tuple(designs[n] for n in sorted(designs)), stopped=True)
-
-
-def _common(parts, plain, kept_keys, request) -> tuple[Any, ...]:
-    """A bowl with a track on which each part fits, which keys are given then, and who needs the widest."""
+    # a track on which each part fits, led by the part that needs the widest
     tracks = [
         calm_drive.section(part, answered(part), plain, kept_keys, diameter=request.diameter).bowl.track
         for part in parts
     ]
     widths = [track.width for track in tracks]
     track = replace(plain.track, radius=max(sized.radius for sized in tracks), width=max(widths))
-    return replace(plain, track=track), kept_keys | {"track.radius", "track.width"}, widths.index(max(widths))
+    plain, first = replace(plain, track=track), widths.index(max(widths))
+    keys = frozenset(kept_keys) | {"track.radius", "track.width"}
+
+    own: dict[str, Any] = {"tell": tell, "before": before, "progress": progress}
+
+    def member(part: Part, lead: DesignStudy | None) -> DesignStudy:
+        # with what the first one has where it holds so, else its own
+        if lead is None or lead.bowl is None or lead.status != HOLDS:
+            return loop.design(part, plain, keys, request, **own)
+        used = {device.kind for device in lead.devices}
+        unused = tuple(name for name in PROPOSED if name not in used)
+        less = replace(request, without=(*request.without, *unused))
+        tracked = replace(plain, track=lead.bowl.track)
+        design = loop.design(part, tracked, keys | set(SHARED_TRACK_KEYS), less, **own, with_nearest=False)
+        if design.status == HOLDS or design.partial:
+            return replace(design, request=request)
+        other = loop.design(part, plain, keys, request, **own)
+        return replace(max((design, other), key=merit), partial=other.partial)
+
+    designs: dict[int, DesignStudy] = {}
+    try:
+        for k in (first, *(k for k in range(len(parts)) if k != first)):
+            tell(f"{parts[k].name}:")
+            designs[k] = member(parts[k], designs.get(first))
+            if designs[k].partial:
+                return FamilyStudy(tuple(designs[n] for n in sorted(designs)))
+        members = tuple(designs[k] for k in range(len(parts)))
+        return FamilyStudy(_of_one_chain(members, request, keys | set(SHARED_TRACK_KEYS), tell, before))
+    except KeyboardInterrupt:
+        if not designs:
+            raise
+        return FamilyStudy(tuple(designs[n] for n in sorted(designs)), stopped=True)
 
 
-def _member(part, lead, plain, kept_keys, request, own):
-    """The design of one part: with what the first one has where it holds so, else its own.
-
-    ``own`` are the keywords of ``loop.design`` that say who is told.
-    """
-    if lead is None or lead.status != HOLDS:
-        return loop.design(part, plain, kept_keys, request, **own)
-    used = {device.kind for device in lead.devices}
-    less = replace(request, without=(*request.without, *(name for name in PROPOSED if name not in used)))
-    tracked = replace(plain, track=lead.bowl.track)
-    design = loop.design(part, tracked, kept_keys | set(SHARED_TRACK_KEYS), less, **own, with_nearest=False)
-    if design.status == HOLDS or design.partial:
-        return replace(design, request=request)
-    other = loop.design(part, plain, kept_keys, request, **own)
-    return replace(max((design, other), key=merit), partial=other.partial)
-
-
-def _of_one_chain(members, request, kept_keys, tell, before):
+def _of_one_chain(
+    members: tuple[DesignStudy, ...],
+    request: DesignRequest,
+    kept_keys: frozenset[str],
+    tell: Callable[[str], None],
+    before: Callable[[], None] | None,
+) -> tuple[DesignStudy, ...]:
     """The members with values that suit all, where there are such and each holds with them."""
     kinds = {tuple(device.kind for device in member.devices) for member in members}
     if len(kinds) > 1 or any(member.status != HOLDS for member in members):
@@ -150,33 +163,31 @@ def _of_one_chain(members, request, kept_keys, tell, before):
         return members
     changed_members = []
     for member in members:
-        cuts = tuple(_at(cut, limit, member) for cut, limit in zip(member.cuts, limits, strict=True))
+        tooling: Any = member.tooling
+        cuts = [
+            cut
+            if limit is None or abs(limit - cut.device.limit) < 0.5 * proposals.VALUE_STEP_M
+            else proposals.moved(cut, limit, tooling.orientations, member.turn or 0)
+            for cut, limit in zip(member.cuts, limits, strict=True)
+        ]
+        changed: DesignStudy | None = member
         if [cut.device.text for cut in cuts] != [cut.device.text for cut in member.cuts]:
             tell(f"{member.part.name}: with the values of all")
-            member = prove_with_cuts(
-                member, cuts, request, kept_keys | set(SHARED_TRACK_KEYS), tell=tell, before=before
-            )
-        if member is not None and member.partial:
+            changed = prove_with_cuts(member, cuts, request, kept_keys, tell=tell, before=before)
+        if changed is not None and changed.partial:
             raise KeyboardInterrupt
-        if member is None or member.status != HOLDS:
+        if changed is None or changed.status != HOLDS:
             return members
-        changed_members.append(member)
+        changed_members.append(changed)
     return tuple(changed_members)
 
 
-def common_limits(chains):
+def common_limits(chains: Sequence[Sequence[Cut]]) -> list[float | None] | None:
     """Return the values [m] at which each device of several chains suits all of them.
 
-    Parameters
-    ----------
-    chains : sequence of sequence of Cut
-        Of devices of the same kinds in the same order.
-
-    Returns
-    -------
-    list of float or None
-        A value each, None of what has no number; that of one of the chains where all admit it, else the
-        middle of what they admit. None where some device has no such value.
+    Chains are of devices of the same kinds in the same order. A value each, None of what has no number; that
+    of one of the chains where all admit it, else the middle of what they admit. None where some device has no
+    such value.
     """
     limits: list[float | None] = []
     for cuts in zip(*chains, strict=True):
@@ -196,39 +207,28 @@ def common_limits(chains):
     return limits
 
 
-def _at(cut, limit, member):
-    """A cut of a member at another value; itself where that is its own."""
-    if limit is None or abs(limit - cut.device.limit) < 0.5 * proposals.VALUE_STEP_M:
-        return cut
-    return proposals.moved(cut, limit, member.tooling.orientations, member.turn)
-
-
-def prove_with_cuts(study, cuts, request, kept_keys, *, tell, before):
+def prove_with_cuts(
+    study: DesignStudy,
+    cuts: Sequence[Cut],
+    request: DesignRequest,
+    kept_keys: Collection[str],
+    *,
+    tell: Callable[[str], None],
+    before: Callable[[], None] | None,
+) -> DesignStudy | None:
     """Return a design with other values of its devices, proved as any; None where its trial denies it.
 
-    Parameters
-    ----------
-    study : DesignStudy
-        With a bowl.
-    cuts : sequence of Cut
-    request : DesignRequest
-    kept_keys : collection of str
-        Keys of its bowl that are kept.
-    tell, before : callable
-
-    Returns
-    -------
-    DesignStudy or None
+    The design has a bowl, of which some keys are kept.
     """
-    bare = replace(study.bowl, devices=())
-    search = Search(study.part, request, bare, frozenset(kept_keys), tell, None, before=before)
-    search.shares = exploring.arriving(search, bare)
-    orientations, weights = exploring.offered(search, bare)
+    if study.bowl is None or study.turn is None:
+        raise ValueError("a design without a bowl has no devices")
+    plain_bowl = replace(study.bowl, devices=())
+    search = Search(study.part, request, plain_bowl, frozenset(kept_keys), tell, None, before=before)
+    search.shares = exploring.arriving(search, plain_bowl)
+    orientations, weights = exploring.offered(search, plain_bowl)
     same = proposals.equivalent_rows(orientations.lying, study.turn, request.up)
     free = proposals.free_headings(orientations.lying, study.turn, request)
     proposal = proposals.Proposal(study.turn, tuple(cuts), study.before, "the values of all", same, free)
-    plain_bowl = calm_drive.PlainBowl(bare, frozenset(kept_keys), None, request.drive)
-    candidate = exploring.attempted(search, plain_bowl, proposal, weights)
-    if not candidate.attempt.clean:
-        return None
-    return loop.proved(search, candidate, whole=True)
+    track = calm_drive.PlainBowl(plain_bowl, frozenset(kept_keys), None, request.drive)
+    candidate = exploring.attempted(search, track, proposal, weights)
+    return loop.proved(search, candidate, whole=True) if candidate.attempt.clean else None

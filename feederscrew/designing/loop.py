@@ -19,8 +19,6 @@ from feederscrew.designing import (
     short_trials,
 )
 from feederscrew.designing.exploring import Candidate, Progress, Search
-from feederscrew.designing.long_rides import LongRide, long_ride
-from feederscrew.designing.proposals import COST_CLASSES
 from feederscrew.designing.record import (
     DRAWS_HELD,
     HOLDS,
@@ -34,14 +32,14 @@ from feederscrew.designing.record import (
     FilledQueue,
     NearestDesign,
     RobustRun,
+    long_ride,
 )
-from feederscrew.designing.robust import robust_run
+from feederscrew.designing.short_trials import robust_run
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
 from feederscrew.part.record import Part
 from feederscrew.part.size_limits import refuse_many_facets
-from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.tooling import ToolingStudy, may_be_left_out, may_be_up
@@ -117,8 +115,10 @@ def design(
         for cost_class in proposals.COST_CLASSES:
             searched.append(cost_class)
             _search_class(search, cost_class, proofs)
-            if _answered(search, proofs):
+            if any(study.partial for study, _ in proofs):
                 break
+            if any(study.status == HOLDS for study, _ in proofs) and not request.alternatives:
+                break  # no dearer one is searched
         near, nearby = _nearest(search, proofs) if with_nearest else (None, None)
         if nearby is None:
             _make_whole(search, proofs)
@@ -146,34 +146,40 @@ def _nearest(search: Search, proofs: Proofs) -> tuple[NearestDesign | None, Desi
         return None, None
     slow = [proof for proof in proofs if nearest.only_slow(proof[0]) and not nearest.whole(proof[0])]
     if slow:  # its queue ended as soon as it was too slow
-        study, candidate = max(slow, key=lambda one: merit(one[0]))
-        proofs[:] = [proof for proof in proofs if proof[1] is not candidate]
-        proofs.append((proved(search, candidate, whole=True, drawn=study.robust), candidate))
+        study, candidate = max(slow, key=lambda proof: merit(proof[0]))
+        _prove_whole(search, proofs, candidate, study.robust)
         if proofs[-1][0].partial:
             return None, None
-    return nearest.nearest(_best(search, proofs), search, proofs, _proved_at_any_rate)
+
+    def prove(other: Search, candidate: Candidate) -> DesignStudy:
+        # its queue ends where it is impure or jams, however slow it is
+        at_any_rate = replace(other, request=replace(other.request, target=ANY_RATE))
+        return replace(proved(at_any_rate, candidate, whole=False), request=other.request)
+
+    return nearest.nearest(_best(search, proofs), search, proofs, prove)
 
 
-def _proved_at_any_rate(search: Search, candidate: Candidate) -> DesignStudy:
-    """The design with its draws and its queue, which ends where it is impure or jams, however slow it is."""
-    request = replace(search.request, target=ANY_RATE)
-    study = proved(replace(search, request=request), candidate, whole=False)
-    return replace(study, request=search.request)
+def _prove_whole(search: Search, proofs: Proofs, candidate: Candidate, drawn: RobustRun | None) -> None:
+    """Prove a design to the end, in place of what was proved of it."""
+    proofs[:] = [proof for proof in proofs if proof[1] is not candidate]
+    proofs.append((proved(search, candidate, whole=True, drawn=drawn), candidate))
 
 
 def _best(search: Search, proofs: Proofs) -> DesignStudy:
     """The cheapest design that holds, or the best so far as far as it was proved; else the best attempt."""
+
+    def cheapest(study: DesignStudy) -> tuple[float, tuple[bool, bool, float, float]]:
+        return -cost_class_of(study.devices) if study.status == HOLDS else -math.inf, merit(study)
+
     if proofs:
-        return max((study for study, _ in proofs), key=_cheapest)
+        return max((study for study, _ in proofs), key=cheapest)
     candidate = _likeliest(search)
-    if candidate is None or search.shares is None:
-        return _without(search)
-    return _unproved(search, candidate, search.shares)
-
-
-def _cheapest(study: DesignStudy) -> tuple[float, tuple[bool, bool, float, float]]:
-    """What of two designs is the better one: of those that hold the one of the cheaper cost class."""
-    return -cost_class_of(study.devices) if study.status == HOLDS else -math.inf, merit(study)
+    if candidate is not None and search.shares is not None:
+        return _unproved(search, candidate, search.shares)
+    source = "" if search.shares is None else search.shares.aspects.source(search.request.rule)
+    return DesignStudy(
+        search.part, search.request, None, None, None, attempts=tuple(search.attempts), source=source
+    )
 
 
 def _likeliest(search: Search) -> Candidate | None:
@@ -217,13 +223,6 @@ def _search_class(search: Search, cost_class: int, proofs: Proofs) -> None:
             break
 
 
-def _answered(search: Search, proofs: Proofs) -> bool:
-    """Whether no dearer cost class is searched: one was stopped, or one holds and no alternative is asked."""
-    if any(study.partial for study, _ in proofs):
-        return True
-    return any(study.status == HOLDS for study, _ in proofs) and not search.request.alternatives
-
-
 def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
     """Prove a design as far as it holds; then, ``CHANGES`` times, one with what denied it changed."""
     for _ in range(CHANGES + 1):
@@ -242,76 +241,55 @@ def _changed(search: Search, study: DesignStudy, candidate: Candidate) -> Candid
 
     None where there is nothing to change.
     """
-    plain_bowl = calm_drive.PlainBowl(
-        replace(candidate.bowl, devices=()), search.kept_keys, None, search.request.drive
-    )
-    weights, worst = candidate.weights, (study.robust.worst,)
+    proposal, lying = candidate.proposal, candidate.orientations.lying
     if study.jams:
-        lively = (
-            exploring.livened(search, plain_bowl, candidate, weights) if _is_calm(candidate.bowl) else None
-        )
+        calm = hop(candidate.bowl).height < LIVELY_HOP_M  # a livelier drive may clear what jams
+        lively = exploring.livened(search, candidate) if calm else None
         if lively is not None and lively.attempt.clean:
             return lively
-        return _with_change(search, plain_bowl, candidate, proposals.relieved(candidate))
-    if nearest.only_slow(study):
+        changed = proposals.relieved(candidate)
+    elif nearest.only_slow(study):
         search.reserve *= 1.1 * RATE_KEPT * search.request.target / study.delivered[1]
-        return _faster(search, plain_bowl, candidate)
-    if study.robust.share < DRAWS_HELD:
-        if nearest.only_lost(study):
+        return _faster(search, candidate)
+    elif study.robust.share < DRAWS_HELD:
+        if " is lost (stopped" in study.robust.worst:  # what is wanted gets stuck: a drive may be too slow
             search.least = FASTER * calm_drive.speed(candidate.bowl)
-            other = _faster(search, plain_bowl, candidate)
+            other = _faster(search, candidate)
             search.least = 0.0
             if other is not None:
                 return other
-        if exploring.stays_at_steel(candidate.proposal, worst):
-            return exploring.livened(search, plain_bowl, candidate, weights)
-        tried, lying = candidate.tried, candidate.orientations.lying
-        changed = proposals.better(candidate.proposal, tried, lying, study.robust)
-        return _with_change(search, plain_bowl, candidate, changed)
-    return _with_change(search, plain_bowl, candidate, proposals.purer(candidate, study.left_instead))
+        if exploring.stays_at_steel(proposal, (study.robust.worst,)):
+            return exploring.livened(search, candidate)
+        changed = proposals.better(proposal, candidate.tried, lying, study.robust)
+    else:
+        changed = proposals.purer(candidate, study.left_instead)
+    if changed is None:
+        return None
+    plain_bowl = candidate.plain_bowl(search)
+    return exploring.attempted(search, plain_bowl, changed, candidate.weights, candidate.bowl)
 
 
-def _is_calm(bowl: Bowl) -> bool:
-    """Whether parts hop so low that a livelier drive may clear what jams."""
-    return hop(bowl).height < LIVELY_HOP_M
-
-
-def _faster(search: Search, plain_bowl: calm_drive.PlainBowl, candidate: Candidate) -> Candidate | None:
+def _faster(search: Search, candidate: Candidate) -> Candidate | None:
     """The same chain at the drive that is now asked for; None where that is the one it was proved at."""
-    bowl = exploring.driven_for(search, plain_bowl, candidate.proposal, candidate.weights)
+    plain_bowl, weights = candidate.plain_bowl(search), candidate.weights
+    bowl = exploring.driven_for(search, plain_bowl, candidate.proposal, weights)
     if bowl.drive == candidate.bowl.drive:
         return None
-    return exploring.attempted(search, plain_bowl, candidate.proposal, candidate.weights, bowl)
-
-
-def _with_change(
-    search: Search,
-    plain_bowl: calm_drive.PlainBowl,
-    candidate: Candidate,
-    proposal: proposals.Proposal | None,
-) -> Candidate | None:
-    """A changed chain at the drive of the one it was made of; None without a change."""
-    if proposal is None:
-        return None
-    return exploring.attempted(search, plain_bowl, proposal, candidate.weights, candidate.bowl)
+    return exploring.attempted(search, plain_bowl, candidate.proposal, weights, bowl)
 
 
 def _make_whole(search: Search, proofs: Proofs) -> None:
     """Prove the best design to the end, though it does not hold; the best attempt where none was proved."""
-    if any(study.status == "holds" or study.partial for study, _ in proofs):
+    if any(study.status == HOLDS or study.partial for study, _ in proofs):
         return
     if proofs:
-        study, candidate = max(proofs, key=lambda one: merit(one[0]))
-        drawn = study.robust
-        if nearest.whole(study):
-            return
-    else:
-        drawn, likeliest = None, _likeliest(search)
-        if likeliest is None:
-            return
-        candidate = likeliest
-    proofs[:] = [proof for proof in proofs if proof[1] is not candidate]
-    proofs.append((proved(search, candidate, whole=True, drawn=drawn), candidate))
+        study, candidate = max(proofs, key=lambda proof: merit(proof[0]))
+        if not nearest.whole(study):
+            _prove_whole(search, proofs, candidate, study.robust)
+        return
+    likeliest = _likeliest(search)
+    if likeliest is not None:
+        _prove_whole(search, proofs, likeliest, None)
 
 
 def proved(
@@ -319,178 +297,100 @@ def proved(
 ) -> DesignStudy:
     """Return the design with its draws and its queue; unless ``whole``, only as far as it holds.
 
-    Parameters
-    ----------
-    search : Search
-    candidate : Candidate
-    whole : bool
-    drawn : RobustRun, optional
-        All draws of that candidate, where they were made: they would come out the same.
+    ``drawn`` are all draws of that candidate, where they were made: they would come out the same.
     """
+    request, name = search.request, candidate.attempt.wanted
     shares, candidate = exploring.at_its_drive(search, candidate)
-    ride, candidate = _at_the_tooling(search, candidate)
-    bowl, oriented, row = candidate.bowl, candidate.orientations, candidate.proposal.row
+    # a ride along the track to the tooling, where another mix arrives
+    search.tell(f"ride along the track: {name}")
+    oriented, proposal = candidate.orientations, candidate.proposal
+    wanted = short_trials.wanted_rows(oriented, candidate.tried.states)
+    ride = long_ride(search.part, candidate.bowl, oriented.lying, candidate.weights, wanted, request.run)
+    candidate = replace(candidate, weights=ride.arriving)
     study = replace(_unproved(search, candidate, shares), long_ride=ride)
-    if drawn is None or drawn.draws < search.request.draws:
-        drawn = _drawn(search, candidate, ride.either, whole=whole)
+    # draws; unless whole, while it may hold
+    if drawn is None or drawn.draws < request.draws:
+        search.begin_proof(f"draws: {name}, {request.draws} of part, friction, drive and cuts")
+        drawn = robust_run(
+            search.part, candidate.bowl, oriented, ride.either, proposal.rows,
+            draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
+            any_heading=proposal.any_heading, spared=short_trials.spared_rows(candidate.tried),
+            enough=search.enough(candidate.attempt),
+            allowed=None if whole else math.floor((1.0 - DRAWS_HELD) * request.draws + 1e-9),
+        )  # fmt: skip
     study = replace(study, robust=drawn, partial=drawn.partial)
     if drawn.partial or not (whole or drawn.share >= DRAWS_HELD):
         return study
+    # queues, the slowest for longer; parts that touch on their way come as they enter the track
+    line = queues.FollowedRow(
+        search.part, candidate.bowl, shares.aspects, oriented, candidate.weights,
+        candidate.tried.states, request.seed, search.tell, RATE_KEPT * request.target,
+        proposal.any_heading, search.run("queue").progress, ride.entering, request.jobs,
+    )  # fmt: skip
     try:
-        study = _in_queues(search, study, candidate, shares, ride.entering, whole=whole)
+        search.tell(f"queue: {name}, {proposal.sentence}")
+        study = _with_queues(study, queues.filled(line, whole=whole))
+        study = _with_queues(study, queues.longer(line, study))
     except KeyboardInterrupt:
         return replace(study, partial=True)
     frequent = [oriented.lying[k] for k in short_trials.often(candidate.weights)]
-    named_risks = hazards.risks(
-        oriented.lying[row], bowl, study.queues, orientations=frequent, seed=search.request.seed
+    return replace(
+        study,
+        risks=hazards.risks(
+            oriented.lying[proposal.row],
+            candidate.bowl,
+            study.queues,
+            orientations=frequent,
+            seed=request.seed,
+        ),
     )
-    return replace(study, risks=named_risks)
 
 
-def _at_the_tooling(search: Search, candidate: Candidate) -> tuple[LongRide, Candidate]:
-    """A ride along the track to the tooling, and the candidate with the mix that arrives there."""
-    search.tell(f"ride along the track: {candidate.attempt.wanted}")
-    oriented, weights = candidate.orientations, candidate.weights
-    wanted = short_trials.wanted_rows(oriented, candidate.tried.states)
-    ride = long_ride(search.part, candidate.bowl, oriented.lying, weights, wanted, search.request.run)
-    return ride, replace(candidate, weights=ride.arriving)
-
-
-def _drawn(search: Search, candidate: Candidate, shares: np.ndarray, *, whole: bool) -> RobustRun:
-    """The draws of a design, of parts that come in some shares (M,) [1]; unless whole, while it may hold."""
-    request = search.request
-    text = f"{request.draws} of part, friction, drive and cuts"
-    search.begin_proof(f"draws: {candidate.attempt.wanted}, {text}")
-    return robust_run(
-        search.part, candidate.bowl, candidate.orientations, shares, candidate.proposal.rows,
-        draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
-        any_heading=candidate.proposal.any_heading, spared=short_trials.spared_rows(candidate.tried),
-        enough=search.enough(candidate.attempt),
-        allowed=None if whole else math.floor((1.0 - DRAWS_HELD) * request.draws + 1e-9),
-    )  # fmt: skip
-
-
-def _in_queues(
-    search: Search,
-    study: DesignStudy,
-    candidate: Candidate,
-    shares: Shares,
-    entering: np.ndarray,
-    *,
-    whole: bool,
-) -> DesignStudy:
-    """The design with its queues, as far as it holds unless ``whole``, and with the slowest for longer.
-
-    Parts that touch on their way come as they enter the track, in shares (M,) [1]: they ride otherwise than
-    alone.
-    """
-    search.tell(f"queue: {candidate.attempt.wanted}, {candidate.proposal.sentence}")
-    line = queues.FollowedRow(
-        search.part, candidate.bowl, shares.aspects, candidate.orientations, candidate.weights,
-        candidate.tried.states, search.request.seed, search.tell, RATE_KEPT * search.request.target,
-        candidate.proposal.any_heading, search.run("queue").progress, entering, search.request.jobs,
-    )  # fmt: skip
-    study = _queued(study, queues.filled(line, whole=whole))
-    return _queued(study, queues.longer(line, study))
-
-
-def _queued(study: DesignStudy, queues_seen: tuple[FilledQueue, ...]) -> DesignStudy:
-    return replace(study, queues=queues_seen, partial=any(queue.partial for queue in queues_seen))
+def _with_queues(study: DesignStudy, fills: tuple[FilledQueue, ...]) -> DesignStudy:
+    return replace(study, queues=fills, partial=any(queue.partial for queue in fills))
 
 
 def _unproved(search: Search, candidate: Candidate, shares: Shares) -> DesignStudy:
     """The design before anything of it is proved."""
     bowl, oriented, weights = candidate.bowl, candidate.orientations, candidate.weights
-    request, margin = search.request, proposals.MARGINS[-1]
+    request, name = search.request, candidate.attempt.wanted
+    own = name.partition("@")[0].casefold()
+    gain = short_trials.gain(oriented, weights, candidate.tried.states)
     return DesignStudy(
         part=search.part,
         request=request,
         bowl=bowl,
-        wanted=_counting(candidate.attempt.wanted, request),
+        wanted=" or ".join((name, *(aspect for aspect in request.up if aspect.casefold() != own))),
         turn=candidate.proposal.row,
         cuts=candidate.proposal.cuts,
         before=candidate.proposal.before,
         attempts=tuple(search.attempts),
         source=shares.aspects.source(request.rule),
-        static_rate=_static(search, candidate),
+        static_rate=calm_drive.speed(bowl) * gain / float((weights * oriented.lengths).sum()),
         slowed=calm_drive.velocity_kept(bowl),
         trials=tuple(
             TrialRun(bowl, throw_number(bowl), oriented, weights, course)
             for course in candidate.tried.courses
         ),
-        tooling=tooled(
-            search.part, bowl, shares.aspects, oriented, weights, candidate.proposal, request, margin
-        ),
+        tooling=_tooled(search.part, candidate, shares.aspects, request),
     )
 
 
-def tooled(
-    part: Part,
-    bowl: Bowl,
-    aspects: Aspects,
-    oriented: Orientations,
-    weights: np.ndarray,
-    proposal: proposals.Proposal,
-    request: DesignRequest,
-    margin: float,
+def _tooled(
+    part: Part, candidate: Candidate, aspects: Aspects, request: DesignRequest
 ) -> ToolingStudy | None:
-    """Return a chain as `feeder tooling` would have found it; None without one.
-
-    Parameters
-    ----------
-    part : Part
-    bowl : Bowl
-        With its devices.
-    aspects : Aspects
-    oriented : Orientations
-        Through the devices; M of them.
-    weights : (M,) float [1]
-        In which they come.
-    proposal : Proposal
-    request : DesignRequest
-    margin : float [m]
-
-    Returns
-    -------
-    ToolingStudy or None
-    """
+    """A chain as `feeder tooling` would have found it; None without one."""
+    oriented, weights, proposal = candidate.orientations, candidate.weights, candidate.proposal
     if not proposal.cuts:
         return None
-    task = static.design_task(
-        oriented.lying,
-        weights,
-        proposal.row,
-        margin,
-        1.0,
-        proposal.before,
-        constraints=DesignConstraints(up=request.up),
-    )
+    row, margin = proposal.row, proposals.MARGINS[-1]
+    limits = DesignConstraints(up=request.up)
+    task = static.design_task(oriented.lying, weights, row, margin, 1.0, proposal.before, constraints=limits)
     same = np.isin(oriented.leaves_as, proposal.states(oriented))
     static_design = static.propose(task, proposal.cuts, oriented.through < 0.5, same)
-    designs = tuple(static_design if k == proposal.row else None for k in range(len(weights)))
+    designs = tuple(static_design if k == row else None for k in range(len(weights)))
     return ToolingStudy(
-        part, bowl, aspects, request.rule, margin, oriented.lying, weights, designs, proposal.row, request.up
-    )
-
-
-def _counting(name: str, request: DesignRequest) -> str:
-    """The name of what leaves, with the aspects that count as it."""
-    names = [aspect for aspect in request.up if aspect.casefold() != name.partition("@")[0].casefold()]
-    return " or ".join((name, *names))
-
-
-def _static(search: Search, candidate: Candidate) -> float:
-    """Wanted parts [1/s] that the static rule promises."""
-    oriented, weights = candidate.orientations, candidate.weights
-    gain = short_trials.gain(oriented, weights, candidate.tried.states)
-    return calm_drive.speed(candidate.bowl) * gain / float((weights * oriented.lengths).sum())
-
-
-def _without(search: Search) -> DesignStudy:
-    """What is said where nothing was proved."""
-    source = "" if search.shares is None else search.shares.aspects.source(search.request.rule)
-    return DesignStudy(
-        search.part, search.request, None, None, None, attempts=tuple(search.attempts), source=source
+        part, candidate.bowl, aspects, request.rule, margin, oriented.lying, weights, designs, row, request.up
     )
 
 
@@ -513,31 +413,28 @@ def alternatives(
     searched : collection of int
         Cost classes of which chains were looked for.
     """
-    best_of: list[Alternative] = []
     holds = any(study.status == HOLDS for study in studies)
-    for number in COST_CLASSES:
-        own = [
-            study for study in studies if study.bowl is not None and cost_class_of(study.devices) == number
-        ]
+    best_of: list[Alternative] = []
+    for number in proposals.COST_CLASSES:
+        own = [one for one in studies if one.bowl is not None and cost_class_of(one.devices) == number]
         tried = [attempt for attempt in attempts if attempt.cost_class == number]
         if own:
-            best_of.append(of_study(max(own, key=merit)))
+            best_of.append(_of_study(max(own, key=merit)))
         elif tried:
             best = max(tried, key=lambda one: (one.clean, one.efficiency, one.rate))
             faults = ", ".join(best.faults[:2]) or "too slow in its short trial"
             best_of.append(Alternative(number, NONE, chain=best.chain, why=f"{best.wanted}: {faults}"))
         elif number in searched:
-            best_of.append(
-                Alternative(number, NONE, why="no chain of this class tells what is wanted from the rest")
-            )
+            why = "no chain of this class tells what is wanted from the rest"
+            best_of.append(Alternative(number, NONE, why=why))
         else:
             why = "a cheaper one holds: --alternatives proves this class too" if holds else "it was stopped"
             best_of.append(Alternative(number, NOT_TRIED, why=why))
     return tuple(best_of)
 
 
-def of_study(study: DesignStudy) -> Alternative:
-    """Return a design as the alternative of its cost class."""
+def _of_study(study: DesignStudy) -> Alternative:
+    """A design as the alternative of its cost class."""
     purity, share = study.purity[0], study.efficiency
     counts = bool(study.queues) and not study.partial  # what was stopped is no evidence
     sensors: list[Any] = [device for device in study.devices if device.senses]

@@ -1,12 +1,14 @@
 """The nearest design that holds where one does not: what is changed for it is tried, and proved as any."""
 
+import itertools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
+from feederscrew.conveying.hop import hop
 from feederscrew.designing import calm_drive, exploring, proposals, queues, short_trials
 from feederscrew.designing.exploring import Candidate, Search
 from feederscrew.designing.record import (
@@ -25,8 +27,13 @@ MINUTE = 60.0
 PROOFS = 3  # designs beside those of the search that go through draws and queues
 TRIALS = 4  # short trials beside those of the search, of calmer drives and of one device more
 FREE_TRIALS = 6  # of other ways up, where only some were asked for
-SLIGHT = 1e-9  # of rounding
 FREE_CALMED = 2  # of them at a calmer drive
+LOWER_RATE = 0.5  # of the rate that short trials promise: a rate for which bowls are sought anew
+LOWER_TRIALS, LOWER_PROOFS = (
+    12,
+    2,
+)  # short trials for it at most, and designs that go through draws and queues
+SLIGHT = 1e-9  # of rounding
 RATE_DIGITS = 2  # of a rate that holds: it is rounded down
 Prove = Callable[[Search, Candidate], DesignStudy]
 Proofs = list[tuple[DesignStudy, Candidate]]
@@ -49,24 +56,16 @@ def only_slow(study: DesignStudy) -> bool:
     return sorts and 0.0 < low < RATE_KEPT * study.request.target
 
 
-def only_lost(study: DesignStudy) -> bool:
-    """Return whether draws have denied a design by what is wanted and gets stuck: a drive may be too slow."""
-    return not study.partial and study.robust.share < DRAWS_HELD and " is lost (stopped" in study.robust.worst
+def whole(study: DesignStudy) -> bool:
+    """Return whether a design was proved to the end, holding or not: all draws, a queue at each fill."""
+    return study.robust.draws >= study.request.draws and queues.is_complete(study.queues)
 
 
 def rate_that_holds(study: DesignStudy) -> float:
     """Return the rate [1/s] at which a design holds, as it was proved; 0 where it holds at none.
 
-    Parameters
-    ----------
-    study : DesignStudy
-        With its draws, and a queue at each fill.
-
-    Returns
-    -------
-    float [1/s]
-        Rounded down to two digits a minute: what its queues surely deliver, over the share of a target that
-        is enough.
+    It is rounded down to two digits a minute: what its queues surely deliver, over the share of a target that
+    is enough.
     """
     if study.partial or not study.queues:
         return 0.0
@@ -79,7 +78,7 @@ def rate_that_holds(study: DesignStudy) -> float:
 
 
 def _rounded_down(value: float) -> float:
-    """A number above 0 rounded down to ``RATE_DIGITS`` digits."""
+    """A number rounded down to ``RATE_DIGITS`` digits; 0 where it is not above 0."""
     if not value > 0.0:
         return 0.0
     step = 10.0 ** (np.floor(np.log10(value)) - RATE_DIGITS + 1)
@@ -93,7 +92,8 @@ def nearest(
 
     The cheapest change comes first: a lower rate for a design that was proved, a calmer drive for its chain,
     a design that was clean but slow in the search, another heading, one device more, another way up. Each is
-    proved as any design is, until one holds: ``PROOFS`` of them, with ``TRIALS`` short trials, at most.
+    proved as any design is, until one holds: ``PROOFS`` of them, with ``TRIALS`` short trials, at most. Then
+    bowls are sought for a lower rate: the chains that its drive makes possible are others.
 
     Parameters
     ----------
@@ -122,29 +122,28 @@ def nearest(
         variant = Variant(_slower(candidate), candidate, search)
         return _holding(search, rate, variant, study, denied, len(proofs)), study
     done, pending = 0, [variants(search, proofs)]
-    for variant in _in_turn(pending):
+    lower = itertools.islice(_at_a_lower_rate(search), LOWER_PROOFS)
+    for variant in itertools.chain(itertools.islice(_in_turn(pending), PROOFS), lower):
         search.tell(f"nearest that holds: {variant.candidate.attempt.wanted}, {variant.change}")
         study, done = prove(variant.search, variant.candidate), done + 1
         if study.partial:
             raise KeyboardInterrupt
+        if variant.as_requested:
+            study = replace(study, request=search.request)
         rate = rate_that_holds(study)
         if rate > 0.0:
             near = _holding(search, rate, variant, study, denied, len(proofs) + done)
             return near, study if variant.as_requested else None
-        denied.append(f"{variant.change} ({variant.candidate.attempt.wanted}): {_lacks(study)}")
-        if done >= PROOFS:
-            break
-        pending.append(_calmer_variants(variant, study))
+        slow = replace(study, request=replace(study.request, target=1e-9))  # what it lacks beside its rate
+        lacks = next(iter(slow.shortfalls), "nothing is delivered")
+        denied.append(f"{variant.change} ({variant.candidate.attempt.wanted}): {lacks}")
+        if done < PROOFS:
+            pending.append(_calmer_variants(variant, study))
     none = NearestDesign(
         None, "", trials=len(search.attempts), proofs=len(proofs) + done, denied=tuple(denied),
         helps=tuple(_helps(search, best, None)),
     )  # fmt: skip
     return none, None
-
-
-def whole(study: DesignStudy) -> bool:
-    """Return whether a design was proved to the end, holding or not: all draws, a queue at each fill."""
-    return study.robust.draws >= study.request.draws and queues.is_complete(study.queues)
 
 
 def tried_nearest(
@@ -202,20 +201,8 @@ def _drive(bowl: Bowl) -> str:
     return f"{2e3 * bowl.drive.amplitude:.3g} mm peak to peak, throw number {throw_number(bowl):.2g}"
 
 
-def _lacks(study: DesignStudy) -> str:
-    """What a design lacks beside parts a minute, in few words."""
-    slow = replace(study, request=replace(study.request, target=1e-9))
-    return next(iter(slow.shortfalls), "nothing is delivered")
-
-
 def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
-    """Yield designs near those that do not hold, the cheapest change first, each clean in its short trial.
-
-    Parameters
-    ----------
-    search : Search
-    proofs : list of (DesignStudy, Candidate)
-    """
+    """Yield designs near those that do not hold, the cheapest change first, each clean in its short trial."""
     left, proved = TRIALS, {id(candidate) for _, candidate in proofs}
     for study, candidate in proofs:
         if _by_motion(study) and left:
@@ -223,8 +210,7 @@ def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
             left -= other is not None
             if other is not None and other.attempt.clean:
                 yield Variant(f"a calmer drive, {_drive(other.bowl)}", other, search)
-    clean = [candidate for candidate in search.passed if id(candidate) not in proved]
-    for candidate in sorted(clean, key=lambda candidate: -candidate.attempt.rate):
+    for candidate in _fastest_first(candidate for candidate in search.passed if id(candidate) not in proved):
         calm = candidate.proposal.step.startswith("calmer drive")
         change = f"a calmer drive, {_drive(candidate.bowl)}" if calm else _slower(candidate)
         wanted = [candidate.attempt.wanted for _, candidate in proofs]
@@ -243,10 +229,16 @@ def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
     yield from _other_ways_up(search)
 
 
+def _fastest_first(candidates: Iterable[Candidate]) -> list[Candidate]:
+    return sorted(candidates, key=lambda candidate: -candidate.attempt.rate)
+
+
 def _by_motion(study: DesignStudy) -> bool:
-    """Whether a calmer drive may mend a design: it is not slow alone, and no device let others through."""
+    """Whether a calmer drive may mend it: it jams, is impure, or draws lose or let through what hops."""
     impure = bool(study.queues) and (bool(study.jams) or not study.purity[0] >= PURE)
-    return impure or "is lost (" in study.robust.worst
+    hops = study.bowl is not None and hop(study.bowl).height > 0.0
+    denied = study.robust.share < DRAWS_HELD and hops
+    return impure or denied or "is lost (" in study.robust.worst
 
 
 def _in_turn(pending: list[Iterator[Variant]]) -> Iterator[Variant]:
@@ -267,26 +259,15 @@ def _calmer_variants(variant: Variant, study: DesignStudy) -> Iterator[Variant]:
 
 
 def _calmer(search: Search, candidate: Candidate) -> Candidate | None:
-    plain_bowl = _plain_bowl(search, candidate)
-    bowl = calm_drive.calmer(plain_bowl, candidate.bowl)
-    if bowl is None or _tried_at(search, candidate, bowl):
-        return None
-    return exploring.calmer(search, plain_bowl, candidate, candidate.weights)
-
-
-def _tried_at(search: Search, candidate: Candidate, bowl: Bowl) -> bool:
-    """Whether a chain was tried at the drive of a bowl."""
-    return any(
+    """The chain of a candidate tried at a calmer drive; None without one, or where that was tried before."""
+    bowl = calm_drive.calmer(candidate.plain_bowl(search), candidate.bowl)
+    if bowl is None or any(
         attempt.chain == candidate.attempt.chain and attempt.peak_to_peak == 2.0 * bowl.drive.amplitude
         and abs(attempt.throw_number - throw_number(bowl)) < 1e-6
         for attempt in search.attempts
-    )  # fmt: skip
-
-
-def _plain_bowl(search: Search, candidate: Candidate) -> calm_drive.PlainBowl:
-    return calm_drive.PlainBowl(
-        replace(candidate.bowl, devices=()), search.kept_keys, None, search.request.drive
-    )
+    ):  # fmt: skip
+        return None
+    return exploring.calmer(search, candidate)
 
 
 def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
@@ -298,36 +279,29 @@ def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
         if aspect + HEADING_OFF not in dict(study.left_instead) or aspect in candidate.proposal.any_heading:
             continue
         request = replace(search.request, aspect=None, up=tuple(dict.fromkeys((*search.request.up, aspect))))
-        lying = candidate.orientations.lying
+        lying, row = candidate.orientations.lying, candidate.proposal.row
         proposal = replace(
             candidate.proposal,
-            same=proposals.equivalent_rows(lying, candidate.proposal.row, request.up),
-            any_heading=proposals.free_headings(lying, candidate.proposal.row, request),
+            same=proposals.equivalent_rows(lying, row, request.up),
+            any_heading=proposals.free_headings(lying, row, request),
         )
         states = short_trials.wanted_states(candidate.orientations, proposal.rows)
-        other = replace(
-            candidate, proposal=proposal, tried=replace(candidate.tried, state=states[0], states=states)
-        )
-        free = _other_search(search, request)
+        tried = replace(candidate.tried, state=states[0], states=states)
+        other, free = replace(candidate, proposal=proposal, tried=tried), _other_search(search, request)
         yield Variant(f"any heading of {aspect} counted, --up {','.join(request.up)}", other, free, False)
 
 
 def _one_device_more(search: Search, study: DesignStudy, candidate: Candidate) -> Candidate | None:
     """The chain with a drop before it for what left a queue instead of what is wanted; None without one."""
     names = {name.partition("@")[0].removesuffix(HEADING_OFF) for name, _ in study.left_instead}
-    orientations, proposal = candidate.orientations, candidate.proposal
-    wanted = short_trials.wanted_rows(orientations, candidate.tried.states)
-    rows = [
-        k
-        for k, orientation in enumerate(orientations.lying)
-        if orientation.aspect in names and k not in wanted
-    ]
-    changed = proposals.dropped_before(proposal, rows, wanted, orientations.lying)
+    lying = candidate.orientations.lying
+    wanted = short_trials.wanted_rows(candidate.orientations, candidate.tried.states)
+    rows = [k for k, orientation in enumerate(lying) if orientation.aspect in names and k not in wanted]
+    changed = proposals.dropped_before(candidate.proposal, rows, wanted, lying)
     if changed is None:
         return None
-    return exploring.attempted(
-        search, _plain_bowl(search, candidate), changed, candidate.weights, candidate.bowl
-    )
+    plain_bowl = candidate.plain_bowl(search)
+    return exploring.attempted(search, plain_bowl, changed, candidate.weights, candidate.bowl)
 
 
 def _other_search(search: Search, request: DesignRequest) -> Search:
@@ -336,6 +310,17 @@ def _other_search(search: Search, request: DesignRequest) -> Search:
         search, request=request, passed=[], failed=[], avoided={}, most=np.inf, further=None,
         first=len(search.attempts), tracks=[], proposed={}, chains=set(), lost_behind=[], reach=np.inf,
     )  # fmt: skip
+
+
+def _at_a_lower_rate(search: Search) -> Iterator[Variant]:
+    """Designs of a search for ``LOWER_RATE`` of what short trials promise: calmer drives, other chains."""
+    target = search.request.target
+    promised = min(search.best_rate or target, target)
+    lower = _rounded_down(MINUTE * LOWER_RATE * promised) / MINUTE
+    request = replace(search.request, target=lower, budget=len(search.attempts) + LOWER_TRIALS)
+    free = _other_search(search, request)
+    for candidate in exploring.candidates(free):
+        yield Variant(f"a lower rate, a bowl at {_drive(candidate.bowl)}", candidate, free)
 
 
 def _other_ways_up(search: Search) -> Iterator[Variant]:
@@ -349,25 +334,20 @@ def _other_ways_up(search: Search) -> Iterator[Variant]:
     for candidate in exploring.candidates(free):
         yielded.add(id(candidate))
         yield Variant(_other_way(candidate), candidate, free, False)
-    for candidate in sorted(free.passed, key=lambda candidate: -candidate.attempt.rate):
-        if id(candidate) not in yielded:
-            yield Variant(_other_way(candidate), candidate, free, False)
+    for candidate in _fastest_first(candidate for candidate in free.passed if id(candidate) not in yielded):
+        yield Variant(_other_way(candidate), candidate, free, False)
     for candidate in _calmed(free, FREE_CALMED):
         yield Variant(_other_way(candidate), candidate, free, False)
 
 
-def _calmed(search: Search, most: int) -> Iterator[Candidate]:
+def _calmed(search: Search, left: int) -> Iterator[Candidate]:
     """Chains that failed, clean at a calmer drive: those of which most left first; so many trials at most."""
-    left = most
-    for candidate in sorted(
-        search.failed, key=lambda candidate: (-candidate.attempt.efficiency, len(candidate.attempt.faults))
-    ):
+    failed = sorted(search.failed, key=lambda one: (-one.attempt.efficiency, len(one.attempt.faults)))
+    for candidate in failed:
+        attempt = candidate.attempt
         if not left:
             break
-        if (
-            not candidate.attempt.efficiency > 0.0
-            and candidate.attempt.throw_number <= calm_drive.CALM_THROW_NUMBER + 1e-3
-        ):
+        if not attempt.efficiency > 0.0 and attempt.throw_number <= calm_drive.CALM_THROW_NUMBER + 1e-3:
             continue
         other = _calmer(search, candidate)
         left -= other is not None
@@ -382,7 +362,7 @@ def _other_way(candidate: Candidate) -> str:
 def _helps(search: Search, study: DesignStudy, chosen: Candidate | None) -> Iterator[str]:
     """What else was clean in a short trial, or would count more parts."""
     named = {study.wanted}
-    for candidate in sorted(search.passed, key=lambda candidate: -candidate.attempt.rate):
+    for candidate in _fastest_first(search.passed):
         if candidate is not chosen and candidate.attempt.wanted not in named:
             named.add(candidate.attempt.wanted)
             rate = MINUTE * candidate.attempt.rate

@@ -1,17 +1,21 @@
 """Chains to be tried for an orientation, and how a value is moved that a trial denies."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from feederscrew.bowl.record import Bowl
 from feederscrew.designing import short_trials
-from feederscrew.designing.record import RobustRun
-from feederscrew.designing.robust import CARRIED
-from feederscrew.designing.short_trials import Tried
+from feederscrew.designing.record import DesignRequest, RobustRun
+from feederscrew.designing.short_trials import CARRIED, Tried
+from feederscrew.part.record import Part
 from feederscrew.rates import stream
+from feederscrew.rates.stream import Orientations
+from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.tooling import tooling
+from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.kinds import KINDS, cost_class, dearer, names
 from feederscrew.tooling.devices.orientation_names import nearest
 from feederscrew.tooling.devices.orientation_names import rows as rows_of
@@ -57,23 +61,14 @@ class Recipe:
         return not set(HOLES) <= set(self.without)
 
 
-def recipes_of(cost_class, request):
+def recipes_of(cost_class: int, request: DesignRequest) -> list[Recipe]:
     """Return the ways of proposing chains of a cost class, the most robust first.
 
-    Parameters
-    ----------
-    cost_class : int
-    request : DesignRequest
-
-    Returns
-    -------
-    list of Recipe
-        Of a sensor alone, and of one with devices that parts meet; none of a class of which no kind of
-        device may be used.
+    Of a sensor alone, and of one with devices that parts meet; none of a class of which no kind of device may
+    be used.
     """
     left_out = (*dearer(cost_class), *request.without)
-    own = [name for name in names(cost_class=cost_class, proposed=True) if name not in left_out]
-    if not own:
+    if not set(names(cost_class=cost_class, proposed=True)) - set(left_out):
         return []
     outcomes = [outcome for outcome in ("hanging", "lying") if request.outcome in ("any", outcome)]
     kinds = [(*left_out, *HOLES), *([(*left_out, *TOUCHING_KINDS, *HOLES)] if cost_class == SENSED else [])]
@@ -84,8 +79,8 @@ def recipes_of(cost_class, request):
     if "lying" in outcomes:
         lying = [recipe for recipe in recipes if recipe.outcome == "lying" and recipe.without == kinds[0]]
         recipes += [replace(recipe, turns=True) for recipe in lying]
-    if "lying" in outcomes and cost_class == COST_CLASSES[0]:
-        recipes.append(Recipe(cost_class, MARGINS[-1], "lying", left_out))
+        if cost_class == COST_CLASSES[0]:
+            recipes.append(Recipe(cost_class, MARGINS[-1], "lying", left_out))
     return recipes
 
 
@@ -94,33 +89,33 @@ class Proposal:
     """An orientation with a chain that isolates it, as the static rule says."""
 
     row: int
-    cuts: tuple  # of Cut
-    before: tuple  # of Device
+    cuts: tuple[Cut, ...]
+    before: tuple[Device, ...]
     step: str  # why it is tried
-    same: tuple = ()  # rows that count as it
-    any_heading: tuple = ()  # names of aspects that count as it, whatever the heading
+    same: tuple[int, ...] = ()  # rows that count as it
+    any_heading: tuple[str, ...] = ()  # names of aspects that count as it, whatever the heading
     purity: float = 1.0  # [1] by the static rule, midway between what is sure and what may be
     margin: float = np.inf  # [m] the least, of passing and of returning
-    sweeps: tuple = ()  # [deg] of a blade, those that were tried
+    sweeps: tuple[int, ...] = ()  # [deg] of a blade, those that were tried
 
     @property
-    def cost_class(self):
+    def cost_class(self) -> int:
         """What it takes: 1 steel alone, 2 steady air, 3 a sensor with a valve."""
         return cost_class(self.devices)
 
     @property
-    def devices(self) -> tuple[Any, ...]:
+    def devices(self) -> tuple[Device, ...]:
         """Every device along the track."""
         return (*self.before, *(cut.device for cut in self.cuts))
 
-    def states(self, orientations):
-        """Return the states in which what is wanted leaves, its own first."""
-        return short_trials.wanted_states(orientations, self.rows)
-
     @property
-    def rows(self) -> tuple[Any, ...]:
+    def rows(self) -> tuple[int, ...]:
         """The wanted row, and those that count as it."""
         return (self.row, *self.same)
+
+    def states(self, orientations: Orientations) -> tuple[int, ...]:
+        """Return the states in which what is wanted leaves, its own first."""
+        return short_trials.wanted_states(orientations, self.rows)
 
     @property
     def hangs(self) -> bool:
@@ -128,147 +123,140 @@ class Proposal:
         return any(cut.device.hangs for cut in self.cuts)
 
     @property
-    def chain(self) -> tuple[Any, ...]:
+    def chain(self) -> tuple[str, ...]:
         """The devices as a bowl file has them."""
         return tuple(f"{device.kind}: {device.text}" for device in self.devices)
 
     @property
-    def sentence(self):
+    def sentence(self) -> str:
         """The devices in a sentence, headings in whole degrees."""
         return ", ".join(f"{device.kind}: {device.short}" for device in self.devices) or "no device"
 
+    def with_cut(self, place: int, cut: Cut, step: str) -> "Proposal":
+        """Return the proposal with another cut at a place of its chain."""
+        return replace(self, cuts=(*self.cuts[:place], cut, *self.cuts[place + 1 :]), step=step)
 
-def equivalent_rows(lying, row, up) -> tuple[Any, ...]:
+
+def equivalent_rows(lying: Sequence[Orientation], row: int, up: Iterable[str]) -> tuple[int, ...]:
     """Return the rows beside a wanted one that count as it: those of aspects that may be up too."""
-    names = _folded(up)
-    return tuple(
-        k for k, orientation in enumerate(lying) if k != row and orientation.aspect.casefold() in names
-    )
+    named = _folded(up)
+    return tuple(k for k, one in enumerate(lying) if k != row and one.aspect.casefold() in named)
 
 
-def free_headings(lying, row, request):
-    """Return the aspects that count as a wanted row at any heading, by what a DesignRequest asks for."""
+def free_headings(lying: Sequence[Orientation], row: int, request: DesignRequest) -> tuple[str, ...]:
+    """Return the aspects that count as a wanted row at any heading."""
     return short_trials.aspects_at_any_heading(
         lying, row, request.up, heading_given=request.heading is not None
     )
 
 
-def _folded(names) -> set[Any]:
-    return {name.strip().casefold() for name in names}
+def _folded(texts: Iterable[str]) -> set[str]:
+    return {name.strip().casefold() for name in texts}
 
 
-def promising(orientations, shares, request):
-    """Return rows (R,) of the orientations worth a try: those asked for, the most frequent first."""
+def promising(orientations: Orientations, shares: np.ndarray, request: DesignRequest) -> list[int]:
+    """Return rows of the orientations worth a try: those asked for, the most frequent first.
+
+    Shares are those (M,) [1] in which orientations come.
+    """
     rows = [k for k in short_trials.often(shares) if not orientations.lying[k].returned]
-    names = {request.aspect.strip()} if request.aspect is not None else set(request.up)
-    if names:
-        requested = [
-            k
-            for k, orientation in enumerate(orientations.lying)
-            if orientation.aspect.casefold() in _folded(names)
-        ]
+    named = _folded([request.aspect] if request.aspect is not None else request.up)
+    if named:
+        requested = [k for k, one in enumerate(orientations.lying) if one.aspect.casefold() in named]
         rows = [k for k in rows if k in requested] or (requested if request.aspect is not None else [])
     if request.heading is None or request.aspect is None:
         return rows
-    rows_of(orientations.aspects, request.aspect, orientations.lying[0].posture.solid.source)
+    solid = orientations.lying[0].posture.solid
+    rows_of(orientations.aspects, request.aspect, "" if solid is None else solid.source)
     return [nearest(orientations.aspects, orientations.headings, request.aspect, request.heading)]
 
 
-def bare(orientations, shares, request, devices):
-    """Return the proposal of no further device, where nearly all that comes is one way up; else None."""
+def bare(
+    orientations: Orientations, shares: np.ndarray, request: DesignRequest, devices: Iterable[Device]
+) -> Proposal | None:
+    """Return the proposal of no further device, where nearly all that comes is one way up; else None.
+
+    Shares are those (M,) [1] in which orientations come.
+    """
     rows = promising(orientations, shares, request)
     if not rows or request.outcome == "hanging":
         return None
     leaving = (shares[:, None] * orientations.leaving).sum(axis=0)
     best = max(rows, key=lambda k: leaving[orientations.leaves_as[k]])
-    same, free = (
-        equivalent_rows(orientations.lying, best, request.up),
-        free_headings(orientations.lying, best, request),
-    )
+    same = equivalent_rows(orientations.lying, best, request.up)
+    free = free_headings(orientations.lying, best, request)
     proposal = Proposal(best, (), tuple(devices), "no device", same, free)
     pure = short_trials.gain(orientations, shares, proposal.states(orientations)) / max(leaving.sum(), 1e-300)
     return proposal if pure >= ENOUGH_PURITY else None
 
 
-def proposed(part, bowl, aspects, row, orientations, request, recipe):
+def proposed(
+    part: Part,
+    bowl: Bowl,
+    aspects: Aspects,
+    row: int,
+    orientations: Orientations,
+    request: DesignRequest,
+    recipe: Recipe,
+) -> Proposal | None:
     """Return the static rule's chain for a row, or None where it isolates nothing or is not what was asked.
 
-    Parameters
-    ----------
-    part : Part
-    bowl : Bowl
-        With the devices of the user.
-    aspects : Aspects
-    row : int
-    orientations : Orientations
-    request : DesignRequest
-    recipe : Recipe
-
-    Returns
-    -------
-    Proposal or None
-        What would stand at a device is returned before it by a drop.
+    The bowl has the devices of the user. What would stand at a device is returned before it by a drop.
     """
-    orientation = orientations.lying[row]
+    lying = orientations.lying
     without = tuple(dict.fromkeys((*request.without, *recipe.without, *ON_THE_TRACK)))
     static_design = tooling(
-        part, bowl, orientation.aspect, heading=orientation.heading, rule=request.rule, margin=recipe.margin,
+        part, bowl, lying[row].aspect, heading=lying[row].heading, rule=request.rule, margin=recipe.margin,
         aspect_shares=aspects, seed=request.seed, verdicts=VERDICTS, outcome=recipe.outcome, without=without,
         turn=recipe.turns, air=recipe.cost_class > COST_CLASSES[0],
         purity=ENOUGH_PURITY, up=request.up,
         play=0.0, tolerance=0.0, vary=False,  # draws and the loop have them
     ).design  # fmt: skip
-    if (
-        static_design is None
-        or not static_design.efficiency > 0.0
-        or not (static_design.cuts or static_design.before)
-    ):
+    if static_design is None or not static_design.efficiency > 0.0:
         return None
-    cuts = tuple(
-        quickened(rounded(cut, orientations.lying, row), orientations.lying) for cut in static_design.cuts
-    )
-    step = f"proposed with margins of {in_mm(recipe.margin)}"
-    same, free = (
-        equivalent_rows(orientations.lying, row, request.up),
-        free_headings(orientations.lying, row, request),
-    )
+    if not (static_design.cuts or static_design.before):
+        return None
+    cuts = tuple(quickened(rounded(cut, lying, row), lying) for cut in static_design.cuts)
+    same, free = equivalent_rows(lying, row, request.up), free_headings(lying, row, request)
     hopeful = static_design.hopeful or 0.0
     pure = 0.5 * (float(np.nan_to_num(static_design.purity)) + hopeful)
-    proposal = Proposal(row, cuts, tuple(static_design.before), step, same, free, pure, static_design.margin)
+    proposal = Proposal(
+        row, cuts, tuple(static_design.before), f"proposed with margins of {in_mm(recipe.margin)}",
+        same, free, pure, static_design.margin,
+    )  # fmt: skip
     if static_design.isolated:
         return proposal
+    # a drop before what stops some orientations; none where no drop tells them
     through = known_through(part, aspects, replace(bowl, devices=proposal.devices))
-    return _guarded_stops(proposal, through, request.rule) if hopeful >= ENOUGH_PURITY else None
-
-
-def _guarded_stops(proposal, through, rule):
-    """The proposal with a drop before what stops some orientations; None where none tells them."""
-    stops = (through.stops.sum(axis=1) > 0.0) & (
-        np.nan_to_num(through.rules[rule]) >= short_trials.SELDOM_SHARE
-    )
+    if hopeful < ENOUGH_PURITY:
+        return None
+    often = np.nan_to_num(through.rules[request.rule]) >= short_trials.SELDOM_SHARE
+    stops = (through.stops.sum(axis=1) > 0.0) & often
     if not stops.any():
         return proposal
     wanted = short_trials.wanted_rows(through, proposal.states(through))
     return dropped_before(proposal, list(np.flatnonzero(stops)), wanted, through.lying)
 
 
-def rounded(cut, lying, row):
+def rounded(cut: Cut, lying: Sequence[Orientation], row: int) -> Cut:
     """Return a cut whose value a shop can make, where that keeps what it returns."""
-    if not np.isfinite(cut.device.limit):
-        return cut
-    return moved(cut, float(np.round(cut.device.limit / VALUE_STEP_M) * VALUE_STEP_M), lying, row)
+    return moved(cut, cut.device.limit, lying, row) if np.isfinite(cut.device.limit) else cut
 
 
-def moved(cut, limit, lying, row):
-    """Return a cut of one number at another value, with its margins there."""
-    limit = float(np.round(limit / VALUE_STEP_M) * VALUE_STEP_M)
-    device = cut.device.valued(limit)
+def moved(cut: Cut, limit: float, lying: Sequence[Orientation], row: int) -> Cut:
+    """Return a cut of one number at another value [m], in steps of a shop, with its margins there."""
+    device = cut.device.valued(float(np.round(limit / VALUE_STEP_M) * VALUE_STEP_M))
+    return _judged(cut, device, lying, row)
+
+
+def _judged(cut: Cut, device: Device, lying: Sequence[Orientation], row: int, ends: Any = None) -> Cut:
+    """A cut with another device that shall return the same orientations."""
     must = np.array([orientation.name in cut.returns for orientation in lying])
-    return judge_cut(lying, row, device, must, cut.smallest, cut.largest)
+    return judge_cut(lying, row, device, must, *(ends or (cut.smallest, cut.largest)))
 
 
-def mended(proposal, tried, lying):
-    """Return the proposal with the value moved that its trial denies; None where none can be moved.
+def _mended(proposal: Proposal, tried: Tried, lying: Sequence[Orientation]) -> Proposal | None:
+    """The proposal with the value moved that its trial denies; None where none can be moved.
 
     What is lost though wanted moves its device towards the least cut; what leaves though rejected moves the
     device that should have returned it towards the greatest.
@@ -276,89 +264,73 @@ def mended(proposal, tried, lying):
     for place, cut in enumerate(proposal.cuts):
         if not cut.device.bound:
             continue
-        kind = cut.device.kind
-        lost = lost_at(tried, kind)
-        slipped = [k for n, k in enumerate(tried.rows) if tried.wrong[n] and lying[k].name in cut.returns]
-        if lost == bool(slipped):
+        lost = lost_at(tried, cut.device.kind)
+        if lost == _slips(cut, tried, lying):
             continue
-        end = cut.smallest.limit if lost else cut.largest.limit
-        limit = 0.5 * (cut.device.limit + end)
+        limit = 0.5 * (cut.device.limit + (cut.smallest if lost else cut.largest).limit)
         if not np.isfinite(limit) or abs(limit - cut.device.limit) < VALUE_STEP_M:
             continue
         other = moved(cut, limit, lying, proposal.row)
-        if other.device.limit == cut.device.limit or not other.margin_pass > 0.0:
-            continue
-        cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
-        return replace(proposal, cuts=cuts, step=f"{kind} moved to {other.device.text}")
+        if other.device.limit != cut.device.limit and other.margin_pass > 0.0:
+            return proposal.with_cut(place, other, f"{cut.device.kind} moved to {other.device.text}")
     return None
 
 
-def swept(proposal, tried, lying):
-    """Return the proposal with another sweep of a blade at which parts stay; None where none is left.
+def _slips(cut: Cut, tried: Tried, lying: Sequence[Orientation]) -> bool:
+    """Whether something left otherwise that a cut should have returned."""
+    return any(tried.wrong[n] and lying[k].name in cut.returns for n, k in enumerate(tried.rows))
 
-    Parameters
-    ----------
-    proposal : Proposal
-    tried : Tried
-    lying : sequence of Orientation
-    """
+
+def swept(proposal: Proposal, tried: Tried, lying: Sequence[Orientation]) -> Proposal | None:
+    """Return the proposal with another sweep of a blade at which parts stay; None where none is left."""
     stays = {end for n in range(len(tried.rows)) if tried.held[n] for end in tried.places[n]}
     for place, cut in enumerate(proposal.cuts):
-        device = cut.device
+        device: Any = cut.device  # a blade, where it is overhead
         if not device.overhead or not device.face or not any(end.endswith(device.name) for end in stays):
             continue
         used = proposal.sweeps or (round(np.degrees(device.sweep)),)
         grip = lying[proposal.row].grip
-        blades = [
-            replace(device, sweep=np.radians(angle)).rewritten() for angle in SWEEPS if angle not in used
-        ]
+        angles = [angle for angle in SWEEPS if angle not in used]
+        blades = [replace(device, sweep=np.radians(angle)).rewritten() for angle in angles]
         other = next((blade for blade in blades if blade.clear_of(grip)), None)
         if other is None:
             continue
-        must = np.array([orientation.name in cut.returns for orientation in lying])
-        ends = [replace(end, sweep=other.sweep).rewritten() for end in (cut.smallest, cut.largest)]
-        cuts = (
-            *proposal.cuts[:place],
-            judge_cut(lying, proposal.row, other, must, *ends),
-            *proposal.cuts[place + 1 :],
-        )
+        both: list[Any] = [cut.smallest, cut.largest]
+        ends = [replace(end, sweep=other.sweep).rewritten() for end in both]
+        changed = _judged(cut, other, lying, proposal.row, ends)
         sweep = round(np.degrees(other.sweep))
-        return replace(proposal, cuts=cuts, sweeps=(*used, sweep), step=f"{device.kind} swept {sweep} deg")
+        swept_proposal = proposal.with_cut(place, changed, f"{device.kind} swept {sweep} deg")
+        return replace(swept_proposal, sweeps=(*used, sweep))
     return None
 
 
-def better(proposal, tried, lying, drawn=None):
-    """Return the proposal changed where its trial denies it; None where nothing is left to change.
+def better(
+    proposal: Proposal, tried: Tried, lying: Sequence[Orientation], drawn: RobustRun | None = None
+) -> Proposal | None:
+    """Return the proposal changed where its trial, or draws, deny it; None where nothing is left to change.
 
-    Parameters
-    ----------
-    proposal : Proposal
-    tried : Tried
-    lying : sequence of Orientation
-    drawn : RobustRun, optional
-        Draws that deny what the trial itself does not.
+    ``drawn`` are draws that deny what the trial itself does not.
     """
-    right = set(short_trials.wanted_rows(tried.orientations, tried.states))
-    lost = any(k in right and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
     if drawn is not None:
-        return widened(proposal, lying) if "lost" in drawn.worst else cut_more(proposal, tried, drawn, lying)
-    wider = widened(proposal, lying) if lost else None
-    moved_one = wider or swept(proposal, tried, lying) or mended(proposal, tried, lying)
-    moved_one = moved_one or longer(proposal, tried, lying)
-    return moved_one or guarded(proposal, tried, lying)
+        return (
+            _widened(proposal, lying) if "lost" in drawn.worst else _cut_more(proposal, tried, drawn, lying)
+        )
+    wanted = short_trials.wanted_rows(tried.orientations, tried.states)
+    lost = any(k in wanted and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
+    changed = _widened(proposal, lying) if lost else None
+    changed = changed or swept(proposal, tried, lying) or _mended(proposal, tried, lying)
+    changed = changed or longer(proposal, tried, lying)
+    if changed is not None:
+        return changed
+    # devices through which what they reject falls: a queue hardly notices them
+    wrong = [k for n, k in enumerate(tried.rows) if tried.wrong[n] or tried.held[n]]
+    return dropped_before(proposal, [k for k in wrong if k not in wanted], wanted, lying)
 
 
-def cut_more(proposal, tried, drawn, lying):
-    """Return the proposal that cuts more of what draws carry through; None where no value or drop does.
-
-    Parameters
-    ----------
-    proposal : Proposal
-    tried : Tried
-    drawn : RobustRun
-        Its worst fault names what is carried through.
-    lying : sequence of Orientation
-    """
+def _cut_more(
+    proposal: Proposal, tried: Tried, drawn: RobustRun, lying: Sequence[Orientation]
+) -> Proposal | None:
+    """The proposal that cuts more of what draws carry through; None where no value or drop does."""
     name, carried, _ = drawn.worst.partition(CARRIED)
     if not carried:
         return None
@@ -367,43 +339,29 @@ def cut_more(proposal, tried, drawn, lying):
             continue
         other = moved(cut, 0.5 * (cut.device.limit + cut.largest.limit), lying, proposal.row)
         if abs(other.device.limit - cut.device.limit) >= VALUE_STEP_M and other.margin_pass > 0.0:
-            cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
-            return replace(proposal, cuts=cuts, step=f"{cut.device.kind} moved to {other.device.text}")
+            return proposal.with_cut(place, other, f"{cut.device.kind} moved to {other.device.text}")
     wanted = short_trials.wanted_rows(tried.orientations, tried.states)
     rows = [k for k, orientation in enumerate(lying) if orientation.name == name and k not in wanted]
     return dropped_before(proposal, rows, wanted, lying)
 
 
-def purer(candidate, left_instead):
-    """Return the proposal that cuts more of what left queues instead of what is wanted; None without one.
+def purer(candidate: Any, left_instead: Iterable[tuple[str, int]]) -> Proposal | None:
+    """Return the proposal of a Candidate that cuts more of what left queues instead of what is wanted.
 
-    Parameters
-    ----------
-    candidate : Candidate
-        As it was proved.
-    left_instead : sequence of (str, int)
-        Names of what left, the most frequent first, and how many.
+    None without one. ``left_instead``: names of what left, the most frequent first, and how many.
     """
     for name, _ in left_instead:
         drawn = RobustRun(1, 0, f"{name}{CARRIED}")
-        changed = cut_more(candidate.proposal, candidate.tried, drawn, candidate.orientations.lying)
+        changed = _cut_more(candidate.proposal, candidate.tried, drawn, candidate.orientations.lying)
         if changed is not None:
             return changed
     return None
 
 
-def relieved(candidate):
-    """Return the proposal with a pressure break before its devices, at which parts leave that back up.
+def relieved(candidate: Any) -> Proposal | None:
+    """Return the proposal of a Candidate with a pressure break before its devices, where parts back up.
 
-    Parameters
-    ----------
-    candidate : Candidate
-        That jams in a queue.
-
-    Returns
-    -------
-    Proposal or None
-        None where it has one, or a wanted orientation does not reach over any.
+    None where it has one, or a wanted orientation does not reach over any.
     """
     proposal, lying = candidate.proposal, candidate.orientations.lying
     if any(device.relieves for device in proposal.devices):
@@ -419,30 +377,13 @@ def relieved(candidate):
     return replace(proposal, cuts=(cut, *proposal.cuts), step=step)
 
 
-def guarded(proposal, tried, lying):
-    """Return the proposal with a drop before it for what is carried through or stays; None without one.
-
-    Only devices through which what they reject falls are taken: a queue hardly notices them.
-    """
-    wanted = short_trials.wanted_rows(tried.orientations, tried.states)
-    wrong = [k for n, k in enumerate(tried.rows) if tried.wrong[n] or tried.held[n]]
-    return dropped_before(proposal, [k for k in wrong if k not in wanted], wanted, lying)
-
-
-def dropped_before(proposal, rejected, wanted, lying):
+def dropped_before(
+    proposal: Proposal, rejected: Sequence[int], wanted: Sequence[int], lying: Sequence[Orientation]
+) -> Proposal | None:
     """Return the proposal with a drop before it, the one that tells most others from what is wanted.
 
-    Parameters
-    ----------
-    proposal : Proposal
-    rejected, wanted : sequence of int
-        Rows that are to be dropped, and those that are to stay.
-    lying : sequence of Orientation
-
-    Returns
-    -------
-    Proposal or None
-        None where no drop tells any of them; what no drop tells is left to the trial.
+    ``rejected`` and ``wanted`` are rows that are to be dropped, and that are to stay. None where no drop
+    tells any of them; what no drop tells is left to the trial.
     """
     if not rejected or not wanted:
         return None
@@ -466,16 +407,16 @@ def dropped_before(proposal, rejected, wanted, lying):
     return replace(proposal, cuts=(cut, *proposal.cuts), step=f"{kind.kind} of {device.text} before it")
 
 
-def lost_at(tried, kind) -> bool:
+def lost_at(tried: Tried, kind: str) -> bool:
     """Return whether the wanted orientation ends at a device of a kind."""
-    right = set(short_trials.wanted_rows(tried.orientations, tried.states))
-    ends = [tried.places[n] for n, k in enumerate(tried.rows) if k in right]
+    wanted = short_trials.wanted_rows(tried.orientations, tried.states)
     own = KINDS[kind]
     name = own.trade or own.kind.replace("_", " ")  # as a trial names the device
-    return any(end.endswith(f"at {name}") for some in ends for end in some)
+    ends = [end for n, k in enumerate(tried.rows) if k in wanted for end in tried.places[n]]
+    return any(end.endswith(f"at {name}") for end in ends)
 
 
-def known_through(part, aspects, bowl):
+def known_through(part: Part, aspects: Aspects, bowl: Bowl) -> Orientations:
     """Return what becomes of every orientation on the track and through the devices of a bowl."""
     return stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
 
@@ -483,18 +424,7 @@ def known_through(part, aspects, bowl):
 def quickened(cut: Cut, lying: Sequence[Orientation]) -> Cut:
     """Return a cut whose pulse is the shortest that blows off what it returns, with a reserve.
 
-    Source: own; docs/design.md, "The loop".
-
-    Parameters
-    ----------
-    cut : Cut
-    lying : sequence of Orientation
-        Of the part.
-
-    Returns
-    -------
-    Cut
-        Itself where its pulse is as short, or it has none.
+    Itself where its pulse is as short, or it has none. Source: own; docs/design.md, "The loop".
     """
     device: Any = cut.device  # a sorter, where it senses
     if not device.senses:
@@ -509,45 +439,26 @@ def quickened(cut: Cut, lying: Sequence[Orientation]) -> Cut:
             encounter.blown(out, down, time / PULSE_RESERVE) > 0.0
             for encounter, (out, down) in zip(encounters, pushes)
         ):
-            return replace(cut, device=_timed(device, time))
+            return replace(cut, device=device.with_pulse(time))
     return cut
 
 
-def longer(proposal: Any, tried: Tried, lying: Sequence[Orientation]) -> Any:
+def longer(proposal: Proposal, tried: Tried, lying: Sequence[Orientation]) -> Proposal | None:
     """Return a proposal with a longer pulse where something is carried through that it should blow off.
 
-    Parameters
-    ----------
-    proposal : Proposal
-    tried : Tried
-    lying : sequence of Orientation
-
-    Returns
-    -------
-    Proposal or None
-        None where nothing is, or the pulse is as long as it was proposed.
+    None where nothing is, or the pulse is as long as it was proposed.
     """
     for place, cut in enumerate(proposal.cuts):
         device: Any = cut.device
-        slipped = any(tried.wrong[n] and lying[k].name in cut.returns for n, k in enumerate(tried.rows))
-        if not device.senses or not slipped or device.time >= PULSE:
-            continue
-        other = _timed(device, min(LONGER_PULSE * device.time, PULSE))
-        cuts = (*proposal.cuts[:place], replace(cut, device=other), *proposal.cuts[place + 1 :])
-        return replace(proposal, cuts=cuts, step=f"pulse of {_milliseconds(other.time)}")
+        if device.senses and _slips(cut, tried, lying) and device.time < PULSE:
+            other = device.with_pulse(min(LONGER_PULSE * device.time, PULSE))
+            step = f"pulse of {1e3 * other.time:.0f} ms"
+            return proposal.with_cut(place, replace(cut, device=other), step)
     return None
 
 
-def _timed(device: Any, time: float) -> Any:
-    return device.with_pulse(time)
-
-
-def _milliseconds(time: float) -> str:
-    return f"{1e3 * time:.0f} ms"
-
-
-def widened(proposal: Any, lying: Sequence[Orientation]) -> Any:
-    """Return the proposal with a wider slot between its rails; None without rails that can be wider.
+def _widened(proposal: Proposal, lying: Sequence[Orientation]) -> Proposal | None:
+    """The proposal with a wider slot between its rails; None without rails that can be wider.
 
     A part lies askew along the wall: it comes to rails narrowed to its shank beside them, and slides on. The
     slot grows towards the head, about its middle, as long as the head is held by the rails.
@@ -556,16 +467,13 @@ def widened(proposal: Any, lying: Sequence[Orientation]) -> Any:
         shank = neck(lying[proposal.row]) if cut.device.hangs else None
         if shank is None:
             continue
-        first, last = cut.device.span
-        more = float(
-            np.round(0.5 * SLOT_WIDENING * (shank.head - (last - first)) / VALUE_STEP_M) * VALUE_STEP_M
-        )
+        device: Any = cut.device
+        first, last = device.span
+        half = 0.5 * SLOT_WIDENING * (shank.head - (last - first))
+        more = float(np.round(half / VALUE_STEP_M) * VALUE_STEP_M)
         span = max(first - more, RAIL), last + more
-        if more < VALUE_STEP_M or span == cut.device.span or last - first > WIDEST_SLOT * shank.head:
+        if more < VALUE_STEP_M or span == device.span or last - first > WIDEST_SLOT * shank.head:
             continue
-        device = cut.device.with_span(span)
-        must = np.array([orientation.name in cut.returns for orientation in lying])
-        other = judge_cut(lying, proposal.row, device, must, cut.smallest, cut.largest)
-        cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
-        return replace(proposal, cuts=cuts, step=f"slot widened to {in_mm(span[1] - span[0])}")
+        other = _judged(cut, device.with_span(span), lying, proposal.row)
+        return proposal.with_cut(place, other, f"slot widened to {in_mm(span[1] - span[0])}")
     return None

@@ -8,7 +8,7 @@ import numpy as np
 
 from feederscrew.designing import short_trials
 from feederscrew.designing.proposals import equivalent_rows
-from feederscrew.designing.robust import denied
+from feederscrew.designing.short_trials import denied
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
 from feederscrew.rates import stream

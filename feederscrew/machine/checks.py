@@ -9,7 +9,7 @@ from feederscrew import units
 from feederscrew.bowl.record import Sizing
 from feederscrew.conveying import hop
 from feederscrew.errors import FeederError
-from feederscrew.machine.stroke import greatest_amplitude
+from feederscrew.machine.springs import greatest_amplitude
 from feederscrew.units import MM, MM_S
 
 

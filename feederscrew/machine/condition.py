@@ -12,8 +12,7 @@ from feederscrew import units
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError
-from feederscrew.machine.springs import gain
-from feederscrew.machine.stroke import FULL_TURN_RAD
+from feederscrew.machine.springs import FULL_TURN_RAD, gain
 
 # word: dimension
 MEASURED_DIMENSIONS = {

@@ -20,8 +20,7 @@ from feederscrew.bowl.record import (
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.geometry.polygons import turned
-from feederscrew.machine.springs import analyse_springs, gain
-from feederscrew.machine.stroke import greatest_amplitude
+from feederscrew.machine.springs import analyse_springs, gain, greatest_amplitude
 from feederscrew.mechanics.headings import headings
 from feederscrew.part.record import Part
 from feederscrew.rates import well_oriented

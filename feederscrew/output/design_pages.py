@@ -248,7 +248,7 @@ def offers(study, settings, built=None):
     study : DesignStudy
     settings : sequence of Setting
         As the user gave them.
-    built : designing.built_bowl.Built, optional
+    built : designing.design.Built, optional
         The machine below the bowl, and the bowl as a solid.
 
     Returns

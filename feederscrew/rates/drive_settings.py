@@ -13,30 +13,22 @@ from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError, FeederError
 
 KNOBS = ("drive.amplitude", "drive.vibration_angle", "drive.frequency")  # turned one at a time
-REGIMES_BY_GENTLENESS = (
-    "forward",
-    "stick",
-    "both",
-    "backward",
-    "hop",
-    "no steady state",
-)  # regimes, the most wanted first
+# regimes, the most wanted first
+REGIMES_BY_GENTLENESS = ("forward", "stick", "both", "backward", "hop", "no steady state")
 KNOB_SAMPLES = 241  # values of a knob that are looked at
 HIGHEST_THROW = 3.5  # beyond the best throw number, about 3, velocity falls and rests on chance
 KNOB_BISECTIONS = 45
 MAX_RATED_SETTINGS = 20  # settings that are asked what they bring at most
 RATE_TOLERANCE = 0.01  # of the rate: no further step is made
 DECIDED = 0.03  # of the rate: as near as the parts that decide are asked for, which are known to 5 %
-ACCEPTED_RATE_ERROR = (
-    0.04  # of the rate: a setting gives it; what arrives is sampled, so that it jumps by a few per cent
-)
-LED = 0.1  # of the rate: a setting that fewer parts lead no nearer to it is sought only if no other gives it
-LEADS = 2  # steps that fewer parts lead
+# of the rate: a setting gives it; what arrives is sampled, so that it jumps by a few per cent
+ACCEPTED_RATE_ERROR = 0.04
+LED = 0.1  # of the rate: a setting led no nearer to it by the bowl's own shares waits for all others
+LEADS = 3  # steps that the shares of the bowl's own drive lead
 ROUNDS, REMEMBERED = 8, 3  # steps towards a setting, and those whose parts lead on
 SETTING_TOLERANCE = 0.01  # of a value: two settings are one
 SETTING_DIGITS = 5  # of a value as it is printed
 Density = Callable[[Bowl | None], float]  # [1/m] as ``solutions`` takes it
-Starts = list[tuple["_Look", float]]  # keys, and values of them
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,9 +54,9 @@ class Solution:
     @property
     def order(self) -> tuple[int, bool, float]:
         """Sorts the gentle ones first: regime, one velocity before several, softest impact."""
-        order = self.answer
-        several = order.high - order.low > answer.COEXISTING_VELOCITY_GAP * order.speed
-        return REGIMES_BY_GENTLENESS.index(order.regime), several, order.hardest_impact
+        here = self.answer
+        several = here.high - here.low > answer.COEXISTING_VELOCITY_GAP * here.speed
+        return REGIMES_BY_GENTLENESS.index(here.regime), several, here.hardest_impact
 
 
 def solutions(
@@ -73,6 +65,7 @@ def solutions(
     density: Density,
     *,
     rough: Density | None = None,
+    sampled: bool = False,
     worst: bool = False,
     progress: Callable[[int, int], Any] | None = None,
 ) -> list[Solution]:
@@ -89,7 +82,10 @@ def solutions(
         From a bowl to the well-oriented parts on a length of its track [1/m], with what arrives at its drive
         and without what that turns over; of None, at the bowl's own drive as if it turned over none.
     rough : callable, optional
-        The same of fewer parts, sooner: it leads to a setting that ``density`` then decides on.
+        The same with what arrives at the bowl's own drive, sooner: it leads to a setting that ``density``
+        then decides on.
+    sampled : bool
+        What arrives is sampled by ``density``: a setting is then no better known than to DECIDED.
     worst : bool
         Reach the target at the slowest of every start and surface, as ``well_oriented.velocity``.
     progress : function, optional
@@ -106,122 +102,44 @@ def solutions(
     FeederError
         If none does; the line says what the bowl reaches at most.
     """
-    looks = [_look(bowl, BY_NAME[name], worst) for name in KNOBS]
-    if not any(np.isfinite(look.speeds).any() for look in looks):
+    curves = [_Curve.of(bowl, BY_NAME[name], worst) for name in KNOBS]
+    if not any(np.isfinite(curve.speeds).any() for curve in curves):
         raise FeederError("track.climb", "is steeper than friction holds", "lower the climb")
-    starts = [(look, value) for look in looks for value in look.starts(target / density(None))]
-    likely, unlikely = _led(starts, target, rough)
-    settings_tried, near = [], list[Solution]()
-    for count, (look, value) in enumerate(likely + unlikely):
+    starts = [(curve, value) for curve in curves for value in curve.starts(target / density(None))]
+    likely: list[tuple[_Curve, float]] = []
+    unlikely: list[tuple[_Curve, float]] = []
+    # the bowl's own shares lead from each start, none beside another; those LED to the rate come first
+    for curve, value in starts:
+        value, rate = _lead(curve, value, target, rough or density)
+        if not any(
+            other.key == curve.key and abs(value - near) <= SETTING_TOLERANCE * near
+            for other, near in likely + unlikely
+        ):
+            (likely if abs(rate - target) <= LED * target else unlikely).append((curve, value))
+    close = DECIDED if sampled else RATE_TOLERANCE
+    tried: list[Solution] = []
+    near: list[Solution] = []
+    for count, (curve, value) in enumerate(likely + unlikely):
         if near and count >= len(likely):
             break
-        settings_tried.append(
-            _settled(look, value, target, density, RATE_TOLERANCE if rough is None else DECIDED)
-        )
-        near = [
-            solution
-            for solution in _separate_solutions(settings_tried, target)
-            if abs(solution.rate - target) <= ACCEPTED_RATE_ERROR * target
-        ]
+        tried.append(_settled(curve, value, target, density, close))
+        separate = _separate_solutions(tried, target)
+        near = [one for one in separate if abs(one.rate - target) <= ACCEPTED_RATE_ERROR * target]
         if progress:
             progress(count + 1, len(likely + unlikely))
-    beyond = [solution for solution in _separate_solutions(settings_tried, target) if solution.rate > target]
-    if not near and not beyond:
-        raise _unreachable(looks, target, density)
-    return sorted(near or beyond, key=lambda solution: solution.order)
-
-
-def _led(starts: Starts, target: float, rough: Density | None) -> tuple[Starts, Starts]:
-    """Where fewer parts lead from each start, none beside another: those LED to the rate, and the others."""
-    if rough is None:
-        return starts, []
-    likely, unlikely = Starts(), Starts()
-    for look, value in starts:
-        value, rate = _lead(look, value, target, rough)
-        if all(
-            key != look.key or abs(value - near) > SETTING_TOLERANCE * near
-            for key, near in _places(likely + unlikely)
-        ):
-            near = abs(rate - target) <= LED * target
-            (likely if near else unlikely).append((look, value))
-    return likely, unlikely
-
-
-def _places(starts: Starts) -> list[tuple[Key, float]]:
-    return [(look.key, value) for look, value in starts]
-
-
-def _lead(look: "_Look", value: float, target: float, rough: Density) -> tuple[float, float]:
-    """The value that few parts lead to from a start, and the rate they give there.
-
-    They are too few for more than their mean at some drives near to each other.
-    """
-    densities = []
-    for _ in range(LEADS):
-        densities.append(rough(turned(look.bowl, look.key, look.readable(value))))
-        there = look.crossings(target / float(np.mean(densities))) if densities[-1] > 0.0 else np.zeros(0)
-        if not there.size:
-            break
-        value = float(there[np.argmin(np.abs(there - value))])
-    return value, look.speed(value) * float(np.mean(densities))
-
-
-def _settled(
-    look: "_Look", value: float, target: float, density: Density, close: float = RATE_TOLERANCE
-) -> Solution:
-    """The setting near a start that gives the target with what arrives there, or comes nearest to it.
-
-    Each step takes the parts that arrived at the step before it, since another drive brings others; they are
-    sampled, so after some steps the mean of the last ones leads on.
-    """
-    steps, last = [], None
-    for _ in range(ROUNDS):
-        jumps = value == last
-        steps.append(look.solution(value if jumps else look.readable(value), density))
-        if abs(steps[-1].rate - target) <= close * target or jumps or not steps[-1].parts_per_metre > 0.0:
-            break
-        led = steps[-REMEMBERED:] if len(steps) > REMEMBERED else steps[-1:]
-        there = look.crossings(target / float(np.mean([step.parts_per_metre for step in led])))
-        if not there.size:
-            break
-        last, value = value, float(there[np.argmin(np.abs(there - value))])
-    away = [(abs(step.rate - target), step) for step in steps]
-    enough = [pair for pair in away if pair[0] <= ACCEPTED_RATE_ERROR * target or pair[1].rate > target]
-    return min(enough or away, key=lambda pair: pair[0])[1]
-
-
-def _separate_solutions(solutions: list[Solution], target: float) -> list[Solution]:
-    """Those of each key that are no other's neighbour, the nearest to the target of such neighbours."""
-    separate: list[Solution] = []
-    for solution in sorted(solutions, key=lambda solution: abs(solution.rate - target)):
-        values = [other.value for other in separate if other.key == solution.key]
-        if all(abs(solution.value - other) > SETTING_TOLERANCE * other for other in values):
-            separate.append(solution)
-    return separate
+    accepted = near or [one for one in _separate_solutions(tried, target) if one.rate > target]
+    if not accepted:
+        raise _unreachable(curves, target, density)
+    return sorted(accepted, key=lambda solution: solution.order)
 
 
 def turned(bowl: Bowl, key: Key, value: Any) -> Bowl:
-    """The bowl with one key of its drive at another value, or at an array of them."""
+    """Return the bowl with one key of its drive at another value [SI], or at an array of them."""
     return replace(bowl, drive=replace(bowl.drive, **{key.word: value}))
 
 
-def _values(bowl: Bowl, key: Key) -> np.ndarray:
-    """Values of a knob worth looking at: within its limits and below the highest throw number."""
-    low, high = (units.quantity(limit, key.dimension) for limit in (key.lowest, key.highest))
-    drive = bowl.drive
-    upright = answer.throw_number(turned(bowl, BY_NAME["drive.vibration_angle"], np.pi / 2))
-    share = HIGHEST_THROW / (upright * np.sin(max(drive.vibration_angle, 1e-3)))
-    if key.word == "amplitude":
-        high = min(high, drive.amplitude * share)
-    if key.word == "frequency":
-        high = min(high, drive.frequency * np.sqrt(share))
-    values = np.linspace(low, high, KNOB_SAMPLES)[1:-1]
-    throw = upright * np.sin(values)
-    return values[throw <= HIGHEST_THROW] if key.word == "vibration_angle" else values
-
-
 @dataclass(frozen=True, eq=False)
-class _Look:
+class _Curve:
     """A key, values of it and the velocity at each."""
 
     bowl: Bowl
@@ -229,6 +147,22 @@ class _Look:
     worst: bool
     values: np.ndarray  # (V,) [SI]
     speeds: np.ndarray  # (V,) [m/s]
+
+    @classmethod
+    def of(cls, bowl: Bowl, key: Key, worst: bool) -> "_Curve":
+        """Return the curve of a knob within its limits and below the highest throw number."""
+        low, high = (units.quantity(limit, key.dimension) for limit in (key.lowest, key.highest))
+        drive = bowl.drive
+        upright = answer.throw_number(turned(bowl, BY_NAME["drive.vibration_angle"], np.pi / 2))
+        share = HIGHEST_THROW / (upright * np.sin(max(drive.vibration_angle, 1e-3)))
+        if key.word == "amplitude":
+            high = min(high, drive.amplitude * share)
+        if key.word == "frequency":
+            high = min(high, drive.frequency * np.sqrt(share))
+        values = np.linspace(low, high, KNOB_SAMPLES)[1:-1]
+        if key.word == "vibration_angle":
+            values = values[upright * np.sin(values) <= HIGHEST_THROW]
+        return cls(bowl, key, worst, values, _speeds(bowl, key, values, worst))
 
     def starts(self, velocity: float) -> np.ndarray:
         """Values from which a setting is sought: where a velocity is passed, else the fastest there is."""
@@ -248,24 +182,69 @@ class _Look:
             low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
         return np.where(rises, high, low)
 
+    def nearest_crossing(self, value: float, velocity: float) -> float | None:
+        """The crossing of a velocity that is nearest to a value; None where it is never passed."""
+        there = self.crossings(velocity)
+        return float(there[np.argmin(np.abs(there - value))]) if there.size else None
+
     def readable(self, value: float) -> float:
         """The value as it is printed in the key's unit, so that it is the same when it is given back."""
         number = value / units.factor(self.key.unit, self.key.dimension)
         return units.quantity(f"{number:.{SETTING_DIGITS}g} {self.key.unit}", self.key.dimension)
-
-    def solution(self, value: float, density: Density) -> Solution:
-        """What the bowl does at a value, a Solution."""
-        driven = turned(self.bowl, self.key, value)
-        return Solution(self.key, value, answer.answer(driven), self.speed(value), density(driven))
 
     def speed(self, value: float) -> float:
         """The velocity [m/s] at a value."""
         return float(_speeds(self.bowl, self.key, np.array([value]), self.worst)[0])
 
 
-def _look(bowl: Bowl, key: Key, worst: bool) -> _Look:
-    values = _values(bowl, key)
-    return _Look(bowl, key, worst, values, _speeds(bowl, key, values, worst))
+def _lead(curve: _Curve, value: float, target: float, rough: Density) -> tuple[float, float]:
+    """The value that the shares of the bowl's own drive lead to from a start, and the rate there."""
+    rate = 0.0
+    for _ in range(LEADS):
+        at = curve.readable(value)
+        density = rough(turned(curve.bowl, curve.key, at))
+        rate = curve.speed(at) * density
+        there = curve.nearest_crossing(value, target / density) if density > 0.0 else None
+        if abs(rate - target) <= RATE_TOLERANCE * target or there is None:
+            break
+        value = there
+    return value, rate
+
+
+def _settled(curve: _Curve, value: float, target: float, density: Density, close: float) -> Solution:
+    """The setting near a start that gives the target with what arrives there, or comes nearest to it.
+
+    Each step takes the parts that arrived at the step before it, since another drive brings others; they are
+    sampled, so after some steps the mean of the last ones leads on.
+    """
+    steps: list[Solution] = []
+    last = None
+    for _ in range(ROUNDS):
+        jumps = value == last
+        own = value if jumps else curve.readable(value)
+        driven = turned(curve.bowl, curve.key, own)
+        steps.append(Solution(curve.key, own, answer.answer(driven), curve.speed(own), density(driven)))
+        if abs(steps[-1].rate - target) <= close * target or jumps or not steps[-1].parts_per_metre > 0.0:
+            break
+        led = steps[-REMEMBERED:] if len(steps) > REMEMBERED else steps[-1:]
+        mean = float(np.mean([step.parts_per_metre for step in led]))
+        there = curve.nearest_crossing(value, target / mean)
+        if there is None:
+            break
+        last, value = value, there
+    away = [(abs(step.rate - target), step) for step in steps]
+    enough = [pair for pair in away if pair[0] <= ACCEPTED_RATE_ERROR * target or pair[1].rate > target]
+    return min(enough or away, key=lambda pair: pair[0])[1]
+
+
+def _separate_solutions(solutions: list[Solution], target: float) -> list[Solution]:
+    """Those of each key that are no other's neighbour, the nearest to the target of such neighbours."""
+    separate: list[Solution] = []
+    for solution in sorted(solutions, key=lambda solution: abs(solution.rate - target)):
+        values = [other.value for other in separate if other.key == solution.key]
+        if all(abs(solution.value - other) > SETTING_TOLERANCE * other for other in values):
+            separate.append(solution)
+    return separate
 
 
 def _speeds(bowl: Bowl, key: Key, values: np.ndarray, worst: bool) -> np.ndarray:
@@ -279,20 +258,20 @@ def _speeds(bowl: Bowl, key: Key, values: np.ndarray, worst: bool) -> np.ndarray
     return np.min([cells["low"] for cells in around], axis=0)  # NaN where one friction has no steady state
 
 
-def _unreachable(looks: list[_Look], target: float, density: Density) -> ArgumentError:
+def _unreachable(curves: list[_Curve], target: float, density: Density) -> ArgumentError:
     """The fault that no setting brings so many parts, and what is the most."""
-    bowl = looks[0].bowl
-    peaks = [(speed, look.key, value) for look in looks for speed, value in zip(look.speeds, look.values)]
+    peaks = [
+        (speed, curve.key, value) for curve in curves for speed, value in zip(curve.speeds, curve.values)
+    ]
     peaks = sorted((peak for peak in peaks if np.isfinite(peak[0])), key=lambda peak: -peak[0])
-    per_minute = units.PER_MINUTE
-    what = f"no setting reaches {target / per_minute:.6g}/min"
+    what = f"no setting reaches {target / units.PER_MINUTE:.6g}/min"
     mend = "lower the target, or change two keys of the drive together"
     if peaks[0][0] <= 0.0:
         return ArgumentError("target", f"{what}: the part never travels up the track", mend)
     for speed, key, value in peaks[:MAX_RATED_SETTINGS]:
-        parts = density(turned(bowl, key, value))
+        parts = density(turned(curves[0].bowl, key, value))
         if parts > 0.0:
             at = f"{key.name} {value / units.factor(key.unit, key.dimension):.4g} {key.unit}"
-            most = f"the most is {speed * parts / per_minute:.4g}/min, at {at}"
+            most = f"the most is {speed * parts / units.PER_MINUTE:.4g}/min, at {at}"
             return ArgumentError("target", f"{what}: {most}", mend)
     return ArgumentError("target", f"{what}: at those drives the part can tip over on the track", mend)

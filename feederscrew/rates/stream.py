@@ -1,44 +1,52 @@
 """Every orientation of a part in the queue, and what becomes of it at each device."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from feederscrew import check
-from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.record import Bowl, Track
 from feederscrew.documents import hint
+from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
+from feederscrew.part.record import Part
 from feederscrew.rates.tipping import TrackTipping, marked
-from feederscrew.resting.counts.profiles import DeviceCounts
+from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.counts.profiles import AspectProfile, DeviceCounts, Measured
+from feederscrew.resting.rules.recommended import LAUNCH, Recommended, launched
 from feederscrew.tooling import orientations as tooling
 from feederscrew.tooling.clearing import seconds
 from feederscrew.tooling.devices.base import UNSURE, Device
+from feederscrew.tooling.devices.orientation_names import place
 from feederscrew.tooling.fates import at_entry, course
 from feederscrew.tooling.orientations import Orientation, travel_speed
 
+if TYPE_CHECKING:
+    from feederscrew.dropping.arrival import Arrival
+
+
+UNDECIDED_REMARK = "the shares at the track's entry are undecided: {}"
+STOPPED_REMARK = "the parts on the floor were stopped after {}"
+TOO_LONG = (
+    "the part is too small, or the drive too quick, to be followed on the moving floor: the closed form"
+    " is taken"
+)
+NO_ARRIVALS_MESSAGE = "no part came to lie on the moving floor: the closed form is taken"
+
 
 def on_stretch(bowl: Bowl, orientation: Orientation) -> Bowl:
-    """Return a bowl in which parts travel as on the stretch on which an orientation lies.
+    """Return a bowl in which parts travel as on the stretch of track on which an orientation lies.
 
-    Source: the balance of forces of a part on both faces of a groove; docs/tooling.md, "A groove".
+    In a groove each face carries 1 / (2 cos(angle)) of the weight, so friction acts as mu / cos(angle): the
+    balance of forces of a part on both faces.
 
-    Parameters
-    ----------
-    bowl : Bowl
-    orientation : Orientation
-        As it is there: its track, and the groove that it lies in.
-
-    Returns
-    -------
-    Bowl
-        In a groove each face carries 1 / (2 cos(angle)) of the weight, so friction acts as mu / cos(angle).
+    Source: docs/tooling.md, "A groove".
     """
+    track = replace(bowl.track, climb=orientation.track.climb, bank=orientation.track.bank)
     if not orientation.groove:
-        return replace(
-            bowl, track=replace(bowl.track, climb=orientation.track.climb, bank=orientation.track.bank)
-        )
+        return replace(bowl, track=track)
     mu, more = bowl.friction, 1.0 / np.cos(orientation.groove)
     static_back, kinetic_back = mu.backward
     friction = replace(
@@ -48,22 +56,14 @@ def on_stretch(bowl: Bowl, orientation: Orientation) -> Bowl:
         static_backward=static_back * more,
         kinetic_backward=kinetic_back * more,
     )
-    return replace(
-        bowl, friction=friction, track=replace(bowl.track, climb=orientation.track.climb, bank=0.0)
-    )
+    return replace(bowl, friction=friction, track=replace(track, bank=0.0))
 
 
 def queueing(bowl: Bowl, lying: Sequence[Orientation]) -> Bowl:
     """Return the bowl as parts queue in it, before the first device that does more than lean the track.
 
-    Source: own; docs/tooling.md, "A groove".
-
-    Parameters
-    ----------
-    bowl : Bowl
-    lying : sequence of Orientation
-        As they are at its entry: a bank or a groove that is listed first begins there. A steeper stretch
-        does not: it is where a queue comes apart.
+    Source: own; docs/tooling.md, "A groove". Orientations are as they lie at its entry: a bank or a groove
+    that is listed first begins there. A steeper stretch does not: it is where a queue comes apart.
     """
     orientation = lying[0]
     return on_stretch(bowl, replace(orientation, track=replace(orientation.track, climb=bowl.track.climb)))
@@ -122,69 +122,70 @@ class Orientations:
     tipping: TrackTipping | None = None  # on the track of a bowl; None where no drive is known
 
     @property
-    def names(self) -> tuple[Any, ...]:
+    def names(self) -> tuple[str, ...]:
         """Of the stations: 'track', 'wiper_1', 'gap_2'."""
         return tuple(f"{name}_{place}" if place else name for place, name in enumerate(self.stations))
 
+    def _of_each(self, name: str) -> np.ndarray:
+        return np.array([getattr(orientation, name) for orientation in self.lying])
+
     @property
-    def aspects(self) -> tuple[Any, ...]:
+    def aspects(self) -> tuple[str, ...]:
         """(M,) names of the aspects."""
         return tuple(orientation.aspect for orientation in self.lying)
 
     @property
     def headings(self) -> np.ndarray:
         """(M,) [rad]."""
-        return np.array([orientation.heading for orientation in self.lying])
+        return self._of_each("heading")
 
     @property
     def heading_shares(self) -> np.ndarray:
         """(M,) of the parts on that aspect; headings equal under a turn of the part are one."""
-        return np.array([orientation.heading_share for orientation in self.lying])
+        return self._of_each("heading_share")
 
     @property
     def lengths(self) -> np.ndarray:
         """(M,) [m] along the track."""
-        return np.array([orientation.length for orientation in self.lying])
+        return self._of_each("length")
 
     @property
     def widths(self) -> np.ndarray:
         """(M,) [m] across it."""
-        return np.array([orientation.width for orientation in self.lying])
+        return self._of_each("width")
 
     @property
     def rolls_back(self) -> np.ndarray:
         """(M,) bool, whether it lies on its round side, not along the track, and rolls down the climb."""
-        return np.array([orientation.may_roll_back for orientation in self.lying], dtype=bool)
+        return self._of_each("may_roll_back").astype(bool)
 
     @property
-    def stays(self):
+    def stays(self) -> np.ndarray:
         """(M,) share that the bare track carries: what falls off, turns over or rolls back does not queue."""
         return np.where(self.rolls_back, 0.0, self.passes[:, 0])
 
     @property
-    def leaves(self):
+    def leaves(self) -> np.ndarray:
         """(M,) share that leaves the bowl, in any state."""
         return np.where(self.rolls_back, 0.0, self.through)
 
     @property
-    def may_leave(self):
+    def may_leave(self) -> np.ndarray:
         """(M,) share that leaves the bowl, or is not sure to be returned."""
         return np.where(self.rolls_back, 0.0, self.through + self.doubtful)
 
     @property
     def carried(self) -> "Orientations":
         """The same orientations, were those that roll back carried as what slides."""
-        return replace(
-            self, lying=tuple(replace(orientation, may_roll_back=False) for orientation in self.lying)
-        )
+        return replace(self, lying=tuple(replace(one, may_roll_back=False) for one in self.lying))
 
     @property
-    def through(self):
+    def through(self) -> np.ndarray:
         """(M,) share that passes every station."""
         return self.passes.prod(axis=1)
 
     @property
-    def margin(self):
+    def margin(self) -> np.ndarray:
         """(M,) [m] of the first device that returns it, or the least by which it passes all; NaN without any.
 
         One that momentum, friction or the wall may undo is none.
@@ -197,7 +198,7 @@ class Orientations:
         return np.where(np.isinf(least) | (np.abs(least) <= UNSURE), np.nan, least)
 
     @property
-    def sure(self):
+    def sure(self) -> np.ndarray:
         """(M,) bool, whether it comes along the bare track as it lies, and no momentum decides at a device.
 
         On the track it shall neither rock nor roll, nor a landing turn it: nothing holds what is round at
@@ -205,26 +206,28 @@ class Orientations:
         slip.
         """
         rocks = False if self.tipping is None else self.tipping.tips & ~self.tipping.over
-        level = [
-            orientation.kind == "rolling" and orientation.track.bank <= 0.0 for orientation in self.lying
-        ]
-        loose = np.array(level, dtype=bool) | [orientation.along_a_bank for orientation in self.lying]
-        tips, yaws = np.array(
-            [(orientation.may_tip, orientation.may_yaw) for orientation in self.lying], dtype=bool
-        ).T
-        turns = tips | (yaws & ~self._gone_at_any_heading)
+        loose = np.array(
+            [one.along_a_bank or (one.kind == "rolling" and one.track.bank <= 0.0) for one in self.lying],
+            dtype=bool,
+        )
+        # devices that return every heading of its aspect by some margin make a turn on the track harmless
+        gone = np.isfinite(self.margin) & (self.through <= 0.0)
+        gone |= self._of_each("returned").astype(bool)
+        left = {aspect for aspect, lost in zip(self.aspects, gone) if not lost}
+        gone_at_any_heading = np.array([aspect not in left for aspect in self.aspects], dtype=bool)
+        turns = self._of_each("may_tip").astype(bool)
+        turns |= self._of_each("may_yaw").astype(bool) & ~gone_at_any_heading
         return self.decided & ~(self.rolls_back | rocks | loose | turns)
 
-    @property
-    def _gone_at_any_heading(self) -> np.ndarray:
-        """(M,) bool, whether devices return every heading of its aspect by some margin."""
-        gone = np.isfinite(self.margin) & (self.through <= 0.0)
-        gone |= np.array([orientation.returned for orientation in self.lying], dtype=bool)
-        left = {aspect for aspect, lost in zip(self.aspects, gone) if not lost}
-        return np.array([aspect not in left for aspect in self.aspects], dtype=bool)
 
-
-def follow_orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None) -> Orientations:
+def follow_orientations(
+    part: Part,
+    aspects: Aspects,
+    track: Track,
+    chain: Sequence[Device] = (),
+    sigma: float = 0.0,
+    bowl: Bowl | None = None,
+) -> Orientations:
     """Return every stable aspect and heading of a part, and what becomes of it at each device.
 
     Source: docs/tooling.md, "1. The method".
@@ -249,12 +252,24 @@ def follow_orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None) ->
     return along(tooling.orientations(part, aspects, track), aspects, chain, sigma, bowl)
 
 
-def along(lying, aspects, chain=(), sigma=0.0, bowl=None, rows=None) -> Orientations:
-    """Return what becomes of known orientations, or of some rows alone; the rest as for ``orientations``."""
-    lying, tips = (lying, None) if bowl is None else marked(lying, bowl)
+def along(
+    lying: Sequence[Orientation],
+    aspects: Aspects,
+    chain: Sequence[Device] = (),
+    sigma: float = 0.0,
+    bowl: Bowl | None = None,
+    rows: Collection[int] | None = None,
+) -> Orientations:
+    """Return what becomes of given orientations, or of some rows alone; the rest as for the whole part."""
+    lying, tips = (tuple(lying), None) if bowl is None else marked(lying, bowl)
     lying = at_entry(lying, chain)
     flow = course(chain, lying, sigma, rows)
     rules = {rule: np.array([orientation.chances[rule] for orientation in lying]) for rule in aspects.chances}
+    # how long each blocks the track on its way off it, in the mean
+    clearing = np.zeros(len(lying))
+    for step, device in enumerate(chain if bowl is not None else ()):
+        for row in np.flatnonzero(flow.ends[:, 0, 1 + step] > 0.0):
+            clearing[row] += flow.ends[row, 0, 1 + step] * seconds(device, lying[row], bowl)
     return Orientations(
         lying=lying,
         stations=("track", *(device.kind for device in chain)),
@@ -264,68 +279,65 @@ def along(lying, aspects, chain=(), sigma=0.0, bowl=None, rows=None) -> Orientat
         leaving=flow.leaving,
         leaves_as=check.frozen(np.array([flow.leaves_as(row) for row in range(len(lying))])),
         rules={rule: check.frozen(chance) for rule, chance in rules.items()},
-        interval=check.frozen(_interval(aspects, lying)),
+        interval=check.frozen(_interval(lying, aspects)),
         decided=flow.decided,
         fates=flow.fates,
         stops=flow.stops,
-        clearing=check.frozen(_clearing(flow, lying, chain, bowl)),
+        clearing=check.frozen(clearing),
         doubtful=flow.doubtful,
         gap=0.0 if bowl is None else needed_spacing(chain, lying, bowl),
         tipping=tips,
     )
 
 
-def _clearing(passes, lying, chain, bowl):
-    """Time [s] for which each orientation blocks the track on its way off it, in the mean."""
-    times = np.zeros(len(lying))
-    for step, device in enumerate(chain if bowl is not None else ()):
-        for row in np.flatnonzero(passes.ends[:, 0, 1 + step] > 0.0):
-            times[row] += passes.ends[row, 0, 1 + step] * seconds(device, lying[row], bowl)
-    return times
+def with_shares(queue: Orientations, aspects: Aspects) -> Orientations:
+    """Return the same orientations, devices and drive where the aspects arrive in other shares."""
+    rows = [aspects.names.index(orientation.aspect) for orientation in queue.lying]
+    lying = tuple(
+        replace(
+            orientation,
+            chances={rule: float(p[row]) * orientation.heading_share for rule, p in aspects.chances.items()},
+        )
+        for orientation, row in zip(queue.lying, rows)
+    )
+    rules = {
+        rule: check.frozen(np.array([orientation.chances[rule] for orientation in lying]))
+        for rule in aspects.chances
+    }
+    return replace(queue, lying=lying, rules=rules, interval=check.frozen(_interval(lying, aspects)))
 
 
-def _interval(aspects, lying) -> np.ndarray:
-    limits = aspects.recommended
-    if limits is None:
+def _interval(lying: Sequence[Orientation], aspects: Aspects) -> np.ndarray:
+    """Lowest and highest probability by the recommended rule (M, 2) [1]; NaN without it."""
+    ends = aspects.recommended
+    if ends is None:
         return np.full((len(lying), 2), np.nan)
     rows = [aspects.names.index(orientation.aspect) for orientation in lying]
     shares = np.array([orientation.heading_share for orientation in lying])
-    return np.column_stack([limits.low[rows] * shares, limits.high[rows] * shares])
+    return np.column_stack([ends.low[rows] * shares, ends.high[rows] * shares])
 
 
 def counted_stations(queue: Orientations, counts: DeviceCounts) -> np.ndarray:
-    """Return the stations of a chain that were counted.
+    """Return the stations (D,) int [1] of a chain that were counted.
+
+    Devices of the counts are named as the stations are, 'gap_2', or by a kind that is there once. Raises
+    FeederError if one is not there, or is counted twice.
 
     Source: docs/counts.md, "A feeding test, device by device".
-
-    Parameters
-    ----------
-    queue : Orientations
-    counts : DeviceCounts
-        Its devices are named as the stations are, 'gap_2', or by a kind that is there once.
-
-    Returns
-    -------
-    (D,) int [1]
-
-    Raises
-    ------
-    FeederError
-        If one is not there, or is counted twice.
     """
     stations = {name: place for place, name in enumerate(queue.names)}
     once = {kind: queue.stations.index(kind) for kind in queue.stations if queue.stations.count(kind) == 1}
-    counted_stations: list[int] = []
+    places: list[int] = []
     for line, name in zip(counts.lines, counts.names):
         place, where = (once | stations).get(name), f"{counts.source}:{line}"
         if place is None:
             what = f"the bowl has no device {name[:30]!r}"
             raise FeederError(where, what, hint(name, list(stations)))
-        if place in counted_stations:
-            what = f"device {name!r} is that of line {counts.lines[counted_stations.index(place)]}"
+        if place in places:
+            what = f"device {name!r} is that of line {counts.lines[places.index(place)]}"
             raise FeederError(where, what, "keep one of them")
-        counted_stations.append(place)
-    return np.array(counted_stations)
+        places.append(place)
+    return np.array(places)
 
 
 def station_shares(queue: Orientations, names: Sequence[str]) -> np.ndarray:
@@ -406,3 +418,74 @@ def _extremes(came: np.ndarray, on: np.ndarray, low: np.ndarray, high: np.ndarra
     if np.isnan(ends).all():
         return np.nan, np.nan
     return float(np.nanmin(ends[0])), float(np.nanmax(ends[1]))
+
+
+def arrived(aspects: Aspects, arrival: "Arrival", seed: int) -> Aspects:
+    """Return the aspects with what arrives at the track's entry as their recommended answer.
+
+    ``seed`` is that of the launches. There is a warning where the shares are undecided.
+    """
+    parts = arrival.shaken.parts
+    if not np.isfinite(arrival.p).all():
+        return replace(aspects, warnings=(*aspects.warnings, NO_ARRIVALS_MESSAGE))
+    remarks: tuple[str, ...] = () if arrival.settled else (UNDECIDED_REMARK.format(arrival.reason),)
+    remarks += (STOPPED_REMARK.format(parts),) if arrival.shaken.partial else ()
+    rule = f"fed onto the moving floor, {parts} parts, seed {seed}"
+    low, high = launched(arrival.p, arrival.low, arrival.high, aspects.stable)
+    answer = Recommended(rule, LAUNCH, arrival.p, check.frozen(low), check.frozen(high))
+    return replace(aspects, recommended=answer, warnings=(*aspects.warnings, *remarks))
+
+
+def too_long(aspects: Aspects, bowl: Bowl) -> bool:
+    """Whether a part would take more steps on the floor of a bowl than one is followed for."""
+    from feederscrew.dropping.arrival import MAX_ARRIVAL_STEPS, steps_needed
+
+    return aspects.ground is not None and steps_needed(aspects.ground.hull, bowl) > MAX_ARRIVAL_STEPS
+
+
+def counted(aspects: Aspects, measured: Measured) -> Aspects:
+    """Return the aspects with measured counts as their recommended answer.
+
+    Without facets the part rolls off. The interval is Wilson's, of 95 %; shares without counts have none.
+    Raises FeederError if there are several columns.
+    """
+    column = _only(measured)
+    p = column.fractions / column.fractions.sum()
+    low, high = wilson(column.values, column.values.sum()) if column.counted else (p, p)
+    total = f", {column.values.sum():.0f} parts" if column.counted else ""
+    answer = Recommended(
+        rule=f"{measured.source}{total}",
+        launch=measured.head.launch or LAUNCH,
+        p=check.frozen(p),
+        low=check.frozen(np.minimum(low, p)),
+        high=check.frozen(np.maximum(high, p)),
+    )
+    return replace(aspects, recommended=answer)
+
+
+def _only(measured: Measured) -> AspectProfile:
+    if len(measured.profiles) != 1:
+        names = ", ".join(profile.name for profile in measured.profiles[:5])
+        what = f"has {len(measured.profiles)} columns of shares ({names})"
+        raise FeederError(measured.source, what, "leave one of them in the file")
+    return measured.profiles[0]
+
+
+def oriented(queue: Orientations, measured: Measured | None) -> Orientations:
+    """Return the orientations with the shares that were counted for each of them.
+
+    They stay as they are where aspects were counted, or nothing. Raises FeederError if a part was counted in
+    an orientation that it cannot have on this track.
+    """
+    if measured is None or measured.by_orientation is None:
+        return queue
+    values = np.zeros(len(queue.lying))
+    for (aspect, heading), count in zip(measured.lying, measured.by_orientation[:, 0]):
+        if count > 0.0:
+            row = place(queue.aspects, queue.headings, aspect, heading, measured.source, "counts")
+            values[row] += count
+    shares = values / values.sum()
+    low, high = wilson(values, values.sum()) if _only(measured).counted else (shares, shares)
+    ends = np.column_stack([np.minimum(low, shares), np.maximum(high, shares)])
+    rules = queue.rules | {"recommended": check.frozen(shares)}
+    return replace(queue, rules=rules, interval=check.frozen(ends))

@@ -1,7 +1,8 @@
 """Orientations that the drive turns over on the track, that it only rocks, and those that stay steady."""
 
+import itertools
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -44,7 +45,7 @@ class Rocker:
 
 
 def rocker(place: Seat, gyration: Callable[[float], float], bowl: Bowl) -> Rocker:
-    """Return a part on the track of a bowl as what rocks over its weakest side.
+    """Return a part on the track of a bowl as what rocks over its weakest side, while it lies and slides.
 
     Parameters
     ----------
@@ -53,15 +54,9 @@ def rocker(place: Seat, gyration: Callable[[float], float], bowl: Bowl) -> Rocke
         Of an angle from the track [rad]: the square of its radius of gyration about that direction [m2].
     bowl : Bowl
         Single values.
-
-    Returns
-    -------
-    Rocker
-        With the force of the track as it is while the part lies and slides as it then does.
     """
     force, offset = over_period(place, bowl)
-    along = sides(place.contact)
-    along = along / np.hypot(*along.T)[:, None]
+    along = _side_directions(place.contact)
     inside = cross(along, offset[:, None, :] - place.contact)
     (x, y) = along[np.argmin((force[:, None] * inside).min(axis=0))]
     reach = y * place.contact[:, 0] - x * place.contact[:, 1]
@@ -73,6 +68,11 @@ def rocker(place: Seat, gyration: Callable[[float], float], bowl: Bowl) -> Rocke
         force=force,
         offset=y * offset[:, 0] - x * offset[:, 1],
     )
+
+
+def _side_directions(contact: np.ndarray) -> np.ndarray:
+    along = sides(contact)
+    return along / np.hypot(*along.T)[:, None]
 
 
 def goes_over(rocker: Rocker, period: float, start: int = 0) -> bool:
@@ -123,7 +123,7 @@ def goes_over(rocker: Rocker, period: float, start: int = 0) -> bool:
 
 
 def over_period(place: Seat, bowl: Bowl) -> tuple[np.ndarray, np.ndarray]:
-    """Return what the track does to a part over a settled period.
+    """Return what the track does to a part over a settled period, in which it slides as it then does.
 
     Source: Housner 1963, the rocking block; docs/method/trial.md, "What other parts said of the rules".
 
@@ -171,12 +171,10 @@ HOP_REMARK = (
 LANDING_REMARK = (
     "{}: a landing may tip it over, or the wall turn it, so no verdict on it is sure - see feeder trial"
 )
-FLAT_KIND = (
-    "flat"  # a part that rolls lies on a line: it rolls where others tip, and tips over the line's ends
-)
-ROUND_OUTLINE_RATIO = (
-    0.98  # of the farthest place of an outline, the nearest: it is round, and no heading of it is another
-)
+# a part that rolls lies on a line: it rolls where others tip, and tips over the line's ends
+FLAT_KIND = "flat"
+# of the farthest place of an outline, the nearest: it is round, and no heading of it is another
+ROUND_OUTLINE_RATIO = 0.98
 MAX_FORCE_OFFSET_HEIGHTS = 10.0  # heights of the centre of mass: no force of a bowl acts so far beside it
 
 
@@ -213,19 +211,9 @@ class Stands:
 
 
 def stands(orientation: Orientation, bowl: Bowl, hops: bool) -> Stands:
-    """Return what the drive of a bowl does to an orientation on the bare track.
+    """Return what the drive of a bowl, of single values, does to an orientation on the bare track.
 
-    Parameters
-    ----------
-    orientation : Orientation
-    bowl : Bowl
-        Single values.
-    hops : bool
-        Whether the drive throws it: what it comes down on is not followed then.
-
-    Returns
-    -------
-    Stands
+    ``hops``: whether the drive throws it; what it comes down on is not followed then.
     """
     (lying,), tips = marked((orientation,), bowl)
     angles = float(tips.tilt[0]), float(tips.balance[0])
@@ -233,45 +221,31 @@ def stands(orientation: Orientation, bowl: Bowl, hops: bool) -> Stands:
         return Stands(OVER, *angles)
     if lying.may_roll_back:
         return Stands(BACK)
-    if tips.tips[0]:
-        return Stands(ROCKS, *angles)
-    return Stands(THROWN if hops else STAYS)
+    return Stands(ROCKS, *angles) if tips.tips[0] else Stands(THROWN if hops else STAYS)
 
 
 def marked(lying: Sequence[Orientation], bowl: Bowl) -> tuple[tuple[Orientation, ...], TrackTipping]:
-    """Return orientations that know what the drive of a bowl does to them on the bare track, and what tips.
-
-    Parameters
-    ----------
-    lying : sequence of Orientation
-        M of them.
-    bowl : Bowl
-        Single values.
-
-    Returns
-    -------
-    tuple of Orientation, TrackTipping
-    """
+    """Return orientations that know what the drive of a bowl, of single values, does to them on the track."""
     tips, energy = tipping(lying, bowl), landing_energy(bowl)
-    oriented = tuple(
-        replace(orientation, turns_over=bool(turns)) for orientation, turns in zip(lying, tips.over)
-    )
+    oriented = tuple(replace(one, turns_over=bool(turns)) for one, turns in zip(lying, tips.over))
     if energy > 0.0 or bowl.track.bank > 0.0:  # a bank presses parts to the wall, thrown or not
-        oriented = tuple(landing(orientation, bowl, energy) for orientation in oriented)
+        oriented = tuple(_landing(one, bowl, energy) for one in oriented)
     return travelling(oriented, bowl), tips
 
 
 def remark(lying: Sequence[Orientation]) -> tuple[str, ...]:
     """Say what a drive turns over, how parts hop, and which of them may turn as they do: a sentence each."""
     over = [orientation.name for orientation in lying if orientation.turns_over]
-    remarks = (
-        [f"{listed(over)} can tip over on the track at this drive and count as returned"] if over else []
-    )
+    turning = [orientation.name for orientation in lying if orientation.may_turn and orientation.hop > 0.0]
     hop, flight = max(((orientation.hop, orientation.flight) for orientation in lying), default=(0.0, 0.0))
+    remarks = []
+    if over:
+        remarks.append(f"{listed(over)} can tip over on the track at this drive and count as returned")
     if hop > 0.0:
         remarks.append(HOP_REMARK.format(hop / MM, flight / MM))
-    turning = [orientation.name for orientation in lying if orientation.may_turn and orientation.hop > 0.0]
-    return (*remarks, LANDING_REMARK.format(listed(turning))) if turning else tuple(remarks)
+    if turning:
+        remarks.append(LANDING_REMARK.format(listed(turning)))
+    return tuple(remarks)
 
 
 def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
@@ -294,13 +268,10 @@ def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
     The greatest moment about a side is taken for half a period, on the moment of inertia m (r^2 + h^2) of the
     centre of mass about that side, r beside it and h above it: an upper estimate. It is over at atan(r/h).
     After the stroke its weight brings it back, by g r / (r^2 + h^2) at most. Where it is then still tilted at
-    the next one, or over already, its rocking is followed: ``rocking.goes_over``.
+    the next one, or over already, its rocking is followed: ``goes_over``.
     """
-    states = (
-        [_tips_over(orientation, bowl) for orientation in lying]
-        if plain_bowl(bowl)
-        else [_NO_TIPPING] * len(lying)
-    )
+    plain = _is_plain(bowl)
+    states = [_tips_over(orientation, bowl) if plain else _NO_TIPPING for orientation in lying]
     return TrackTipping(*(check.frozen(np.array(column)) for column in zip(*states)))
 
 
@@ -323,24 +294,13 @@ def landing_energy(bowl: Bowl) -> float:
     return float(answer.answer(bowl).hardest_impact ** 2 / (2.0 * bowl.gravity))
 
 
-def landing(orientation: Orientation, bowl: Bowl, energy: float) -> Orientation:
-    """Return an orientation that knows whether a landing may tip it over, or the wall turn it.
-
-    Source: own; docs/tooling.md, "Parts that hop".
-
-    Parameters
-    ----------
-    orientation : Orientation
-    bowl : Bowl
-        Single values.
-    energy : float [m]
-        From ``landing_energy``: of 0 nothing tips so.
-    """
+def _landing(orientation: Orientation, bowl: Bowl, energy: float) -> Orientation:
+    """An orientation that knows whether a landing of an energy [m] may tip it over, or the wall turn it."""
     if orientation.falls_off or orientation.touching is None:
         return orientation
     contact = seat_in_groove(orientation, bowl.track.bank).contact
     tips = energy > 0.0 and may_tip(contact, orientation, bowl, energy)
-    return replace(orientation, may_tip=tips, may_yaw=may_yaw(orientation, bowl))
+    return replace(orientation, may_tip=tips, may_yaw=_may_yaw(orientation, bowl))
 
 
 def may_tip(
@@ -354,8 +314,11 @@ def may_tip(
     ----------
     contact : (K, 2) float [m]
         Corners of what carries it, in track axes from the foot of the centre of mass.
-    one, bowl, energy
-        As for ``landing``.
+    orientation : Orientation
+    bowl : Bowl
+        Single values.
+    energy : float [m]
+        From ``landing_energy``: of 0 nothing tips so.
     margin : float [m]
         By which that is taken to be smaller all round.
 
@@ -382,30 +345,18 @@ def may_tip(
     return bool((tips & (across < along)).any())
 
 
-def may_yaw(orientation: Orientation, bowl: Bowl) -> bool:
-    """Return whether the wall may turn an orientation out of its heading: a shaken track does not hold it.
+def _may_yaw(orientation: Orientation, bowl: Bowl) -> bool:
+    """Whether the wall may turn an orientation out of its heading: a shaken track does not hold it.
 
-    Source: own; docs/tooling.md, "Parts that hop": the couple of the wall's friction.
-
-    Parameters
-    ----------
-    orientation : Orientation
-        That knows where it touches the wall.
-    bowl : Bowl
-
-    Notes
-    -----
     The wall drags the part back with mu N, the distance d beside the centre of mass, and so moves its own
-    force N ahead of that by mu d. It keeps its heading while that is within what touches the wall.
+    force N ahead of that by mu d. It keeps its heading while that is within what touches the wall. Source:
+    own; docs/tooling.md, "Parts that hop".
     """
     outline = orientation.outline
     along = sides(outline)
     nearest = (outline[:, 0] * along[:, 1] - outline[:, 1] * along[:, 0]) / np.hypot(*along.T)
-    if (
-        orientation.groove
-        or nearest.min() > ROUND_OUTLINE_RATIO * np.hypot(*outline.T).max()
-        or orientation.touching is None
-    ):
+    is_round = nearest.min() > ROUND_OUTLINE_RATIO * np.hypot(*outline.T).max()
+    if orientation.groove or is_round or orientation.touching is None:
         return False
     return bool(bowl.friction.wall * orientation.distance > orientation.touching[1, 0])
 
@@ -413,36 +364,38 @@ def may_yaw(orientation: Orientation, bowl: Bowl) -> bool:
 _NO_TIPPING = (False, 0.0, np.nan, False)
 
 
-def plain_bowl(bowl: Bowl) -> bool:
-    """Return whether a bowl's drive and conveyor are of the plain kind, for which tipping is followed."""
+def _is_plain(bowl: Bowl) -> bool:
+    """Whether a bowl's drive and conveyor are of the plain kind, for which tipping is followed."""
     try:
         return limits.plain(bowl) is bowl
     except ConfigError:
         return False
 
 
+def _rolls(orientation: Orientation) -> bool:
+    return orientation.kind != FLAT_KIND and rolls_across(orientation)
+
+
 def _tips_over(orientation: Orientation, bowl: Bowl) -> tuple[bool, float, float, bool]:
     """Whether one orientation tips, how far a stroke tilts it, from where it goes on, if it goes over."""
-    if (
-        orientation.falls_off
-        or orientation.touching is None
-        or (orientation.kind != FLAT_KIND and rolls_across(orientation))
-    ):
+    if orientation.falls_off or orientation.touching is None or _rolls(orientation):
         return _NO_TIPPING
     place, phase = seat_in_groove(orientation, bowl.track.bank), phases(TIPPING_PHASES)
     rest = track_balance.motion(place, bowl, phase)
     if (rest.state == HOP).any() or not (rest.state == TIP).any():
         return _NO_TIPPING
-    motions = [rest] + [
-        track_balance.motion(place, bowl, phase, np.full(TIPPING_PHASES, s)) for s in (-1.0, 1.0)
-    ]
-    force = np.concatenate([motion.normal_force for motion in motions])
-    offset = np.concatenate([motion.offset for motion in motions])
+    # the greatest moment about a side, at rest and sliding either way
+    sliding = [track_balance.motion(place, bowl, phase, np.full(TIPPING_PHASES, s)) for s in (-1.0, 1.0)]
+    force = np.concatenate([motion.normal_force for motion in (rest, *sliding)])
+    offset = np.concatenate([motion.offset for motion in (rest, *sliding)])
     moment = force * np.maximum(-inset(place.contact, offset), 0.0)
     worst = int(np.nanargmax(moment))
-    lever = _to_side(place.contact, offset[worst])
-    arm = lever**2 + place.height**2
-    stroke = 0.5 / bowl.drive.frequency
+    # the side that its force lies farthest beyond, and how far the foot of the centre of mass is from it
+    along = _side_directions(place.contact)
+    beyond = cross(along, offset[worst] - place.contact)
+    lever = max(float(cross(along, -place.contact)[np.argmin(beyond)]), 0.0)
+    # half a period of that moment, and the way back by its weight
+    arm, stroke = lever**2 + place.height**2, 0.5 / bowl.drive.frequency
     rate = moment[worst] / (place.mass * arm) * stroke
     tilt, restoring = 0.5 * rate * stroke, bowl.gravity * lever / arm
     late = rate + np.sqrt(rate**2 + 2.0 * restoring * tilt) > restoring * stroke
@@ -466,19 +419,9 @@ def seat_in_groove(orientation: Orientation, bank: float) -> Seat:
     return replace(place, contact=np.array([[rear, -side], [ahead, -side], [ahead, side], [rear, side]]))
 
 
-def _to_side(contact: np.ndarray, point: np.ndarray) -> float:
-    """Distance of the foot of the centre of mass from the side that a point lies farthest beyond [m]."""
-    along = sides(contact)
-    along = along / np.hypot(*along.T)[:, None]
-    beyond = cross(along, point - contact)
-    return max(float(cross(along, -contact)[np.argmin(beyond)]), 0.0)
-
-
 STEADINESS_PHASES = 12  # of one period
 LANDINGS = 8  # instants of the period at which it comes to lie on the far edge
-SUPPORT_LOSS_TOLERANCE_M = (
-    1e-9  # [m] a device that leaves this much less of the support takes nothing from it
-)
+SUPPORT_LOSS_TOLERANCE_M = 1e-9  # [m] a device that leaves this much less of the support takes nothing
 
 
 def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, margin: float) -> np.ndarray:
@@ -512,14 +455,10 @@ def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, 
     that hops must not tip it over what a ledge, a canyon or a slot leaves of its foot, less the margin; over
     an edge across the track the verdict itself is less the flight.
     """
-    results, energy = plain_bowl(bowl), landing_energy(bowl)
-    if energy > 0.0:
-        return np.array(
-            [_lands(devices, orientation, bowl, margin, energy) for orientation in lying], dtype=bool
-        )
-    return np.array(
-        [not results or _steady(devices, orientation, bowl, margin) for orientation in lying], dtype=bool
-    )
+    plain, energy = _is_plain(bowl), landing_energy(bowl)
+    if energy <= 0.0 and not plain:
+        return np.ones(len(lying), dtype=bool)
+    return np.array([_steady(devices, one, bowl, margin, energy) for one in lying], dtype=bool)
 
 
 def is_surely_gone(devices: Sequence[Device], lying: Sequence[Orientation], passes: np.ndarray) -> np.ndarray:
@@ -548,51 +487,43 @@ def is_surely_gone(devices: Sequence[Device], lying: Sequence[Orientation], pass
     return gone
 
 
-def _steady(devices: Sequence[Device], orientation: Orientation, bowl: Bowl, margin: float) -> bool:
-    """Whether one orientation is steady at every device."""
+def _steady(
+    devices: Sequence[Device], orientation: Orientation, bowl: Bowl, margin: float, energy: float
+) -> bool:
+    """Whether one orientation is steady at every device, by a margin [m]; of an energy [m] it lands."""
     if orientation.returned or orientation.touching is None:
         return True
-    if orientation.kind != FLAT_KIND and rolls_across(orientation):
-        return not any(_takes(device, orientation) for device in _touched(devices))
+    touched = list(itertools.takewhile(lambda device: not (device.turns or device.hangs), devices))
+    touched = [device for device in touched if device.carries]  # as far as parts come as they lie
+    if _rolls(orientation):
+        return not any(_takes(device, orientation) for device in touched)
+    if energy > 0.0:
+        return not any(
+            may_tip(_foot_beside(orientation, span), orientation, bowl, energy, margin)
+            for device, span in ((device, device.span_on(orientation.track)) for device in touched)
+            if span is not None and _takes(device, orientation)
+        )
     place = seat_in_groove(orientation, bowl.track.bank)
     if (track_balance.motion(place, bowl, phases(STEADINESS_PHASES)).state == HOP).any():
         return True
     force, offset = over_period(place, bowl)
-    for device in _touched(devices):
+    for device in touched:
         span, hole = device.span_on(orientation.track), device.hole_on(orientation.track)
-        if span is not None and not _keeps_down(orientation, span, offset, margin):
-            return False
+        if span is not None and _takes(device, orientation):
+            # the force of the track stays within what is left of the foot beside a hole along the track
+            left = _foot_beside(orientation, span)
+            hull = left[convex(left)]
+            if not (len(hull) > 2 and inset(hull, offset).min() >= margin):
+                return False
         if hole is not None and not _keeps_upright(orientation, hole, place, force, offset, bowl):
             return False
     return True
 
 
-def _lands(
-    devices: Sequence[Device], orientation: Orientation, bowl: Bowl, margin: float, energy: float
-) -> bool:
-    """Whether no landing may tip an orientation at any device, by a margin [m]."""
-    if orientation.returned or orientation.touching is None:
-        return True
-    if orientation.kind != FLAT_KIND and rolls_across(orientation):
-        return not any(_takes(device, orientation) for device in _touched(devices))
-    for device in _touched(devices):
-        span = device.span_on(orientation.track)
-        if span is not None and _takes(device, orientation):
-            left = footprints.outside_slot(
-                orientation.foot, span, orientation.distance, orientation.track.radius
-            ).corners
-            if may_tip(left, orientation, bowl, energy, margin):
-                return False
-    return True
-
-
-def _touched(devices: Sequence[Device]) -> Iterator[Device]:
-    """Those that leave less of a foot, as far as parts come to them as they lie."""
-    for device in devices:
-        if device.turns or device.hangs:
-            break
-        if device.carries:
-            yield device
+def _foot_beside(orientation: Orientation, span: tuple[float, float]) -> np.ndarray:
+    """Corners (K, 2) [m] of what a span of the track leaves of a foot."""
+    foot, radius = orientation.foot, orientation.track.radius
+    return footprints.outside_slot(foot, span, orientation.distance, radius).corners
 
 
 def _takes(device: Device, orientation: Orientation) -> bool:
@@ -601,30 +532,12 @@ def _takes(device: Device, orientation: Orientation) -> bool:
     if span is not None:
         (first, last), radius = span, orientation.track.radius
         high = radius - first if first > 0.0 else 2.0 * radius
-        return (
-            footprints.over_ring(orientation.standing, max(radius - last, 0.0), high)
-            <= orientation.margin - SUPPORT_LOSS_TOLERANCE_M
-        )
-    return (
-        hole is not None
-        and footprints.least(orientation.standing, hole)[0] <= orientation.margin - SUPPORT_LOSS_TOLERANCE_M
-    )
-
-
-def _keeps_down(
-    orientation: Orientation, span: tuple[float, float], offset: np.ndarray, margin: float
-) -> bool:
-    """Whether the force of the track stays within what is left of a foot beside a hole along the track."""
-    (first, last), radius = span, orientation.track.radius
-    high = radius - first if first > 0.0 else 2.0 * radius
-    if (
-        footprints.over_ring(orientation.standing, max(radius - last, 0.0), high)
-        > orientation.margin - SUPPORT_LOSS_TOLERANCE_M
-    ):
-        return True
-    left = footprints.outside_slot(orientation.foot, span, orientation.distance, radius).corners
-    hull = left[convex(left)]
-    return len(hull) > 2 and bool(inset(hull, offset).min() >= margin)
+        left = footprints.over_ring(orientation.standing, max(radius - last, 0.0), high)
+    elif hole is not None:
+        left, _ = footprints.least(orientation.standing, hole)
+    else:
+        return False
+    return left <= orientation.margin - SUPPORT_LOSS_TOLERANCE_M
 
 
 def _keeps_upright(

@@ -1,32 +1,22 @@
 """From velocity to well-oriented parts: pitch, probability of the orientation, devices, fill."""
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
+from feederscrew.bowl.record import Bowl, Track
 from feederscrew.conveying import answer
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.mechanics.headings import headings, stable_row
+from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.records import ReadableRecord
+from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import posture
 from feederscrew.tooling.orientations import Orientation
 
 RECOMMENDED_RULE = "recommended"  # the rule that has an interval of its own
-
-
-def mean_length(queue: Orientations, rule: str) -> float:
-    """Return the mean length along the track of the parts that stay on it [m]; NaN where none does.
-
-    What falls off at the entry, or is turned over on the track, goes back at once: it is in nobody's way.
-
-    Source: docs/conveying.md, "Commands".
-    """
-    chance, enters = entering(queue, rule)
-    weights = chance * queue.stays
-    return float((weights * queue.lengths).sum() / enters) if enters > 0.0 else np.nan
 
 
 def entering(queue: Orientations, rule: str) -> tuple[np.ndarray, float]:
@@ -38,45 +28,38 @@ def entering(queue: Orientations, rule: str) -> tuple[np.ndarray, float]:
     return chance, float((chance * queue.stays).sum())
 
 
-def queued(queue: Orientations, row: int, rule: str, gap: float, fill: float) -> float:
-    """Return parts on a length of track before the devices [1/m]: all that stay on it.
+def mean_length(queue: Orientations, rule: str) -> float:
+    """Return the mean length along the track of the parts that stay on it [m]; NaN where none does.
 
-    They come end to end, or as far apart as the devices need.
+    What falls off at the entry, or is turned over on the track, goes back at once: it is in nobody's way.
+    Source: docs/conveying.md, "Commands".
+    """
+    chance, enters = entering(queue, rule)
+    weights = chance * queue.stays
+    return float((weights * queue.lengths).sum() / enters) if enters > 0.0 else np.nan
 
-    Source: docs/conveying.md, "Commands"; the gap is that of docs/tooling.md, "1. The method".
+
+def _of_entering(queue: Orientations, rule: str, values: np.ndarray) -> float:
+    """Mean of what each orientation brings (M,), over all that enters the track; 0 where nothing enters."""
+    chance, enters = entering(queue, rule)
+    return float((chance * values).sum() / enters) if enters > 0.0 else 0.0
+
+
+def _queued(queue: Orientations, row: int, rule: str, gap: float, fill: float) -> float:
+    """Parts on a length of track before the devices [1/m]: all that stay on it.
+
+    They come end to end, or as far apart as the devices need: docs/tooling.md, "1. The method".
     """
     length = mean_length(queue, rule)
     return float(fill / ((queue.lengths[row] if np.isnan(length) else length) + max(gap, queue.gap)))
 
 
 def efficiency(queue: Orientations, row: int, rule: str) -> float:
-    """Return the share of the parts offered, which are on the track, that leave in the orientation of a row.
+    """Return the share [1] of the parts offered, which are on the track, that leave in the state of a row.
 
     Source: docs/conveying.md, "Commands".
-
-    Parameters
-    ----------
-    queue : Orientations
-    row : int
-    rule : str
-
-    Returns
-    -------
-    float [1]
     """
-    chance, enters = entering(queue, rule)
-    return float((chance * fed_share(queue, row)).sum() / enters) if enters > 0.0 else 0.0
-
-
-def efficiency_ends(queue: Orientations, row: int, rule: str) -> tuple[float, ...]:
-    """Return the least and the greatest efficiency [1], by the rule's own interval or over all rules."""
-    fed, (_, enters) = fed_share(queue, row), entering(queue, rule)
-    if not enters > 0.0:
-        return 0.0, 0.0
-    if rule == RECOMMENDED_RULE and not np.isnan(queue.interval).any():
-        return tuple(min(float((end * fed).sum()) / enters, 1.0) for end in queue.interval.T)
-    all_rules = [efficiency(queue, row, rule) for rule in queue.rules]
-    return min(all_rules), max(all_rules)
+    return _of_entering(queue, rule, _fed_share(queue, row))
 
 
 def fed(queue: Orientations, row: int) -> Orientation:
@@ -84,11 +67,8 @@ def fed(queue: Orientations, row: int) -> Orientation:
     return queue.states[queue.leaves_as[row]]
 
 
-def fed_share(queue: Orientations, row: int) -> np.ndarray:
-    """Return the share (M,) [1] of each orientation that leaves in the state of a wanted row.
-
-    Source: docs/conveying.md, "Commands".
-    """
+def _fed_share(queue: Orientations, row: int) -> np.ndarray:
+    """Share (M,) [1] of each orientation that leaves in the state of a wanted row."""
     return np.where(queue.rolls_back, 0.0, queue.leaving[:, queue.leaves_as[row]])
 
 
@@ -109,16 +89,16 @@ class Range:
     high: float
 
     @property
-    def ends(self) -> tuple[Any, ...]:
+    def ends(self) -> tuple[float, float]:
         """Its lowest and its highest."""
         return self.low, self.high
 
     @property
-    def all(self) -> tuple[Any, ...]:
+    def all(self) -> tuple[float, float, float]:
         """Value, lowest, highest."""
         return self.value, self.low, self.high
 
-    def __mul__(self, factor) -> "Range":
+    def __mul__(self, factor: "Range | float") -> "Range":
         other = factor if isinstance(factor, Range) else Range(factor, factor, factor)
         return Range(self.value * other.value, self.low * other.low, self.high * other.high)
 
@@ -143,36 +123,22 @@ class Rate(ReadableRecord):
     clearing: float = 0.0  # [s] in the mean, of those that a blade sweeps off the track
 
 
-def wanted(part, aspects, track, name, heading=None) -> tuple[Any, ...]:
-    """Return aspect and heading that a part shall leave the bowl in.
+def wanted(
+    part: Part, aspects: Aspects, track: Track, name: str, heading: float | None = None
+) -> tuple[str, float]:
+    """Return aspect and heading [rad] that a part shall leave the bowl in.
+
+    Without a heading [rad] it is the most frequent one that stays on the track.
 
     Source: docs/mechanics.md, "Headings".
-
-    Parameters
-    ----------
-    part : Part
-    aspects : Aspects
-    track : Track
-    name : str
-        Of the aspect.
-    heading : float [rad], optional
-        Without one, the most frequent heading that stays on the track.
-
-    Returns
-    -------
-    (str, float [rad])
     """
     lying = posture(part, aspects, name)
     queue = headings(lying, track)
     return lying.name, float(queue.headings[stable_row(queue, heading)])
 
 
-def velocity(bowl) -> Range:
+def velocity(bowl: Bowl) -> Range:
     """Return conveying velocity with what it may be.
-
-    Parameters
-    ----------
-    bowl : Bowl
 
     Returns
     -------
@@ -196,7 +162,15 @@ def velocity(bowl) -> Range:
     return Range(*(max(0.0, number) for number in (here.velocity, low, high)))
 
 
-def rate(queue, speed, target, rule, *, gap=0.0, fill=1.0):
+def rate(
+    queue: Orientations,
+    speed: Range,
+    target: tuple[str, float],
+    rule: str,
+    *,
+    gap: float = 0.0,
+    fill: float = 1.0,
+) -> Rate:
     """Return well-oriented parts leaving a bowl.
 
     Source: docs/conveying.md, "Commands".
@@ -234,51 +208,58 @@ def rate(queue, speed, target, rule, *, gap=0.0, fill=1.0):
     return replace(delivered, parts=parts)
 
 
-def _rate(queue, speed, target, rule, gap, fill) -> Rate:
+def _rate(
+    queue: Orientations, speed: Range, target: tuple[str, float], rule: str, gap: float, fill: float
+) -> Rate:
     """The rate of what does not roll back."""
     row = _row(queue, target)
     _check_rule(queue, rule)
-    density, share = queued(queue, row, rule, gap, fill), efficiency(queue, row, rule)
-    probability = _probability(queue, row, rule)
+    density = _queued(queue, row, rule, gap, fill)
     blocked, swept = _blocked(queue, rule)
-    offered = Range(*(_offered(orientation * density, blocked) for orientation in speed.all))
+    offered = Range(*(_offered(velocity * density, blocked) for velocity in speed.all))
+    # least and greatest efficiency and probability: by the rule's own interval, or over all rules
+    from_interval = rule == RECOMMENDED_RULE
+    share, fed_share = efficiency(queue, row, rule), _fed_share(queue, row)
+    _, enters = entering(queue, rule)
+    if not enters > 0.0:
+        efficiencies = [0.0]
+    elif from_interval and not np.isnan(queue.interval).any():
+        efficiencies = [min(float((end * fed_share).sum()) / enters, 1.0) for end in queue.interval.T]
+    else:
+        efficiencies = [efficiency(queue, row, other) for other in queue.rules]
+    if from_interval and not np.isnan(queue.interval[row]).any():
+        low, high = (float(end) for end in queue.interval[row])
+    else:
+        chances = [chance[row] for chance in queue.rules.values() if not np.isnan(chance[row])]
+        low, high = float(min(chances)), float(max(chances))
+    delivered = offered * Range(share, min(efficiencies), max(efficiencies))
     most = speed * (1.0 / fed(queue, row).length)
-    delivered = offered * Range(share, *efficiency_ends(queue, row, rule))
-    chance, enters = entering(queue, rule)
-    wanted_rows = np.arange(len(chance)) == row
-    leaves = np.where(wanted_rows, queue.leaves, queue.may_leave)
-    leaving = float((chance * leaves).sum() / enters) if enters > 0.0 else 0.0
-    through = float(queue.through[row])
+    own = np.arange(len(queue.lying)) == row
+    leaving = _of_entering(queue, rule, np.where(own, queue.leaves, queue.may_leave))
     return Rate(
-        parts=Range(*(min(orientation, cap) for orientation, cap in zip(delivered.all, most.all))),
+        parts=Range(*(min(parts, cap) for parts, cap in zip(delivered.all, most.all))),
         offered=offered,
         efficiency=share,
         velocity=speed,
         pitch=fill / density,
         gap=max(gap, queue.gap),
-        probability=probability,
-        through=through,
+        probability=Range(float(queue.rules[rule][row]), low, high),
+        through=float(queue.through[row]),
         fill=fill,
         purity=share / leaving if leaving else np.nan,
         row=row,
         orientations=queue,
-        jams=offered.value * _standing(queue, rule),
+        jams=offered.value * _of_entering(queue, rule, queue.stops.sum(axis=1)),
         clearing=swept,
     )
 
 
-def _offered(freely, blocked):
+def _offered(freely: float, blocked: float) -> float:
     """Parts a second that come to the devices, each of which blocks the track for a time [s] in the mean."""
     return 1.0 / (1.0 / freely + blocked) if freely > 0.0 else 0.0
 
 
-def _standing(queue, rule) -> float:
-    """Share of the parts offered that come to stand before a device."""
-    chance, enters = entering(queue, rule)
-    return float((chance * queue.stops.sum(axis=1)).sum() / enters) if enters > 0.0 else 0.0
-
-
-def _blocked(queue, rule) -> tuple[Any, ...]:
+def _blocked(queue: Orientations, rule: str) -> tuple[float, float]:
     """Mean time [s] for which a part that is offered blocks the track, and the same of those that do."""
     chance, enters = entering(queue, rule)
     does = chance * (queue.clearing > 0.0)
@@ -286,33 +267,15 @@ def _blocked(queue, rule) -> tuple[Any, ...]:
     return (times / enters, times / float(does.sum())) if does.sum() > 0.0 else (0.0, 0.0)
 
 
-def _probability(queue, row, rule) -> Range:
-    """Probability of a row by a rule, within that rule's own interval or the range of all rules."""
-    value = float(queue.rules[rule][row])
-    if rule == RECOMMENDED_RULE and not np.isnan(queue.interval[row]).any():
-        return Range(value, *(float(end) for end in queue.interval[row]))
-    chances = [chance[row] for chance in queue.rules.values() if not np.isnan(chance[row])]
-    return Range(value, float(min(chances)), float(max(chances)))
+def parts_per_metre(
+    queue: Orientations, target: tuple[str, float], rule: str, *, gap: float = 0.0, fill: float = 1.0
+) -> float:
+    """Return well-oriented parts on a length of track [1/m], which velocity turns into a rate.
 
-
-def parts_per_metre(queue, target, rule, *, gap=0.0, fill=1.0):
-    """Return well-oriented parts on a length of track, which velocity turns into a rate.
+    Parameters are those of ``rate``. Raises FeederError if there are none: the probability is zero, or the
+    track or a device returns them all.
 
     Source: docs/conveying.md, "Commands".
-
-    Parameters
-    ----------
-    found, target, rule, gap, fill
-        As for ``rate``.
-
-    Returns
-    -------
-    float [1/m]
-
-    Raises
-    ------
-    FeederError
-        If there are none: the probability is zero, or the track or a device returns them all.
     """
     parts = leaving_per_metre(queue, target, rule, gap=gap, fill=fill)
     if not parts > 0.0:
@@ -321,32 +284,33 @@ def parts_per_metre(queue, target, rule, *, gap=0.0, fill=1.0):
     return parts
 
 
-def holds(queue, target) -> None:
+def holds(queue: Orientations, target: tuple[str, float]) -> None:
     """Raise a FeederError where a wanted orientation rolls back down the climb."""
     if queue.rolls_back[_row(queue, target)]:
         raise FeederError(_where(target), ROLLS_BACK_REMARK, HOLD_ADVICE)
 
 
-def _where(target) -> str:
+def _where(target: tuple[str, float]) -> str:
     return f"aspect {target[0]}, heading {np.degrees(target[1]):.4g} deg"
 
 
-def leaving_per_metre(queue, target, rule, *, gap=0.0, fill=1.0):
+def leaving_per_metre(
+    queue: Orientations, target: tuple[str, float], rule: str, *, gap: float = 0.0, fill: float = 1.0
+) -> float:
     """Return the same [1/m], 0 where no part leaves so."""
     _check_rule(queue, rule)
     row = _row(queue, target)
-    share, density = efficiency(queue, row, rule), queued(queue, row, rule, gap, fill)
+    share, density = efficiency(queue, row, rule), _queued(queue, row, rule, gap, fill)
     speed, (blocked, _) = queue.lying[row].speed, _blocked(queue, rule)
     density = _offered(speed * density, blocked) / speed if blocked > 0.0 and speed > 0.0 else density
     return min(share * density, 1.0 / float(fed(queue, row).length))
 
 
-def _check_rule(queue, rule) -> None:
+def _check_rule(queue: Orientations, rule: str) -> None:
     if rule not in queue.rules:
         mend = hint(rule, list(queue.rules))
         raise ArgumentError(f"rule {rule}", "has no probabilities of this part", mend)
 
 
-def _row(queue, target):
-    name, heading = target
-    return next(k for k, aspect in enumerate(queue.aspects) if (aspect, queue.headings[k]) == (name, heading))
+def _row(queue: Orientations, target: tuple[str, float]) -> int:
+    return list(zip(queue.aspects, queue.headings)).index(target)

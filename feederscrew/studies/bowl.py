@@ -19,15 +19,18 @@ from feederscrew.machine.springs import (
     LeafSet,
     Rocking,
     Springs,
+    Stroke,
     analyse_springs,
+    angles,
     both_rocking_modes,
     gain,
+    greatest_amplitude,
     leaf_changes,
     leaf_stress,
+    stroke,
     tuned_leaf_sets,
     upright_pull,
 )
-from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, stroke
 from feederscrew.part.record import Part
 from feederscrew.part.size_limits import small_part_remarks
 from feederscrew.rates import stream, well_oriented

@@ -1,7 +1,7 @@
 """The study of ``feeder rate``: well-oriented parts per minute of one part from one bowl."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from typing import Any, Unpack, cast
 
@@ -16,7 +16,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.machine import checks
 from feederscrew.part.record import Part
 from feederscrew.part.size_limits import refuse_many_facets, small_part_remarks
-from feederscrew.rates import arrivals, stream, well_oriented
+from feederscrew.rates import stream, well_oriented
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
@@ -113,7 +113,7 @@ def shares(
         probabilities = arguments.a_file("probabilities", probabilities)
         aspects = resting(part, drops=0).aspects
         measured = profiles.read_profile(probabilities, aspects.names)
-        return Shares(arrivals.counted(aspects, measured), measured)
+        return Shares(stream.counted(aspects, measured), measured)
     if launch is not None or rule != RECOMMENDED or part.vertices is None:
         drops = None if rule == RECOMMENDED else 0
         return Shares(
@@ -131,9 +131,9 @@ def shares(
         conveying(bowl)  # says so
     if np.count_nonzero(aspects.stable) < 2:
         return Shares(aspects)
-    if arrivals.too_long(aspects, bowl):
-        return Shares(arrivals.not_fed(aspects))
-    arrived = arrivals.arrived(aspects, _on_the_floor(part, aspects, bowl, fed, seed, run), seed)
+    if stream.too_long(aspects, bowl):
+        return Shares(replace(aspects, warnings=(*aspects.warnings, stream.TOO_LONG)))
+    arrived = stream.arrived(aspects, _on_the_floor(part, aspects, bowl, fed, seed, run), seed)
     return Shares(arrived, fed=arrived.recommended is not aspects.recommended)
 
 
@@ -308,7 +308,7 @@ def rate(
     aspects = aspect_shares.aspects
     target = None if aspect is None else well_oriented.wanted(part, aspects, bowl.track, aspect, angle)
     followed = stream.follow_orientations(part, aspects, bowl.track, chain, sigma, bowl)
-    lying = arrivals.oriented(followed, aspect_shares.measured)
+    lying = stream.oriented(followed, aspect_shares.measured)
     speed = well_oriented.velocity(stream.queueing(bowl, lying.lying))
     target = most_frequent(lying, rule) if target is None else target
     return RateStudy(

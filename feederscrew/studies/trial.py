@@ -15,7 +15,7 @@ from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
 from feederscrew.part.size_limits import small_part_remarks
-from feederscrew.rates import arrivals, stream
+from feederscrew.rates import stream
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
@@ -195,7 +195,7 @@ def trial(
     for bowl in driven:
         answer.answer(bowl)  # refuses a drive that cannot convey
         oriented = stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
-        oriented = arrivals.oriented(oriented, aspect_shares.measured)
+        oriented = stream.oriented(oriented, aspect_shares.measured)
         tried = _tried(part, aspects, oriented, aspect)
         shares = _shares(oriented, rule, tried)
         here = replace(run, progress=_after(len(runs), progress, len(driven)), before=before)

@@ -3,16 +3,16 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
-from typing import Any, Unpack
+from typing import Unpack
 
 from feederscrew import check
 from feederscrew.bowl.devices import unknown_aspects
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.part.record import Part
-from feederscrew.rates import arrivals, well_oriented
 from feederscrew.rates import drive_settings as knobs
-from feederscrew.rates.stream import along
+from feederscrew.rates import stream, well_oriented
+from feederscrew.rates.stream import along, with_shares
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies import arguments
@@ -20,8 +20,6 @@ from feederscrew.studies.arguments import BowlSettings, Overrides, Path, Quantit
 from feederscrew.studies.rate import MIN_POSITIVE, RECOMMENDED, Shares, shares, the_shares
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
-
-ROUGH_PARTS = 200  # parts that lead to a setting; as many as `rate` feeds decide on it
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +70,6 @@ def tune(
     seed: int = 1,
     aspect_shares: Shares | None = None,
     arriving: Callable[[Bowl], Shares] | None = None,
-    rough: Callable[[Bowl], Shares] | None = None,
     progress: Callable[[int, int], None] | None = None,
     overrides: Overrides = (),
     **settings: Unpack[BowlSettings],
@@ -95,8 +92,6 @@ def tune(
         hop, of restitution over its spread.
     arriving : callable, optional
         From a bowl to the Shares that arrive at its drive; ``shares`` without it.
-    rough : callable, optional
-        The same of FEW parts, which leads to a setting.
     progress : callable, optional
         Called with how many settings are computed, and of how many.
 
@@ -114,28 +109,29 @@ def tune(
     wanted_rate = arguments.amount("target", target, "rate", MIN_POSITIVE)
     angle, space = arguments.angle("heading", heading), arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)
-    if (shared := the_shares(aspect_shares)) is not None:
-        arriving, rough = (lambda driven: shared), None
-    if arriving is None:
-        own: dict[str, Any] = {"rule": rule, "launch": launch, "probabilities": probabilities, "seed": seed}
-        arriving = partial(shares, part, fed=fed, **own)
-        is_fed = rule == RECOMMENDED and launch is None and probabilities is None and fed is None
-        rough = partial(shares, part, fed=ROUGH_PARTS, **own) if is_fed else None
+    shared = the_shares(aspect_shares)
+
+    def fed_there(driven: Bowl) -> Shares:
+        return shared or shares(
+            part, driven, fed=fed, rule=rule, launch=launch, probabilities=probabilities, seed=seed
+        )
+
     chain = bowl.devices if devices is None else tuple(devices)
-    drive_ways = _DriveWays(part, bowl, chain, arriving)
-    lead = None if rough is None else _DriveWays(part, bowl, chain, rough)
+    drive_ways = _DriveWays(part, bowl, chain, fed_there if shared or arriving is None else arriving)
     aspects = drive_ways.shares(bowl).aspects
     wanted = well_oriented.wanted(part, aspects, bowl.track, aspect, angle)
     # raises where none ever leaves so
     well_oriented.parts_per_metre(drive_ways.along(None), wanted, rule, gap=space, fill=fill)
     well_oriented.holds(drive_ways.along(bowl), wanted)
 
-    def density(drive_ways: _DriveWays, driven: Bowl | None) -> float:
-        return well_oriented.leaving_per_metre(drive_ways.along(driven), wanted, rule, gap=space, fill=fill)
+    def density(along: Callable[[Bowl | None], well_oriented.Orientations], driven: Bowl | None) -> float:
+        return well_oriented.leaving_per_metre(along(driven), wanted, rule, gap=space, fill=fill)
 
-    led = None if lead is None else partial(density, lead)
-    to_turn = bowl, wanted_rate, partial(density, drive_ways)
-    solutions = knobs.solutions(*to_turn, rough=led, worst=worst, progress=progress)
+    solutions = knobs.solutions(
+        bowl, wanted_rate, partial(density, drive_ways.along),
+        rough=partial(density, drive_ways.along_as_here), sampled=drive_ways.shares(bowl).fed,
+        worst=worst, progress=progress,
+    )  # fmt: skip
     return TuneStudy(
         part=part,
         bowl=bowl,
@@ -153,16 +149,21 @@ class _DriveWays:
     def __init__(
         self, part: Part, bowl: Bowl, chain: Sequence[Device], arriving: Callable[[Bowl], Shares]
     ) -> None:
-        self.part, self.bowl, self.chain = part, bowl, chain
-        self.shares, self.along = cache(arriving), cache(self._along)
+        self.bowl, self.chain = bowl, chain
+        self.shares, self.along_as_here = cache(arriving), cache(self._along_as_here)
+        self.on_the_track = orientations(part, self.shares(bowl).aspects, bowl.track)
 
-    def _along(self, driven: Bowl | None) -> well_oriented.Orientations:
-        """At a drive; None: at the bowl's own as if it turned nothing over."""
-        aspect_shares = self.shares(driven or self.bowl)
-        on_the_track = orientations(self.part, aspect_shares.aspects, self.bowl.track)
-        return arrivals.oriented(
-            along(on_the_track, aspect_shares.aspects, self.chain, bowl=driven), aspect_shares.measured
-        )
+    def _along_as_here(self, driven: Bowl | None) -> well_oriented.Orientations:
+        """At a drive, with what arrives at the bowl's own; None: as if it turned nothing over."""
+        here = self.shares(self.bowl)
+        return stream.oriented(along(self.on_the_track, here.aspects, self.chain, bowl=driven), here.measured)
+
+    def along(self, driven: Bowl | None) -> well_oriented.Orientations:
+        """At a drive, with what arrives there; None: at the bowl's own as if it turned nothing over."""
+        here, aspect_shares = self.along_as_here(driven), self.shares(driven or self.bowl)
+        if aspect_shares is self.shares(self.bowl):
+            return here
+        return stream.oriented(with_shares(here, aspect_shares.aspects), aspect_shares.measured)
 
 
 def _tuned(solution: knobs.Solution, bowl: Bowl, drive_ways: _DriveWays) -> Tuned:

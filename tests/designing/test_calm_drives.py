@@ -13,7 +13,7 @@ from feederscrew.designing import calm_drive
 from feederscrew.designing.record import DesignRequest
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
-from feederscrew.machine.stroke import greatest_amplitude
+from feederscrew.machine.springs import greatest_amplitude
 from feederscrew.resting.aspects import find
 
 

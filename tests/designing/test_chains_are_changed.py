@@ -9,7 +9,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import proposals, robust, short_trials
+from feederscrew.designing import proposals, short_trials
 from feederscrew.designing.record import DesignRequest
 from feederscrew.part import load
 from feederscrew.rates import stream
@@ -79,7 +79,7 @@ def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one(block):
     both = short_trials.single(part, bowl, ways, shares, (along, *same), **one)
     assert (list(alone.right), list(alone.wrong)) == ([1, 0], [0, 1])
     assert (list(both.right), list(both.wrong)) == ([1, 1], [0, 0])
-    assert robust.faults(alone) and not robust.faults(both)
+    assert short_trials.faults(alone) and not short_trials.faults(both)
 
 
 def test_of_what_counts_as_the_wanted_one_a_loss_is_no_fault_but_a_stop_is(block):
@@ -87,12 +87,12 @@ def test_of_what_counts_as_the_wanted_one_a_loss_is_no_fault_but_a_stop_is(block
     along, across = names["A@0"], names["A@90"]
     states = short_trials.wanted_states(ways, (along, across))
     lost = replace(tried(ways, {along}, (), (), along), states=states)
-    assert not robust.faults(lost)
-    assert robust.faults(replace(lost, right=0 * lost.right))  # the wanted one itself has to leave
+    assert not short_trials.faults(lost)
+    assert short_trials.faults(replace(lost, right=0 * lost.right))  # the wanted one itself has to leave
     stays = replace(tried(ways, {along}, (), {across}, along), states=states)
-    assert robust.faults(stays) == ["A@90 stays (stopped at gap)"]
+    assert short_trials.faults(stays) == ["A@90 stays (stopped at gap)"]
     carried = replace(tried(ways, {along}, {across}, (), along), states=states)
-    assert robust.faults(carried) == [f"A@90{robust.CARRIED}"]
+    assert short_trials.faults(carried) == [f"A@90{short_trials.CARRIED}"]
 
 
 def test_what_is_lost_at_a_device_is_noted(block):
@@ -142,14 +142,14 @@ def test_a_sensor_is_drawn_with_other_play_and_the_drawn_part_s_name(block):
     one = ways.lying[names["A@0"]]
     sorter = make_device("sorter", "test", like=(one.aspect, one.heading, 1e-3), text="test")
     rng = np.random.default_rng(1)
-    drawn = robust.drawn_bowl(replace(bowls.default(), devices=(sorter,)), ways.lying, rng).devices[0]
-    assert drawn.like[:2] == sorter.like[:2] and 0.0 < abs(drawn.like[2] - 1e-3) <= robust.CUT
+    drawn = short_trials.drawn_bowl(replace(bowls.default(), devices=(sorter,)), ways.lying, rng).devices[0]
+    assert drawn.like[:2] == sorter.like[:2] and 0.0 < abs(drawn.like[2] - 1e-3) <= short_trials.CUT
 
 
 def test_a_drawn_bowl_bounces_parts_as_filmed_impacts_scatter(block):
     _, ways, _ = block
     bowl = bowls.default()
-    drawn = [robust.drawn_bowl(bowl, ways.lying, np.random.default_rng((1, k))) for k in range(200)]
+    drawn = [short_trials.drawn_bowl(bowl, ways.lying, np.random.default_rng((1, k))) for k in range(200)]
     share = np.array([one.restitution for one in drawn]) / bowl.restitution
     assert share.std() == pytest.approx(0.16, abs=0.015) and share.mean() == pytest.approx(1.0, abs=0.03)
     assert len({one.friction.kinetic for one in drawn}) == 200
@@ -206,15 +206,15 @@ def test_a_wanted_part_that_comes_back_denies_a_draw_only_where_most_of_the_othe
     back = replace(
         seen, places=tuple({"returned at gap": 2} if k == across else {} for k in range(len(ways.lying)))
     )
-    assert robust.came_back(back, across) and not robust.came_back(back, along)
+    assert short_trials.came_back(back, across) and not short_trials.came_back(back, along)
     pair = replace(
         back, **{n: getattr(back, n)[[along, across]] for n in ("rows", "parts", "right", "wrong", "held")}
     )
-    assert robust.comes_through(pair, {along: 0.5, across: 0.5})  # half of them leave
-    assert not robust.comes_through(pair, {along: 0.4, across: 0.6})
-    assert robust.comes_through(pair, {along: 0.7, across: 0.3}, 0.7)  # and all that the target needs
-    assert not robust.comes_through(pair, {along: 0.7, across: 0.3}, 0.75)
-    assert not robust.comes_through(replace(pair, held=np.array([0, 1])), {along: 0.9, across: 0.1})
+    assert short_trials.comes_through(pair, {along: 0.5, across: 0.5})  # half of them leave
+    assert not short_trials.comes_through(pair, {along: 0.4, across: 0.6})
+    assert short_trials.comes_through(pair, {along: 0.7, across: 0.3}, 0.7)  # and all that the target needs
+    assert not short_trials.comes_through(pair, {along: 0.7, across: 0.3}, 0.75)
+    assert not short_trials.comes_through(replace(pair, held=np.array([0, 1])), {along: 0.9, across: 0.1})
 
 
 def test_a_device_is_found_by_the_name_that_the_trial_gives_it(block):
@@ -234,9 +234,9 @@ def test_what_comes_back_of_several_wanted_ones_is_no_fault_while_another_leaves
     seen = tried(both, {along}, (), (), along)
     back = {"returned at narrowed track": 2}
     seen = replace(seen, places=tuple(back if k == across else {} for k in range(len(both.lying))))
-    assert short_trials.spared_rows(seen) == (across,) and not list(robust.denied(seen))
+    assert short_trials.spared_rows(seen) == (across,) and not list(short_trials.denied(seen))
     stays = replace(seen, held=2 * (np.arange(len(both.lying)) == across))
-    assert short_trials.spared_rows(stays) == () and list(robust.denied(stays))
+    assert short_trials.spared_rows(stays) == () and list(short_trials.denied(stays))
     assert short_trials.spared_rows(replace(seen, right=0 * seen.right)) == ()  # none of them leaves
 
 
@@ -250,7 +250,7 @@ def test_what_is_tried_is_told_with_headings_in_whole_degrees():
 
 def test_a_sensor_sees_something_of_every_drawn_part():
     bracket = load(PARTS / "lbracket_30x20x15.stl")
-    other = robust.drawn_part(bracket, 1e-4, np.random.default_rng((1, 1)))
+    other = short_trials.drawn_part(bracket, 1e-4, np.random.default_rng((1, 1)))
     bowl = bowls.default()
     ways = stream.follow_orientations(other, find(other), bowl.track, (), bowl=bowl)
     turned = next(
@@ -295,7 +295,7 @@ def test_what_draws_carry_through_is_cut_by_more(block):
     across, along = names["A@90"], names["A@0"]
     seen = tried(ways, {along}, {across}, (), along)
     proposal = proposals.better(proposals.Proposal(along, (), (), "no device"), seen, ways.lying)
-    drawn = robust.RobustRun(20, 18, "A@90 is carried through in 2 of 20")
+    drawn = short_trials.RobustRun(20, 18, "A@90 is carried through in 2 of 20")
     (before,), (after,) = proposal.cuts, proposals.better(proposal, seen, ways.lying, drawn).cuts
     middle = 0.5 * (before.device.limit + before.largest.limit)
     assert after.device.limit == pytest.approx(middle, abs=proposals.VALUE_STEP_M)
@@ -334,11 +334,11 @@ def test_a_pressure_break_carries_what_is_wanted_and_lets_it_reach_over_the_ledg
 def test_draws_end_once_more_have_failed_than_may(monkeypatch, block):
     part, ways, _ = block
     results = iter([["B is lost"], [], ["B is lost"], [], []])
-    monkeypatch.setattr(robust, "_draw", lambda *_: (next(results), 0.05))
+    monkeypatch.setattr(short_trials, "_draw", lambda *_: (next(results), 0.05))
     shares = np.full(len(ways.lying), 1.0)
     own = {"draws": 5, "tolerance": 1e-4, "run": RunSettings(1)}
-    drawn = robust.robust_run(part, bowls.default(), ways, shares, 0, allowed=1, **own)
+    drawn = short_trials.robust_run(part, bowls.default(), ways, shares, 0, allowed=1, **own)
     assert (drawn.draws, drawn.held, drawn.partial) == (3, 1, False)
     results = iter([[], [], [], ["B is lost"], []])
-    drawn = robust.robust_run(part, bowls.default(), ways, shares, 0, allowed=1, **own)
+    drawn = short_trials.robust_run(part, bowls.default(), ways, shares, 0, allowed=1, **own)
     assert (drawn.draws, drawn.held) == (5, 4)

@@ -14,7 +14,7 @@ from scipy import stats
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
-from feederscrew.designing import exploring, proposals, robust, short_trials
+from feederscrew.designing import exploring, proposals, short_trials
 from feederscrew.designing.exploring import Search
 from feederscrew.designing.record import Attempt, DesignRequest
 from feederscrew.resting.aspects import find
@@ -64,7 +64,7 @@ def bowl(block):
 @pytest.fixture(scope="module")
 def drawn_bowls(block, bowl):
     _, ways = block
-    return [robust.drawn_bowl(bowl, ways.lying, np.random.default_rng((7, k))) for k in range(DRAWS)]
+    return [short_trials.drawn_bowl(bowl, ways.lying, np.random.default_rng((7, k))) for k in range(DRAWS)]
 
 
 def test_friction_is_drawn_evenly_from_0_6_to_1_4_times_all_coefficients_alike(drawn_bowls):
@@ -128,7 +128,8 @@ def test_restitution_stays_between_none_and_all(block, restitution):
     _, ways = block
     plain = replace(bowls.default(), restitution=restitution)
     drawn = [
-        robust.drawn_bowl(plain, ways.lying, np.random.default_rng((3, k))).restitution for k in range(200)
+        short_trials.drawn_bowl(plain, ways.lying, np.random.default_rng((3, k))).restitution
+        for k in range(200)
     ]
     assert min(drawn) >= 0.0 and max(drawn) <= 1.0
     assert (len(set(drawn)) > 50) == (restitution > 0.0)
@@ -136,7 +137,7 @@ def test_restitution_stays_between_none_and_all(block, restitution):
 
 def drawn_sides(part, tolerance, axes, count):
     """Drawn parts, and their sizes (count, 3) [m] along axes (3, 3), the rows of a rotation."""
-    parts = [robust.drawn_part(part, tolerance, np.random.default_rng((11, k))) for k in range(count)]
+    parts = [short_trials.drawn_part(part, tolerance, np.random.default_rng((11, k))) for k in range(count)]
     along = np.array([[np.ptp(one.vertices @ axis) for axis in axes] for one in parts])
     return parts, along
 
@@ -186,8 +187,8 @@ def test_each_draw_tries_the_wanted_orientation_and_others_by_their_shares(block
     shares /= shares.sum()
     rng, seen = np.random.default_rng(5), np.zeros(count)
     for _ in range(2000):
-        rows = robust.drawn_rows(ways, shares, np.array([2]), rng)
-        assert rows[0] == 2 and len(rows) == len(set(rows)) <= 1 + robust.OTHERS_DRAWN
+        rows = short_trials.drawn_rows(ways, shares, np.array([2]), rng)
+        assert rows[0] == 2 and len(rows) == len(set(rows)) <= 1 + short_trials.OTHERS_DRAWN
         seen[rows] += 1
     absent = (1.0 - shares) ** 3  # of three parts as they come
     expected = np.where(np.arange(count) == 2, 1.0, 1.0 - absent)

@@ -7,7 +7,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import long_rides, loop, queues
+from feederscrew.designing import loop, queues, record
 from feederscrew.designing.record import DesignRequest, RobustRun
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import designs
@@ -28,7 +28,7 @@ def ridden(entering, wanted, *changes):
         ended[places] = becomes
     ride = RideOfTrack(NAMES, entered, ended, np.zeros(30, bool), np.full(30, 0.45), np.ones(30))
     entering = np.array(entering)
-    return long_rides.LongRide(ride, entering, ride.arriving(entering), wanted)
+    return record.LongRide(ride, entering, ride.arriving(entering), wanted)
 
 
 def test_each_orientation_says_how_many_stay_turn_and_leave():
@@ -82,9 +82,9 @@ def test_those_that_turn_ride_again(monkeypatch):
             tuple("PQRST"), entered, ended, np.zeros(count, bool), np.ones(count), np.ones(count)
         )
 
-    monkeypatch.setattr(long_rides, "ride_of_track", ride)
+    monkeypatch.setattr(record, "ride_of_track", ride)
     request = DesignRequest(0.5, seed=7)
-    seen = long_rides.long_ride(None, None, (), np.array([0.2, 0.6, 0.04, 0.04, 0.12]), [3], request.run)
+    seen = record.long_ride(None, None, (), np.array([0.2, 0.6, 0.04, 0.04, 0.12]), [3], request.run)
     assert asked == [((1, 0, 4, 3), 6, 7), ((1,), 6, 8)]
     assert seen.ride.counts[1].tolist() == [12, 0, 0, 0, 0, 0]
     assert seen.arriving == pytest.approx([0.8, 0.0, 0.04, 0.04, 0.12])
@@ -96,7 +96,7 @@ def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypat
     monkeypatch.setattr(queues, "FILL_SECONDS", 1.0)
     monkeypatch.setattr(long_ride_of_trial, "RIDE_M", 0.05)
     cube, seen = shapes.part(shapes.box(10, 10, 10)), []
-    first = long_rides.long_ride
+    first = record.long_ride
 
     def ride(*values):
         found = first(*values)
@@ -126,4 +126,4 @@ def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypat
     )
     assert all(shares == pytest.approx(0.5 * (ride.arriving + ride.entering)) for shares in drawn)
     (row,) = designs.document(found)["long_ride"][:1]
-    assert row["parts"] >= long_rides.RIDING_PARTS and row["stays"] + row["left"] <= row["parts"]
+    assert row["parts"] >= record.RIDING_PARTS and row["stays"] + row["left"] <= row["parts"]

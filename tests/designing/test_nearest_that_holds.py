@@ -116,8 +116,9 @@ def test_what_was_clean_and_slow_is_proved_and_no_other_after_one_that_holds(way
     assert len([text for text in said if text.startswith("nearest that holds")]) == 2
 
 
-def test_where_nothing_holds_what_was_tried_is_counted(ways):
+def test_where_nothing_holds_what_was_tried_is_counted(monkeypatch, ways):
     search, _ = searching()
+    monkeypatch.setattr(exploring, "candidates", lambda free: iter(()))
     search.passed += [candidate(ways, rate=20.0 + k) for k in range(9)]
     search.attempts += [attempt() for _ in range(9)]
     asked = []
@@ -154,7 +155,7 @@ def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_u
     made = calm_drive.PlainBowl(BOWL, frozenset(), None)
     search.shares = SimpleNamespace(aspects=find(PART), measured=None)
     proposal, strokes = proposals.Proposal(0, (), (), "no device"), []
-    monkeypatch.setattr(exploring.arrivals, "oriented", lambda known, _: known)
+    monkeypatch.setattr(exploring.stream, "oriented", lambda known, _: known)
 
     def short(_, bowl, ways, weights, proposal):
         strokes.append(bowl.drive.amplitude)
@@ -235,7 +236,7 @@ def test_a_trial_is_told_with_what_came_of_the_last_one_and_the_time(monkeypatch
     search.progress = lambda *row: told.append(row)
     search.begin_trial("A@0, no device")
     search.attempts.append(attempt(0.0, ("A@0 is lost (turned on the track)",), "drive"))
-    search.end_trial()
+    search.clock.end()
     search.begin_trial("A@0, calmer drive")
     assert order == [0]  # what is compiled is told before the first trial, once
     assert said[0].startswith("trial 1 of at most 7: A@0, no device")
@@ -285,8 +286,12 @@ def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(monkeypa
         assert calm_drive.speed(replace(BOWL, drive=drive)) < 0.75 * calm_drive.speed(bowl)
 
 
-def test_a_lower_rate_that_jams_in_its_proof_is_tried_at_a_calmer_drive(monkeypatch, ways):
-    """A cap of ABS at throw number 1.5: one jam in its queue; calmer it holds 16/min."""
+CARRIED = {"robust": RobustRun(14, 12, "B@30 is carried through in 1 of 14"), "queues": ()}
+
+
+@pytest.mark.parametrize("more, word", [({"queues": fills(jams=1)}, "jam"), (CARRIED, "carried through")])
+def test_a_lower_rate_that_its_proof_denies_is_tried_at_a_calmer_drive(monkeypatch, ways, more, word):
+    """A cap of ABS at throw number 1.5: one jam in its queue; calmer it holds 16/min. At 3 draws deny it."""
     search, _ = searching()
     lively = calm_drive.driven(calm_drive.PlainBowl(BOWL, frozenset(), None), 0.18, hops=True)
     search.passed.append(candidate(ways, lively))
@@ -297,12 +302,33 @@ def test_a_lower_rate_that_jams_in_its_proof_is_tried_at_a_calmer_drive(monkeypa
 
     def prove(_, one):
         speeds.append(calm_drive.speed(one.bowl))
-        return study(600.0, queues=fills(jams=1) if len(speeds) == 1 else fills())
+        return replace(study(600.0, **(more if len(speeds) == 1 else {})), bowl=one.bowl)
 
     found, made = nearest.nearest(study(600.0, queues=()), search, [], prove)
     assert made is not None and found.rate > 0.0 and found.change.startswith("a calmer drive, ")
     assert len(speeds) == 2 and speeds[1] < 0.75 * speeds[0]
-    assert len(found.denied) == 1 and "jam" in found.denied[0]
+    assert len(found.denied) == 1 and word in found.denied[0]
+
+
+def test_where_nothing_near_it_holds_bowls_are_sought_for_half_the_rate_of_the_trials(monkeypatch, ways):
+    """A cap of ABS at 400/min: 59/min in its trial, denied by draws; a camera at a calm drive holds."""
+    search, _ = searching()
+    search.passed.append(candidate(ways, rate=59.0))
+    requests = []
+
+    def candidates(free):
+        requests.append(free.request)
+        yield candidate(ways, rate=45.0, wanted="A@0")
+
+    def prove(other, _):
+        return study(60.0 * other.request.target) if other is not search else study(600.0, held=12)
+
+    monkeypatch.setattr(calm_drive, "calmer", lambda *_: None)
+    monkeypatch.setattr(exploring, "candidates", candidates)
+    found, made = nearest.nearest(study(600.0, queues=()), search, [], prove)
+    assert [round(60.0 * one.target, 6) for one in requests] == [29.0]
+    assert 60.0 * found.rate == pytest.approx(46.0) and "a lower rate, a bowl at" in found.change
+    assert made.request is search.request and made.status == "falls short"
 
 
 def test_any_heading_of_what_left_and_one_device_more_are_tried(monkeypatch, ways):

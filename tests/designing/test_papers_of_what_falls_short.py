@@ -13,7 +13,8 @@ import shapes
 from matplotlib.text import Text
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import built_bowl, loop
+from feederscrew.designing import design as designing
+from feederscrew.designing import loop
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
 from feederscrew.errors import FeederError
@@ -63,8 +64,8 @@ def sensing(tmp_path):
 def built():
     """The machine of a design that leaves no solid."""
     one = study()
-    sheet = built_bowl.machines.machine(bowls.settings(None, BOWL))
-    return one, built_bowl.Built(sheet)
+    sheet = designing.machines.machine(bowls.settings(None, BOWL))
+    return one, designing.Built(sheet)
 
 
 def offered(one, built=None):
@@ -155,7 +156,7 @@ def test_a_mark_is_laid_over_a_picture_of_pixels():
 
 def test_drawings_of_cuts_bear_a_mark_on_a_layer_of_its_own(sensing):
     gap = replace(sensing, devices=sensing.devices[1:])
-    every = built_bowl.machines.orientations(PART, loop.find(PART), gap.track)
+    every = designing.machines.orientations(PART, loop.find(PART), gap.track)
     made = build_section(gap.track, gap.devices, every)
     read = ezdxf.read(io.StringIO(tooling_drawing.dxf(made, mark=marking.MARK).decode()))
     across = [one for one in read.modelspace() if one.dxf.layer == "MARK"]
@@ -189,7 +190,7 @@ def test_what_delivers_nothing_leaves_no_papers(built):
 def test_the_bowl_file_has_the_leaves_of_the_machine_that_is_drawn():
     """Leaves of 30 mm, which a design may choose, were written as the usual 40 mm."""
     lines = ("machine.leaf_width=30 mm", "machine.leaf_length=110 mm", "machine.leaves=6")
-    sheet = built_bowl.machines.machine(bowls.settings(None, (*BOWL, *lines)))
+    sheet = designing.machines.machine(bowls.settings(None, (*BOWL, *lines)))
     text = designs.bowl_file(study(), (), sheet)
     assert "leaf_width: 30 mm" in text and "leaf_length: 110 mm" in text and "leaves: 6" in text
 
@@ -210,7 +211,7 @@ def test_the_trial_that_papers_have_is_that_of_the_bowl_file(built, tmp_path):
 
 def test_a_stopped_design_leaves_the_files_of_an_earlier_one(run, tmp_path, monkeypatch):
     shapes.box(12.0, 10.0, 8.0).export(tmp_path / "box.stl")
-    monkeypatch.setattr(built_bowl, "built", lambda *_: built_bowl.Built())
+    monkeypatch.setattr(designing, "built", lambda *_: designing.Built())
     answers = [study(queues=(), partial=True), study(), study(queues=(), partial=True)]
 
     def design(part, *_, **__):
@@ -251,13 +252,13 @@ def test_feeder_bowl_shows_the_machine_that_was_tried_where_its_rule_finds_none(
     shapes.box(12.0, 10.0, 8.0).export(path)
     part = load(path)
     one = replace(study(part=part), request=DesignRequest(4000.0 / 60.0))
-    sheet = built_bowl.machines.machine(bowls.settings(None, BOWL))
+    sheet = designing.machines.machine(bowls.settings(None, BOWL))
     (tmp_path / "design.yaml").write_text(designs.bowl_file(one, (), sheet))
 
     def unreachable(*_, **__):
         raise FeederError("target", "no bowl reaches it", "split it")
 
-    monkeypatch.setattr(built_bowl.machines, "bowl", unreachable)
+    monkeypatch.setattr(designing.machines, "bowl", unreachable)
     line = ("bowl", path, "--target", "4000/min", "--format", "json")
     done = run(*line, "--config", tmp_path / "design.yaml")
     assert done.exit_code == 0 and "no bowl reaches it" in done.stderr
@@ -269,7 +270,7 @@ def test_feeder_bowl_takes_the_drive_that_was_tried_until_the_file_is_changed(ru
     """Its papers are those of the design; the stroke of the static rule, far less, is a note."""
     path, config = tmp_path / "box.stl", tmp_path / "design.yaml"
     shapes.box(12.0, 10.0, 8.0).export(path)
-    sheet = built_bowl.machines.machine(bowls.settings(None, BOWL))
+    sheet = designing.machines.machine(bowls.settings(None, BOWL))
     config.write_text(designs.bowl_file(study(part=load(path)), (), sheet))
     line = ("bowl", path, "--target", "30/min", "--format", "json", "--config", config)
     tried, static = run(*line), run(*line, "--set", "friction.static=0.5")
@@ -285,7 +286,7 @@ def test_feeder_bowl_takes_the_drive_that_was_tried_until_the_file_is_changed(ru
 def test_feeder_bowl_takes_it_too_where_the_static_rule_finds_none(run, tmp_path):
     path, config = tmp_path / "box.stl", tmp_path / "design.yaml"
     shapes.box(12.0, 10.0, 8.0).export(path)
-    sheet = built_bowl.machines.machine(bowls.settings(None, BOWL))
+    sheet = designing.machines.machine(bowls.settings(None, BOWL))
     config.write_text(designs.bowl_file(study(part=load(path)), (), sheet))
     line = ("bowl", path, "--target", "20000/min", "--format", "json")
     done = run(*line, "--config", config)
@@ -297,7 +298,7 @@ def test_feeder_bowl_takes_it_too_where_the_static_rule_finds_none(run, tmp_path
 def test_a_report_takes_the_drive_that_was_tried_as_well(run, tmp_path, monkeypatch):
     path, config, seen = tmp_path / "box.stl", tmp_path / "design.yaml", []
     shapes.box(12.0, 10.0, 8.0).export(path)
-    sheet = built_bowl.machines.machine(bowls.settings(None, BOWL))
+    sheet = designing.machines.machine(bowls.settings(None, BOWL))
     config.write_text(designs.bowl_file(study(part=load(path)), (), sheet))
 
     def page(found, _):

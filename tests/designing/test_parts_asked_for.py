@@ -5,7 +5,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import proposals, queues, robust, short_trials
+from feederscrew.designing import proposals, queues, short_trials
 from feederscrew.designing.record import DesignRequest
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
@@ -87,8 +87,8 @@ def test_single_parts_and_draws_count_the_aspect_alike(block):
     only = np.zeros(len(shares))
     only[rows[1]] = 1.0
     drawn = {"draws": 1, "tolerance": 1e-5, "run": RunSettings(1)}
-    assert robust.robust_run(part, bowl, ways, only, rows[0], **drawn).held == 0
-    assert robust.robust_run(part, bowl, ways, only, rows[0], any_heading=("A",), **drawn).held == 1
+    assert short_trials.robust_run(part, bowl, ways, only, rows[0], **drawn).held == 0
+    assert short_trials.robust_run(part, bowl, ways, only, rows[0], any_heading=("A",), **drawn).held == 1
 
 
 def test_what_is_round_in_plan_counts_at_any_heading_unless_one_is_asked_for():

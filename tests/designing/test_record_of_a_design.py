@@ -275,8 +275,9 @@ def candidates_of(bowl, other, proposal="rails"):
     clean, ways = SimpleNamespace(clean=True, faults=()), SimpleNamespace(lying=())
     chain = SimpleNamespace(cuts=(), devices=(), name=proposal)
     first = SimpleNamespace(
-        bowl=bowl, proposal=chain, weights=None, tried=None, orientations=ways, attempt=clean
-    )
+        bowl=bowl, proposal=chain, weights=None, tried=None, orientations=ways, attempt=clean,
+        plain_bowl=lambda search: None,
+    )  # fmt: skip
     return first, SimpleNamespace(**vars(first) | {"bowl": replace(bowl, drive=other)})
 
 
@@ -335,13 +336,16 @@ def test_what_stays_at_a_blade_is_tried_at_a_livelier_drive(monkeypatch, fault, 
     drives = []
     wiper = SimpleNamespace(device=SimpleNamespace(overhead=True, hangs=False, name="wiper"))
     proposal = Proposal(0, (wiper,), (), "proposed")
-    first = SimpleNamespace(bowl="calm", proposal=proposal, attempt=SimpleNamespace(faults=(fault,)))
+    first = SimpleNamespace(
+        bowl="calm", proposal=proposal, weights=None, attempt=SimpleNamespace(faults=(fault,)),
+        plain_bowl=lambda search: None,
+    )  # fmt: skip
     clean = SimpleNamespace(attempt=SimpleNamespace(clean=True, rate=2.0))
     search = SimpleNamespace(spent=False, passed=[], request=DesignRequest(1.0))
     monkeypatch.setattr(loop.exploring, "_screened", lambda search, candidate: candidate)
     monkeypatch.setattr(loop.exploring, "attempted", lambda *given: drives.append(given[-1]) or clean)
     monkeypatch.setattr(loop.calm_drive, "livelier", lambda made, own: bowls.default())
-    assert loop.exploring._livened(search, None, first, None) is (clean if count else None)
+    assert loop.exploring._livened(search, first) is (clean if count else None)
     assert len(drives) == len(search.passed) == count
 
 

@@ -10,7 +10,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.designing import exploring, families, loop, proposals, queues, short_trials
 from feederscrew.designing.record import DesignRequest
-from feederscrew.designing.robust import robust_run
+from feederscrew.designing.short_trials import robust_run
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.studies.rate import Shares
@@ -75,7 +75,7 @@ def test_a_family_is_not_proved_where_the_values_of_all_are_still_tried(monkeypa
     def stopped(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(families, "_member", lambda part, *_, **__: design(part))
+    monkeypatch.setattr(families.loop, "design", lambda part, *_, **__: design(part))
     monkeypatch.setattr(families, "_of_one_chain", stopped)
     found = families.family(held, bowls.default(), frozenset(), REQUEST)
     assert (found.partial, found.status, len(found.members)) == (True, "not proved", 2)

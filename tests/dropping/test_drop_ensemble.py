@@ -50,8 +50,6 @@ def test_until_ends_when_every_interval_is_narrow():
     )
 
 
-
-
 def test_what_an_aim_needs():
     aim = Aim(0.01, ROWS, 3)
     assert aim.needed(4000, 0.01) == 4000
@@ -90,8 +88,6 @@ def test_a_batch_that_failed_ends_what_is_kept():
     assert gather(work, 3) == (["first"], True)
 
 
-
-
 def test_work_may_end_before_all_that_it_began():
     """Draws that cannot hold any more end so: a task that waits is cancelled, which is no fault."""
 
@@ -103,10 +99,6 @@ def test_work_may_end_before_all_that_it_began():
 
     results, partial = gather(work, 1)
     assert results[0] == 7 and 9 not in results and not partial
-
-
-
-
 
 
 def test_a_tally_counts_every_drop_once():
@@ -166,8 +158,6 @@ def test_a_rolled_part_spins_about_a_level_axis_whatever_its_way(rng):
     assert np.abs(spin[:, 2]).max() < 1e-12 and np.linalg.norm(spin, axis=1).min() > 0.9
     size = np.linalg.norm(spin[:, :2], axis=1) * np.linalg.norm(states[:, 3:5], axis=1)
     assert np.abs(((spin[:, :2] * states[:, 3:5]).sum(axis=1) / size).mean()) < 0.06
-
-
 
 
 def test_a_flip_is_held_level_to_its_lean_and_alike_all_round(rng):

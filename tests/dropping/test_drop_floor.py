@@ -136,8 +136,6 @@ def test_a_flat_part_travels_like_a_point(ratio, more):
     assert speeds == pytest.approx([exact(bowl)] * 2, abs=0.012 * quickest)
 
 
-
-
 def test_a_part_without_friction_stays_where_it_is_in_the_room():
     """Below the hop nothing pushes it along: it stays in the room, and the floor moves below it."""
     bowl = bowl_of(0.8)
@@ -146,8 +144,6 @@ def test_a_part_without_friction_stays_where_it_is_in_the_room():
     state[body.VX] = -floor_motion.speed(plate, plate.along, plate.second_along, 0.0)
     _, places = ride(PLATE, plate, state, np.arange(10, 60) / 60.0 / unit, 0.0)
     assert np.abs(places[:, 0]).max() < 0.05 * plate.along
-
-
 
 
 def test_a_part_near_its_edge_lies_on_no_face():

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew.dropping import drop_test
 from feederscrew.dropping.drop_test import telling
-from feederscrew.output import drop, style, tables
+from feederscrew.output import drop
 from feederscrew.output.tables import data_frame
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
@@ -105,10 +105,6 @@ def test_turning_the_file_turns_the_attitudes_back(tmp_path):
         ends = np.abs(trace.turns[-1].apply(turn.apply(normals))[:, 2])
         assert aspects.heights[trace.row] == pytest.approx(0.5 * MM * [10, 13, 17][np.argmax(ends)], rel=1e-4)
         assert corners(turned, trace)[:, :, 2].min() > -2e-5
-
-
-
-
 
 
 @pytest.mark.parametrize("preset", ["place", "drop", "feed"])

@@ -10,7 +10,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.dropping import arrival, plate_test
 from feederscrew.errors import FeederError
-from feederscrew.rates import arrivals
+from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import shares
 
@@ -77,7 +77,7 @@ def test_a_part_too_small_to_be_followed_on_its_floor_ends_at_once():
     known = shares(part, bowl)
     assert not known.fed
     assert known.aspects.recommended.rule == known.aspects.closed.rule
-    assert known.aspects.warnings[-1] == arrivals.TOO_LONG
+    assert known.aspects.warnings[-1] == stream.TOO_LONG
     with pytest.raises(FeederError, match=r"a part so small takes .* steps at this drive for so long"):
         plate_test.test(part, known.aspects, [bowl], "feed", {})
 
@@ -125,3 +125,19 @@ def test_on_a_floor_that_throws_parts_as_many_are_followed_as_the_share_needs(mo
     short, long = arrival.FLOOR_TIMES_S
     assert runs == [(400, short, None), (800, long, None), (1600, long, "kept")]
     assert 1.96 * 0.4 / np.sqrt(1600) <= arrival.ARRIVAL_HALF_WIDTH < 1.96 * 0.4 / np.sqrt(1200)
+
+
+def test_on_a_floor_that_throws_parts_that_lie_still_are_followed_no_further():
+    """The same parts on the same faces as of those that are followed to the end, on a floor of throw 1.5."""
+    part = shapes.part(shapes.box(8.0, 12.0, 15.0))
+    aspects, bowl = find(part), plate(0.35)
+    assert plate_test.throw_number(bowl) > 1.0
+    pace = replace(arrival.ARRIVAL_PACE, settling=arrival.THROWN_SETTLING, seconds=0.5, keep=True)
+    own = {"drops": 60, "run": replace(plate_test.USUAL_RUN, seed=3)}
+    stopped, whole = (
+        plate_test.test(part, aspects, [bowl], "feed", {}, pace=replace(pace, kick=kick), **own)[0]
+        for kick in (pace.kick, np.inf)
+    )
+    assert (stopped.rides.faces[:, -1] == whole.rides.faces[:, -1]).mean() >= 0.98
+    resting = (np.diff(stopped.rides.places, axis=1) == 0.0).all(axis=2).mean()
+    assert resting > 0.3  # of the looks: where they lie is noted without a step

@@ -12,11 +12,10 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl.reading import settings_of_text
 from feederscrew.bowl.record import shares, vibration_angle
 from feederscrew.conveying import answer
-from feederscrew.designing import built_bowl, calm_drive
+from feederscrew.designing import calm_drive, design
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
-from feederscrew.machine import drive_sizing, drive_units, sizing, springs
-from feederscrew.machine.springs import analyse_springs, leaf_stress
-from feederscrew.machine.stroke import stroke
+from feederscrew.machine import drive_sizing, sizing, springs
+from feederscrew.machine.springs import analyse_springs, leaf_stress, stroke
 from feederscrew.output import bowl_sheet, design_pages, designs, machine_figures
 from feederscrew.output import machine as machine_output
 from feederscrew.resting.aspects import find
@@ -114,8 +113,8 @@ def proved(*texts):
 @pytest.fixture(scope="module")
 def two_axis():
     one = proved("drive.vibration_angle=16 deg", "drive.phase=-60 deg", "drive.amplitude=0.322 mm")
-    built = built_bowl.built(one, ())
-    return built_bowl.with_machine(one, built), built
+    built = design.built(one, ())
+    return design.with_machine(one, built), built
 
 
 def test_a_drive_out_of_phase_stands_first_in_every_output(two_axis, tmp_path):
@@ -151,7 +150,7 @@ def test_a_design_warns_of_what_feeder_bowl_warns_of_for_its_file(two_axis, run,
 def test_a_bowl_of_the_library_has_the_machine_of_the_command():
     """Every number of a bowl as settings again, machine and sizing among them."""
     bowl = replace(awkward.bowl("machine.leaves=7", "sizing.sheet=2.5 mm", "track.hand=left"), devices=())
-    again = bowls.record(built_bowl.settings_of(bowl, {"drive.vibration_angle"}))
+    again = bowls.record(design.settings_of(bowl, {"drive.vibration_angle"}))
     for name in ("drive", "friction", "track", "machine", "sizing"):
         for field, value in vars(getattr(bowl, name)).items():
             told = getattr(getattr(again, name), field)
@@ -203,7 +202,7 @@ def test_a_design_whose_drawn_springs_do_not_make_its_angle_does_not_hold():
     one = proved("drive.vibration_angle=50 deg", "drive.amplitude=0.15 mm")
     assert one.status == "holds"
     settings = bowls.settings(None, (*ONE, "drive.vibration_angle=50 deg", "drive.amplitude=0.15 mm"))
-    found = built_bowl.with_machine(one, built_bowl.Built(machines.machine(settings)))
+    found = design.with_machine(one, design.Built(machines.machine(settings)))
     assert found.status == "falls short" and "the springs make it" in found.why
     assert found.cause == "drive" and found.nearest.rate == one.request.target
     assert "springs that stand at" in found.nearest.change and found.nearest.draws_held == 20
@@ -212,7 +211,7 @@ def test_a_design_whose_drawn_springs_do_not_make_its_angle_does_not_hold():
 @pytest.mark.parametrize("name", [None, "d300-60hz"])
 def test_the_machine_that_is_drawn_makes_the_drive_that_is_chosen(name):
     """Angle, tuning, stress and pull with the mass of the solid; the leaves of an owned machine are kept."""
-    text = None if name is None else drive_units.bowl_file(drive_units.unit(name))
+    text = None if name is None else drive_sizing.bowl_file(drive_sizing.unit(name))
     settings = bowls.settings(None) if text is None else settings_of_text(text, "machine.yaml")
     given = frozenset(one.key.name for one in settings if one.is_own)
     plain = calm_drive.section(PART, find(PART), bowls.record(settings), given)
@@ -221,8 +220,8 @@ def test_the_machine_that_is_drawn_makes_the_drive_that_is_chosen(name):
     found = DesignStudy(
         PART, DesignRequest(0.5), bowl, "A@0", 0, queues=(queue,), robust=RobustRun(20, 20, "")
     )
-    built = built_bowl.built(found, settings)
-    made = built_bowl.with_machine(found, built)
+    built = design.built(found, settings)
+    made = design.with_machine(found, built)
     assert made.drive_mismatch is None and made.machine_lacks == () and made.status == "holds"
     under = made.bowl.machine
     assert 1.03 <= analyse_springs(under).natural_frequency / bowl.drive.frequency <= 1.08

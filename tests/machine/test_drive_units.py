@@ -10,18 +10,17 @@ from feederscrew.bowl.reading import settings_of_text
 from feederscrew.designing import calm_drive
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
-from feederscrew.machine import drive_units
+from feederscrew.machine import drive_sizing
 from feederscrew.machine.drive_sizing import can_make
-from feederscrew.machine.springs import analyse_springs
-from feederscrew.machine.stroke import greatest_amplitude
+from feederscrew.machine.springs import analyse_springs, greatest_amplitude
 
 # makers' strokes peak to peak [mm], as the key sizing.greatest_acceleration names them
 STROKES = {50.0: 2.0, 60.0: 1.5, 100.0: 0.6, 120.0: 0.4}
 
 
-@pytest.mark.parametrize("unit", drive_units.DRIVE_UNITS, ids=lambda one: one.name)
+@pytest.mark.parametrize("unit", drive_sizing.DRIVE_UNITS, ids=lambda one: one.name)
 def test_the_bowl_file_of_a_drive_unit_is_a_tuned_machine(unit):
-    bowl = bowls.record(settings_of_text(drive_units.bowl_file(unit), "bowl.yaml"))
+    bowl = bowls.record(settings_of_text(drive_sizing.bowl_file(unit), "bowl.yaml"))
     assert bowl.drive.frequency == unit.frequency in STROKES
     assert 2.0 * bowl.track.radius == pytest.approx(unit.diameter)
     assert can_make(bowl) is None
@@ -36,7 +35,7 @@ def test_the_bowl_file_of_a_drive_unit_is_a_tuned_machine(unit):
 
 def owned(name, *overrides):
     """A bowl on a drive unit, and which keys its file gives."""
-    listed = settings_of_text(drive_units.bowl_file(drive_units.unit(name)), "bowl.yaml")
+    listed = settings_of_text(drive_sizing.bowl_file(drive_sizing.unit(name)), "bowl.yaml")
     given = {one.key.name for one in listed if one.is_own}
     bowl = bowls.adjust(bowls.record(listed), overrides) if overrides else bowls.record(listed)
     return calm_drive.PlainBowl(bowl, frozenset(given), None)
@@ -64,14 +63,14 @@ def test_a_frequency_controller_runs_an_owned_machine_below_its_natural_frequenc
 
 
 def test_each_drive_unit_has_a_line_and_a_name_of_its_own():
-    names = [one.name for one in drive_units.DRIVE_UNITS]
-    assert len(set(names)) == len(names) == len(drive_units.lines()) >= 6
-    for one, line in zip(drive_units.DRIVE_UNITS, drive_units.lines(), strict=True):
+    names = [one.name for one in drive_sizing.DRIVE_UNITS]
+    assert len(set(names)) == len(names) == len(drive_sizing.lines()) >= 6
+    for one, line in zip(drive_sizing.DRIVE_UNITS, drive_sizing.lines(), strict=True):
         assert line.startswith(one.name) and f"{one.frequency:.0f} Hz" in line
         assert "typical, not from a data sheet" in line
 
 
 def test_an_unknown_drive_unit_is_refused():
-    assert drive_units.unit("D300-50Hz").frequency == 50.0
+    assert drive_sizing.unit("D300-50Hz").frequency == 50.0
     with pytest.raises(ArgumentError, match="d300-100hz"):
-        drive_units.unit("d301")
+        drive_sizing.unit("d301")

@@ -11,7 +11,7 @@ from matplotlib.text import Text
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl import reading
-from feederscrew.designing import built_bowl
+from feederscrew.designing import design
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
 from feederscrew.output import bowl_sheet, design_pages, designs, machine, machine_figures, tooling_drawing
 from feederscrew.studies import bowl as machines
@@ -38,9 +38,9 @@ def papers(tmp_path_factory):
     study = DesignStudy(
         PART, DesignRequest(0.5), bowls.read(path), "A@0", 0, robust=RobustRun(20, 20, ""), queues=(queue,)
     )
-    built = built_bowl.built(study, ())
+    built = design.built(study, ())
     assert not built.why, built.why
-    study = built_bowl.with_machine(study, built)
+    study = design.with_machine(study, built)
     offered = {one.name: one for one in design_pages.offers(study, (), built)}
     (path.parent / "design.yaml").write_text(offered["design.yaml"].make())
     return {

@@ -10,7 +10,7 @@ from two_masses import amplitude, driven
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import direction, vibration_angle
-from feederscrew.machine import drive_sizing, sizing, springs, stroke
+from feederscrew.machine import drive_sizing, sizing, springs
 from feederscrew.machine.springs import (
     analyse_springs,
     gain,
@@ -65,7 +65,7 @@ def test_the_twist_of_steel_leaves():
 def test_the_angle_over_the_radius():
     found = np.degrees(direction(MACHINE, np.array([0.05, 0.09, 0.15, 0.2])))
     assert found == pytest.approx([33.2, 20.0, 12.3, 9.3], abs=0.05)
-    radii, angles = stroke.angles(MACHINE, BOWL.track)
+    radii, angles = springs.angles(MACHINE, BOWL.track)
     assert {round(1e3 * r) for r in radii} >= {90, 150}
     assert np.all(np.diff(angles) < 0.0)
 
@@ -91,8 +91,8 @@ def test_the_gain_at_its_ends():
 def test_the_acceleration_of_the_makers_strokes(frequency, stroke_mm, ratio):
     texts = (f"drive.frequency={frequency} Hz", f"drive.peak_to_peak={stroke_mm} mm")
     one = bowls.read(None, texts)
-    assert stroke.stroke(one).acceleration / 9.81 == pytest.approx(ratio, abs=0.005)
-    assert one.drive.amplitude <= stroke.greatest_amplitude(one)
+    assert springs.stroke(one).acceleration / 9.81 == pytest.approx(ratio, abs=0.005)
+    assert one.drive.amplitude <= springs.greatest_amplitude(one)
 
 
 @pytest.mark.parametrize("share", [0.0, 1.0])
@@ -113,7 +113,7 @@ def test_gain_angle_and_drift_against_two_bodies_in_time(share):
 
 def test_the_stroke_at_the_springs_is_the_one_that_moves_the_track():
     """Rise and turn of the bowl give the way along the springs, base included."""
-    machine, moved = BOWL.machine, stroke.stroke(BOWL)
+    machine, moved = BOWL.machine, springs.stroke(BOWL)
     rise = BOWL.drive.amplitude * np.sin(moved.angle)
     assert moved.springs * np.sin(machine.spring_angle) * 25 / 31 == pytest.approx(rise, rel=1e-9)
     assert (moved.horizontal, moved.vertical) == pytest.approx(
@@ -213,7 +213,7 @@ def test_leaves_are_as_makers_stock_them(radius, frequency, degrees):
     assert made.leaves % 3 == 0 and made.leaves <= 12
     assert 1e-3 <= made.leaf_thickness <= 4e-3 and 60e-3 <= made.leaf_length <= 260e-3
     bowl = replace(bowl, machine=made)
-    assert leaf_stress(made, stroke.stroke(bowl).springs) <= BOWL.sizing.fatigue_stress
+    assert leaf_stress(made, springs.stroke(bowl).springs) <= BOWL.sizing.fatigue_stress
     assert drive_sizing.drive_shortfall(bowl, frozenset()) == "" == drive_sizing.leaf_shortfall(bowl)
 
 

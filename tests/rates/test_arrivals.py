@@ -9,7 +9,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
-from feederscrew.rates import arrivals
+from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.resting.counts import profiles
 from feederscrew.studies import rate as study
@@ -76,18 +76,16 @@ def arrival(**values):
 
 def test_what_arrives_is_named_and_what_is_undecided_is_said(part):
     aspects = find(part)
-    found = arrivals.arrived(aspects, arrival(), 1)
+    found = stream.arrived(aspects, arrival(), 1)
     assert found.recommended.rule == "fed onto the moving floor, 80 parts, seed 1"
     assert found.recommended.p.tolist() == [0.7, 0.2, 0.1] and found.warnings == aspects.warnings
-    doubtful = arrivals.arrived(aspects, arrival(settled=False, reason="they change - wait"), 1)
+    doubtful = stream.arrived(aspects, arrival(settled=False, reason="they change - wait"), 1)
     assert doubtful.warnings[-1] == "the shares at the track's entry are undecided: they change - wait"
     stopped = arrival()
     stopped.shaken.partial = True
-    assert (
-        arrivals.arrived(aspects, stopped, 1).warnings[-1] == "the parts on the floor were stopped after 80"
-    )
-    nothing = arrivals.arrived(aspects, arrival(p=np.full(3, np.nan)), 1)
-    assert nothing.recommended is aspects.recommended and nothing.warnings[-1] == arrivals.NO_ARRIVALS_MESSAGE
+    assert stream.arrived(aspects, stopped, 1).warnings[-1] == "the parts on the floor were stopped after 80"
+    nothing = stream.arrived(aspects, arrival(p=np.full(3, np.nan)), 1)
+    assert nothing.recommended is aspects.recommended and nothing.warnings[-1] == stream.NO_ARRIVALS_MESSAGE
 
 
 def test_a_bowl_of_its_own_feeds_parts_onto_its_floor(part, plain):
@@ -121,5 +119,5 @@ def test_a_measured_file_without_counts_has_no_interval(part):
     made = profiles.Measured(
         "c.csv", "", profiles.parse_profile("aspect,x\nA,0.5\nB,0.25\nC,0.25\n", "c", "ABC")
     )
-    answer = arrivals.counted(aspects, made).recommended
+    answer = stream.counted(aspects, made).recommended
     np.testing.assert_array_equal(answer.low, answer.high)

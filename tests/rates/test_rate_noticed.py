@@ -102,16 +102,6 @@ def test_what_tips_lies_on_its_foot_and_what_rolls_on_its_line():
         assert np.abs(line[:, 1]).min() > np.abs(place.contact[:, 1]).max()
 
 
-@pytest.mark.parametrize(
-    ("point", "reach"),
-    [((9e-3, 1e-3), 5e-3), ((1e-3, 7e-3), 4e-3), ((-6e-3, 0), 2e-3), ((1e-3, -3e-3), 1e-3)],
-)
-def test_a_part_tips_over_the_side_that_the_force_is_farthest_beyond(point, reach):
-    """A foot from -2 to 5 mm and from -1 to 4 mm of the weight."""
-    foot = 1e-3 * np.array([(-2.0, -1.0), (5.0, -1.0), (5.0, 4.0), (-2.0, 4.0)])
-    assert tipping._to_side(foot, np.array(point)) == pytest.approx(reach)
-
-
 def test_what_the_first_device_that_returns_it_may_leave_is_not_surely_gone(monkeypatch):
     lying = [SimpleNamespace(returned=back) for back in (False, True, False, False)]
     passes = np.array([[1.0, 1.0, 0.0], [1.0, 0.0, 1.0], [1.0, 0.0, 0.0], [1.0, 1.0, 1.0]])

